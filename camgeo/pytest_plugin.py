@@ -299,7 +299,7 @@ class RecipeItem(pytest.Item):
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, None, str]:
-        """Say where the item comes from."""
+        """Path, line and name of the item, for pytest's messages."""
         return self.path, None, self.name
 
     def _hold(self, checks: list[Entry], report: Entry) -> None:

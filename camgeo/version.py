@@ -1,3 +1,3 @@
-"""The version, for whoever asks for nothing else."""
+"""The version, importable without the rest of the library."""
 
 __version__ = "0.2.0"

@@ -160,7 +160,7 @@ def _judge_claimed(
     *,
     has_file_bounds: bool,
 ) -> Report:
-    """Report on files that a capability judges; raises CallError where others are among them."""
+    """Report on files that a capability judges; raises CallError for other files and options among them."""
     from camgeo.registry.capability import FileCall
 
     faults = [f"{escaped(str(path))}: give it in a call of its own" for path in paths if path not in claimed]

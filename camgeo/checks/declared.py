@@ -402,7 +402,7 @@ CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {one.name: one f
 
 @cache
 def _of_figure(name: str, figure: Figure) -> Declared:
-    """Declare the limit of a figure: it applies where the recipe gives it."""
+    """Declaration of the limit of a figure, which applies where the recipe gives the limit."""
 
     def given(scene: Scene) -> bool:
         return figure.of != "file" and any(limit.figure == name for limit in scene.recipe.limits)
@@ -422,7 +422,7 @@ def _of_figure(name: str, figure: Figure) -> Declared:
 
 
 def declaration(name: str) -> Declared | None:
-    """Give the declaration of a check by its name, that of a limit among them; None where there is none."""
+    """Declaration of a check or a limit by its name; None where there is none."""
     if not name.startswith(LIMIT):
         return CHECKS.get(name)
     figure = FIGURES.get(name.removeprefix(LIMIT))
@@ -430,7 +430,7 @@ def declaration(name: str) -> Declared | None:
 
 
 def declarations(recipe: Recipe | None = None) -> list[Declared]:
-    """Give what a recipe may be checked by, or all there is: the checks, and behind them the limits."""
+    """Declarations of the checks of a recipe, or of all recipes, and behind them those of the limits."""
     if recipe is None:
         return [*CHECKS.values(), *(_of_figure(name, figure) for name, figure in FIGURES.items())]
     bounded = {limit.figure for limit in recipe.limits}

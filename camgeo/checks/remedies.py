@@ -217,9 +217,9 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
     if not eased_by:
         return ""
     if figure == PRESSURE_ANGLE:
-        floor = recipe.cam.advice.least_pressure_angle
-        if missed.bound <= floor:
-            return f"a ratio nearer to 1 (at this one no swing, however small, stays below {floor:.4g} deg)"
+        least = recipe.cam.advice.least_pressure_angle
+        if missed.bound <= least:
+            return f"a ratio nearer to 1 (at this one no swing, however small, stays below {least:.4g} deg)"
     limits = "cam.sizing.pressure-angle"
     if limits in recipe.marks and figure in {PRESSURE_ANGLE, ON_RISE, ON_RETURN}:
         both = figure == PRESSURE_ANGLE and f"{limits}.on_return" in recipe.marks

@@ -1,1 +1,1 @@
-"""What every room uses: rounding, the clock of a run."""
+"""Helpers of all packages: rounding, the clock of a run."""

@@ -24,7 +24,7 @@ class Clock:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Time one stage."""
+        """Context that adds the seconds of a stage."""
         if self.report is not None:
             self.report(name)
         start, first = time.perf_counter(), len(self.stages)

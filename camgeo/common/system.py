@@ -1,4 +1,4 @@
-"""What systems do differently: locks, second names of a file, files that a program holds open, interrupts.
+"""Differences between systems: locks, second names of a file, files that a program holds open, interrupts.
 
 Python in a browser is the platform `emscripten`: one process on a file system of its own, without locks and links.
 """
@@ -28,7 +28,7 @@ _PAUSES = (0.01, 0.03, 0.1, 0.3, 1.0)  # seconds before another try where Window
 
 
 def retry(step: Callable[[], object]) -> None:
-    """Take a step that renames or removes; on Windows again for a while, as it leaves alone what a program has open."""
+    """Call a function that renames or removes a file; on Windows again for a while, where a program has it open."""
     for pause in _PAUSES if WINDOWS else ():
         try:
             step()
@@ -40,10 +40,10 @@ def retry(step: Callable[[], object]) -> None:
 
 
 def lock_file(path: Path) -> int | None:
-    """Open and lock a file, and return it; None where another process holds it.
+    """Descriptor of a file that is opened and locked; None where another process holds it.
 
     The holder removes the file in the end. So a lock counts only if the path still leads to the file that was locked.
-    One that a killed process left behind is held by nobody.
+    One that a killed process left behind is not held.
     """
     while True:
         lock = os.open(path, os.O_CREAT | os.O_RDWR | getattr(os, "O_NOFOLLOW", 0), 0o666)
@@ -76,7 +76,7 @@ def unlock(lock: int, path: Path) -> None:
 
 
 def link_file(source: Path, target: Path) -> None:
-    """Give a file a second name; on systems and file systems without hard links, a copy."""
+    """Link a file under a second name, or copy it where the system or file system has no hard links."""
     if sys.platform != "emscripten":
         with suppress(OSError, NotImplementedError):  # the second where a system knows no link to a link
             os.link(source, target, follow_symlinks=False)
@@ -88,7 +88,7 @@ def link_file(source: Path, target: Path) -> None:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Put an interrupt off to the end; a process that is begun meanwhile is deaf from its start, where a system can.
+    """Delay an interrupt to the end of the context; processes started within it ignore interrupts where they can.
 
     Both are needed: a thread of a library may still take the signal, and Python passes it to the main thread.
     """
@@ -114,7 +114,7 @@ def uninterrupted() -> Iterator[None]:
 
 
 def _take_lock(lock: int) -> bool:
-    """Lock an open file until it is closed or the process ends; False where another one has it."""
+    """Whether an open file was locked, until it is closed or the process ends; False where another process has it."""
     if sys.platform == "win32":
         try:
             msvcrt.locking(lock, msvcrt.LK_NBLCK, 1)

@@ -1,1 +1,1 @@
-"""What files are made of: outlines on layers, meshes and solids, and the numbers that formats hold."""
+"""Contents of files: outlines on layers, meshes and solids, and the precision of formats."""

@@ -61,7 +61,7 @@ class Precision:
         return nearest, float(np.sqrt(np.sum((nearest - points) ** 2, axis=1)).max())
 
     def number(self, value: float) -> float:
-        """One number as written."""
+        """Number as written, mm."""
         return float(self.nearest(np.array([value]))[0])
 
     def bound(self, size: float) -> float:
@@ -88,7 +88,7 @@ class Precision:
         return remainder - more if remainder >= _LEAST * more else remainder
 
     def within(self, noun: str, deviation: float, tolerance: float) -> None:
-        """Raise ToleranceError for a deviation, in mm, above the tolerance or not a number."""
+        """Raise ToleranceError for a deviation, mm, that is above the tolerance or nan; `noun` begins its message."""
         if not deviation <= tolerance:
             raise ToleranceError(
                 f"{self.file}: {noun} would be off by {deviation:.6g} mm in {self.name}, more than {tolerance:.6g} mm",

@@ -157,7 +157,7 @@ def _turned(loops: list[Array]) -> tuple[list[Array], Triangles]:
 def rounded_loop(
     hole: ArcSpline, tolerance: float, precision: Precision, noun: str = "a hole"
 ) -> tuple[Array, float, float]:
-    """Vertices (n, 2) as written of a hole's polygon, how far it is off in all, and how far a vertex moved.
+    """Vertices (n, 2) of a hole's polygon as written, its greatest error and the greatest shift of a vertex, mm.
 
     Raises ToleranceError where that is more than the tolerance.
     """

@@ -133,7 +133,7 @@ def _angles(points: Array) -> Array:
 
 
 def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], Indices]:
-    """Cut ears off a star-shaped loop until three vertices are left or none can go; returns them and what is left."""
+    """Ears cut off a star-shaped loop until three vertices remain or no ear does, and the remaining vertices."""
     remaining = np.arange(len(loop))
     cut: list[Triangles] = []
     while remaining.size > 3:

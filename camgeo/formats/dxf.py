@@ -182,7 +182,7 @@ def _draw_reference(space: Modelspace, reference: Sequence[Reference], mm: float
 
 
 def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: list[str]) -> None:
-    """Write as Drawing.saveas does, but with the header set after ezdxf has brought it up to date with the clock."""
+    """Write a drawing as Drawing.saveas does, but with this header, in which ezdxf would put the time."""
     from ezdxf.document import CREATED_BY_EZDXF, WRITTEN_BY_EZDXF
     from ezdxf.lldxf.tagwriter import TagWriter
 
@@ -339,7 +339,7 @@ def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[LayerO
 
 
 def _reference(job: Job, tolerance: float) -> list[Reference]:
-    """Centre, base or prime circle, the pitch curve, and paths of points of links: to look at, not to cut."""
+    """Reference geometry of a drawing: centre, base or prime circle, the pitch curve, paths of points of links."""
     from camgeo.fit.arcs import fit_arcs
     from camgeo.part.walls import Looks, distance_inside
 

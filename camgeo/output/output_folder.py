@@ -53,7 +53,7 @@ _OLD = ".old"
 
 @dataclass(frozen=True)
 class Family:
-    """Which set of files a run replaces: several, of different reports, may stand in one recipe's folder.
+    """Set of files that a run replaces: a recipe's folder may have several, of different reports.
 
     `report` names the files of the set; `begins` is how their names may begin, empty for the recipe's own name; `role`
     tells the private folders from those of the other sets.
@@ -238,7 +238,7 @@ class RunFolder:
                 _remove(folder / name)
 
     def _done(self, swap: Path) -> None:
-        """Let go of a swap whose files are all in place: one rename, then what is left of it."""
+        """Remove a swap whose files are all in place: rename it to the private folder, then clear that."""
         retry(lambda: swap.rename(self.folder))
         self._clear()
 

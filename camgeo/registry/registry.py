@@ -1,4 +1,4 @@
-"""Which capabilities there are, and their records: each is imported when it is first looked at."""
+"""Capabilities and their records, each of which is imported at its first use."""
 
 from __future__ import annotations
 

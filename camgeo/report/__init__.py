@@ -1,1 +1,1 @@
-"""What a run found: checks, files, errors, times."""
+"""Reports of runs: checks, files, errors, times."""

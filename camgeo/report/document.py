@@ -390,7 +390,7 @@ def verdict(report: dict[str, Any]) -> str:
 
 
 def _times(stages: Sequence[dict[str, Any]]) -> str:
-    """Milliseconds of all stages, and of each group of them: the exact cam, and the rest by the first word."""
+    """Line with the milliseconds of all stages, and of each group: the exact cam, and others by their first word."""
     groups: dict[str, float] = {}
     for stage in stages:
         word = stage["name"].split()[0]

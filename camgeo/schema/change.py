@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from camgeo.schema.yaml_source import Node
 
 Value: TypeAlias = "str | float | bool | AnySequence[Value] | AnyMapping[str, Value] | NDArray[np.generic] | None"
-"""What may stand in a recipe: a text, a number, a truth value, nothing, lists, arrays and mappings of those."""
+"""Value of a recipe: a text, a number, a truth value, nothing, lists, arrays and mappings of those."""
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")  # texts that YAML and people read as they stand
 _WORDS = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan", "inf"})
@@ -135,7 +135,7 @@ def _add_entry(source: Source, node: Node, target: str, steps: list[str | int], 
 
 
 def _verify_change(source: Source, path: str, text: str, new_path: str = "") -> str:
-    """Give the new text, whose values at all other paths must be the old ones; the entry may move to `new_path`."""
+    """The new text, whose values at all other paths must be the old ones; the entry may move to `new_path`."""
     try:
         new = Source.of(text, source.file).root
     except RecipeErrors as errors:
@@ -200,7 +200,7 @@ def _flow(value: object, path: str, file: str, depth: int) -> str:
 
 
 def _without_arrays(value: object) -> object:
-    """Give numpy's arrays as lists and its numbers as Python's; all else as it is."""
+    """Lists for numpy's arrays and Python's numbers for numpy's; other values as they are."""
     numpy = sys.modules.get("numpy")  # who has an array has imported it
     return value.tolist() if numpy is not None and isinstance(value, numpy.ndarray | numpy.generic) else value
 

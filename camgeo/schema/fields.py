@@ -31,13 +31,13 @@ MOST_FILES = 20
 
 
 def either(words: Iterable[str], conjunction: str = "or") -> str:
-    """Words joined as `a, b or c`."""
+    """Words joined in a sentence: `a, b or c`; `conjunction` stands before the last."""
     words = tuple(words)
     return f" {conjunction} ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
 class Kind(Enum):
-    """What a field holds; the value is the noun that messages use."""
+    """Kind of a field's value; the enum's value is its noun in messages."""
 
     TEXT = "a text"
     NAME = "a name"

@@ -47,12 +47,12 @@ def quantity_in(own_unit: str) -> str:
 
 
 def holds_unit(text: str) -> bool:
-    """Tell whether a known unit stands behind a number anywhere in a text."""
+    """Whether a known unit stands behind a number anywhere in a text."""
     return re.search(_WITHIN, text) is not None
 
 
 def is_metric(text: str) -> bool:
-    """Tell whether a number carries a metric unit of length."""
+    """Whether a number carries a metric unit of length."""
     return split_unit(text)[1] in {"mm", "cm"}
 
 

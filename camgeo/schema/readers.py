@@ -1,4 +1,4 @@
-"""Which function reads which kind of field, and the forms of mappings that come in kinds."""
+"""Reading functions by kind of field, and the forms of mappings whose `kind` chooses their keys."""
 
 from __future__ import annotations
 

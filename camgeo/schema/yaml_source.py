@@ -51,7 +51,7 @@ class Scalar:
 
 @dataclass(frozen=True)
 class Sequence:
-    """A list; `end` just behind it, or behind its last entry."""
+    """A list; `end` is the place behind its bracket, or behind its last entry where it has none."""
 
     items: tuple[Node, ...]
     mark: Mark
@@ -193,7 +193,7 @@ def keys(node: Mapping) -> dict[str, Scalar]:
 
 
 def entries(node: Mapping) -> dict[str, Node]:
-    """Give the values by key; the first where a key stands twice."""
+    """Values of a mapping by key; the first of two alike."""
     first: dict[str, Node] = {}
     for key, value in node.entries:
         if isinstance(key, Scalar):
@@ -285,7 +285,7 @@ class _Loader(yaml.SafeLoader):
 
 
 def _events(text: str, loader: type[yaml.SafeLoader]) -> Iterator[yaml.Event]:
-    """Give the events of a text one at a time: behind a bound that is passed, nothing more is read."""
+    """Events of a text, read one at a time, so that nothing is read beyond a bound."""
     end: Mark = (1, 1)
     try:
         for event in yaml.parse(text, Loader=loader):
@@ -344,7 +344,7 @@ class _Tree:
             node = frame.close(self.nodes, end)
             self._add(node, mark, node.end, frame.event.anchor)
         elif isinstance(event, yaml.AliasEvent):
-            self._add(self._meant(event, mark), mark, end, None)
+            self._add(self._node_of(event, mark), mark, end, None)
         else:
             if not event.value and not event.style:
                 mark = _behind(mark, self.lines)
@@ -357,8 +357,8 @@ class _Tree:
         self.frames.append(_Frame(event, mark, self.nodes, mark))
         self.nodes += 1
 
-    def _meant(self, event: yaml.AliasEvent, mark: Mark) -> Node:
-        """Give the node that an alias stands for."""
+    def _node_of(self, event: yaml.AliasEvent, mark: Mark) -> Node:
+        """Node of an alias; raises RecipeErrors for too many aliases and for one without anchor."""
         self.aliases += 1
         if self.aliases > MAX_ALIASES:
             raise _fault(self.file, mark, f"more than {MAX_ALIASES} aliases", remedy="write the values out")

@@ -1,4 +1,4 @@
-"""What the tables by which a lobe is ground share: rows by a step, and the metal that their wheel leaves, judged."""
+"""Tables by which a lobe is ground: their rows by a step, and the judged metal that their wheel leaves."""
 
 from __future__ import annotations
 
