@@ -100,7 +100,7 @@ def radii(places: Array) -> Array:
 
 
 def lone_turns(rows: Rows, *, aligned: bool) -> dict[int, float]:
-    """Turn, rad, of each cam that alone is turned, by its place among those measured; empty where none is far off.
+    """Turn, rad, of each cam that alone is turned, by its place among those measured; of one that a turn explains.
 
     `aligned` says that the shaft as one is turned back already. Raises UnlikePointsError for rows that look like
     those of a shaft that is turned, mirrored, in another unit, or has cams for one another.
@@ -113,7 +113,9 @@ def lone_turns(rows: Rows, *, aligned: bool) -> dict[int, float]:
     }
     if off.max() > rows.words.far:
         _demand_shaft(rows, nominal, off, aligned=aligned)
-    return alone if _mean(rows.off(rows.measured, nominal, alone)) <= BETTER * _mean(off) else {}
+    left = rows.off(rows.measured, nominal, alone)
+    near = np.maximum(BETTER * off, ODD * rows.words.far)
+    return {rank: turn for rank, turn in alone.items() if left[rank] <= near[rank]}
 
 
 def standing_together(rows: Rows) -> Mask:

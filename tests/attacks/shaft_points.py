@@ -35,7 +35,22 @@ OPTIONS = (
 )
 SOUND = ("lobe,z_mm,x_mm,y_mm", "z_mm,x_mm,y_mm", "lobe,x_mm,y_mm")
 COLUMNS = (*SOUND, *SOUND, "x_mm,y_mm", "z,x,y", "lobe,x,y", "lobe,z,x")
-HARMS = (*[""] * 14, "mirror", "end", "swap", "one", "few", "turn", "shift", "unknown", "word", "inch", "ecc", "lifts")
+HARMS = (
+    *[""] * 14,
+    "mirror",
+    "end",
+    "swap",
+    "one",
+    "few",
+    "turn",
+    "shift",
+    "unknown",
+    "word",
+    "inch",
+    "ecc",
+    "lean",
+    "lifts",
+)
 
 
 @cache
@@ -68,6 +83,8 @@ def _harmed(rng: Random, rows: list[Row], harm: str) -> list[Row]:
                 altered.append((name, z / 25.4, x / 25.4, y / 25.4))
             case "ecc":
                 altered.append((name, z, x + 2.0, y))
+            case "lean":
+                altered.append((name, z, x + 1e-3 * z, y - 5e-4 * z))
             case "unknown":
                 altered.append((f"{name}2", z, x, y))
             case _:
@@ -84,7 +101,7 @@ def of_a_shaft(rng: Random, number: int) -> Attack:
     harm, columns = rng.choice(HARMS), rng.choice(COLUMNS)
     rows = _harmed(rng, rows, harm)
     if harm == "lifts":
-        columns = "lobe,angle_deg,lift_mm"
+        columns = rng.choice(["lobe,angle_deg,lift_mm", "lobe,crank_deg,lift_mm", "lobe,cam_deg,lift_rad"])
     rng.shuffle(rows)
     numbers = {"flat": "1", "roller": "2", "arm": "3"} if rng.random() < 0.3 else {}
     known = ("lobe", "z", "x", "y")

@@ -165,5 +165,6 @@ def round_the_shaft(rng: Random, radius: float, x: float) -> str:
     rows = [f"{a:.{rng.randrange(2, 6)}f},{b:.4f}" for a, b in places]
     if harm == "word":
         rows[rng.randrange(count)] = "x,1"
-    heading = "angle_deg,lift" if harm == "lifts" else rng.choice(["x,y", "X [mm],Y [mm]", "x_in,y_in", ""])
+    lifts = ["angle_deg,lift", "crank_deg,lift", "angle_rad,lift_rad"]
+    heading = rng.choice(lifts if harm == "lifts" else ["x,y", "X [mm],Y [mm]", "x_in,y_in", "X pos,Y pos", ""])
     return "\n".join([heading, *rows] if heading else rows)

@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 import pytest
-from support.shafts import camshaft, shaft_points, written
+from support.shafts import Planted, camshaft, shaft_points, written
 
 import camgeo
 from camgeo.cli.main import main
@@ -88,6 +88,15 @@ def test_an_eccentric_lobe_is_no_lean(tmp_path, capsys):
     own = {cam["name"]: cam for cam in axis["eccentricity"]}
     assert own["flat 1"]["shifted"] == pytest.approx([0.0, 0.03], abs=own["flat 1"]["uncertainty"])
     assert np.max([cam["value"] for name, cam in own.items() if name != "flat 1"]) < 0.003
+
+
+def test_a_lobe_that_is_turned_on_a_leaning_axis(tmp_path):
+    """Neither hides the other: the lean is no reason to take the turned lobe for another cam's."""
+    recipe = camshaft(tmp_path)
+    rows = shaft_points(recipe, {"roller": Planted(late=3.0)}, count=120)
+    made = camgeo.verify(recipe, written(tmp_path / "points.csv", leaning(rows, 3.0 * LEAN)), spans=24)["made"]
+    assert made["lobes"][1]["phase"]["late_deg"] == pytest.approx(3.0, abs=0.2)
+    assert made["axis"]["leans_deg"] == pytest.approx(3.0 * math.degrees(5e-4), rel=0.05)
 
 
 def test_what_tells_no_lean(tmp_path):
