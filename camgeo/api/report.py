@@ -131,7 +131,10 @@ class Report(Mapping[str, JSON]):
         return figures
 
     def explain(self, check: Check) -> str:
-        """Text of several lines on a failed check: figure, limit, place, field, remedy; raises CallError for others."""
+        """Explain a check of this report in several lines: figure, limit, place, field of the recipe, remedy.
+
+        Raises CallError for a check that is not among `checks`, TypeError for what is no Check.
+        """
         is_a("check", check, Check, "a Check")
         if check not in self.checks:
             raise CallError(f"{self.recipe.name}: {check.name} is none of this report's checks; give one of .checks")

@@ -83,7 +83,7 @@ class Conjugate(Holding):
         return f"{name} on conjugate discs"
 
     def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:
-        """One surface on each disc."""
+        """Flanks of both discs, in the order of the discs: each carries one surface."""
         return Flank(FIRST, side, touch.radius), Flank(SECOND, side, self.touch.radius, disc=1)
 
     def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:

@@ -67,7 +67,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         return super().joints() if self.frame_swing is None else self.frame_swing.joints
 
     def kept(self) -> Kept | None:
-        """How the half turn's motion, or the swing, keeps the rows of its table; None without one."""
+        """Greatest distance of the half turn's motion, mm, or the swing, rad, from a row of its table; None without."""
         return super().kept() if self.frame_swing is None else self.frame_swing.motion.kept
 
     @property

@@ -87,7 +87,7 @@ class DiscCam(GuidedCam):
         return self._turn.joints
 
     def kept(self) -> Kept | None:
-        """How the motion keeps the rows of its table; None without one."""
+        """Greatest distance of the motion from a row of its table, mm or rad; None without a table."""
         return self._turn.kept
 
     def follower(self, law: Displacement) -> Follower:  # noqa: ARG002 - the motion has no say in it
@@ -199,7 +199,7 @@ class ExactFaced(ExactLed):
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The envelope of the face (`camgeo.curve.disc`), its parameter the shaft angle."""
+        """Surface of each contact, the envelope of its flat face (`camgeo.curve.disc`), over the shaft angle."""
         from camgeo.curve.disc import face_shape
 
         flanks, (_, *others) = self.flanks, self.follower.contacts

@@ -122,7 +122,7 @@ class Advice(ABC):
         """Remedy that raises the least radius of curvature from a value to a limit, both in the recipe's unit."""
 
     def same_pitch(self, mm: float) -> str:  # noqa: ARG002
-        """What must change with the roller's radius to keep the pitch curve; empty where nothing must."""
+        """Words for what must change with the roller's radius to keep the pitch curve; empty where nothing must."""
         return ""
 
     @property
@@ -171,7 +171,7 @@ class Linear(ABC):
 
     @abstractmethod
     def about_origin(self) -> Cam:
-        """The same cam with its shaft at the origin of those axes."""
+        """Copy of the cam with its shaft at the origin of the axes of the support function."""
 
     @abstractmethod
     def harmonic(self, path: str) -> tuple[int, bool, float] | None:
@@ -179,7 +179,7 @@ class Linear(ABC):
 
     @abstractmethod
     def without_harmonics(self, orders: set[tuple[int, bool]]) -> Cam:
-        """The same cam with these harmonics (order, whether a sine) set to 0; the mean radius stays."""
+        """Copy of the cam with these harmonics (order, whether a sine) set to 0; the mean radius stays."""
 
 
 class ExactCam(ABC):
@@ -238,7 +238,7 @@ class ExactCam(ABC):
     @property
     @abstractmethod
     def judged_law(self) -> Piecewise | Transmission:
-        """The law for kin's followers."""
+        """Law of the follower's motion over the shaft angle, by which kin judges the files."""
 
     @property
     def breaks(self) -> Array:
@@ -252,12 +252,12 @@ class ExactCam(ABC):
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        """Where derivatives of the motion that a recipe gives jump; displacements in mm or rad."""
+        """Joints of the recipe's motion, angles at which derivatives jump; displacements in mm or rad."""
         return ()
 
     @property
     def kept(self) -> Kept | None:
-        """How the motion keeps the rows of the recipe's table, mm or rad; None without a table."""
+        """Greatest distance of the motion from a row of the recipe's table, mm or rad; None without a table."""
         return self.cam.kept()
 
     def circles(self, surface: str) -> tuple[Circle, ...]:  # noqa: ARG002 - most have one disc
@@ -354,7 +354,7 @@ class Cam(ABC):
         """Remedies in the words of the recipe."""
 
     def kept(self) -> Kept | None:
-        """How the motion keeps the rows of the recipe's table, mm or rad; None without a table."""
+        """Greatest distance of the motion from a row of the recipe's table, mm or rad; None without a table."""
         return None
 
     @property
@@ -392,7 +392,7 @@ class Cam(ABC):
         return None
 
     def with_motion(self, motion: MotionSource) -> Cam:
-        """The same cam with another motion; raises TypeError for a family that leaves no angle open."""
+        """Copy of the cam with another motion; raises TypeError for a family that leaves no angle open."""
         raise TypeError(f"{self.kind}: no {motion}")
 
     def circles(self) -> tuple[Circle, ...]:
@@ -400,7 +400,7 @@ class Cam(ABC):
         return ()
 
     def refusing_undercut(self) -> Cam:
-        """The same cam with undercut refused."""
+        """Copy of the cam under which undercut is a failed check and is not cut off."""
         return replace(self, undercut="refuse")  # type: ignore[type-var]  # every family is a dataclass
 
 

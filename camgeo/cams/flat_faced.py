@@ -78,7 +78,7 @@ class FlatFacedCam(Cam):
 
     @property
     def arrangement(self) -> Arrangement:
-        """One face, or two where the breadth is constant."""
+        """Translating flat follower: one face, or a yoke of two parallel faces where the breadth is constant."""
         return Arrangement(Translating, Flat, 2)
 
     @property
@@ -159,7 +159,7 @@ class ExactLifted(ExactCam):
 
     @property
     def plate(self) -> Lift:
-        """The lift as the support function of a plate."""
+        """Support function of the cam's outline, mm, over the shaft angle: distance of the face from the shaft."""
         return self.law
 
     @property

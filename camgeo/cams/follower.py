@@ -60,12 +60,12 @@ class Follower:
 
     @property
     def offset(self) -> float:
-        """Eccentricity of a stem's line, mm; 0 on an arm."""
+        """Eccentricity of a stem's line of travel, mm, signed as that of its guide; 0 for a swinging arm."""
         guide = self.contacts[0].guide
         return guide.offset if isinstance(guide, Translating) else 0.0
 
     @property
     def breadth(self) -> float | None:
-        """How far two opposite faces are apart, mm; None for other followers."""
+        """Distance between the two parallel faces of a yoke, mm; None for other followers."""
         *_, last = self.contacts
         return last.datum if last.sense < 0 and isinstance(last.touch, Flat) and last.guide.unit == "mm" else None

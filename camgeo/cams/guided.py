@@ -85,7 +85,7 @@ class Flank(NamedTuple):
 
 @dataclass(frozen=True)
 class Holding:
-    """How a follower is held on its cam; here by a spring or gravity on one surface.
+    """Way in which a follower is held on its cam; in this class a spring or gravity holds it on one surface.
 
     `closure` names the check of the play between two surfaces, empty without it; `discs` is the number of discs on the
     shaft, `gap` the axial gap between them, mm; `trims` says whether undercut may be cut off.
@@ -103,7 +103,7 @@ class Holding:
 
     @property
     def beside(self) -> str:
-        """What must grow with the base radius under a flat face, in words; empty where nothing must."""
+        """Words for what must grow with the base radius under a flat face; empty where nothing must."""
         return ""
 
     @property
@@ -221,7 +221,7 @@ class GuidedCam(Cam):
 
     @property
     def holding(self) -> Holding:
-        """How the follower is held on the cam."""
+        """Way in which the follower is held on the cam: by a spring or gravity, unless overridden."""
         return Holding()
 
     @abstractmethod
@@ -310,7 +310,10 @@ class ExactLed(ExactCam):
         return holding.flanks(self.cam.touch, self.cam.side)
 
     def grow(self, out: float, scale: float) -> ExactCam:
-        """The same pitch curve, or a face farther out; a lift is scaled, a swing is not."""
+        """Cam with `out` mm more metal along the normal, then scaled by `scale`; a lift is scaled, a swing is not.
+
+        Under a roller the pitch curve stays and the roller is smaller by `out`; a flat face stands `out` farther out.
+        """
         law = self.law.scaled(scale) if self.cam.arrangement.unit == "mm" else self.law
         return replace(self, cam=self.cam.grow(out, scale), law=law)
 

@@ -86,7 +86,10 @@ class CurveRoute:
 
 @dataclass(frozen=True)
 class RosetteRoute:
-    """One leaf of the path of the third arm's tip: |OQ| as text in x, 0 to 1; `scale` times its value is in mm."""
+    """Route by one leaf of the rosette that the third arm's tip Q traces: |OQ| as text in x, 0 to 1.
+
+    `scale` times the value of the text is in mm.
+    """
 
     text: str
     scale: float
@@ -287,7 +290,7 @@ class ExactPair(ExactCam):
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The one surface of the disc."""
+        """Surface of the disc, in a tuple of one: both followers touch it."""
         return (self.cam.surface(self.law, self.out),)
 
     @property
@@ -301,7 +304,10 @@ class ExactPair(ExactCam):
         return self.cam.joints(self.law)
 
     def grow(self, out: float, scale: float) -> ExactPair:
-        """The same swing with the pivot scaled; faces stand farther out by the growth."""
+        """Cam with `out` mm more metal along the normal, then scaled by `scale`; the swing stays.
+
+        The pivot's distance is scaled, and flat faces stand farther out by the growth.
+        """
         return ExactPair(self.cam.grow(out, scale), self.law.scaled(scale), scale * (self.out + out))
 
     @property

@@ -206,7 +206,7 @@ def _dwelling(scene: Scene, file: FileRequest) -> bool:
 
 
 def run_with(scene: Scene, file: FileRequest) -> bool:
-    """Whether a file's motion drives a run: without a linkage, of a nominal part."""
+    """Whether the dynamics of a run are computed with a file's motion: the part is nominal and drives no linkage."""
     return not scene.linked and file.format.part and file.compensation is None
 
 

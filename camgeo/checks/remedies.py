@@ -132,7 +132,10 @@ def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
 
 
 def nearer(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Tolerance that brings the motion error to its limit, or a wider limit."""
+    """Remedy for too great a motion error: a smaller export tolerance, or a greater `verify.motion_error`.
+
+    Empty where the recipe sets no limit of the motion error, or the error is unknown or 0.
+    """
     value = check["value"]
     if value is None or check["limit"] is None or recipe.verify.motion_error is None or value <= 0.0:
         return ""
@@ -140,7 +143,10 @@ def nearer(check: Entry, report: Entry, recipe: Recipe) -> str:
 
 
 def looser(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Motion error whose limit would permit the play: both limits are proportional where the recipe gives it."""
+    """Remedy for too great a play: a greater `verify.motion_error`, to which the limit of the play is proportional.
+
+    The value is in the recipe's unit or degrees. Empty where the recipe does not set `verify.motion_error`.
+    """
     motion_error, value, limit = recipe.verify.motion_error, check["value"], check["limit"]
     if motion_error is None or value is None or not limit:
         return ""
@@ -168,9 +174,10 @@ def _tolerance(recipe: Recipe, value: float, limit: float, tolerance: float | No
 
 
 class Missed(NamedTuple):
-    """A figure that misses its bound, in mm and degrees; `tolerance` is that of the file, mm, None without one.
+    """A figure's value and the bound that it misses, in mm and degrees; `unit` is their unit.
 
-    `surface` is that of which it is, empty where there is one.
+    `tolerance` is that of the file, mm, None where no file is concerned. `surface` names the surface of the figure,
+    empty for a cam of one surface.
     """
 
     value: float

@@ -84,7 +84,7 @@ def short_repr(value: object) -> str:
 
 
 def whole_of(name: str, value: object) -> int:
-    """Argument that is a whole number, of numpy too, as an int; raises TypeError."""
+    """Argument that must be a whole number, as an int: a Python or numpy integer; raises TypeError, for a bool too."""
     try:
         if not isinstance(value, bool):
             return operator.index(value)  # type: ignore[arg-type]
@@ -94,7 +94,10 @@ def whole_of(name: str, value: object) -> int:
 
 
 def text_of(name: str, value: object, choices: Sequence[str], subject: str) -> str:
-    """Argument that is one of several words; raises CallError, whose message begins with `subject`."""
+    """Argument that must be one of several words.
+
+    Raises TypeError for what is no str, CallError, whose message begins with `subject`, for another word.
+    """
     is_a(name, value, str, "a str")
     if value not in choices:
         raise CallError(f"{subject} is one of {', '.join(choices)}, not {short_repr(value)}")

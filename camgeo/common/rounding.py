@@ -6,12 +6,12 @@ NOISE = 1e-9  # share of a figure that is its own rounding: 6.000000000000001 is
 
 
 def upward(value: float, digits: int = 6) -> str:
-    """Text of a positive figure with so many digits, rounded up: a remedy that needs at least the figure holds."""
+    """Text of a positive figure rounded up to `digits` significant digits: a remedy that needs at least it holds."""
     return _rounded(value * (1.0 - NOISE), digits, up=True)
 
 
 def downward(value: float, digits: int = 6) -> str:
-    """Text of a positive figure with so many digits, rounded down: a remedy that needs at most the figure holds."""
+    """Text of a positive figure rounded down to `digits` significant digits: a remedy that needs at most it holds."""
     return _rounded(value * (1.0 + NOISE), digits, up=False)
 
 

@@ -40,7 +40,7 @@ def say(text: str, *, at_once: bool = False) -> None:
 
 
 def complain(text: str) -> None:
-    """Print lines on standard error, if it can be written."""
+    """Print lines on standard error with control characters escaped; does nothing if it cannot be written."""
     whisper(escaped(text, keep="\n") + "\n")
 
 

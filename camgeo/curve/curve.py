@@ -79,7 +79,7 @@ class Frame:
         return Frame(*(row[chosen] for row in self.rows))
 
     def joined(self, other: Frame) -> Frame:
-        """These frames followed by the others."""
+        """Frames of this record followed by those of the other."""
         return Frame(*(np.concatenate(both) for both in zip(self.rows, other.rows, strict=True)))
 
     @property

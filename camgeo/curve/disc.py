@@ -94,7 +94,10 @@ class StraightFace(_Face):
         return self.motion.on(tau, side) * math.cos(self.tilt) + self.base, tau + (self.tilt + self.turned)
 
     def pitch(self, tau: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Both with their derivatives at shaft angles (n,), (order + 1, n) each."""
+        """Distance from the shaft, mm, and direction of the normal, rad, at shaft angles (n,).
+
+        Each comes with its derivatives, (order + 1, n).
+        """
         p = self.motion.derivatives(tau, order, side) * math.cos(self.tilt)
         p[0] += self.base
         t = np.zeros_like(p)
@@ -173,7 +176,10 @@ class SwingingFace(_Face):
         return elementary.sin(psi) * self.pivot - self.face, tau + (psi - 0.5 * math.pi) * sense
 
     def pitch(self, tau: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Both with their derivatives at shaft angles (n,), (order + 1, n) each."""
+        """Distance from the shaft, mm, and direction of the normal, rad, at shaft angles (n,).
+
+        Each comes with its derivatives, (order + 1, n).
+        """
         p, t = self.polar(Jet.variable(tau, order), side)
         return p.derivatives(), t.derivatives()
 

@@ -24,7 +24,7 @@ class Facing(Source, Protocol):
         ...
 
     def pitch(self, tau: Array, order: int, side: Side = 1, /) -> tuple[Array, Array]:
-        """Both with their derivatives at parameters (n,), (order + 1, n) each."""
+        """Distance r, mm, and direction of the normal, rad, at parameters (n,), with derivatives, (order + 1, n)."""
         ...
 
 

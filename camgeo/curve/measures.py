@@ -241,9 +241,9 @@ def polar_radius(curve: Curve, angles: Array) -> Array:
 
 
 def polar_parameters(curve: Curve, angles: Array) -> Array:
-    """Parameters (n,) of a contour at polar angles (n,), each a root on the exact curve.
+    """Parameters (n,) of a contour at polar angles (n,), rad, about the shaft; each a root on the exact curve.
 
-    Raises StarError unless each ray is proved to cross the contour once.
+    Raises StarError unless each ray from the shaft is proved to cross the contour once.
     """
     least = least_support(curve)
     if not least.value > least.excess:

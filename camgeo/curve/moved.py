@@ -84,7 +84,7 @@ class Moved(ABC):
 
     @property
     def repeats(self) -> int:
-        """1: no equal parts."""
+        """Number of equal parts of the curve per turn: always 1, since the displacement need not repeat."""
         return 1
 
     @property

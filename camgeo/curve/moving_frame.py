@@ -163,7 +163,10 @@ class Translating:
         return np.exp(1j * travel) * (self.foot + s + 1j * self.offset), travel
 
     def rows(self, s: Array) -> tuple[Array, Array, Array]:
-        """b, a (3, n) and tau' (2, n) with their derivatives, from S and three derivatives (4, n)."""
+        """Terms of the moving frame at S, mm: b (3, n), a (3, n), mm, and tau' (2, n), with derivatives by theta.
+
+        `s` (4, n) is S with its first three derivatives. b, a and tau' are defined at the head of this module.
+        """
         b, a, rate = s[:3].copy(), s[1:].copy(), np.zeros_like(s[:2])
         b[0] += self.foot
         a[0] -= self.offset
@@ -175,7 +178,10 @@ class Translating:
         return s + self.foot, s.derivative() - self.offset, 1.0
 
     def resized(self, prime: float) -> Translating:
-        """The same line at another prime circle, mm."""
+        """Copy of the guide with a prime circle of another radius, mm; the offset stays.
+
+        Raises IntentError where the stem's line misses the circle.
+        """
         return Translating.on(prime, self.offset)
 
     def with_shaft(self, along: Array | float, across: Array | float) -> Translating:
@@ -236,7 +242,10 @@ class Oscillating:
         return centre, theta + self.side * (psi - 0.5 * math.pi)
 
     def rows(self, s: Array) -> tuple[Array, Array, Array]:
-        """b, a (3, n) and tau' (2, n) with their derivatives, from S and three derivatives (4, n)."""
+        """Terms of the moving frame at S, rad: b (3, n), a (3, n), mm, and tau' (2, n), with derivatives by theta.
+
+        `s` (4, n) is S with its first three derivatives. b, a and tau' are defined at the head of this module.
+        """
         sine, cosine = self.pivot * np.sin(self.rest + s[0]), self.pivot * np.cos(self.rest + s[0])
         _, v, w, j = s
         b = np.stack([sine, cosine * v, cosine * w - sine * v * v])
@@ -257,11 +266,17 @@ class Oscillating:
         return elementary.sin(psi) * self.pivot, slope * self.length - lean * side, slope * side + 1.0
 
     def resized(self, prime: float) -> Oscillating:
-        """The same arm and pivot at another prime circle, mm."""
+        """Copy of the guide with a prime circle of another radius, mm; pivot and arm stay.
+
+        Raises IntentError where the arm does not reach the circle.
+        """
         return Oscillating.on(prime, self.pivot, self.length, self.side)
 
     def with_shaft(self, along: Array | float, across: Array | float) -> Oscillating:
-        """The same arm with the shaft elsewhere, by b and -a of a follower at rest at S = 0, mm."""
+        """Guide with the same arm and pivot and the shaft elsewhere.
+
+        At rest, S = 0, b = `along` and a = -`across`, mm, see the head of this module.
+        """
         x = self.length + self.side * across
         return Oscillating(
             cast("float", np.hypot(x, along)), self.length, cast("float", np.arctan2(along, x)), self.side

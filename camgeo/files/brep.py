@@ -129,7 +129,7 @@ def stack_shape(stretches: Sequence[tuple[Outline, float, float]], bore: Outline
 
 
 def raise_shape(shape: Shape, z: float) -> Shape:
-    """Solid with its faces moved to a height, mm: a placement in the file would be read as an assembly."""
+    """Solid moved up by z, mm, its faces rewritten there: a placement in the file would be read as an assembly."""
     if not z:
         return shape
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform

@@ -38,7 +38,10 @@ def misfit(outline: Outline) -> float:
 
 
 def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, float]]]:
-    """The kernel's curve of each piece of an outline at a height, and where it starts."""
+    """Curves of the CAD kernel for each piece of an outline at height z, mm, each with its start (x, y), mm.
+
+    A full circle is one curve. Raises TypeError for a polygon.
+    """
     from OCP.gp import gp_Ax2, gp_Circ, gp_Dir
 
     if isinstance(outline, BSpline):
@@ -128,7 +131,10 @@ def inset(outline: ArcSpline, distance: float) -> ArcSpline:
 
 
 def measures(outline: ArcSpline) -> tuple[Array, Array, Any]:
-    """Chord, radius and whether it is taken as a line, of each piece (n,)."""
+    """Chord, mm, radius, mm, and whether it counts as a straight line, of each piece of an arc spline, (n,) each.
+
+    The radius of a piece that counts as a line is 0.
+    """
     length = np.hypot(*outline.chords.T)
     flat = 4.0 * np.abs(outline.bulges) < FLATTEST
     bulge = np.where(flat, 1.0, np.abs(outline.bulges))

@@ -25,6 +25,6 @@ def install(extra: str) -> str:
 
 
 def demand_uninterrupted(error: ImportError) -> None:
-    """Raise the KeyboardInterrupt that ended an import, which a binding reports as an ImportError."""
+    """Raise the KeyboardInterrupt that a binding wrapped in an ImportError; return for any other ImportError."""
     if isinstance(error.__cause__, KeyboardInterrupt):
         raise error.__cause__

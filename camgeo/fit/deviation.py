@@ -58,7 +58,10 @@ class Chain:
 
 @dataclass(frozen=True)
 class Deviation:
-    """Proved range of f for each piece (n,): the curve lies at most `outside` and at least `inside` from the piece."""
+    """Proved range of the curve's signed distance f from each piece (n,), mm, above 0 outside the piece.
+
+    `inside` <= f <= `outside` along the piece, so `inside` is below 0 where the curve runs inside it.
+    """
 
     inside: Array
     outside: Array

@@ -88,9 +88,9 @@ def node_frames(curve: Curve, run: Run, nodes: Array) -> Frame:
 
 
 def place_edges(frame: Frame, run: Run, nodes: Array, away: Array) -> PlacedEdges:
-    """Edges between vertices that stand `away` (n + 1,) outside the frames at the nodes of a run.
+    """Edges between vertices that stand `away` (n + 1,), mm, outside the curve on its normals at the nodes of a run.
 
-    A corner of an open run stays on the curve.
+    `away` is set to 0 where it points to the hollow side of the curve, and at both ends of an open run.
     """
     # where a slight bend the other way was not worth two crossings, a vertex on the far side would only add to it
     away = np.where(away * frame.turn < 0.0, 0.0, away)
@@ -121,10 +121,11 @@ def place_edges(frame: Frame, run: Run, nodes: Array, away: Array) -> PlacedEdge
 
 
 def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -> Sagittas:
-    """Heights of the curve over edges whose vertices stand off by `tolerance`: sampled, not proved.
+    """Sampled height of the curve over each edge, plus `tolerance`, mm, with derivatives by the edge's two nodes.
 
-    For an edge across an inflection, whose ends stand on different sides, both sides count. Derivatives are those of
-    the edge's own height where the curve rises highest (envelope theorem).
+    Not a proof. `sides` (n + 1,) is 1 or -1 for the side on which a vertex stands off by `tolerance`. For an edge
+    across an inflection, whose ends stand on different sides, both sides count. Derivatives are those of the edge's own
+    height where the curve rises highest (envelope theorem).
     """
     count = edges.nodes.size - 1
     width = edges.high - edges.low

@@ -117,7 +117,7 @@ class Density:
 
     @staticmethod
     def join(parts: Sequence[Density]) -> Density:
-        """One density over consecutive stretches, one at least."""
+        """Density over consecutive stretches, joined from that of each; at least one is needed."""
         t = np.concatenate([parts[0].t, *(part.t[1:] for part in parts[1:])])
         base = np.cumsum([0.0, *(part.total for part in parts[:-1])])
         total = np.concatenate([parts[0].sum, *(p.sum[1:] + b for p, b in zip(parts[1:], base[1:], strict=True))])

@@ -162,7 +162,10 @@ STEPS = 8  # of a turn: between two a viewer turns steadily, as the shaft does
 
 
 def steady_turn(rotation: str) -> Array:
-    """Pose (STEPS + 1, 3) of a body on the shaft, at equal steps of a turn: x, y, mm, and angle, rad."""
+    """Pose (STEPS + 1, 3) of a body on the shaft, at equal steps of a turn: x, y, mm, and angle, rad.
+
+    The angle goes from 0 to 2 pi for rotation `ccw`, else to -2 pi; x and y are 0.
+    """
     sense = 1.0 if rotation == "ccw" else -1.0
     pose = np.zeros((STEPS + 1, 3))
     pose[:, 2] = sense * 2.0 * math.pi * np.arange(STEPS + 1) / STEPS

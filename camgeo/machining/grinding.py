@@ -107,7 +107,10 @@ def grinding_intent(recipe: Recipe, design: Design) -> Grinding:
 
 
 def greatest_bend(path: Curve) -> float:
-    """A proved bound of |d2X/dC2|, mm/rad^2, over the whole path; raises CurveError where there is none."""
+    """Proved bound of |d2X/dC2|, mm/rad^2, of a grinding wheel's path: X is its distance from the shaft.
+
+    C is the direction of its centre. Raises CurveError where no bound exists.
+    """
     stretches = np.concatenate([run.stretches for run in path.runs])
     low, high = subdivide(stretches[:, 0], stretches[:, 1], max(CELLS // len(stretches), 1))
     proved, ends, width = path.shape.bounds(low, high), path.span(low, high), high - low

@@ -29,7 +29,10 @@ class ContactPoints(NamedTuple):
     normals: Array
 
     def as_drawn(self, angle: float, rotation: str) -> ContactPoints:
-        """The same points with the cam turned counter-clockwise by `angle`, rad, then mirrored for rotation `ccw`."""
+        """Copy of the points with the cam turned counter-clockwise by `angle`, rad, then mirrored in x if `ccw`.
+
+        `rotation` is that of the shaft, `cw` or `ccw`.
+        """
         places, normals = self.places, self.normals
         if angle:
             c, s = math.cos(angle), math.sin(angle)

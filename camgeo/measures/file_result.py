@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FileResult(OfSurfaces):
-    """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees).
+    """One written file: its request, what was proved of it and what the judge measured, in mm and degrees.
 
-    `body` is the one that it is judged as, `units` (mm) the unit of its numbers, None where there are none or nothing
-    was read. `surfaces`, `closures` and `bodies`, every closed contour as read, are those of its verdict: none of a
-    file that is not judged as the cam. `disc` is the one that the file holds, counted from 0, None for all; `uneven` as
-    of its verdict.
+    `body` names the body that the file shows. `units` is the length of the file's unit, mm; None where its numbers have
+    no unit or nothing was read. `surfaces`, `closures` and `bodies` (every closed contour as read) come from its
+    verdict and are empty for a file that is not judged as the cam. `disc` counts the disc that the file holds from 0,
+    None for all; `uneven` comes from the verdict too.
     """
 
     path: Path
@@ -43,7 +43,10 @@ class FileResult(OfSurfaces):
     def of(
         path: Path, request: FileRequest, tolerance: float, verdict: Verdict, fit: tuple[int, Bound] | None = None
     ) -> FileResult:
-        """Give what is known of a file by its verdict, and if it was `fit` here number of pieces and proved bound."""
+        """Result of a judged file of the cam from its verdict; `fit` is number of pieces and proved bound of the fit.
+
+        Without `fit` the pieces are those read, and there is no bound.
+        """
         pieces, bound = (verdict.pieces, None) if fit is None else fit
         read = verdict.surfaces, verdict.closures, verdict.bodies
         return FileResult(path, request, tolerance, pieces, bound, "cam", verdict.units, *read, uneven=verdict.uneven)

@@ -57,7 +57,7 @@ class Event(NamedTuple):
 
 
 class EventError(CamgeoError, ValueError):
-    """A lift that a lobe does not cross once on either flank."""
+    """A lift that a lobe does not cross exactly once on each flank, or a motion too rough to tell."""
 
 
 @lru_cache(maxsize=16)

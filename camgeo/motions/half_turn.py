@@ -56,7 +56,7 @@ class HalfTurnCam:
         return self.half_turn.joints
 
     def kept(self) -> Kept | None:
-        """How the half turn's motion keeps the rows of its table; None without one."""
+        """Greatest distance of the half turn's motion from a row of its table, mm; None without a table."""
         return self.half_turn.kept
 
 

@@ -38,7 +38,8 @@ class Origin(NamedTuple):
 class Rows:
     """Rows of a table: angles of the cam in rad, displacements in mm or rad, and their lines in the file.
 
-    `unit` is one unit of the file's displacements, in mm or rad; angles that were rounded may be off by `slack` rad.
+    `unit` is one unit of the file's displacements, in mm or rad; angles that were rounded may be off by `slack` rad,
+    and `turned` units of the file's angles are one degree.
     """
 
     theta: tuple[float, ...]

@@ -26,11 +26,12 @@ _SIDES = ("opening", "closing")
 
 @dataclass(frozen=True)
 class SideShape:
-    """One side of a lobe as a recipe gives it, lengths in mm and angles in radians.
+    """One side of a lobe, opening or closing, as a recipe gives it; lengths in mm, angles in rad.
 
-    `half` and `powers`, or `durations`, pairs of a lift and an angle of the crank, which is `crank` times that of the
-    cam from the nose; `half` may stand with them. `ramp` is height and velocity by rad. `field` is that of its own keys
-    below the lobe's, empty of keys that both sides share.
+    `half` is the cam angle from foot to nose, `powers` are those of the polynomial. Instead of powers, `durations` are
+    pairs of a lift and the crank angle over which the lobe is above it; a crank angle is `crank` times the cam angle
+    from the nose. `ramp` is height, mm, and velocity, mm/rad. `field` is the path of the side's own keys below the
+    lobe's, empty for keys that both sides share.
     """
 
     half: float | None = None

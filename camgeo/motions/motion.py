@@ -98,7 +98,7 @@ class MotionSource(ABC):
 
     @property
     def repeats(self) -> int:
-        """How often the motion repeats over its angle."""
+        """Number of times that the motion repeats over its angle."""
         return 1
 
     @property
@@ -136,7 +136,7 @@ class Open:
 
 @dataclass(frozen=True)
 class Segments(MotionSource):
-    """Segments one after another, `repeat` times over."""
+    """Motion programme of segments one after another, `repeat` times a turn; `scale` as of `MotionSource`."""
 
     segments: tuple[MotionSegment, ...]
     repeat: int = 1
@@ -149,12 +149,12 @@ class Segments(MotionSource):
 
     @property
     def covered(self) -> float | None:
-        """Angle of all the segments, once; None where one takes the rest."""
+        """Sum of the angles of the segments, rad, without repeats; None where a segment's angle is left open."""
         return None if self.open else math.fsum(segment.over for segment in self.segments)
 
     @property
     def open(self) -> Open | None:
-        """These segments, where words stand in place of angles."""
+        """Angles that words stand for in these segments (`least`, `rest`); None where every angle is a number."""
         return Open(self) if any(segment.free for segment in self.segments) else None
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:

@@ -73,7 +73,7 @@ class LiftPosition(_Turn):
         return 1.0 / mm
 
     def convert(self, value: Array, mm: float) -> Array:
-        """Positions (n,) in units of `mm` mm; `factor` may give another last digit."""
+        """Positions (n,), mm, in units of `mm` mm, by division: a product with `factor` may end in another digit."""
         return value / mm
 
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:

@@ -65,7 +65,7 @@ class PointsLaw:
     points: tuple[tuple[float, float], ...]
 
     def law(self, over: float, field: str) -> Law:  # noqa: ARG002 - u is a share of any angle
-        """The law; raises IntentError for points that are none."""
+        """Law through the points, a spline; raises IntentError for points through which no law passes."""
         from kin.law.sources.laws import through_points
 
         return through_points(self.points, f"{field}.points")
@@ -80,7 +80,7 @@ class TableLaw:
     reading: float
 
     def law(self, over: float, field: str) -> Law:  # noqa: ARG002 - u is a share of any angle
-        """The law; raises IntentError for rows that are none."""
+        """Law through the rows, within the reading; raises IntentError for rows from which no law follows."""
         return _law_of_rows(self, f"{field}.table")
 
 

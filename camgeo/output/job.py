@@ -134,9 +134,9 @@ class Job:
     def written_outlines(
         self, form: str, tolerance: float, shift_of: Callable[[Outline], float]
     ) -> tuple[Outline, ...]:
-        """Contours as of `outlines`, within the tolerance as written too: writing moves each by up to `shift_of`, mm.
+        """Contour of each surface in a form, as `outlines` gives it, within the tolerance, mm, after writing.
 
-        Raises ToleranceError as the fit does.
+        Writing moves a contour by up to `shift_of`, mm. Raises ToleranceError as the fit does.
         """
         outlines = []
         for fit in self.fits:

@@ -31,12 +31,12 @@ def rim_of(body: Body) -> list[LayerOutline]:
 
 
 def openings_of(body: Body) -> list[LayerOutline]:
-    """What is cut or engraved besides the contours."""
+    """Outlines that are cut or engraved besides the contours, each on its layer."""
     return [LayerOutline(opening.layer, opening.outline, opening.circle) for opening in body.openings]
 
 
 def remarks(body: Body, mm: float) -> list[str]:
-    """What a drawing does not show: told in its comments, in drawing units of `mm` mm."""
+    """Comments for a drawing on features that it does not show, such as depths; lengths in units of `mm` mm."""
     given = with_records(body.features)
     found = [f"camgeo {feature.remark(value, mm)}" for feature, value in given if feature.remark is not None]
     found += [
@@ -93,7 +93,7 @@ def part_mesh(
 
 
 def solid_of(body: Body) -> Solid:
-    """What a body is made of, round whatever outline its contour is given; raises ValueError without a thickness."""
+    """Cuts, holes, hub and chamfers of a body, for a solid of any outline; raises ValueError without a thickness."""
     from camgeo.files.solid import Cut, Drill, Solid
 
     if body.thickness is None:

@@ -34,7 +34,7 @@ class Chamfer:
 
 
 def inset(z: float, thickness: float, chamfer: float) -> float:
-    """How far inside the contour the chamfers take the outline at a height; exactly 0 between them."""
+    """Distance of the outline inside the contour at height z of a chamfered disc, mm; exactly 0 between chamfers."""
     upper = thickness - chamfer
     return max(chamfer - z, 0.0) if z <= upper else z - upper
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Dowel:
-    """One round hole of diameter `hole`, its centre on a circle of diameter `circle`."""
+    """Round hole of diameter `hole`, mm, its centre on a circle of diameter `circle`, mm, in direction `at`, rad."""
 
     circle: float
     hole: float

@@ -26,9 +26,10 @@ WALL = "wall"  # name of the check on the least wall, and of the figure
 
 
 class Site(NamedTuple):
-    """Where a feature looks for its place: in a contour, beside the openings and the hub that are there.
+    """Part in which a feature seeks its place: the contour, and the openings and the hub that are there.
 
-    `wall` is the recipe's least wall, mm, None where it states none; `edge` is what a chamfer takes off the contour.
+    `wall` is the recipe's least wall, mm, None where it states none; `edge`, mm, is what a chamfer takes off the
+    contour.
     """
 
     looks: Looks
@@ -38,7 +39,7 @@ class Site(NamedTuple):
 
 
 class Placed(NamedTuple):
-    """Openings that found a place, and the check of how many did; None where that needs none."""
+    """Openings for which a place was found, and the check of their number; None where no check is needed."""
 
     openings: Sequence[Opening]
     check: Check | None = None
@@ -133,7 +134,7 @@ class Feature(Generic[T]):
 
     @property
     def name(self) -> str:
-        """Its key."""
+        """Key of the feature in `part`, such as `hub`."""
         return self.field.name
 
     def build(self, part: Values) -> T | None:

@@ -17,5 +17,5 @@ RECORDS = {feature.kind: feature for feature in FEATURES}
 
 
 def with_records(values: Iterable[object]) -> list[tuple[Feature[Any], Any]]:
-    """Each value of a feature with the record of that feature."""
+    """Pairs of a feature's record and its value, in the order of the values."""
     return [(RECORDS[type(value)], value) for value in values]

@@ -50,7 +50,10 @@ class Space:
         self.polygon = Arcs(self.ring[kept], tangent, np.zeros(int(kept.sum())), length[kept])
 
     def about(self, points: Array) -> Array:
-        """Radius (n,) about points (n, 2), the contour taken as a polygon; negative where there is none."""
+        """Radius (n,) that a hole about points (n, 2) can have, mm; negative where none fits.
+
+        The contour is taken as a polygon.
+        """
         return self.left(points, self.inside(points))
 
     def inside(self, points: Array) -> Array:
@@ -70,7 +73,7 @@ class Space:
         return least - self.wall
 
     def exactly(self, centre: tuple[float, float]) -> float:
-        """The same about one point by the exact contour."""
+        """Radius that a hole about one point (x, y) can have, mm, by the exact contour; negative where none fits."""
         inside, _ = distance_inside(self.looks, centre)
         return float(self.left(np.array([centre]), np.array([inside - self.edge]))[0])
 
@@ -84,7 +87,10 @@ def _down(value: float, step: float) -> float:
 
 
 def largest(space: Space, count: int, least: float) -> Circles:
-    """One after the other the largest circle that still fits, none smaller than `least` across."""
+    """Centres and diameters, mm, of at most `count` holes, each the largest that still fits after those before it.
+
+    None has a diameter below `least`, mm; fewer come back where no such hole fits.
+    """
     found: Circles = []
     low, high = space.ring.min(axis=0), space.ring.max(axis=0)
     x, y = (np.linspace(a, b, GRID) for a, b in zip(low.tolist(), high.tolist(), strict=True))

@@ -56,13 +56,13 @@ class Part:
 
     @property
     def round_bore(self) -> bool:
-        """Whether its bore is a circle."""
+        """Whether the part has a bore and it is a plain circle: no keyway, flat or polygon."""
         shaped = any(feature.bore is not None for feature, _ in with_records(self.features))
         return self.bore is not None and not self.sides and not shaped
 
     @property
     def holed(self) -> bool:
-        """Whether it has holes besides its bore."""
+        """Whether the part has holes besides its bore."""
         return any(feature.holes for feature, _ in with_records(self.features))
 
     @property
@@ -73,7 +73,7 @@ class Part:
 
     @property
     def openings(self) -> list[Opening]:
-        """What is cut where the recipe says, besides the bore; what looks for its place is not among it."""
+        """Openings at the places that the recipe states: not the bore, nor openings that seek their place."""
         given = with_records(self.features)
         return [each for feature, value in given if feature.openings is not None for each in feature.openings(value)]
 

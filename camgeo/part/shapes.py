@@ -63,12 +63,12 @@ class Opening:
 
     @property
     def radius(self) -> float:
-        """Of a circle about the middle that holds all of it."""
+        """Radius, mm, of a circle about `middle` that encloses the opening."""
         return self.reach if self.circle is None else self.circle[1]
 
 
 def disc(name: str, layer: Layer, centre: tuple[float, float], radius: float) -> Opening:
-    """Round opening."""
+    """Round opening of a radius about a centre (x, y), mm, through everything."""
     x, y = centre
     points = np.array([[x + radius, y], [x - radius, y]])
     return Opening(name, layer, ArcSpline(points, np.ones(2), EXACT), (centre, radius))
@@ -98,7 +98,7 @@ def flattened(radius: float, across: float, angle: float) -> ArcSpline:
 
 
 def polygonal(sides: int, across: float, normal: float) -> ArcSpline:
-    """Regular polygon about the origin, `across` from flat to flat, one flat's normal pointing to `normal`."""
+    """Regular polygon about the origin, `across` mm over flats; one flat's normal points to `normal`, rad."""
     corner = 0.5 * across / math.cos(math.pi / sides)
     angle = normal + (2.0 * np.arange(sides) - 1.0) * math.pi / sides
     points = corner * np.column_stack([np.cos(angle), np.sin(angle)])

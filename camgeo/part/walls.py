@@ -107,7 +107,7 @@ def least_wall(looks: Looks, bore: float) -> tuple[float, float]:
 
 
 def distance_inside(looks: Looks, place: tuple[float, float]) -> tuple[float, float]:
-    """How far a point lies inside a contour, mm, negative outside, and the parameter of the nearest point."""
+    """Distance of a point inside a contour, mm, negative outside, and the parameter of the nearest point."""
     origin = np.array(place)
     contour, low, high, first, last, *_ = looks
     # between two nodes the nearest point is where the radius meets the tangent square: its product changes sign upwards
@@ -179,7 +179,7 @@ def outside_gap(chain: Arcs, other: Arcs) -> Gap:
 
 
 def inside_gap(inner: Arcs, outer: Arcs) -> Gap:
-    """Wall between a closed chain and the one that is to hold it; negative where they cross or it does not."""
+    """Least wall between a closed chain and the chain about it, mm; negative where they cross or it lies outside."""
     return _chain_gap(inner, outer, -1.0)
 
 

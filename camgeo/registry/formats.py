@@ -218,12 +218,12 @@ class Format:
 
     @property
     def summary(self) -> bool:
-        """Whether it reports on all other files of a run, and is made last."""
+        """Whether files of the format report on all other files of a run, and so are made last."""
         return self.summarise is not None
 
     @property
     def program(self) -> bool:
-        """Whether it is a program of a machine, whose contour is what the cutter leaves."""
+        """Whether files of the format are programs of a machine, whose contour is what the cutter leaves."""
         return self.contour and not self.part
 
     @property

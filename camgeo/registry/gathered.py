@@ -16,7 +16,7 @@ class Entry(Protocol):
 
     @property
     def after(self) -> str:
-        """Name of the core's entry."""
+        """Name of the core's entry behind which this one stands; empty for a place behind all of them."""
 
 
 E = TypeVar("E", bound=Entry)

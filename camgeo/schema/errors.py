@@ -34,7 +34,7 @@ class RecipeError:
 
     @property
     def statement(self) -> str:
-        """Its place and what is wrong there: file:line:column: path: problem."""
+        """Place and problem of the fault: file:line:column: path: problem."""
         file = escaped(self.file)
         place = f"{file}:{self.line}:{self.column}" if self.line else file
         return f"{place}: {self.path}: {self.problem}" if self.path else f"{place}: {self.problem}"

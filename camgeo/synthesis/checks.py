@@ -29,7 +29,7 @@ SAME = 1e-12  # of the greatest value: others within it are equal to it
 
 
 def motion_checks(exact: ExactCam) -> list[Check]:
-    """Those of the intended motion's checks that the follower names, in that order: of each surface, or of the law."""
+    """Checks of the intended motion that the follower names, in that order: one for each surface, or one of the law."""
     proofs, found = exact.proofs, []
     for name in exact.follower.checks:
         if name in proofs:
@@ -44,7 +44,7 @@ def _proved(name: str, proof: Proof) -> Check:
 
 
 def _face_length(exact: ExactCam, surface: Surface) -> Check:
-    """How far the contact travels along a face."""
+    """Check of the travel of contact along a flat face, mm; it reports the length and sets no limit."""
     if (proved := surface.extremes("contact")) is not None:
         least, most = proved
         further = max(proved, key=lambda one: abs(one.value))

@@ -61,7 +61,7 @@ class SurfaceDesign:
 
     @property
     def bent(self) -> Check:
-        """The check of curvature."""
+        """Check of the radius of curvature of this surface."""
         return next(check for check in self.checks if check.name in BENT)
 
 
@@ -78,12 +78,15 @@ class Disc:
 
     @property
     def name(self) -> str:
-        """What tells it from other discs: the names of its surfaces."""
+        """Name of the disc: the names of its surfaces, joined by `and`."""
         return " and ".join(made.surface.name for made in self.surfaces)
 
     @property
     def contours(self) -> tuple[tuple[Surface, Curve], ...]:
-        """Each surface with its contour; empty where one of them has none: a disc is made whole or not at all."""
+        """Pairs of a surface and its contour; empty where any surface lacks one.
+
+        A disc is made whole or not at all.
+        """
         found = tuple((made.surface, made.contour) for made in self.surfaces if made.contour is not None)
         return found if len(found) == len(self.surfaces) else ()
 
@@ -107,7 +110,10 @@ class Design:
 
     @property
     def contours(self) -> tuple[tuple[Surface, Curve], ...]:
-        """Each surface with its contour; empty where a check forbids the cam: it is made whole or not at all."""
+        """Pairs of a surface and its contour over all discs; empty where any disc lacks one.
+
+        A cam is made whole or not at all.
+        """
         discs = [disc.contours for disc in self.discs]
         return tuple(chain.from_iterable(discs)) if all(discs) else ()
 
@@ -118,7 +124,7 @@ class Design:
 
     @property
     def openings(self) -> tuple[Opening, ...]:
-        """What is cut into the discs besides their surfaces."""
+        """Openings of all discs: bores, holes and engravings besides the surfaces."""
         return tuple(opening for disc in self.discs if disc.body is not None for opening in disc.body.openings)
 
     @property
@@ -139,7 +145,7 @@ class Design:
 
     @property
     def follower(self) -> Follower:
-        """What follows the cam."""
+        """Follower of the cam: its contacts, name and checks."""
         return self.exact.follower
 
 
@@ -316,7 +322,7 @@ def _sharp(surface: Surface, shaft_deg: Callable[[float], float]) -> Check:
 
 
 def _bent_most(surface: Surface) -> Least:
-    """Where the contour bends most on the side where it may undercut: least radius there, and the place.
+    """Least radius of curvature on the side on which the contour may undercut, mm, and its parameter.
 
     In a ring that is a hollow of the pitch curve, where the metal bulges inward; the opening's own hollows are wider
     than the roller by their pitch curve's radius, however small it is.

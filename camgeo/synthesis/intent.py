@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 
 def intended(recipe: Recipe, design: Design) -> PartIntent:
-    """What kin is given of a part that is one disc; raises ValueError for a cam of several."""
+    """Intent by which kin judges a part that is one disc; raises ValueError for a cam of several."""
     (intent,) = intents(recipe, design)
     return intent
 
 
 def intents(recipe: Recipe, design: Design) -> tuple[PartIntent, ...]:
-    """What kin is given of each disc: the follower with its law, and how the part is drawn."""
+    """Intent of each disc, by which kin judges its files: the follower with its law, and how the part is drawn."""
     return tuple(_intended(recipe, design, disc) for disc in design.discs)
 
 
@@ -65,7 +65,10 @@ def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
 
 
 def closures_between(design: Design) -> tuple[ClosureIntent, ...]:
-    """What is left between the surfaces of a cam: of two the first pushes the follower out, the other stops it."""
+    """Pair of surfaces that hold the follower between them: the first pushes it out, the second stops it.
+
+    Empty for a cam of one surface.
+    """
     from kin.judge.intent import ClosureIntent
 
     surfaces = design.exact.surfaces
@@ -76,7 +79,7 @@ def closures_between(design: Design) -> tuple[ClosureIntent, ...]:
 
 
 def permitted(recipe: Recipe, tolerance: float, gap: float | None = None) -> Limits:
-    """What kin permits: the tolerance, and the recipe's own limits of motion and output (degrees for a swing).
+    """Limits by which kin judges: tolerance, mm, and the recipe's limits of motion and output, mm or degrees.
 
     Ends in drawings within `gap`, mm, are joined; None for the readers' own.
     """

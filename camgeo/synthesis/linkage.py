@@ -74,7 +74,7 @@ def _outside(recipe: Recipe, error: OutsideError) -> RecipeErrors:
 
 
 def mobility_checks(mechanism: Mechanism, turning: str = "") -> list[Check]:
-    """That every loop closes all round (AS after eq. 18), and that the shaft never has to turn back.
+    """Checks that every loop closes all round (AS after eq. 18), and that the shaft never has to turn back.
 
     Where the mechanism does not make a full turn there is no shaft angle: the places are then told by the detail alone,
     with `turning`, what would let it turn.
@@ -130,7 +130,7 @@ def _spans(spans: Sequence[tuple[float, float]]) -> str:
 
 
 def _dwell_check(dwell: DwellLimits, longest: Dwell) -> list[Check]:
-    """That the intended output dwells for as long as the recipe wants; nothing if it wants no certain length."""
+    """Check that the intended output dwells for as long as the recipe wants; none if it wants no certain length."""
     if dwell.at_least is None:
         return []
     length, wanted = math.degrees(longest.length), math.degrees(dwell.at_least)

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 def trace_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], Array]:
-    """Column names and rows (angles + 1, k) over equal steps of the shaft, of a mechanism that turns.
+    """Column names and rows (angles + 1, k) over equal steps of the shaft: shaft angle, degrees, and four per trace.
 
-    Of each point, from 1, its place in the fixed axes, in the recipe's unit; the curvature of its path, by that unit,
-    above 0 where it turns left, nan where the point stands still; and its speed by radian of the shaft. At a break
-    derivatives are those that follow, at the end of the turn those that precede.
+    The four are x and y in the fixed axes, in the recipe's unit; the curvature of the path, by that unit, above 0 where
+    it turns left, nan where the point stands still; and its speed by radian of the shaft. At a break derivatives are
+    those that follow, at the end of the turn those that precede. Raises ValueError without a linkage.
     """
     from kin.linkage.trace import traced
 

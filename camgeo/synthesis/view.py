@@ -52,12 +52,12 @@ class View(Generic[G_co, T_co]):
 
     @property
     def guide(self) -> G_co:
-        """That of contact 1."""
+        """Guide of contact 1."""
         return self.contacts[0].guide
 
     @property
     def touch(self) -> T_co:
-        """That of contact 1."""
+        """Touch of contact 1: roller, shoe, knife edge or flat face."""
         return self.contacts[0].touch
 
     @property
@@ -78,14 +78,17 @@ class View(Generic[G_co, T_co]):
         return next(surface for surface in self.design.exact.surfaces if surface.name == contact.surface)
 
     def place(self, shaft: Array) -> Array:
-        """Where a flat face is touched, mm along it (n,), from the axis of its stem or the pivot of its arm."""
+        """Place of contact on a flat face, mm along it (n,), from the axis of its stem or the pivot of its arm.
+
+        Raises TypeError where no flat face is touched.
+        """
         place = self.surface(self.contacts[0]).place
         if place is None:
             raise TypeError("no flat face is touched")
         return place(shaft)
 
     def touched(self, shaft: Array) -> list[Array]:
-        """Where each contact touches in the frame of the ground, mm, as complex numbers (n,)."""
+        """Point of contact of each contact in the fixed frame, mm, as complex numbers (n,)."""
         found = []
         parameters = self.design.motion.parameters(shaft, shaft).values()
         for contact, t in zip(self.contacts, parameters, strict=False):  # opposite contacts on a line have one
@@ -94,7 +97,7 @@ class View(Generic[G_co, T_co]):
         return found
 
     def of(self, guide: type[G], touch: type[T]) -> View[G, T]:
-        """The same view of contacts of that guide and touch; TypeError for others."""
+        """View of this recipe and design, typed for contacts of that guide and touch; raises TypeError for others."""
         contacts = []
         for one in self.contacts:
             if not (isinstance(one.guide, guide) and isinstance(one.touch, touch)):

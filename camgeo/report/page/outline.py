@@ -113,7 +113,7 @@ class Exact:
 
     @staticmethod
     def of(design: Design, surface: SurfaceDesign, per: int) -> Exact:
-        """Sample the contour of one of a design's surfaces."""
+        """Sample the contour of one of a design's surfaces at `per` points in each of `STEPS` steps of the shaft."""
         shaft = TURN * np.arange(STEPS * per) / (STEPS * per)
         curve = surface.surface.curve
         t = next(iter(design.motion.parameters(shaft, shaft).values()))

@@ -145,7 +145,10 @@ def block(length: float, height: float, name: str = "") -> Shape:
 
 
 def pivot(name: str, x: float, y: float, size: float, letter: str = "", *, angle: float = -0.5 * math.pi) -> Body:
-    """Return a fixed pivot: a foot in the given direction, hatched, under a pin."""
+    """Fixed pivot at (x, y), mm: a pin on a hatched foot that points in the direction `angle`, rad.
+
+    `size`, mm, scales the symbol; `letter` stands beside it.
+    """
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, s], [-s, c]])
     foot = np.array([(0.0, 0.0), (1.9, -1.2), (1.9, 1.2)]) * size @ turn
