@@ -64,7 +64,7 @@ class Slab:
 
     @cached_property
     def region(self) -> Region:
-        """The inside of the outline without that of the holes."""
+        """Plane region of the slab, mm: the inside of the outline less the holes."""
         return Region.of(self.outer, self.holes)
 
 
@@ -78,12 +78,12 @@ class Mover:
 
     @property
     def reach(self) -> float:
-        """Distance of its farthest point from its own origin, at most; mm."""
+        """Upper bound, mm, of the distance of any point of the body from its own origin."""
         return max(float(np.hypot(*slab.region.disc[0])) + slab.region.disc[1] for slab in self.slabs)
 
     @property
     def slack(self) -> float:
-        """How far a point of it may be from where its motion says; mm."""
+        """Greatest distance, mm, of a point of the body from where its motion puts it, as the motion's slack allows."""
         place, angle = self.motion.slack
         return place + angle * self.reach
 
@@ -124,12 +124,12 @@ class Clearance:
 def clearances(
     movers: Sequence[Mover], exempt: Iterable[frozenset[str]] = (), *, axial: float = 0.0, accuracy: float = 1e-3
 ) -> list[Clearance]:
-    """Clearance of every pair of bodies that has slabs at common heights, in the order of the movers.
+    """Clearance of each pair of bodies that have slabs at a common height, in the order of the movers.
 
-    Pairs of names that are `exempt` are not looked at. Slabs less than `axial` apart in height count as at one height;
-    those that only touch do not, at 0. `least` and `proved` differ by no more than the greatest of `accuracy` mm, SHARE
-    of the clearance, and 5 % of a depth; more only where that takes more than 60,000 angles. Raises ValueError for two
-    movers of one name and for a pair exempt that is none.
+    `exempt` holds pairs of names that are left out. Slabs count as at one height where they overlap in z or lie less
+    than `axial`, mm, apart; with `axial` 0 slabs that only touch do not count. `proved` is below `least` by at most the
+    greatest of `accuracy`, mm, 0.1 % of the clearance, and 5 % of the depth of an overlap; by more only where a pair
+    takes over 60,000 angles. Raises ValueError for two movers of one name, and for an exempt pair of unknown names.
     """
     names = [mover.name for mover in movers]
     if len(set(names)) < len(names):
@@ -194,7 +194,7 @@ class _Search:
 
     @property
     def margin(self) -> float:
-        """How far below the least found the bound may stay."""
+        """Greatest permitted difference, mm, of `least` and the lower bound: 0 before a distance has been measured."""
         if math.isinf(self.least):
             return 0.0
         return max(self.accuracy, SHARE * abs(self.least), -2.5 * DEPTH_SHARE * self.least)
@@ -229,7 +229,10 @@ class _Search:
         return Encounter.of(cells.regions, home, body, cells.half)
 
     def _open(self, lower: Array) -> Mask:
-        """Which intervals may still hold a lesser D, by their bounds (m,); those of the others are kept."""
+        """Mask (m,) of the intervals whose lower bounds `lower` (m,), mm, leave a lesser D possible.
+
+        `proved` becomes the least bound of the others, if that is less.
+        """
         open_: Mask = lower < self.least - self.margin
         self.proved = min(self.proved, float(lower[~open_].min(initial=math.inf)))
         return open_

@@ -148,7 +148,7 @@ class Encounter:
 
     @staticmethod
     def of(regions: tuple[Region, Region], home: Course, body: Course, half: Array) -> Encounter:
-        """Put the regions on two courses over the same intervals of half width `half` (m,)."""
+        """Make the encounter of regions on the courses `home` and `body`, over intervals of half width `half`, rad."""
         return Encounter(*regions, Relative.of(home, body, half), Relative.of(body, home, half))
 
     @cached_property
@@ -158,16 +158,17 @@ class Encounter:
 
     @cached_property
     def discs_apart(self) -> Array:
-        """Lower bound of D at the middles (m,), from the discs about both regions."""
+        """Lower bound of D at the middles (m,), mm: distance of the discs about both, below 0 if they overlap."""
         (centre, radius), (other, reach) = self.first.disc, self.second.disc
         gap = _placed(other[None], self.motion)[:, 0] - centre
         return np.hypot(gap[:, 0], gap[:, 1]) - radius - reach
 
     def near(self, size: Array, half: Array) -> Pairs:
-        """Pairs that may be the nearest at less than `half` (m,) from each middle, by the discs about them.
+        """Pairs of features that may be the nearest somewhere in each interval, of half width `half` (m,), rad.
 
-        `size` (m,) is a bound of |D| at the middle. Where it is nan the distance of the boundaries is bounded instead,
-        by that of the two features whose middles are nearest.
+        A pair is left out where the discs about its features stay farther apart than D can be. `size` (m,) is a bound
+        of |D| at the middles, mm; where it is nan, the distance of the two boundary features whose middles are nearest
+        is the bound instead.
         """
         a, b = self.first.middle, self.second.middle
         reach = self.first.reach[:, None] + self.second.reach
@@ -199,9 +200,12 @@ def _placed(points: Array, motion: Relative) -> Array:
 
 
 class GapSamples(NamedTuple):
-    """What is known at the middle of each interval (m,): D, no farther off than `doubt`, and where (m, 2), home's axes.
+    """Distances at the middles of m intervals.
 
-    `gap` (k,) is the distance of each pair given, or below it.
+    value (m,)     D, mm, below 0 where the regions overlap
+    doubt (m,)     greatest error of `value`, mm
+    place (m, 2)   midway between the nearest points, or the deepest point, in the axes of the first region
+    gap (k,)       distance of each pair of features, mm, or a lower bound of it
     """
 
     value: Array
@@ -302,9 +306,10 @@ def _deepest(region: Region, arcs: Arcs, row: Indices, floor: Array, precision: 
 
 
 def rates(meeting: Encounter, pairs: Pairs, apart: Mask) -> tuple[Array, Array]:
-    """Bounds, over its interval, of the rate of D where a pair has it, and of that of the pair's own distance: (k,).
+    """Two upper bounds (k,) for each pair over its interval, mm/rad: of |dD/dphi|, and of the pair's own rate.
 
-    `apart` (m,) says that D > 0 all over an interval.
+    The first holds at the angles at which this pair is the nearest or, of regions that overlap, has the deepest point.
+    `apart` (m,) marks the intervals in which D > 0 throughout; there the bound is sharper.
     """
     cell, i, j = pairs
     first, other, motion, back = meeting.first, meeting.second, meeting.motion, meeting.back

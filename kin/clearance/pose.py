@@ -43,7 +43,7 @@ class PlaneMotion(Protocol):
 
     @property
     def slack(self) -> tuple[float, float]:
-        """How far the body may be from where `over` has it: mm of its origin, rad."""
+        """Greatest distance of the true body from the stated pose: (of its origin in mm, of its angle in rad)."""
         ...
 
 
@@ -58,7 +58,7 @@ class Still:
     slack = (0.0, 0.0)
 
     def over(self, phi: Array, half: Array) -> Course:  # noqa: ARG002
-        """Give the course over intervals."""
+        """Give the course, (n,) rows, over the intervals [phi - half, phi + half], (n,) each, rad: at rest."""
         pose = np.broadcast_to(np.array([self.x, self.y, self.angle]), (len(phi), 3))
         return Course(pose, np.zeros_like(pose), np.zeros_like(pose))
 
@@ -75,7 +75,10 @@ class Turning:
     slack = (0.0, 0.0)
 
     def over(self, phi: Array, half: Array) -> Course:  # noqa: ARG002
-        """Give the course over intervals."""
+        """Give the course, (n,) rows, over the intervals [phi - half, phi + half], (n,) each, rad.
+
+        The rates are constant: `spread` is 0.
+        """
         pose = np.stack([np.full_like(phi, self.x), np.full_like(phi, self.y), self.angle + self.rate * phi], axis=1)
         rate = np.broadcast_to(np.array([0.0, 0.0, self.rate]), pose.shape)
         return Course(pose, rate, np.zeros_like(pose))
@@ -125,7 +128,7 @@ class Sampled:
 
     @cached_property
     def slack(self) -> tuple[float, float]:
-        """How far the motion may be from this curve: mm of the origin, rad; an estimate."""
+        """Estimate, no bound, of the true motion's distance from this curve: (of the origin, mm; of the angle, rad)."""
         whole = self.pose[-1] - self.pose[0]
         longer = np.concatenate([self.pose[-2:-1] - whole, self.pose, self.pose[1:2] + whole])
         slope = np.concatenate([self._slope[-2:-1], self._slope, self._slope[1:2]])
@@ -160,7 +163,10 @@ class Sampled:
         return bends
 
     def over(self, phi: Array, half: Array) -> Course:
-        """Give the course over intervals: rates differ from that of the middle by half times the greatest bend."""
+        """Give the course over the intervals [phi - half, phi + half], (n,) each, rad.
+
+        `spread` is half times the greatest second derivative of the cubics within the interval.
+        """
         width = TURN / self.steps
         turns = np.floor(phi / TURN)
         u = (phi - turns * TURN) / width

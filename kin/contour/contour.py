@@ -305,7 +305,7 @@ class Contour(Pieces):
 
     @property
     def spread(self) -> float:
-        """How far the arcs that stand for splines by default may be from them, mm; 0 without splines."""
+        """Greatest distance, mm, of the arcs that stand for splines by default from the splines; 0 without splines."""
         return self._fine if self.beziers.count else 0.0
 
     @property

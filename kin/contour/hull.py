@@ -45,7 +45,10 @@ def convex_hull(points: Array) -> Indices:
 
 
 def chain(points: Array, order: Indices) -> Indices:
-    """Reduce a chain of points (n, 2) in a sorted order (m,) until it turns left at each: what is left of the order."""
+    """Indices of the points (n, 2), out of the sorted `order` (m,), that remain once each right turn is dropped.
+
+    The chain through them turns left at every inner point: it is one half of the convex hull.
+    """
     rest: Indices = order
     while rest.size > 2:
         p = points[rest]

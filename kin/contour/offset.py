@@ -33,11 +33,12 @@ class TightError(CamgeoError, ValueError):
 
 
 def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
-    """Curve at `distance` mm to the left of a closed chain (to its right if negative), run the same way.
+    """Parallel curve at `distance` mm to the left of a closed chain, to its right if negative, run the same way.
 
-    Pieces of the parallel that follow one another and are together no longer than `fine` mm are left out, and so is
-    what lies within a thousandth of that beside a joint whose tangents do not quite agree. Raises TightError for a
-    piece that has no parallel.
+    A corner that opens to the parallel's side is rounded by an arc about it; at other corners the neighbouring pieces
+    are cut where they meet. Pieces of the parallel that follow one another and are together no longer than `fine` mm
+    are left out, as are kinks that move the curve by less than a thousandth of `fine`. Raises TightError, which names
+    the piece, where a piece has no parallel: its radius is too small, or its neighbours cut it away.
     """
     stretched = loop.length * (1.0 - loop.curvature * distance)
     left_out = _left_out(stretched, fine)

@@ -143,9 +143,9 @@ class Region:
         return bound
 
     def side(self, feature: Indices, points: Array) -> Array:
-        """A number that is positive where a point (m, 2) is outside, by the feature (m,) on the boundary nearest to it.
+        """Signed numbers (m,) of points (m, 2), by the feature (m,) nearest to each: above 0 outside the region.
 
-        At a corner the side of one piece may mislead; the normals of both together do not.
+        Only the sign has a meaning. At a corner the normal there decides, which respects both pieces that meet in it.
         """
         arcs = self.arcs.take(feature)
         s, _ = nearest_on(arcs, points)

@@ -27,7 +27,7 @@ class Elastic(NamedTuple):
 
     @property
     def loses_second(self) -> Array:
-        """Force F at which contact 2 is lost (n,): above it contact 1 bears alone. For equal stiffness twice P."""
+        """Force F above 0 (n,) from which on contact 2 is lost and contact 1 bears alone: 2 P for equal stiffness."""
         force: Array = self.preload * (1.0 + self.first / self.second)
         return force
 
@@ -48,7 +48,10 @@ class Elastic(NamedTuple):
         return self._replace(preload=np.maximum(self.preload - gap / compliance, 0.0))
 
     def split(self, force: Array) -> Array:
-        """P1 and P2 (2, n) at forces F (n,): a contact that is lost bears nothing, the other all of it."""
+        """P1 and P2 (2, n), 0 or above, at forces F = P1 - P2 (n,).
+
+        Where one contact is lost, the other bears |F| alone.
+        """
         share = self.first / (self.first + self.second)
         pair = np.array([self.preload + share * force, self.preload - (1.0 - share) * force])
         pair[0] = np.where(pair[1] < 0.0, force, pair[0])
@@ -71,7 +74,10 @@ class Guided(NamedTuple):
 
     @property
     def alone(self) -> Array:
-        """Share of P that friction leaves of each contact where it bears alone (2, n)."""
+        """Force along the travel per unit of P of contact 1 and of 2 (2, n), bearing alone, less guide friction.
+
+        It is a number: 1 without friction. At 0 or below the stem jams.
+        """
         rubbing = self.rub * np.abs(self.ends).sum(axis=1)
         shares: Array = np.array([1.0 - rubbing[0], 1.0 + rubbing[1]])
         return shares
@@ -119,9 +125,14 @@ class Guided(NamedTuple):
 
 
 def preloaded(levers: tuple[Array, Array], overlaps: tuple[float, float], stiffness: tuple[float, float]) -> Elastic:
-    """Two contacts that overlap the metal by lengths along their normals, unloaded.
+    """Two contacts under the preload that follows from their overlaps with the metal, the follower unloaded.
 
-    The follower yields until both press alike: it lacks x = o1/h1 + o2/h2 of room, so P = x/(1/K1 + 1/K2).
+    levers     h1, h2 (n,) of `kin.follower.contact_lines`
+    overlaps   o1, o2 along the normals of the contacts
+    stiffness  k1, k2 along the normals
+
+    The follower yields until both contacts press alike. Its travel lacks x = o1/h1 + o2/h2. The preload is P = x/(1/K1
+    + 1/K2), K = k h^2.
     """
     room = overlaps[0] / levers[0] + overlaps[1] / levers[1]
     first, second = (k * lever**2 for k, lever in zip(stiffness, levers, strict=True))

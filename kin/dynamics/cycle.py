@@ -58,7 +58,10 @@ class ContactSamples:
 
 
 class Log:
-    """What a turn has shown so far; `reached` is the shaft angle up to which it has, `changes` those of contact."""
+    """Record of one turn as it is worked out, up to the shaft angle `reached`, rad.
+
+    `changes` counts changes of contact.
+    """
 
     def __init__(self, work: Work) -> None:
         self._work = work

@@ -47,11 +47,11 @@ class Work:
     places: int = 0
 
     def take(self, places: int) -> None:
-        """Count; SpentError beyond the most."""
+        """Count so many places, and CALL for the search itself. Raises SpentError beyond the most."""
         self._count(places + CALL)
 
     def stride(self) -> None:
-        """Count a stride of a flight."""
+        """Count the cost of one stride of a flight. Raises SpentError beyond the most."""
         self._count(_STRIDE)
 
     def _count(self, places: int) -> None:
@@ -81,7 +81,7 @@ class Span(Protocol):
 
 
 class Driven(NamedTuple):
-    """What is driven on a stretch of half width `half`: one series (DEGREE + 1,), or those of p and p' (2, ...)."""
+    """Chebyshev series on a stretch of half width `half`, rad: of p (DEGREE + 1,), or of p and p' (2, DEGREE + 1)."""
 
     series: Array
     half: float

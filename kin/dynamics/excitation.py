@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Faces(NamedTuple):
-    """What holds a follower: `lower` pushes it up; `upper` keeps it below, or is None where a spring does."""
+    """Faces that hold a follower: `lower` pushes it up, `upper` pushes it down; None with a spring in its place."""
 
     lower: Excitation
     upper: Excitation | None

@@ -27,7 +27,7 @@ _AHEAD = 2.0  # strides ahead, where a face may bear already
 
 
 class Depth(NamedTuple):
-    """How deep one face is pressed in, and two derivatives by radian of shaft."""
+    """Depth by which one face is pressed in, m or rad, below 0 apart, and two derivatives by radian of shaft."""
 
     place: float
     rate: float

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Propagator(NamedTuple):
-    """How a state (z, z') moves on: z = zz z0 + zv v0, z' = vz z0 + vv v0; each (n,)."""
+    """Matrix that takes a state (z, z') over a time: z = zz z0 + zv v0, z' = vz z0 + vv v0; each entry (n,)."""
 
     zz: Array
     zv: Array
@@ -83,9 +83,9 @@ class Oscillator:
         return self.decay + self.split, self._gentle if self.split else self.decay
 
     def basis(self, time: Array) -> tuple[Array, Array]:
-        """Two motions after times (n,), 0 or above, of which every free one is a sum.
+        """Values (n,) of two motions at times (n,), 0 or above; every free motion is a linear combination of both.
 
-        Where it swings e^(-at) cos bt and e^(-at) sin(bt)/b; else e^(-(a + b) t) and e^(-at) sinh(bt)/b.
+        Underdamped, e^(-at) cos bt and e^(-at) sin(bt)/b; else e^(-(a + b) t) and e^(-at) sinh(bt)/b; b is `split`.
         """
         a, b = self.decay, self.split
         if self.swings:
@@ -97,7 +97,7 @@ class Oscillator:
         return np.exp(-(a + b) * time), np.exp(-self._gentle * time) * time * share
 
     def basis_at(self, time: float) -> tuple[float, float]:
-        """As `basis`, at one time, for searches that ask again and again."""
+        """Values at one time, 0 or above, of the two motions of `basis`, as plain floats: searches call it often."""
         a, b = self.decay, self.split
         if self.swings:
             fade, phase = math.exp(-a * time), b * time

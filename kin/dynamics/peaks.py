@@ -24,7 +24,7 @@ _AT_ONCE = 400_000  # samples, which bounds the memory
 
 
 class Peaks(NamedTuple):
-    """Greatest and least value, each with the shaft angle (radians) at which it is reached."""
+    """Greatest and least value, in the unit of the figure, each with the shaft angle, rad, at which it is reached."""
 
     greatest: float
     greatest_at: float

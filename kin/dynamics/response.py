@@ -167,9 +167,10 @@ class Response:
         return self.oscillator.moved((starts - self._steps[0].T)[:, samples.stretch], samples.time)
 
     def lasting(self, bound: Array, stretches: Indices) -> Array:
-        """How long (n,) free motions, of bounds (n,), shake p visibly on the given stretches; 0 where p is no slow one.
+        """Time (n,), rad of shaft, after which a free motion of size `bound` (n,) has faded to nothing beside p.
 
-        Seen from the greatest p and the greatest free motion of all given.
+        It is 0 on stretches where p is not the slow solution, and inf without damping. "Nothing" is a fixed share of
+        the greatest p, plus the greatest bound, of all the stretches passed.
         """
         size = _SILENT * (np.abs(self.p[stretches]).sum(axis=1).max(initial=0.0) + bound.max(initial=0.0))
         alive = self.slow[stretches] & (bound > size)

@@ -172,9 +172,10 @@ class Look:
         return self._size(self.states - start)
 
     def floor(self, rung: Array, driven: Array) -> Array:
-        """What the force cannot fall below (m, 32) on the windows of each stretch.
+        """Lower bounds of the contact force, N or N m, on 32 windows of each of the m stretches (m, 32).
 
-        h is of the sizes `rung` (m,) at the starts, the force that goes with q at least `driven` (m, 32).
+        `rung` (m,) is the size of the free motion h at the start of each stretch, `driven` (m, 32) a lower bound of the
+        force that belongs to q.
         """
         fade = np.exp(-self.fading * 2.0 * self.found.half[:, None] * np.arange(PARTS) / PARTS)
         least: Array = driven - self.gain * (rung[:, None] * fade + self.inner[:, None])
@@ -182,18 +183,21 @@ class Look:
 
     @cached_property
     def surely(self) -> float:
-        """What the least force cannot fall below, whatever the phases: that is so at any lower speed too."""
+        """Lower bound of the contact force over the turn, N or N m, whatever the phases of the kicks.
+
+        It holds at this speed and at all lower ones.
+        """
         sizes = self.turn / max(-math.expm1(-TURN * self.fading), 1e-300)
         return float(self.floor(sizes, self.driven).min())
 
     @cached_property
     def lowest(self) -> Array:
-        """What the force cannot fall below (m, 32) on the windows of each stretch, at this speed."""
+        """Lower bounds of the contact force at this speed, N or N m, on 32 windows of each stretch (m, 32)."""
         return self.floor(self.rung, self.driven)
 
     @cached_property
     def least(self) -> float:
-        """The least force, or where that is above 0 what it cannot fall below; where it is below 0 what it reaches."""
+        """Least contact force over the turn, N or N m: a proved bound if above 0, else a force that is reached."""
         lowest = float(self.lowest.min())
         return lowest if lowest > 0.0 else self.reached
 
@@ -234,7 +238,7 @@ class Range:
 
     @property
     def width(self) -> float:
-        """Of the natural frequency in turns of the shaft."""
+        """Difference of the natural frequency, cycles per turn of the shaft, between the lower and the upper speed."""
         return self.low.b - self.high.b
 
     @property
@@ -261,7 +265,10 @@ class Range:
 
     @cached_property
     def by_size(self) -> float:
-        """What the least force cannot fall below, from the size of h alone."""
+        """Lower bound of the contact force at all speeds between, N or N m, by the size of h alone.
+
+        It is -inf for a train without resonance.
+        """
         low, high = self.low, self.high
         if not high.swings:
             return -math.inf
@@ -275,7 +282,7 @@ class Range:
 
     @cached_property
     def between(self) -> float:
-        """How far the force at any angle can be below the lesser of its values at both ends."""
+        """Greatest drop, N or N m, of the force at any angle and speed between, below the lesser of both ends."""
         high = self.high
         fading, power = high.fading, _POWER / high.b
         # kicks of all turns; t^2 exp(-at/2) is at most (4/ea)^2, or lambda goes with b

@@ -44,7 +44,10 @@ MOST_DAMPING = 10.0  # times critical: beyond, the damper is the drive and the m
 
 
 class DynamicsError(CamgeoError, ValueError):
-    """What keeps a train from having the figure that is asked for."""
+    """A figure that no follower train has, or a result that this train has not at this speed.
+
+    The message says which.
+    """
 
 
 @dataclass(frozen=True)
@@ -79,7 +82,7 @@ class Train:
         return 0.5 * self.damping / math.sqrt((self.stiffness + self.rate) * self.mass)
 
     def ratio(self, rpm: float) -> float:
-        """Natural frequency in turns of the shaft."""
+        """Ratio of the undamped natural frequency to the shaft's at `rpm`: cycles per turn of the shaft."""
         return self.natural / speed(rpm)
 
     def at(self, rpm: float) -> Running:
@@ -108,12 +111,12 @@ class Running:
 
     @property
     def inertia(self) -> float:
-        """Mass times W^2: a force by an acceleration that is taken by radian of shaft."""
+        """Mass times W^2, N/m or N m/rad: it turns an acceleration by radian of shaft into a force."""
         return self.train.mass * self.speed**2
 
     @property
     def forcing(self) -> Forcing:
-        """What drives z besides s''."""
+        """The spring's terms of the equation of motion in the module: kappa = k_p/(m W^2), f = F/(m W^2)."""
         return Forcing(self.train.rate / self.inertia, self.train.preload / self.inertia)
 
     @property

@@ -71,7 +71,7 @@ class Closure:
     radius: float | None = None
 
     def detail(self, play: Play) -> str:
-        """What the check reports of a play that was found."""
+        """Words of the check on a play: the range of the contour's breadth for a frame, else that of the backlash."""
         if self.breadth is not None:
             return f"breadth {span_words(self.breadth - play.most, self.breadth - play.least)}"
         sampled = ", sampled" if play.extremes == "sampled" else ""
@@ -107,7 +107,7 @@ class Follower(ABC):
 
     @property
     def closure(self) -> Closure | None:
-        """How play is judged; None for a follower with one contact, which has none."""
+        """Rule by which the follower's play is judged; None for a follower with one contact, which has no play."""
         return None
 
     @property
@@ -135,12 +135,12 @@ class Follower(ABC):
 
     @property
     def lever(self) -> float:
-        """How far from its pivot an arm is touched, about, mm; infinite on a line of travel."""
+        """Distance of the contact from the arm's pivot, about, mm; infinite on a line of travel."""
         return math.inf
 
     @abstractmethod
     def drives(self, contour: Contour) -> Sequence[Excitation]:
-        """What each contact feels of a contour over the shaft angle: its own position, in SI."""
+        """Own position of each contact over the shaft angle as it rests on a contour, m or rad."""
 
     @abstractmethod
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
@@ -183,7 +183,10 @@ class Follower(ABC):
         """Greatest motion error, mm or degrees, of a contour within `tolerance` of the exact one."""
 
     def direct_limit(self, tolerance: float) -> float:
-        """What `motion_limit` is at a pressure angle of 0, or on a face as far from the pivot as it reaches."""
+        """Greatest motion error, mm or degrees, of a contour within `tolerance`, mm, at a pressure angle of 0.
+
+        On a flat face of an arm it is that at the greatest distance from the pivot.
+        """
         return math.degrees(self.moved_by(tolerance)) if self.unit == "deg" else tolerance
 
 

@@ -340,7 +340,7 @@ class DisplacedPitch:
 
     @property
     def breaks(self) -> Array:
-        """Those of the pitch curve."""
+        """Parameters of the pitch curve's breaks, in [0, 2 pi)."""
         return self.pitch.breaks
 
     def points(self, tau: Array) -> tuple[Array, Array, Array]:

@@ -332,7 +332,7 @@ class SwingingFace(OfLaw, _OnArm):
 
     @property
     def lever(self) -> float:
-        """How far from the pivot the face is touched at the shaft's zero, about."""
+        """Distance, mm, of the contact from the pivot at shaft angle 0, about."""
         return self.faces[0].pivot * float(np.cos(self.intended(np.zeros(1))[0]))
 
     @property
@@ -370,12 +370,12 @@ class FlatPair(OfTransmission, _OnArm):
 
     @property
     def levels(self) -> tuple[float, ...]:
-        """How far each face stands from the middle of the two."""
+        """Distance of each face from the line midway between the two, mm."""
         return tuple(contact.apart for contact in self.contacts)
 
     @property
     def resolution(self) -> float:
-        """Also what the rounding of a recipe's own formula leaves."""
+        """Greatest error, rad, that rounding may feign: of the search, and of a recipe's own formula."""
         return RESOLUTION_ANGLE + 4.0 * self.transmission.rounding / self.transmission.arm
 
     @property
@@ -408,7 +408,7 @@ class FlatPair(OfTransmission, _OnArm):
 
     @cached_property
     def _touched_ahead(self) -> tuple[Array, Array]:
-        """The same rows and angles as `_touched`, where face B touches while face A does so at the grid."""
+        """Rows and angles as `_touched` gives them, of face B at the shaft angles at which face A touches the grid."""
         tau = grid(self.breaks)
         return self._touched_at(
             self.transmission.polar_parameter(self.pitch.pitch(tau, 0)[1][0] + self.transmission.alpha)

@@ -47,7 +47,7 @@ class OfFace:
 
     @property
     def breaks(self) -> Array:
-        """Where the contact passes from piece to piece."""
+        """Shaft angles, rad, in [0, 2 pi), at which the contact passes from one piece of the contour to the next."""
         return np.mod(self.bearing.breaks - self.turned, TURN)
 
     def rows(self, phi: Array) -> Array:
@@ -187,7 +187,7 @@ class Yoke(FlatFace):
 
     @property
     def breadth(self) -> float:
-        """How far the faces are apart, mm."""
+        """Distance between the two faces, mm."""
         return self.contacts[1].zero
 
     @property

@@ -89,10 +89,11 @@ def still_follower(contacts: Sequence[Contact[Guide, Touch]], side: Side = 1) ->
 def followers_of(
     contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Transmission, sides: Mapping[str, Side]
 ) -> dict[str, Follower]:
-    """Make what each surface, by its name, is judged by: the follower of the contacts that touch it.
+    """Followers by the name of the surface on which they run, one for each surface in `sides`.
 
-    `sides` are those on which the metal of each surface lies. Raises ValueError as `follower_of` does, and for a
-    contact that touches none of them or a surface that nothing touches.
+    Each has the contacts that touch its surface, and is what that surface is judged by. `sides` gives the side of each
+    surface on which the metal lies. Raises ValueError as `follower_of` does, and for a contact on a surface that is not
+    in `sides` or a surface without a contact.
     """
     _demand(
         {contact.surface for contact in contacts} == set(sides), "each touches one of the surfaces, and each is touched"

@@ -45,7 +45,7 @@ class MotionError:
 
     @property
     def bound(self) -> float:
-        """What the greatest error does not exceed."""
+        """Proved upper bound of the motion error's size: `max` plus the remainder, mm or degrees."""
         return self.max + self.remainder
 
     def less_sure(self, by: float) -> MotionError:
@@ -82,12 +82,12 @@ class Play:
 
 
 class Judged(NamedTuple):
-    """What a follower finds of a contour.
+    """Result of resting a follower on a contour.
 
     motion  its motion error
-    play    for the followers that are held from two sides, else None
-    reach   extremes over the shaft angle (radians) of how far the contour reaches beyond the intended position of a
-            flat face, mm; None for followers that feel something else
+    play    play of a follower that is held from two sides, else None
+    reach   of a flat face: extremes over the shaft angle, rad, of how far the contour reaches beyond the intended
+            position, mm; None for other followers
     """
 
     motion: MotionError

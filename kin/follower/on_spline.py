@@ -67,7 +67,7 @@ class SplinePath:
 
     @property
     def resolution(self) -> float:
-        """What rounding may make of no error, mm or radians."""
+        """Greatest motion error, mm or rad, that rounding may feign; the former is a share of the extent."""
         return RESOLUTION * (float(np.abs(self.beziers.control).max()) if self.guide.unit == "mm" else 1.0)
 
     def at(self, row: Indices, t: Array) -> tuple[State, Array]:
@@ -225,7 +225,7 @@ class OnSpline:
 
     @property
     def guide(self) -> Guide:
-        """What leads the centre."""
+        """Guide of the roller's centre: an arm or a line of travel."""
         return self.path.guide
 
     @property

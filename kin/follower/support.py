@@ -58,10 +58,10 @@ class Bearing:
         return np.stack([q - self.back, cross(u, x), radius - q])
 
     def between(self, nodes: Array, turned: float = 0.0) -> tuple[Indices, Array, Array]:
-        """Give q(theta + turned) at both ends of intervals without a break, as seen from within.
+        """Give q(theta + turned), mm, at both ends of m intervals without a break, each as its own interval has it.
 
-        `nodes` (m + 1,) bound the m intervals. Returns the stretch of each (m,) and q, q', q'' (3, m) at the low and
-        at the high ends.
+        `nodes` (m + 1,), rad, bound the intervals. Returns the stretch of each (m,) and q, q', q'' (3, m) at the low
+        and at the high ends.
         """
         low, high = nodes[:-1] + turned, nodes[1:] + turned
         stretch = self.find(0.5 * (low + high))
@@ -69,7 +69,11 @@ class Bearing:
         return stretch, self._rows(low, stretch, u[:-1]), self._rows(high, stretch, u[1:])
 
     def all_round(self, steps: int) -> Array:
-        """Return q, q', q'' (3, n) at steps of the turn and at both sides of each break."""
+        """Support function rows q, q', q'' (3, n), mm and mm/rad^k, from both ends of the intervals all round.
+
+        The intervals are bounded by `steps` equal steps of the turn and by the breaks, so that each node occurs twice:
+        as seen from the interval before it and from the one after.
+        """
         _, low, high = self.between(self.nodes(0.0, TURN, TURN * np.arange(steps) / steps))
         return np.concatenate([low, high], axis=1)
 

@@ -103,7 +103,7 @@ class Tracked(Protocol):
 
     @property
     def resolution(self) -> float:
-        """What rounding may make of no error, mm or radians."""
+        """Greatest motion error, mm or rad, that rounding may feign."""
 
     def meant(self, rows: Array) -> Array:
         """Intended position and its derivatives (m, n) from the law's."""
@@ -115,7 +115,7 @@ class Tracked(Protocol):
         """Stretches of all that it may touch."""
 
     def looked_at_about(self, phi: Array) -> Tracked:
-        """The same with contacts known at shaft angles (n,) too, and near them."""
+        """Give the roller with the contacts at and next to the shaft angles (n,), rad, added to those known."""
 
 
 class _Changes(NamedTuple):
@@ -167,7 +167,7 @@ class Held:
 
     @cached_property
     def resolution(self) -> float:
-        """What rounding may make of no error, mm or radians."""
+        """Greatest motion error, mm or rad, that rounding may feign; the former is a share of the extent."""
         return RESOLUTION * (extent(self.pieces) if self.guide.unit == "mm" else 1.0)
 
     @property

@@ -86,9 +86,9 @@ def _judge_closure(
 
 
 def left_over(first: Surface, last: Surface, shaft: Array) -> Array:
-    """What is left to the follower between two surfaces at shaft angles (n,), mm or degrees: as a curve to look at.
+    """Play of the follower between two surfaces at shaft angles (n,), mm or degrees, below 0 where it interferes.
 
-    Raises ContactError as followers do.
+    A curve to look at, without bounds. Raises ContactError as followers do.
     """
     pushed, stopped = (_rests(surface.follower or surface.gauge, contour) for surface, contour in (first, last))
     gauge = first[0].gauge

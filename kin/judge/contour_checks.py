@@ -97,7 +97,10 @@ def _placed(check: Check, contour: Contour, envelope: Envelope, tolerance: float
 
 
 def fine(contour: Contour, tolerance: float) -> Fine:
-    """The contour with arcs for its splines that are fine beside a tolerance, mm."""
+    """Contour with its splines replaced by arcs, and how far these may be from the splines, mm.
+
+    The arcs stay within a small share of `tolerance`, mm, or finer. A contour without splines comes back unchanged.
+    """
     spline = 0.0
     if contour.beziers.count:
         least = ARC_SHARE * float(np.abs(contour.vertices).max())  # on a part of many metres rounding is coarser

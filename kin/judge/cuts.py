@@ -62,12 +62,12 @@ class Cut:
 
     @cached_property
     def key(self) -> Key:
-        """What tells the closed path, at whatever height and wherever it begins."""
+        """Key of the closed path: the same at every height and from every starting point."""
         return frozenset(map(trace, self.loop))
 
 
 class Edge(NamedTuple):
-    """What a closed path leaves: the contour, on which side of it the metal lies (1 within, -1 round it), the path."""
+    """Edge that a closed path cuts: the contour, its side on which the metal lies (1 inside, -1 outside), the path."""
 
     contour: Contour
     side: Side
@@ -83,7 +83,7 @@ class Feature(NamedTuple):
 
 
 def cuts_of(program: Program) -> Iterator[Cut]:
-    """What the cutter does below the top of the stock, each time it is down."""
+    """Cuts of a program: the moves at depth between plunge and retract, one `Cut` each time the cutter is down."""
     down: list[Move] = []
     plunge: Move | None = None
     for move in (*program.moves, None):
@@ -108,7 +108,7 @@ def across(move: Move) -> bool:
 
 
 def trace(move: Move) -> tuple[object, ...]:
-    """What tells the path of a move in the plane."""
+    """Key of a move's path in the plane, whatever its height: ends, centre, whether it turns counter-clockwise."""
     return (*move.start[:2], *move.end[:2], move.centre, move.sweep > 0.0)
 
 
@@ -188,7 +188,7 @@ def _about_one_contour(cuts: list[Cut], radius: float) -> list[list[Cut]]:
 
 
 def rounds(loop: Arcs, middle: Array) -> int:
-    """How often a closed path runs round a point, by the starts of its pieces."""
+    """Winding number of a closed path about a point, by the starts of its pieces; counter-clockwise positive."""
     away = loop.start - middle
     after = np.roll(away, -1, axis=0)
     return round(float(np.arctan2(cross(away, after), dot(away, after)).sum()) / (2.0 * np.pi))

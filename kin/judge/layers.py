@@ -60,7 +60,7 @@ class CrossHole:
     z: float
 
     def half_width(self, z: float) -> float:
-        """Half its width in the section at a height; 0 beyond it."""
+        """Half the width of the hole, mm, in the horizontal section at height z, mm; 0 above and below the hole."""
         return float(np.sqrt(max(0.25 * self.diameter**2 - (z - self.z) ** 2, 0.0)))
 
 
@@ -78,10 +78,11 @@ class Lean(NamedTuple):
     inward: float = 0.0
 
     def means(self, rows: Array, slack: float) -> Mask:
-        """Which walls (k, 4) of a solid are meant to lean, within `slack`, mm.
+        """Mask (k,) of the walls (k, 4) of a solid that this lean is meant to have, within `slack`, mm.
 
-        What leans from end to end is known by the sections between; what does so on a part of the way is where it
-        should be, if that section is, by going inward as much as it should.
+        A wall that leans over the whole height need only have its ends there: the sections between check it. A wall
+        over a part of the height must lie within it and lean inward at the meant slope, or reach no farther than
+        `reach` if set.
         """
         low, high, reach, inward = rows.T
         inside: Mask = (low >= self.low - slack) & (high <= self.high + slack)
@@ -224,7 +225,10 @@ def _together(rows: Array, low: float, high: float, slack: float) -> tuple[float
 
 
 def volume(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], area: float, perimeter: float) -> float:
-    """Volume, mm^3, of layers round a contour of this area and perimeter; that of a parallel is A - d P + pi d^2."""
+    """Volume, mm^3, of the layers less holes and cross holes, round a contour of this area, mm^2, and perimeter, mm.
+
+    A layer without an outline of its own is bounded by parallels of the contour, of area A - d P + pi d^2 at inset d.
+    """
     total = 0.0
     for layer in layers:
         a, b = layer.inset

@@ -29,7 +29,7 @@ INSIDE = 1.5  # times the tolerance: a section is looked at so far within two le
 
 
 def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: float, path: Path) -> list[Check]:
-    """Judge a body's triangles (t, 3, 3), in its own axes, mm.
+    """Judge a body's triangles (t, 3, 3), in its own axes, mm: two checks, and a third if both hold.
 
     watertight  every edge has two triangles, facing outward, none without area
     thickness   it reaches from the lowest slab's lower face to the highest one's upper face

@@ -49,7 +49,7 @@ UNREAD = SurfaceVerdict()
 
 @dataclass(frozen=True)
 class ClosureVerdict:
-    """What is left between two surfaces: to the gauges, which is meant to be nothing, and to the follower itself."""
+    """Play between two surfaces, by name: of the gauges, which is meant to be 0, and of the follower itself."""
 
     pushes: str
     stops: str
@@ -58,7 +58,7 @@ class ClosureVerdict:
 
 
 class OfSurfaces:
-    """What there is of the first surface, which most cams have alone."""
+    """Results of the first surface, under names of their own: most cams have one surface."""
 
     surfaces: tuple[SurfaceVerdict, ...]
 
@@ -79,7 +79,7 @@ class OfSurfaces:
 
     @property
     def play(self) -> Play | None:
-        """Of a follower that two contacts hold on the one surface; below 0 where it interferes."""
+        """Play of a follower that two contacts hold on the first surface, below 0 where it interferes; else None."""
         return self.surface.play
 
     @property
@@ -89,7 +89,7 @@ class OfSurfaces:
 
     @property
     def linkage(self) -> LinkageVerdict | None:
-        """What the contour makes of the mechanism."""
+        """Motion of the mechanism that the first surface drives; None without a mechanism."""
         return self.surface.linkage
 
     @property
@@ -132,5 +132,5 @@ class Verdict(OfSurfaces):
 
     @property
     def pieces(self) -> int | None:
-        """Of all surfaces, as the file counts them; None where it cannot be read."""
+        """Number of pieces of all surfaces together, as the file counts them; None where the file cannot be read."""
         return sum(surface.pieces or 0 for surface in self.surfaces) or None

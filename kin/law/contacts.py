@@ -122,16 +122,16 @@ class Contact(Generic[G_co, T_co]):
 
     @property
     def zero(self) -> float:
-        """Own position where the follower's is 0."""
+        """Own position, mm or rad, of the contact where the follower's position is 0."""
         return self.datum - self.apart
 
     def position(self, own: Array) -> Array:
-        """Position of the follower from the contact's own."""
+        """Position of the follower, mm or rad, of the contact's own (n,): the inverse of `own`."""
         position: Array = self.sense * (own - self.datum + self.apart)
         return position
 
     def own(self, position: Array) -> Array:
-        """The contact's own position from the follower's."""
+        """Own position of the contact, mm or rad, of the follower's position (n,): zero + sense * position."""
         own: Array = self.zero + self.sense * position
         return own
 
@@ -142,7 +142,7 @@ class Contact(Generic[G_co, T_co]):
 
     @property
     def place(self) -> Contact[Guide, Touch]:
-        """Where the touch is, whatever it is and touches: one roller in one place may touch two surfaces."""
+        """Contact with the touch and the surface left out: equal for two contacts of one roller on two surfaces."""
         return Contact(self.guide, KnifeEdge(), self.datum, self.sense, self.apart, self.turned)
 
     def raised(self, by: float) -> Contact[G_co, T_co]:
@@ -183,10 +183,10 @@ def on_one_arm(
 
 @dataclass(frozen=True)
 class Arrangement:
-    """What a recipe says of a follower before anything is computed: guide, touch, the greatest number of contacts.
+    """A recipe's follower before anything is computed: class of guide, class of touch, greatest number of contacts.
 
-    `discs` are those that the contacts touch: two on one disc have one law of their own between them, two on two discs
-    each have that of one contact.
+    `discs` is the number of discs that the contacts touch. Two contacts on one disc need a law that suits both; two on
+    two discs follow the law of one contact each.
     """
 
     guide: type[Guide]
@@ -196,21 +196,26 @@ class Arrangement:
 
     @property
     def unit(self) -> Unit:
-        """Of the follower's position and of motion errors."""
+        """Unit of the follower's position and of motion errors."""
         return self.guide.unit
 
     @property
     def backlash_unit(self) -> Unit:
-        """Of the backlash of a follower that is held from both sides: faces on arms stand wider by an angle."""
+        """Unit of the backlash of a follower held from both sides: deg for faces on arms, else mm."""
         return self.unit if self.touch is Flat else "mm"
 
     @property
     def offers(self) -> frozenset[str]:
-        """What figures may be taken of it.
+        """Names of the properties that decide which figures and options the follower has.
 
-        swings: two contacts on one arm; plate: faces that a linkage can carry; guided: on a stem or an arm of its own;
-        roller: round about a centre; rolling: a roller that the cam turns; led: on a stem; stem, arm: one such contact;
-        face, stem-face: flat.
+        swings          two contacts on one arm
+        plate           two faces on a line of travel, as a linkage's frame has
+        guided          neither of those: a stem or an arm of its own
+        roller, face    a round touch; a flat one (not two on an arm)
+        rolling         a roller that the cam turns (not two on an arm)
+        led             on a line of travel
+        stem, arm       one round contact on a line of travel; one contact on an arm
+        stem-face       one flat contact on a line of travel
         """
         stem, flat, two = self.guide is Translating, self.touch is Flat, self.contacts > self.discs
         swings, plate = two and not stem, two and stem and flat

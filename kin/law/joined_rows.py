@@ -37,7 +37,7 @@ class JoinedRows:
 
     @property
     def coefficients(self) -> Array:
-        """Of each part the polynomial in the share of it, (6, n - 1), the constant first (Hermite, degree 5)."""
+        """Coefficients (6, n - 1) of each part's polynomial over 0 to 1, the constant first (Hermite, degree 5)."""
         width, rise = np.diff(self.master), np.diff(self.slave[0])
         rows = np.zeros((_DEGREE + 1, len(width)))
         rows[0] = self.slave[0, :-1]
@@ -63,9 +63,9 @@ class JoinedRows:
         return value
 
     def off(self, position: Callable[[Array], Array], breaks: Iterable[float]) -> tuple[float, float]:
-        """Greatest distance from a motion, mm or rad, and the angle where it is, rad.
+        """Greatest |motion - joined rows| over a turn, mm or rad, and the master's angle where it is, rad.
 
-        `position` gives that of angles (n,) from 0 to a turn; at `breaks` a derivative of it may jump. Raises
+        `position` gives the motion at angles (n,) from 0 to a turn; at `breaks` a derivative of it may jump. Raises
         RoughError where it changes too abruptly to be followed.
         """
         size = float(np.ptp(self.slave[0])) or 1.0

@@ -175,7 +175,7 @@ class Piecewise:
         return folded
 
     def raised(self, by: float) -> Piecewise:
-        """The same function, greater by a constant; of constants that it has again constants."""
+        """Give the function plus the constant `by`; constant stretches stay constant."""
         if not by:
             return self
         functions = tuple(
@@ -184,7 +184,7 @@ class Piecewise:
         return Piecewise(self.knots, functions, self.period, self.smooth_seam)
 
     def taken_from(self, whole: float) -> Piecewise:
-        """What the function leaves of a constant; of constants that it has again constants."""
+        """Give `whole` less the function; constant stretches stay constant."""
         functions = tuple(
             Constant(whole - f.value) if isinstance(f, Constant) else Affine.of(f, offset=whole, scale=-1.0)
             for f in self.functions

@@ -45,7 +45,7 @@ class Alike(ABC):
     @property
     @abstractmethod
     def kind(self) -> tuple[str, int]:
-        """What the stretches that are worked out together have in common."""
+        """Key of the stretches that can be evaluated together: a name and a number."""
 
     @property
     @abstractmethod
@@ -54,12 +54,12 @@ class Alike(ABC):
 
     @abstractmethod
     def together(self, rows: Array) -> Stretch:
-        """What applies to each of n points or intervals the stretch of this kind with its column of numbers (k, n)."""
+        """Give one function for n stretches of this kind: column i of `rows` (k, n) applies to point or interval i."""
 
 
 @dataclass(frozen=True)
 class Constant(Round):
-    """The same value everywhere."""
+    """A constant function."""
 
     value: float
 

@@ -194,7 +194,7 @@ class RPR(_Pivoted):
         _demand_place(self.on, self.point, (*self.ground, self.offset))
 
     def margins(self, x: float | Array, y: float | Array) -> Array:
-        """How much farther P is from G than the slot's line, mm (1, n), for P at x, y (n,)."""
+        """Distance GP less the slot's offset from G, mm (1, n), for P at x, y (n,): negative out of reach."""
         terms = _arm_terms(x, y, self.ground)
         return longer(_square(*terms), excess(*terms, (self.offset,)), self.offset)[None]
 

@@ -66,7 +66,14 @@ class Figures:
 
 
 class Rows(NamedTuple):
-    """What figures are made of, at relative angles (n,), each (n,): sines, cosines as in `transmission_angle`."""
+    """Quantities at relative angles (n,) of which the figures are extremes; each (n,).
+
+    output                        position of the output, in its unit
+    velocity, acceleration        its derivatives by the shaft angle; ..._relative by the relative angle
+    frame                         angle of the frame, rad
+    transmission_*, force_*       sine and cosine of the transmission and of the force angle, see `transmission_angle`
+    offset                        Y of D from the shaft, across the frame, mm
+    """
 
     output: Array
     velocity_relative: Array

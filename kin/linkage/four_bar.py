@@ -319,7 +319,7 @@ class SliderCrank:
         demand_finite("joint's offset", self.joint_offset)
 
     def margins(self, s: float | Array, s1: float | Array, w: float) -> Array:
-        """How much AD is longer than the offset, mm (1, n): negative out of reach."""
+        """Length AD less the slider's offset, mm (1, n): negative where the loop cannot close."""
         x, y = _frame_terms(s, s1, w, self.coupler, self.joint_offset)
         q = np.atleast_1d(total(*x) ** 2 + total(*y) ** 2)
         return longer(q, excess(x, y, (self.offset,)), self.offset)[None]

@@ -55,17 +55,20 @@ class FrameBearing:
         return self.mechanism.linkage.deviation(positions, sweep, off, pivot, link)
 
     def shaft(self, displacement: complex) -> Array:
-        """Change for a displacement of the shaft with the cam in the ground, mm, x from the shaft to the pivot."""
+        """Change (n,) of the output, rad or mm, when shaft and cam are displaced in the ground by `displacement`, mm.
+
+        The x axis points from the shaft to the pivot.
+        """
         return self.output(pivot=-displacement)
 
     def metal(self, displacement: complex) -> Array:
-        """Change for a displacement of the metal in the cam's own axes, mm."""
+        """Change (n,) of the output, rad or mm, when the metal is displaced, mm, in the cam's own axes."""
         along = (np.conj(displacement) * np.exp(1j * (self.motion.theta + QUARTER))).real
         across = (np.conj(displacement) * np.exp(1j * self.motion.theta)).real
         return self.output(-along, across)
 
     def metal_turned(self) -> Array:
-        """Change per rad by which the metal is turned counter-clockwise about the shaft."""
+        """Change (n,) of the output, rad or mm, per rad of the metal's turn counter-clockwise about the shaft."""
         (_, slope), (_, slope1) = self.motion.faces
         return self.output(slope1, -slope)
 

@@ -196,7 +196,10 @@ def bearing(x: Jet, y: Jet, q: Jet, about: float = 0.0) -> Jet:
 
 
 def longer(q: Array, square: Array, offset: float) -> Array:
-    """How much the root of q is longer than the offset, mm (n,), from q - offset^2 = square."""
+    """Difference sqrt(q) - |offset|, mm (n,), without cancellation, from `square` = q - offset^2.
+
+    Below 0 the links do not reach each other.
+    """
     side = np.sqrt(q) + abs(offset)
     with np.errstate(invalid="ignore"):
         margin: Array = np.where(side > 0, square / side, 0.0)

@@ -50,7 +50,7 @@ class FrameForces(NamedTuple):
 
     @property
     def pairs(self) -> tuple[Array, Array]:
-        """Of faces 1 and 3 and of faces 2 and 4, above 0 where face 1 or 2 pushes, N (n,)."""
+        """Forces (n,) each, N, on faces 1 and 3 and on faces 2 and 4, above 0 where face 1 or face 2 pushes."""
         return self.across, 0.0 - self.along
 
 

@@ -72,7 +72,11 @@ def heights_of(cams: Sequence[CamShift]) -> int:
 
 
 def axis_of(cams: Sequence[CamShift]) -> Axis | None:
-    """The axis of cams; None where they stand at fewer than LEAST_CAMS heights."""
+    """Axis fitted to the shifts of cams by weighted least squares; None for cams at fewer than 3 heights.
+
+    A cam more than 4 standard deviations off the axis of the others is left out, the farthest first, as long as 3
+    heights are left.
+    """
     if heights_of(cams) < LEAST_CAMS:
         return None
     height = np.array([cam.height for cam in cams])

@@ -46,9 +46,10 @@ class Cause(NamedTuple):
 
 
 def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth], turned: float = 0.0) -> list[Cause]:
-    """Causes of the deviations of one part's surfaces, whose smooth curves are given, the greatest first.
+    """Certain causes of the deviations of one part's surfaces, by falling effect.
 
-    `turned` is the angle, rad, by which the metal is turned and that was taken out of the deviations.
+    A cause is certain if its size is larger than its uncertainty. `curves` are the smooth curves through the
+    deviations. `turned` is the angle, rad, by which the metal is turned and that was taken out of the deviations.
     """
     names = ["turned", "shifted along x", "shifted along y", "size"]
     told, chosen, x, covariance, left = _explained(deviations, curves)

@@ -46,12 +46,12 @@ class _Beyond(NamedTuple):
 
     @property
     def breaks(self) -> Array:
-        """Those of the contour, of the law and of the metal."""
+        """Breaks of the drive on the contour, of the law and of the metal, rad of shaft."""
         return np.concatenate([self.drive.breaks, self.follower.motion.breaks, self.follower.metal_breaks])
 
     @property
     def smooth(self) -> bool:
-        """As the contour is."""
+        """Whether the velocity of the drive on the contour is continuous."""
         return self.drive.smooth
 
     def rows(self, phi: Array) -> Array:
@@ -69,7 +69,7 @@ class _Meant:
 
     @property
     def breaks(self) -> Array:
-        """Those of the law."""
+        """Breaks of the law, rad of shaft."""
         return self.follower.motion.breaks
 
     @property
@@ -120,7 +120,7 @@ class Corrected(Follower):
         return float(shares[worst]), float(self.shaft_angle(places[worst : worst + 1])[0])
 
     def run_by(self, follower: Follower) -> Corrected:
-        """Another follower of that motion on the same metal."""
+        """Give the same corrected metal with another follower of the same motion on it."""
         return replace(self, contacts=follower.contacts, exact=follower)
 
     @property
@@ -130,12 +130,15 @@ class Corrected(Follower):
 
     @property
     def motion(self) -> IntendedMotion:
-        """That of the recipe, which the metal's own change is taken out to be held against."""
+        """Intended motion of the recipe.
+
+        The effect of the metal's correction is subtracted before a motion is compared to it.
+        """
         return self.exact.motion
 
     @property
     def rests(self) -> Rests:
-        """Those of the recipe's motion."""
+        """Dwells of the recipe's motion."""
         return self.exact.rests
 
     @property
@@ -148,15 +151,15 @@ class Corrected(Follower):
 
     @property
     def lever(self) -> float:
-        """That of the follower."""
+        """Distance of the contact from the arm's pivot, about, mm; infinite on a line of travel."""
         return self.exact.lever
 
     def shaft_angle(self, parameter: Array) -> Array:
-        """Shaft angle at which the exact contour is touched there (n,)."""
+        """Shaft angle (n,), rad, at which the exact contour is touched at the parameters (n,)."""
         return self.exact.shaft_angle(parameter)
 
     def drives(self, contour: Contour) -> Sequence[Excitation]:
-        """What each contact feels of a contour, less what the change of the metal adds to it."""
+        """Own position of each contact resting on a contour, m or rad, less the effect of the metal's correction."""
         return [_Beyond(drive, self, k) for k, drive in enumerate(self.exact.drives(contour))]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
@@ -168,10 +171,10 @@ class Corrected(Follower):
         return self.exact.touching(points, normals)
 
     def added(self, shaft: Array) -> Array:
-        """What the change of the metal adds to each contact's position, and two derivatives by the shaft angle.
+        """Effect of the correction on each contact's position, and two derivatives by the shaft angle: (c, 3, n).
 
-        (c, 3, n) at shaft angles (n,), mm or radians. Derivatives are by five places of the stretch between two breaks,
-        since velocity or acceleration jumps there.
+        It is in mm or rad, at shaft angles (n,), rad. Derivatives come from five places of the stretch between two
+        breaks, since velocity or acceleration jumps there.
         """
         ends = np.unique(np.concatenate([self.motion.breaks, self.metal_breaks, [0.0]]))
         ends = ends[np.diff(ends, prepend=-np.inf) > CLOSE]

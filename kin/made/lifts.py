@@ -74,7 +74,7 @@ class Readings(NamedTuple):
 
     @property
     def stroke(self) -> float:
-        """What the exact cam moves the probe by, mm or rad."""
+        """Range of the probe's position over a turn of the exact cam, mm or rad."""
         return float(np.ptp(self.exact(equal_steps(COARSE_TURNS))[0]))
 
     def few(self) -> Readings:

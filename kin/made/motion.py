@@ -162,7 +162,7 @@ class Errors:
 
 @dataclass(frozen=True, eq=False)
 class Play:
-    """What two opposite contacts leave a follower at shaft angles (n,), mm or rad; below 0 they interfere."""
+    """Play of a follower between opposite contacts, mm or rad, at shaft angles (n,); below 0 they interfere."""
 
     shaft: Array
     gap: Array

@@ -109,7 +109,10 @@ def least_squares(columns: Array, e: Array) -> Array:
 
 
 def interval(column: Array, e: Array, value: float) -> tuple[float, float]:
-    """All x with |e - x column| at most `value`, mm, of one unknown: least and greatest."""
+    """Least and greatest x of the interval in which all |e - x column| <= `value`, mm.
+
+    Where there is no such x, the least comes out above the greatest.
+    """
     limit = value * (1.0 + 1e-12)
     felt = np.abs(column) > 1e-9 * np.abs(column).max()
     ends = np.stack([e[felt] - limit, e[felt] + limit]) / column[felt]

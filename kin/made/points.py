@@ -47,7 +47,10 @@ FACTORS = {25.4: "inch", 1.0 / 25.4: "mm", 10.0: "cm", 1000.0: "m"}  # of points
 
 
 class UnlikePointsError(CamgeoError, ValueError):
-    """Points that are not on this contour; the message says what they look like."""
+    """Points that lie far off this contour.
+
+    The message says what they look like, such as another unit or a mirror image.
+    """
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,14 +69,14 @@ class Deviations:
     moment: Array
 
     def columns(self, free: str) -> Array:
-        """What a turn (g) and shifts (x, y) add to the deviations, in the order of their letters (n, k)."""
+        """Derivatives (n, k) of the deviations by turn (g, mm/rad) and shifts (x, y, mm/mm), a column a letter."""
         each = {"g": self.moment, "x": self.normals[:, 0], "y": self.normals[:, 1]}
         return np.column_stack([each[name] for name in free]) if free else np.empty((len(self.e), 0))
 
 
 @dataclass(frozen=True, eq=False)
 class Placing:
-    """How far the metal is turned, rad counter-clockwise, and shifted, mm, against the contour as drawn."""
+    """Placement of the metal against the contour as drawn: turn, rad counter-clockwise, and shift, mm."""
 
     turn: float = 0.0
     shift: tuple[float, float] = (0.0, 0.0)
@@ -134,7 +137,7 @@ class SurfacePoints:
         return Deviations(feet.parameter, e, normals, cross(touched, normals))
 
     def placed(self, placing: Placing) -> SurfacePoints:
-        """The same points with another placing taken out."""
+        """Give the points with `placing` in place of the placing that was taken out before."""
         return replace(self, placing=placing)
 
     def part(self, chosen: Array) -> SurfacePoints:
@@ -214,7 +217,10 @@ def settled(surfaces: Sequence[SurfacePoints], free: str) -> Placing:
 
 
 def told_apart(deviations: Sequence[Deviations], wanted: str) -> str:
-    """Those of the unknowns that the points can tell: without the turn where it is a mix of the shifts, or nothing."""
+    """Unknowns out of `wanted` (letters g, x, y) that the points determine.
+
+    The turn g is left out where it cannot be told from the shifts, or moves no deviation.
+    """
     if "g" not in wanted:
         return wanted
     columns = _columns(deviations, wanted)

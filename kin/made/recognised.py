@@ -92,13 +92,16 @@ class Programme:
         return float(np.abs(self.residual).max())
 
     def written(self, motion: PointMotion, boundaries: Array, levels: Array) -> Programme:
-        """The same strokes between other boundaries and levels."""
+        """Give the programme with its strokes between other boundaries and levels, and the residual of `motion`."""
         residual = motion.position - _model(motion.shaft, boundaries, levels, self.strokes)
         return replace(self, boundaries=boundaries, levels=levels, residual=residual)
 
 
 def recognised(motion: PointMotion, reading: float, unit: Unit) -> Programme | None:
-    """The programme of a motion whose dwells rest within a reading, mm or rad; None where there is no stroke."""
+    """Programme of dwells and strokes that a measured motion follows; None for a motion that dwells all round.
+
+    A dwell is a run of points that stay within `reading`, the least that the instrument resolves, mm or rad.
+    """
     places = _places(motion, reading, unit)
     if len(places) < 2:  # a turn of one level
         return None

@@ -67,7 +67,7 @@ def binomials(k: int) -> tuple[float, ...]:
 
 @lru_cache
 def shares(j: int, k: int) -> Array:
-    """What products of two coefficients count for in those of a product of degrees j and k, (j+1, k+1)."""
+    """Weights (j+1, k+1) of f_i g_m in the Bernstein coefficient i + m of a product of degrees j and k."""
     i, m = np.arange(j + 1)[:, None], np.arange(k + 1)
     shares: Array = np.outer(binomials(j), binomials(k)) / np.array(binomials(j + k))[i + m]
     shares.flags.writeable = False

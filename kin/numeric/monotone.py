@@ -170,7 +170,7 @@ class Pieces:
 
     @cached_property
     def noise(self) -> float:
-        """How far rounding may put values off anywhere."""
+        """Greatest error of a value by rounding."""
         return float(self.blur.max())
 
     @property
@@ -225,7 +225,7 @@ class Pieces:
         return float(ends[k, end]), float(self.x[k + end])
 
     def greatest(self) -> tuple[float, float]:
-        """Greatest value and where."""
+        """Greatest value, and the x at which it is reached."""
         ends = self.coefficients[:, [0, -1]]
         k, end = divmod(int(ends.argmax()), 2)
         return float(ends[k, end]), float(self.x[k + end])

@@ -36,7 +36,7 @@ def product(a: Array, b: Array) -> Array:
 
 
 def quotient(a: Array, b: Array) -> Array:
-    """Coefficients of a/b, by long division."""
+    """Taylor coefficients of a/b, as many as a has, by long division; b[0] must not be 0."""
     out, rest = np.empty_like(a), a.copy()
     for k in range(len(a)):
         out[k] = rest[k] / b[0]

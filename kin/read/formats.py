@@ -29,7 +29,7 @@ Contents: TypeAlias = Literal["drawing", "solid", "program", "table"]
 
 
 class DrawingReader(Protocol):
-    """Reads a drawing as `read_dxf` does."""
+    """Reader of a drawing, with the parameters of `read_dxf`."""
 
     def __call__(
         self, path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float

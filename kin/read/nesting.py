@@ -61,7 +61,7 @@ class Nest:
 
     @property
     def holes(self) -> tuple[Contour, ...]:
-        """What lies inside the outer contour."""
+        """Contours inside the outer contour."""
         return tuple(chain.contour for chain in self.chains[1:])
 
     @property

@@ -51,12 +51,12 @@ class Rows:
 
     @property
     def width(self) -> int:
-        """How many columns the heading has, or the first row."""
+        """Number of columns of the heading, or without a heading of the first row."""
         return len(self.heading) or self.columns
 
     @property
     def columns(self) -> int:
-        """How many columns the first row has, with empty ones at its end that have a heading."""
+        """Number of columns of the first row, trailing empty ones included where the heading names them."""
         line, mark = self.lines[0], None if self.mark == " " else self.mark
         count = len(line.split(mark))
         return count if len(self.heading) == count else len(_cells(line, self.mark))

@@ -57,7 +57,7 @@ _LIBRARY = 2.0**-49  # relative error allowed to a function of an exact constant
 
 
 class FormulaError(CamgeoError, ValueError):
-    """What is wrong with a formula: `message`, and the `column` in its text, from 0."""
+    """A fault in a formula: `message`, and the `column` in its text, counted from 0."""
 
     def __init__(self, message: str, column: int) -> None:
         self.message = message

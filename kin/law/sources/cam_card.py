@@ -47,7 +47,7 @@ _LEAST_WEIGHT = 1e-12  # of a mixture: less is rounding
 
 
 class Crossing(NamedTuple):
-    """What a card says: a lift, mm or rad, and the angle at which it is crossed, rad of the cam from the nose."""
+    """A row of a cam card: a lift, mm or rad, and the cam angle from the nose, rad, at which the lift is crossed."""
 
     lift: float
     angle: float

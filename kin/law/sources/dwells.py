@@ -43,7 +43,7 @@ class Run(NamedTuple):
 
     @property
     def limit(self) -> float:
-        """How far each end may move in."""
+        """Greatest angle, rad, by which each end of the run may be moved in."""
         return 0.5 * (1.0 - _INNER) * (self.end - self.begin)
 
     def later(self, by: float) -> Run:
@@ -96,7 +96,7 @@ def runs(rows: Tabled, least_level: float | None) -> list[Run]:
 def stretches(
     rows: Tabled, dwells: Sequence[Run], plain: Least, bounds: Bounds, limit: LowerLimit | None
 ) -> tuple[list[Run], list[Stretch]]:
-    """Those runs that are dwells, with their ends moved in, and the motions between them.
+    """Runs that are dwells, their ends moved in, and the stretches of motion between them; [], [] for no dwell.
 
     `plain` is the motion without dwells within the same bounds.
     """

@@ -113,7 +113,7 @@ class Bounds(NamedTuple):
 
 
 def joined_bounds(parts: Sequence[Bounds]) -> Bounds:
-    """Bounds one after another."""
+    """Concatenate bounds in the order passed."""
     x, lo, hi, unit = (np.concatenate([part[k] for part in parts]) for k in range(4))
     return Bounds(x, lo, hi, unit, np.concatenate([part.row for part in parts]))
 
@@ -390,7 +390,7 @@ def _rise(values: Array) -> Array:
 
 
 def pulls(space: Space, x: Array, s: Array) -> tuple[Array, float]:
-    """Multipliers of values s (k,) at x (k,), and the integral of S'''^2 of the spline through them."""
+    """Lagrange multipliers (k,) of values s (k,) at x (k,), and the integral of S'''^2 of the spline through them."""
     spline = _spline(space, x, s)
     return spline.pull(), spline.square
 
@@ -483,7 +483,10 @@ def _with_limit(
 
 
 def _of_many(space: Space, bounds: Bounds, start: Touch | None, ample: float) -> Least | None:
-    """The same without a limit; `start` has places among the bounds. Of many bounds few are looked at together."""
+    """Solve without a lower limit; `start` has places among the bounds.
+
+    Of many bounds only some are put in at a time.
+    """
     n = len(bounds.x)
     chosen = np.arange(n) if n <= _FEW else np.arange(0, n, -(-n // _FEW))
     if start is not None:

@@ -38,7 +38,7 @@ class Rest(NamedTuple):
 
 
 class TableRemark(NamedTuple):
-    """What is to be remarked on a table or a cam card: a name, and a sentence in the table's own units."""
+    """Remark on a table or a cam card: its name, and a sentence in the table's own units."""
 
     name: Literal["cam-card", "table-angles", "table-distance", "table-noise", "table-row"]
     sentence: str
@@ -194,7 +194,12 @@ def _raised(function: Stretch, by: float) -> Stretch:
 
 
 def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | None = 1) -> Motion:
-    """Make a motion from stretches; neighbouring dwells at one level become one."""
+    """Make a motion from stretches, stretch i between knots i and i + 1, rad.
+
+    Neighbouring dwells at one level become one.
+
+    `around` says how the end is followed by the beginning, see `Motion`.
+    """
     kept: list[Stretch] = []
     at = [float(knots[0])]
     for function, end in zip(functions, knots[1:], strict=True):

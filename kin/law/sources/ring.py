@@ -54,7 +54,7 @@ class Dwelling(NamedTuple):
 
 
 class Fit(Protocol):
-    """How the rows of one moving stretch become spans."""
+    """Method that fits spans of a function to the rows of one moving stretch."""
 
     def __call__(
         self, rows: Samples, ends: Ends | None, between: tuple[float, float], /

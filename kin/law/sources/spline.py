@@ -43,7 +43,7 @@ class Basis:
 
     @property
     def size(self) -> int:
-        """How many coefficients there are."""
+        """Number of coefficients."""
         m = len(self.sites) - 1
         return m if self.periodic else m + DEGREE
 

@@ -167,7 +167,10 @@ def _together(rows: Tabled, plain: Least, i: int, j: int) -> bool:
 
 
 def spanned(rows: Tabled, place: int) -> int:
-    """Rows that the stroke of a row spans, with it; of one between two strokes, without it, the lesser of them."""
+    """Number of rows in the stroke, a monotone run of values, to which a row belongs, the row itself among them.
+
+    Of a row between two strokes of opposite sense, a peak, it is the number of rows in the shorter of both.
+    """
     n = len(rows.s)
     sides = []
     for way in (-1, 1):

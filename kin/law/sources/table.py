@@ -189,7 +189,10 @@ def _pieces(dwells: Sequence[Run], moving: Sequence[Moving], turn: float) -> tup
 
 
 def _functions(curve: Curve, level: float) -> list[Stretch]:
-    """Its polynomials; the last one before a rest at a level about its end, where it is exactly at rest."""
+    """Polynomials of a curve's spans as stretches.
+
+    Before a rest at `level` the last one is expanded about its end, so that it is exactly at rest there.
+    """
     rows, starts = curve.coefficients.T.tolist(), curve.starts.tolist()
     if not curve.period:
         *_, c3, c4, c5 = rows[-1]

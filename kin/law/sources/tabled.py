@@ -83,7 +83,7 @@ class Tabled:
         return Bounds(self.x, lo, hi, share * self.reading, np.arange(len(self.x)))
 
     def between(self, bounds: Bounds, space: Space) -> Bounds:
-        """Those of bounds that lie inside a space, which may run over the end of a period."""
+        """Bounds that lie strictly inside the space `space`, shifted by a period where the space runs over its end."""
         parts = []
         for turn in (-1, 0, 1) if self.period else (0,):
             x = bounds.x + turn * self.period

@@ -210,7 +210,7 @@ def gathered(shapes: list[Shape]) -> tuple[Pieces, Indices]:
 
 
 def closeness(pieces: Pieces) -> tuple[float, float]:
-    """How near two points are the same, and two ends joined where no gap is asked for, mm."""
+    """Two distances, mm: within the first points are the same, within the second ends are joined by default."""
     size = extent(pieces)
     same = max(min(SAME_POINT, SAME_SHARE * size), ROUNDING * float(np.abs(pieces.start).max()))
     return same, max(min(GAP, GAP_SHARE * size), same)
@@ -268,7 +268,10 @@ def fault(kind: str, pieces: Pieces, piece: int, run: Indices, curves: CutEntiti
 
 
 def reach(pieces: Pieces) -> Array:
-    """Return the size of each piece, mm (n,): never less than a third of its length."""
+    """Size of each piece, mm (n,): chord, length of an arc, or side of a curve's box.
+
+    It is never less than a third of the piece's length.
+    """
     size = np.hypot(*(pieces.end - pieces.start).T)
     size = np.where(pieces.kind == ARC, pieces.radius * np.abs(pieces.sweep), size)
     bow = pieces.curve >= 0

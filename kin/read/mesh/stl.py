@@ -110,7 +110,7 @@ class Solid(Nest, Slivered):
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What a closed, oriented mesh that faces outward does not have."""
+        """Faults in words, with their numbers: a closed, oriented mesh that faces outward has none."""
         counts = {
             "edges with one triangle": self.edges.open,
             "edges with more than two triangles": self.edges.crowded,

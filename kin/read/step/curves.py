@@ -177,7 +177,7 @@ class Edge:
 
     @property
     def misfit(self) -> float:
-        """How far its ends lie off its curve, mm."""
+        """Greatest distance of the edge's ends from its curve, mm."""
         if isinstance(self.curve, Straight):
             beside = [np.cross(place - self.curve.point, self.curve.along) for place in (self.start, self.end)]
             return float(max(np.linalg.norm(offset) for offset in beside))

@@ -52,7 +52,7 @@ Value: TypeAlias = "float | int | str | tuple[Value, ...] | Typed | None"
 
 
 class Exchange(NamedTuple):
-    """What a file holds: records by type for each instance number, and the name of its schema."""
+    """Contents of a STEP file: records by type for each instance number, and the name of its schema."""
 
     path: Path
     instances: dict[int, dict[str, tuple[Value, ...]]]
@@ -68,7 +68,10 @@ class Exchange(NamedTuple):
         return [number for number, records in self.instances.items() if kind in records]
 
     def kind(self, number: int, kinds: tuple[str, ...], by: int) -> str:
-        """Which of some types an instance is of, that instance `by` refers to; raises ReadError where it is none."""
+        """First of the types `kinds` that instance `number` is of; `by` is the instance that refers to it.
+
+        Raises ReadError where there is no such instance, or it is of none of the types.
+        """
         if number not in self.instances:
             raise self.error(by, f"refers to #{number}, which is not there", "syntax")
         for kind in kinds:
