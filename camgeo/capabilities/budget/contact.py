@@ -24,33 +24,37 @@ if TYPE_CHECKING:
 
 
 class LostError(CamgeoError, ValueError):
-    """A made part that has no contact near where it is meant to be, as of undercut metal."""
+    """Made metal has no contact near the intended place, as where it is undercut."""
 
 
 class Metal(Protocol):
-    """What a touch meets at each shaft angle, in the axes of the cam, mm; its methods raise LostError."""
+    """Metal of the cam that a follower's touch meets, at each shaft angle, in the cam's axes, mm.
+
+    All results are (parts, angles). The methods raise LostError where there is no contact near the intended place.
+    """
 
     def reach(self, normal: Complexes) -> Array:
-        """Greatest x.normal of the metal: where a flat face of that normal touches."""
+        """Support function: greatest x.normal of the metal, mm, at which a flat face of that unit normal touches."""
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """Distance along a line from a point of it at which the centre of a round touch stands."""
+        """Distance, mm, from `middle` along the unit direction `way` to the centre of a round touch on the metal."""
 
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
-        """Direction from a pivot to the centre of a round touch at the end of an arm."""
+        """Unit direction from a pivot to the centre of a round touch on the metal, at the end of an arm of a length."""
 
     def leaning(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """Normal of a flat face that stands nearer the shaft than its parallel through a pivot."""
+        """Unit normal of a flat face on the metal, nearer the shaft than its parallel through a pivot by `nearer`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Off:
-    """By how much the sizes about one contact are off, mm, rad, complex displacements.
+    """Errors of the sizes at one contact, made less meant: mm, rad, and complex displacements in mm.
 
-    `turned` the metal on the shaft, `bore` the metal in the cam's axes, `shaft` and `pivot` in the ground, x along the
-    travel or from the shaft to the pivot; `grown` touch and metal along the normal; `offset` and `guide` the stem's
-    line and its direction about the middle of the guide; `face` the direction of a face about the stem's axis or the
-    pivot, and that of an arm; `length` that of the arm; `datum` where the contact's own position counts from.
+    `turned` is the turn of the metal on the shaft, `bore` the displacement of the metal in the cam's axes. `shaft` and
+    `pivot` are displacements in the ground, x along the travel or from the shaft to the pivot. `grown` is the growth of
+    touch and metal along the normal. `offset` and `guide` are the offset of the stem's line and its tilt about the
+    middle of the guide. `face` is the tilt of a face about the stem's axis or the pivot, and of an arm; `length` the
+    error of the arm's length; `datum` the error of the place from which the contact's own position counts.
     """
 
     turned: Array
@@ -115,7 +119,7 @@ def _own_on_stem(place: Place, off: Off, middle: Complexes, way: Complexes) -> A
 
 
 def _own_on_arm(place: Place, guide: Oscillating, off: Off, pivot: Complexes, axis: Complexes) -> Array:
-    """Own position, rad, at which the touch of an arm meets the metal, nearest the one that is meant."""
+    """Position of an arm, rad, at which its touch meets the metal: the solution nearest the intended position."""
     touch, hand = place.contact.touch, guide.side
     if isinstance(touch, Flat):
         normal = place.metal.leaning(pivot, touch.nearer + off.grown)

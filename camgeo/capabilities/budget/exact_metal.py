@@ -26,9 +26,9 @@ LONGEST = 0.1  # rad of a parameter by which it steps at most
 
 @dataclass(frozen=True, eq=False)
 class ExactMetal:
-    """A contour at n shaft angles, at whose parameters (n,) it is meant to be touched; the metal lies on its `side`.
+    """Metal bounded by the exact contour, on its `side`, at n shaft angles; `parameter` (n,) are the intended contacts.
 
-    A contact is looked for near that place alone.
+    A contact is sought by Newton's method from its intended parameter alone.
     """
 
     curve: Curve
@@ -36,7 +36,7 @@ class ExactMetal:
     parameter: Array
 
     def reach(self, normal: Complexes) -> Array:
-        """See `Metal`."""
+        """Support function of the metal, mm, (parts, angles); raises LostError, as `Metal.reach`."""
 
         def residual(_: Complexes, tangent: Complexes, __: Array, turn: Array) -> tuple[Array, Array]:
             return (np.conj(normal) * tangent).real, turn * (np.conj(normal) * 1j * tangent).real
@@ -46,7 +46,7 @@ class ExactMetal:
         return reach
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """See `Metal`."""
+        """Distance along a line to the centre of a round touch, mm, (parts, angles); LostError as `Metal.along`."""
 
         def residual(point: Complexes, tangent: Complexes, speed: Array, turn: Array) -> tuple[Array, Array]:
             aside = (np.conj(way) * (self._centre(point, tangent, radius) - middle)).imag
@@ -57,7 +57,7 @@ class ExactMetal:
         return along
 
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
-        """See `Metal`."""
+        """Unit direction from a pivot to the centre of a round touch, (parts, angles); LostError as `Metal.arm`."""
 
         def residual(point: Complexes, tangent: Complexes, speed: Array, turn: Array) -> tuple[Array, Array]:
             arm = self._centre(point, tangent, radius) - pivot
@@ -69,7 +69,7 @@ class ExactMetal:
         return arm / np.abs(arm)
 
     def leaning(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """See `Metal`."""
+        """Unit normal of a flat face on an arm, (parts, angles); raises LostError, as `Metal.leaning`."""
 
         def residual(point: Complexes, tangent: Complexes, _: Array, turn: Array) -> tuple[Array, Array]:
             arm = point - pivot

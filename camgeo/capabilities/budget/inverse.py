@@ -58,9 +58,11 @@ class Split(NamedTuple):
 
 
 class Constraints(NamedTuple):
-    """What free dimensions do at each angle and contact as shares of what is left, (n, f), to the power of the sum.
+    """Constraints weights @ t^q <= left on the tolerances t (f,) of the free dimensions, by angle and contact.
 
-    `left` (n,) is what the others leave, mm or rad, to the same power.
+    q is the power of the sum: 1 for the worst case, 2 for the root of the sum of squares. `weights` (n, f) are
+    influences to that power. `left` (n,) is what the other dimensions leave of the permitted error, mm or rad, to that
+    power. `at` (n,) are the shaft angles, rad.
     """
 
     names: tuple[str, ...]
@@ -89,9 +91,9 @@ def constraints(influence: Influence, permitted: float, sum_: Sum) -> Constraint
 
 
 def left_for(influence: Influence, permitted: float, sum_: Sum) -> Array:
-    """What is left for the only free dimension, mm or rad, (n,) over the shaft angle; infinite where it does nothing.
+    """Greatest tolerance of the only free dimension, mm or rad, (n,) by shaft angle; infinite where it has no effect.
 
-    Of several contacts the least. Raises TakenError as `constraints` does.
+    The least over all contacts counts. Raises TakenError as `constraints` does.
     """
     limits = constraints(influence, permitted, sum_)
     (column,) = limits.weights.T
@@ -145,10 +147,10 @@ class Problem(NamedTuple):
 
 
 def _least_cost(problem: Problem) -> tuple[Array, Indices]:
-    """Tolerances (f,) of least cost, and the indices of the angles that bind.
+    """Tolerances (f,) of the free dimensions that cost least, and the sorted indices of the constraints that bind.
 
-    Multipliers are sought of the few angles that may bind. The angle that the tolerances then break most joins them,
-    until none is broken.
+    Lagrange multipliers are kept for few constraints only. The constraint that the tolerances then break most joins
+    them, until none is broken by more than BROKEN. Raises ArithmeticError where that does not come about.
     """
     weights, q = problem.weights, problem.q
     active = np.unique(np.append(weights.argmax(axis=0), weights.sum(axis=1).argmax()))
@@ -167,7 +169,7 @@ def _least_cost(problem: Problem) -> tuple[Array, Indices]:
 
 
 def _scaled(problem: Problem) -> Array:
-    """Equal multipliers (n,), as large as makes the mean of the constraints hold."""
+    """Start of the search: equal multipliers (n,), scaled so that the mean of the constraints is met exactly."""
     shares = np.full(len(problem.weights), 1.0 / len(problem.weights))
     used = float(shares @ (problem.weights @ problem.cheapest(shares) ** problem.q))
     scaled: Array = shares * used ** ((problem.q + problem.k) / problem.q)

@@ -55,16 +55,15 @@ SHAPES = (
 
 @dataclass(frozen=True)
 class Budget:
-    """What a recipe says of the errors of a cam: lengths in mm, angles in rad.
+    """The recipe's budget of errors: lengths in mm, angles in rad.
 
-    `permitted` is the greatest error of the follower or of the linkage's output, mm or rad; `tolerances` are plus and
-    minus by the words of the dimensions, None of one that is free, which is to be found. `cost` c weighs the free ones,
-    c/tolerance^`exponent`.
-    `zero` is the shaft angle, rad, at which the machine is set, None without one. `play` is the greatest permitted of a
-    follower that is held from both sides. `guide` is the distance of the middle of a stem's guide from the shaft's
-    foot on its line. `fit` is the play that the fits of bore and key add to the tolerances. `sums` says which sum must
-    stay within what is permitted. `waves` is how many waves the profile's error has over a turn, None where that is
-    not said.
+    `permitted` is the greatest error of the follower or of the linkage's output, mm or rad. `tolerances` are plus and
+    minus, by the words of the dimensions; None marks a free dimension, whose tolerance is to be found. `cost` c weighs
+    the free ones: a tolerance costs c/tolerance^`exponent`. `zero` is the shaft angle, rad, at which the machine is
+    set, None without one. `play` is the greatest permitted play of a follower that is held from both sides. `guide` is
+    the distance from the middle of a stem's guide to the foot of the perpendicular from the shaft on the line of
+    travel. `fit` is the play that the fits of bore and key add to the tolerances. `sums` says which sum must stay
+    within `permitted`. `waves` is the number of waves per turn of the profile's error, None where it is not stated.
     """
 
     permitted: float

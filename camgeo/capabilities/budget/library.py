@@ -43,7 +43,7 @@ def budget(recipe: Recipe, *files: str | PathLike[str]) -> dict[str, Any]:
 
 
 def _parts(recipe: Recipe, design: Design, result: Outcome, files: list[Path]) -> dict[str, Any]:
-    """What a simulation says, or why there is none."""
+    """Report entry of the simulation of made parts; `runs` 0 with the reason `why` where a part has no contact."""
     from camgeo.capabilities.budget.contact import LostError
     from camgeo.capabilities.budget.parts import looked_at, simulate
 

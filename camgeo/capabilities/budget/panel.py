@@ -19,7 +19,7 @@ HUES = (210, 18, 140, 275, 45, 330, 180, 90)  # degrees of colour, in the order 
 
 
 def panel(report: dict[str, Any]) -> str:
-    """The section of the page, empty where the report has no budget."""
+    """HTML section of the page on the budget of errors; empty where the report has no budget."""
     entry = report.get("budget")
     if entry is None:
         return ""

@@ -60,7 +60,7 @@ class Spread(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """What was seen of made parts: the errors at each angle by each contact, and the share of parts that keep all.
+    """Result of a simulation of made parts: statistics of the errors at each angle, by contact.
 
     `within` is the share of parts whose errors stay within what is permitted at every angle looked at.
     """
@@ -72,7 +72,7 @@ class Parts(NamedTuple):
 
     @property
     def worst(self) -> Spread:
-        """Where the deviation foreseen is greatest."""
+        """The row, by contact and angle, with the greatest standard deviation foreseen by the influences."""
         return max(self.spreads, key=lambda spread: spread.foreseen)
 
 
@@ -104,10 +104,10 @@ def simulate(
 def errors_by_contact(
     recipe: Recipe, design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None = None
 ) -> Callable[[Sizes], Array]:
-    """What sizes that are off make of the motion: errors (contacts, parts, n), mm or rad, at shaft angles.
+    """Function that gives the errors of the motion, (contacts, parts, n), mm or rad, from errors of the sizes.
 
-    After the angles stands the one at which the machine is set, if any. `read` as of `simulate`. Raises LostError, as
-    the errors do.
+    The errors are at the shaft angles `shaft`, rad, then at the angle at which the machine is set, if any. `read` has
+    contours read from files, as in `simulate`. The call and the function raise LostError.
     """
     if not design.contours:
         raise LostError("parts are not simulated, as no contour is made")
@@ -123,7 +123,7 @@ def rows_at(budget: Budget, shaft: Array) -> Array:
 
 
 def _spreads(rows: Influence, errors: Array) -> list[Spread]:
-    """The errors (contacts, parts, n) by contact and angle."""
+    """Statistics of the errors (contacts, parts, n) over the parts: one Spread for each contact and shaft angle."""
     spreads = []
     for contact, output in enumerate(rows.outputs()):
         foreseen = spread(rows, output)
@@ -140,7 +140,7 @@ def _spreads(rows: Influence, errors: Array) -> list[Spread]:
 
 
 class Sizes(Protocol):
-    """By how much the sizes of parts are off, (parts, 1), or (parts, angles) of the profile."""
+    """Errors of the sizes of made parts: (parts, 1), and (parts, angles) for the error of the profile."""
 
     def size(self, name: str) -> Array:
         """A size, mm or rad, by the word of its dimension; each that is asked for is another one."""
@@ -158,7 +158,10 @@ class Drawn:
         self._tolerances = dict(budget.tolerances)
 
     def size(self, name: str) -> Array:
-        """By how much a size is off, (parts, 1), of the profile (parts, angles); 0 of one without a tolerance."""
+        """Random error of a size, mm or rad, uniform within its tolerance; 0 for a size without one.
+
+        The shape is (parts, 1), and (parts, angles) for the error of the profile.
+        """
         tolerance = self._tolerances.get(name) or 0.0
         shape = (self._count, self._angles if name == PROFILE else 1)
         return tolerance * self._rng.uniform(-1.0, 1.0, shape) if tolerance else np.zeros(shape)
@@ -194,7 +197,7 @@ def _of_follower(
 
 
 def amounts(drawn: Sizes, several: int, discs: int, *, on_one_arm: bool) -> list[Off]:
-    """By how much the sizes about each contact are off; what contacts share is drawn once."""
+    """Errors of the sizes at each contact, one Off for each; an error that contacts share is drawn once."""
     size, radius = drawn.size, drawn.radius
     turned, shaft, pivot = size("angle"), radius("shaft"), radius("pivot") + size("follower.arm.pivot")
     offset, guide = size("follower.offset"), size("guide")
@@ -245,7 +248,7 @@ def places_of(design: Design, budget: Budget, shaft: Array, read: Mapping[str, C
 
 
 def _wander(budget: Budget, intended: Complexes) -> float:
-    """How far a contact wanders along the contour, about, mm: as far as all sizes together displace it."""
+    """Estimate of how far a contact moves along the contour, mm: the sum of tolerances, angles times the size."""
     size = float(np.abs(intended).max())
     return sum((tolerance or 0.0) * (size if WORDS[name].angle else 1.0) for name, tolerance in budget.tolerances)
 

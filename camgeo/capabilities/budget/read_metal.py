@@ -79,7 +79,7 @@ class ReadMetal:
     wander: float
 
     def reach(self, normal: Complexes) -> Array:
-        """See `Metal`."""
+        """Support function of the metal, mm, (parts, angles); raises LostError, as `Metal.reach`."""
 
         def bound(within: Indices, n: Complexes) -> Array:
             bound: Array = (np.conj(n) * self.points[within]).real
@@ -88,7 +88,7 @@ class ReadMetal:
         return self._held(bound, (normal,))
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """See `Metal`."""
+        """Distance along a line to the centre of a round touch, mm, (parts, angles); LostError as `Metal.along`."""
 
         def bound(within: Indices, d: Complexes, m: Complexes, r: Array) -> Array:
             off = np.conj(d) * (self.points[within] - m)
@@ -99,7 +99,7 @@ class ReadMetal:
         return self._held(bound, (way, middle, radius))
 
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
-        """See `Metal`."""
+        """Unit direction from a pivot to the centre of a round touch, (parts, angles); LostError as `Metal.arm`."""
 
         def bound(within: Indices, a: Complexes, arm: Array, r: Array, start: Complexes) -> Array:
             distance = np.abs(self.points[within] - a)
@@ -111,7 +111,7 @@ class ReadMetal:
         return self._swung(bound, pivot, length, radius)
 
     def leaning(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """See `Metal`."""
+        """Unit normal of a flat face on an arm, (parts, angles); raises LostError, as `Metal.leaning`."""
 
         def bound(within: Indices, a: Complexes, f: Array, start: Complexes) -> Array:
             opening = np.arccos(-f / np.abs(self.points[within] - a))
@@ -160,7 +160,7 @@ class ReadMetal:
         return held
 
     def _few(self, place: int, wander: float) -> int:
-        """How many points stand within the way that a contact is looked for, on the side where they are closer."""
+        """Number of points that cover `wander` mm of the contour on either side of `place`, at the closer spacing."""
         count = len(self.points)
         few = FEWEST
         while 2 * few + 1 < count:
@@ -185,7 +185,7 @@ class EdgeMetal(ReadMetal):
         return normals
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """See `Metal`."""
+        """Distance along a line to the centre of a round touch, mm, (parts, angles); LostError as `Metal.along`."""
 
         def bound(within: Indices, d: Complexes, m: Complexes, r: Array) -> Array:
             first, second = (np.conj(d) * (end - m) for end in self._chords(within, r))
@@ -194,7 +194,7 @@ class EdgeMetal(ReadMetal):
         return self._held(bound, (way, middle, radius))
 
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
-        """See `Metal`."""
+        """Unit direction from a pivot to the centre of a round touch, (parts, angles); LostError as `Metal.arm`."""
 
         def bound(within: Indices, a: Complexes, arm: Array, r: Array, start: Complexes) -> Array:
             first, second = self._chords(within, r)

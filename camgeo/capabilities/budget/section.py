@@ -83,7 +83,10 @@ def _greatest(recipe: Recipe, outcome: Outcome, output: Output) -> dict[str, flo
 
 
 def _dimension(recipe: Recipe, outcome: Outcome, name: str, tolerance: float | None) -> dict[str, Any]:
-    """A dimension with its tolerance, its influence at the worst angle, and the greatest of the turn."""
+    """Row of the report on one dimension: its tolerance, its influence at the worst angle, and its greatest influence.
+
+    Influences are in the motion's unit by the dimension's unit; `share` is the dimension's part of the worst sum.
+    """
     rows, sum_ = outcome.influence, outcome.sums["worst"]
     place = int(np.argmin(np.abs(rows.shaft - sum_.at)))
     own = [i for i, contribution in enumerate(rows.contributions) if contribution.name == name]

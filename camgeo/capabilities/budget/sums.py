@@ -18,7 +18,7 @@ POWERS: Mapping[Sum, int] = {"worst": 1, "rss": 2}
 
 
 def powers(influence: Influence, output: Output, sum_: Sum) -> Array:
-    """What each contribution with a tolerance adds at each angle, (c, n): w t, or its square; 0 of a free one."""
+    """Addends (c, n) of the contributions at each angle: influence times tolerance, or its square; 0 for a free one."""
     tolerances = np.array([contribution.tolerance or 0.0 for contribution in influence.contributions])
     added: Array = (output.weights * tolerances[:, None]) ** POWERS[sum_]
     return added

@@ -27,7 +27,7 @@ class Word(NamedTuple):
 
 
 def traits(offers: AbstractSet[str], discs: int, linkage: str) -> frozenset[str]:
-    """What decides which dimensions there are: what the cam offers, two discs, or the kind of its linkage."""
+    """Traits that select the dimensions of a budget: what the cam offers, two discs, or the kind of its linkage."""
     if linkage:
         return frozenset({LINKAGE, linkage})
     return frozenset(offers) | ({CONJUGATE} if discs > 1 else frozenset())

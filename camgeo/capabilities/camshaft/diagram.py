@@ -46,7 +46,7 @@ def kind(valve: str) -> str:
 
 
 def filled(name: str, share: float = 1.0) -> str:
-    """Return the attributes of what is filled with a colour, of an opacity."""
+    """Return the SVG attributes of a filled shape: class and fill colour by name, and its opacity where it is not 1."""
     return f'class="{name}" fill="{COLOURS[name]}"' + ("" if share == 1.0 else f' fill-opacity="{share:g}"')
 
 

@@ -113,7 +113,7 @@ def _turned(recipe: CamshaftRecipe, lobe: PlacedLobe) -> Array:
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    """Return round places between two, at most nine."""
+    """Return the tick marks of an axis between two ends: multiples of 1, 2 or 5 times a power of ten, at most nine."""
     rough = (high - low) / 8.0
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(many * power for many in (1.0, 2.0, 5.0, 10.0) if many * power >= 0.999 * rough)

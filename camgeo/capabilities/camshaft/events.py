@@ -25,7 +25,10 @@ Phase: TypeAlias = Literal["rise", "dwell", "return"]
 
 
 class Event(NamedTuple):
-    """When a lobe lifts its follower beyond a lift: shaft angles, degrees from 0 to below 360, and how long."""
+    """Stretch of a turn in which a lobe lifts its follower beyond a lift.
+
+    Shaft angles are degrees from 0 to below 360; the duration is in degrees of the shaft.
+    """
 
     opens: float
     closes: float
@@ -34,7 +37,7 @@ class Event(NamedTuple):
 
 
 class Stretch(NamedTuple):
-    """What a follower does between two shaft angles, degrees, the first from 0 to below 360, the second beyond it."""
+    """One phase of a follower's motion, from shaft angle `begin`, degrees from 0 to below 360, to `end` beyond it."""
 
     phase: Phase
     begin: float
@@ -53,7 +56,10 @@ class Valves(NamedTuple):
 
 
 def event(exact: ExactCam, zero: float, lift: float) -> Event | None:
-    """When a lobe whose motion begins at `zero`, rad, is beyond a lift; None where it is not just once a turn."""
+    """Event of a lobe at a lift, mm or rad, with its motion begun at shaft angle `zero`, rad.
+
+    None where the follower is not beyond the lift in exactly one stretch of a turn.
+    """
     try:
         crossed = event_of(exact, lift)
     except EventError:

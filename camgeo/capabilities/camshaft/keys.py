@@ -68,7 +68,7 @@ class Engine:
     at_valve: bool = False
 
     def centre(self, cylinder: int, valve: str) -> float:
-        """Cam angle of a lobe's centre, rad, after the firing dead centre of the first cylinder in the order."""
+        """Cam angle of a lobe's centre, rad, counted from the firing dead centre of the first cylinder in the order."""
         after = self.intake if valve == "intake" else -self.exhaust
         return 0.5 * (TURN + after + self.firing[cylinder])
 

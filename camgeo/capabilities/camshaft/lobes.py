@@ -64,7 +64,7 @@ class PlacedLobe:
         return self.design.only_surface.contour
 
     def event(self, lift: float) -> Event | None:
-        """When it lifts its follower beyond a lift, mm or rad; None where it does not do so once a turn."""
+        """Event of the lobe at a lift of its follower, mm or rad; None where that is not one stretch of a turn."""
         if lift not in self.events:
             self.events[lift] = event(self.design.exact, self.zero, lift)
         return self.events[lift]

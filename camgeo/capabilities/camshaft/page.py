@@ -48,7 +48,7 @@ TURNING = re.compile(r"<button[^>]*>(.*?)</button>", re.DOTALL)
 
 
 def page(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], report: dict[str, Any]) -> str:
-    """Return the page of a camshaft from its lobes and what the report says."""
+    """Return the HTML page of a camshaft, from its lobes and its report."""
     section = report["camshaft"]
     figures = [f"<section><figure>{diagram}</figure></section>" for diagram in shown(recipe, lobes)]
     parts = [f'{head(recipe, report, SHEET)}</header>\n<main>\n<div class="diagrams">', *figures, "</div>"]

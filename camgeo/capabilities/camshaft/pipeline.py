@@ -234,7 +234,7 @@ def _solid(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tup
 
 
 def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
-    """Write a solid; the bound of its lobes' contours, mm, and the pieces that they are made of."""
+    """Write a solid; return the bound on the error of its lobes' contours, mm, and the number of their pieces."""
     recipe, tolerance, mm, record = job.recipe, job.tolerance(request), job.unit(request), request.format
     if record.numbers is None:
         from camgeo.capabilities.camshaft.body import camshaft_outlines, circle
@@ -261,7 +261,7 @@ def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
 
 
 def _intent(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...], tolerance: float) -> CamshaftIntent:
-    """What kin is given: each lobe as its own recipe has it, its angle and its place."""
+    """Intended camshaft that kin judges a file by: each lobe as in its own recipe, with its angle and place."""
     from kin.judge.camshaft import BarIntent, CamshaftIntent, LobeIntent
 
     return CamshaftIntent(

@@ -36,17 +36,17 @@ MOST_PLACES = 4_500_000  # that all searches for float look at together, and all
 
 
 class _Purse:
-    """What the searches still to come may look at: each an equal share of what the ones before have left."""
+    """Budget of places that searches may look at; each search may spend an equal share of what is left."""
 
     def __init__(self, searches: int) -> None:
         self._places, self._searches = MOST_PLACES, searches
 
     def share(self) -> int:
-        """The most that the next search may look at."""
+        """Greatest number of places that the next search may look at."""
         return self._places // max(self._searches, 1)
 
     def spend(self, places: int) -> None:
-        """One search is done."""
+        """Take the places that a search has looked at out of the budget."""
         self._places, self._searches = max(0, self._places - places), self._searches - 1
 
 
@@ -58,7 +58,10 @@ class DynamicsResult(NamedTuple):
 
 
 class _Scene(NamedTuple):
-    """What all runs of a recipe have in common. `unit` turns metres or radians into the report's, `name` names it."""
+    """Data that all runs of a recipe share.
+
+    `unit` converts metres or radians to the report's unit, whose name is `name`.
+    """
 
     recipe: Recipe
     asked: Dynamics
@@ -157,7 +160,7 @@ def _scene(recipe: Recipe, dynamics: Dynamics, design: Design, runs: int) -> _Sc
 
 
 def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
-    """What drives the follower, as intended or as a file's contour gives it."""
+    """Excitation of the follower by one or two faces: as intended, or as the contour in a file gives it."""
     from kin.dynamics.excitation import Faces, OfMechanism, intended_faces, measured_faces
 
     if design.driven is not None:
@@ -181,7 +184,7 @@ def _one(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[s
 
 
 def _drives(scene: _Scene, design: Design, file: FileResult | None) -> list[Drive]:
-    """What drives the follower from each face, the lower one first; dwells end at their knots."""
+    """Excitation of the follower by each face, the lower one first; dwells are cut at their ends."""
     from kin.dynamics.drive import drives
     from kin.dynamics.excitation import Faces
     from kin.follower.drive import Shifted
@@ -278,7 +281,7 @@ def _followed(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
 
 
 def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
-    """From rest: the extremes of all turns, and how many turns the free motion takes to fall to a hundredth."""
+    """Report entry of the start from rest: extremes of force over all turns, and turns until the free motion is 1 %."""
     turns = followed.turns
     peak = max(range(len(turns)), key=lambda i: turns[i].greatest)
     low = min(range(len(turns)), key=lambda i: turns[i].least)
@@ -299,10 +302,10 @@ def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
 
 
 def _impacts(followed: Course) -> dict[str, Any]:
-    """Of the last turn that was followed; `settled` says that all later turns are like it.
+    """Impacts of the last turn that was followed: number, velocity, force, and degrees out of contact.
 
-    If they are not, `of_turns` has the least and the greatest of the later half of the turns: no two are alike, and
-    rounding decides which of them is the last.
+    `settled` says that all later turns are like it. If it is False, `of_turns` has the least and the greatest of the
+    later half of the turns: no two of them are alike, and rounding decides which is the last.
     """
     last: Turn = followed.turns[-1]
     found: dict[str, Any] = {

@@ -22,13 +22,16 @@ ANGLE_ERROR = 3.7e-4  # the same, degrees
 
 
 def _peak(order: int, cams: SampledCams) -> Array:
-    """Greatest derivative of the motion by time."""
+    """Greatest magnitude of a time derivative of the motion at the recipe's speed, (m,), by cam; 0 without a speed."""
     rpm = cams.recipe.rpm
     return cams.peak(order, 0.0 if rpm is None else rpm * TURN / 60.0)
 
 
 def _jam_margin(cams: SampledCams) -> Array:
-    """By how much the pressure angle stays below that at which the stem jams, degrees."""
+    """Margin of the pressure angle below the one at which the stem jams in its guide, degrees, (m,); below 0 it jams.
+
+    Raises TypeError where no stem is led in a guide.
+    """
     train, lean = cams.recipe.of(Dynamics), cams.lean
     if train is None or train.guide is None or lean is None:
         raise TypeError("no stem is led in a guide")

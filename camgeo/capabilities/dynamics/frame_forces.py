@@ -70,7 +70,7 @@ class FrameTurn(Turn):
         return between(0.0, TURN, self.mechanism.breaks)
 
     def shaft(self, t: Array) -> Array:
-        """Shaft angles."""
+        """Shaft angles, rad, (n,) at parameters of the turn (n,)."""
         shaft: Array = self.mechanism.at(t, 0).shaft[0]
         return shaft
 
@@ -107,7 +107,7 @@ class FrameRunning(Running):
         return State(force, y, normal, PER_MM * given.torque, self._pressure(t, normal), reactions)
 
     def _given(self, motion: LinkageMotion, force: Array, speed: float) -> FrameForces:
-        """What the cam gives the frame for F, and for the coupler at a speed, rad/s."""
+        """Forces of the cam on the frame for the load `force`, SI, and for the coupler's inertia at a speed, rad/s."""
         from kin.linkage.statics import Coupler, frame_forces
 
         body = self.train.coupler
@@ -128,11 +128,14 @@ class FrameRunning(Running):
         return preloaded((np.ones(1), np.ones(1)), given.overlaps, (first, second))
 
     def _faces(self, pair: Array) -> Array:
-        """What the faces of a pair bear, (2, n), the first where its force is above 0."""
+        """Forces on the two faces of a pair, (2, n), N, each at least 0.
+
+        Without preload the first face bears where `pair` is above 0, else the second.
+        """
         return np.maximum([pair, -pair], 0.0) if self.pressed is None else self.pressed.split(pair)
 
     def lost_rpm(self) -> list[Lost]:
-        """Of faces under preload the speed from which each is lost over the turn."""
+        """Speed at which each preloaded face first loses contact somewhere in the turn; empty without preload."""
         pressed = self.pressed
         if pressed is None:
             return []
@@ -160,7 +163,7 @@ class FrameRunning(Running):
         return self.hertz(normal, 1.0 / np.array([p[0] + p[2] for p in lifts]))
 
     def own_section(self) -> dict[str, object]:
-        """Where the pairs change their face."""
+        """Report entry `pairs`: the shaft angles at which each pair changes the face that bears."""
         pieces = self.turn.pieces(lambda t: np.array([self.at(t).reactions[name] for name in PAIRS]))
         return {"pairs": [self._changes(name, piece) for name, piece in zip(PAIRS, pieces, strict=True)]}
 

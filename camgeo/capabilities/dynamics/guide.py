@@ -54,10 +54,11 @@ def jam_angle(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float]:
 
 
 def _aside(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float] | None:
-    """The same of a face without tilt, by how far from its stem's axis it is pushed, mm; None of other touches.
+    """Jam of a flat face without tilt, judged by the distance from the stem's axis at which the face is pushed.
 
-    The contact is S' ahead of the shaft: on the rise that is the greatest S', or 0 where the rise begins. Of a yoke
-    one of its faces pushes on wherever it moves.
+    Greatest distance and the one at which the stem jams, mm, and the shaft angle, degrees; None for other touches. The
+    contact is S' ahead of the shaft: on the rise that is the greatest S', or 0 where the rise begins. One of the faces
+    of a yoke pushes wherever it moves.
     """
     proved = [along[1] for surface in exact.surfaces if (along := surface.extremes("contact")) is not None]
     place = exact.surfaces[0].place

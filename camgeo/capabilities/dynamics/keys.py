@@ -114,7 +114,7 @@ class Coil:
 
 
 class Width(NamedTuple):
-    """How long the contacts are along the shaft, mm, and what bounds that: a key of `BOUNDS`."""
+    """Width of the contacts along the shaft, mm, and the key of `BOUNDS` that limits it."""
 
     length: float
     bound: str

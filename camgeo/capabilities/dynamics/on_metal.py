@@ -101,7 +101,10 @@ def _figures(running: FollowerRunning, motion: MadeMotion) -> list[MadeFigure]:
 
 
 def _rows(running: FollowerRunning, shaft: Array, rows: Array) -> dict[tuple[str, str], Array]:
-    """Forces and pressures (n,) at shaft angles (n,), rad, by name and unit, of a motion and its gap (4, n)."""
+    """Forces and pressures (n,) at shaft angles (n,), rad, by name and unit.
+
+    `rows` (4, n) are position, velocity and acceleration of the follower, and the gap at its second contact.
+    """
     state, names = running.in_motion(shaft, rows[:3], rows[3]), running.turn.names
     of = [f", {name}" if len(names) > 1 else "" for name in names]
     found = {(f"contact force{ending}", "N"): row for ending, row in zip(of, state.normal, strict=True)}

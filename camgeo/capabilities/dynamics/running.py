@@ -64,7 +64,7 @@ class Lost(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Running(ABC):
-    """What moves in a design, at the speed and with the loads of its recipe's dynamics."""
+    """Forces of a design that runs at the speed and under the loads of its recipe's dynamics."""
 
     recipe: Recipe
     design: Design
@@ -81,11 +81,11 @@ class Running(ABC):
 
     @abstractmethod
     def at(self, t: Array) -> State:
-        """All of it at parameters of the turn (n,)."""
+        """State of motion and forces at parameters of the turn (n,)."""
 
     @abstractmethod
     def own_section(self) -> dict[str, object]:
-        """What the report's section has besides extremes."""
+        """Entries of the report's section in addition to the extremes, by name."""
 
     @property
     def jam_deg(self) -> float | None:
@@ -97,27 +97,27 @@ class Running(ABC):
         return None
 
     def lost_rpm(self) -> list[Lost]:
-        """Of contacts under preload the speed from which each is lost over the turn."""
+        """Speed at which each preloaded contact is first lost somewhere in the turn; empty without preload."""
         return []
 
     def state(self, phi: Array) -> State:
-        """All of it at shaft angles (n,)."""
+        """State of motion and forces at shaft angles (n,), rad."""
         return self.at(self.turn.parameter(phi))
 
     @property
     def speed(self) -> float:
-        """Rad/s."""
+        """Speed of the shaft, rad/s."""
         return self.train.rpm * TURN / 60.0
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Shaft angles, rad, at which a table of the load has corners."""
+        """Shaft angles, rad, at which a load given as a table changes its slope; empty for a formula."""
         load = self.train.load
         return () if isinstance(load, str) else tuple(load.corners.tolist())
 
     @cached_property
     def lowest(self) -> float:
-        """Least y."""
+        """Least position y of the follower over the turn, m or rad."""
         ((least, _),) = self.turn.extremes(lambda t: self.position(self.turn.rows(t))[:1])
         return least.value
 
@@ -148,7 +148,10 @@ class Running(ABC):
         return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
 
     def rest(self, t: Array, y: Array) -> Array:
-        """What the cam must give besides inertia and the spring's preload, at parameters and positions (n,)."""
+        """Force on the cam without inertia and preload, N or N m, at parameters of the turn and positions y (n,).
+
+        It is the load, and the spring's rate times the distance from the lowest position.
+        """
         load = self.load(self.turn.shaft(t))
         rest: Array = self.train.rate * (y - self.lowest) + load if self.train.rate else load
         return rest
@@ -197,7 +200,10 @@ class Running(ABC):
 
 
 class Pull(NamedTuple):
-    """What two contacts bear (n,): per square of the speed, besides, and at which of it the first or second is lost."""
+    """Load of two preloaded contacts (n,): `inertia` by the square of the speed, `rest` the part without it.
+
+    `loses_first` and `loses_second` are the loads at which the first or the second contact is lost.
+    """
 
     inertia: Array
     rest: Array

@@ -48,13 +48,13 @@ class FollowerRunning(Running):
 
     @cached_property
     def sides(self) -> tuple[Side, ...]:
-        """On which side of its contour the metal lies that each contact touches."""
+        """Side of its contour on which the metal lies, by contact: 1 inside, -1 outside."""
         sides = {surface.name: surface.side for surface in self.design.exact.surfaces}
         return tuple(sides[one.surface] for one in self.design.follower.contacts)
 
     @cached_property
     def senses(self) -> tuple[int, ...]:
-        """Which way each contact pushes the follower: with its sense, from metal inside its contour."""
+        """Sign of the push of each contact on the follower: 1 towards greater positions, -1 towards smaller ones."""
         return tuple(side * one.sense for side, one in zip(self.sides, self.design.follower.contacts, strict=True))
 
     @property
@@ -127,7 +127,7 @@ class FollowerRunning(Running):
         return Guided(pair, ends, self.train.guide.friction * np.sign(y[1]))
 
     def _free(self, lines: Sequence[ContactLine], y: Array) -> Array:
-        """What the friction of a guide leaves of each contact's lever, (m, n)."""
+        """Lever of each contact less the friction in the guide, (m, n): generalised force by normal force."""
         friction = 0.0 if self.train.guide is None else self.train.guide.friction
         rubbing = np.abs(self._at_ends(lines, y)).sum(axis=1)
         pushes = np.array(self.senses)[:, None] * self.senses[0]
@@ -135,10 +135,10 @@ class FollowerRunning(Running):
         return found
 
     def _at_ends(self, lines: Sequence[ContactLine], y: Array) -> Array:
-        """What each contact's normal force of 1 bears on the guide's near end and far one, across the stem: (m, 2, n).
+        """Forces across the stem on the guide's near and far end by a unit normal force of each contact, (m, 2, n).
 
-        A force across the stem bears by its overhang, one along it by its distance from the stem's axis. The axes of a
-        contact that is turned see the stem from beyond the shaft.
+        A force across the stem bears by its overhang, one along it by its distance from the stem's axis. A contact that
+        stands beyond the shaft has turned axes, which the cosine accounts for. All are 0 without a guide.
         """
         guide, contacts = self.train.guide, self.design.follower.contacts
         if guide is None:
@@ -238,7 +238,7 @@ class FollowerRunning(Running):
         return len(contacts) > 1 and self.design.follower.arrangement.contacts == 1
 
     def own_section(self) -> dict[str, object]:
-        """Of several contacts where they change, of rollers their mean force, and where a preload loses contacts."""
+        """Report entries of the contacts: shaft angles at which they change, and the mean force on each roller."""
         names = self.turn.names
         section: dict[str, object] = {}
         if len(names) > 1:
@@ -253,7 +253,7 @@ class FollowerRunning(Running):
         return section
 
     def lost_rpm(self) -> list[Lost]:
-        """Of contacts under preload the speed from which each is lost over the turn."""
+        """Speed at which each preloaded contact is first lost somewhere in the turn; empty without preload."""
         preload = self.held_by
         if preload is None:
             return []
@@ -271,8 +271,8 @@ class FollowerRunning(Running):
 def running_of(recipe: Recipe, design: Design) -> Running | None:
     """Forces of the running train; None without dynamics, and for an elastic train whose contacts have no material.
 
-    An elastic train with it has the forces of a rigid follower under the same spring besides its own.
-    Raises RecipeErrors for one contact that nothing holds on the cam, and a linkage that does not turn.
+    An elastic train whose contacts have a material also has the forces of a rigid follower under the same spring.
+    Raises RecipeErrors for a single contact that nothing holds on the cam, and for a linkage that does not turn.
     """
     train = recipe.of(Dynamics)
     if train is None or (train.stiffness is not None and train.material is None):

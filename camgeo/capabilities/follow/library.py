@@ -79,7 +79,7 @@ class Followed:
 
     @property
     def blank(self) -> float | None:
-        """Diameter of a round outline of a ring or of a groove's blank; None without one."""
+        """Diameter, mm, of the round outline of a ring or of a grooved disc; None where there is none."""
         return self._outline.blank
 
     @property
@@ -128,7 +128,7 @@ class Followed:
 
     @property
     def play(self) -> tuple[float, float] | None:
-        """Least and greatest play of a roller between the flanks of a groove, mm or rad; None elsewhere."""
+        """Least and greatest play of a roller between the flanks of a groove, mm or rad; None for another track."""
         return None if self.follower.yoke else self._motion.apart
 
     @property
@@ -158,12 +158,12 @@ class Followed:
 
     @property
     def rests(self) -> tuple[Rest, ...]:
-        """Dwells: at least 10 degrees in which the position is within the reading of its level."""
+        """Dwells: stretches of at least 10 degrees in which the position keeps to its level within the reading."""
         return tuple(Rest(*dwell) for dwell in self._motion.dwells(self._reading))
 
     @property
     def _reading(self) -> float:
-        """The reading in the motion's unit: mm, or on an arm the angle that it is at the contact, rad."""
+        """Accuracy of the reading in the motion's unit: mm, or on an arm its angle at the lever, rad."""
         return self.reading if self.unit == "mm" else self.reading / self.follower.lever
 
     def table(self) -> str:

@@ -55,11 +55,11 @@ LOOKS = 1440  # places round a contour at which curves are looked at
 
 @dataclass(frozen=True, eq=False)
 class RunMade:
-    """What the points of a run tell: the number of points on each surface by its name, and its smoothed deviation.
+    """Result of a run of parts: the number of points on each surface, by its name, and its smoothed deviation.
 
-    `curves` are means of those of the run's files; they are on the same spans in all runs, so that they can be added.
+    `curves` are the means of the files' deviations; they are on the same spans in all runs, so that they can be added.
     `error` is the greatest stated for its files, expanded (k = 2), mm: it is common to all points and does not average.
-    `scatter` is the standard deviation of the files' curves about their mean, mm, all round; None of a single file.
+    `scatter` is the standard deviation of the files' curves about their mean, mm, all round; None for a single file.
     """
 
     files: tuple[str, ...]
@@ -99,7 +99,7 @@ def runs_made(recipe: Recipe, design: Design) -> list[RunMade]:
 
 
 def _run(files: Sequence[_FilePoints], spans: Mapping[str, int]) -> RunMade:
-    """A run out of its files."""
+    """Average the smoothed deviations of a run's files by surface; their scatter is None for a single file."""
     points, curves, scatter = {}, {}, {}
     for name, count in spans.items():
         own = [file for file in files if name in file.deviations]
@@ -167,22 +167,22 @@ class CorrectedCam(ExactCam):
 
     @property
     def law(self) -> Lift | Displacement | Transmission:
-        """That of the recipe."""
+        """Law of the recipe, without the correction."""
         return self.exact.law
 
     @property
     def judged_law(self) -> Piecewise | Transmission:
-        """That of the recipe."""
+        """Law of the recipe by which the motion is judged, without the correction."""
         return self.exact.judged_law
 
     @property
     def follower(self) -> Follower:
-        """That of the recipe."""
+        """Follower of the recipe."""
         return self.exact.follower
 
     @property
     def motion(self) -> Position:
-        """That of the recipe."""
+        """Motion of the recipe, which the corrected metal is to give."""
         return self.exact.motion
 
     @property
@@ -204,23 +204,23 @@ class CorrectedCam(ExactCam):
 
     @cached_property
     def on_metal(self) -> dict[str, Corrected]:
-        """The follower on metal that lies so, by the surface."""
+        """Gauges of the follower on metal that lies at the deviations, by surface."""
         sides = {surface.name: surface.side for surface in self.exact.surfaces}
         gauges = self.exact.gauges.items()
         return {name: Corrected.of(gauge, sides[name], self.deviations[name]) for name, gauge in gauges}
 
     @cached_property
     def gauges(self) -> dict[str, Gauge]:
-        """What kin judges them by."""
+        """Gauges by which kin judges the corrected surfaces, by surface."""
         return dict(self.on_metal)
 
     @cached_property
     def running(self) -> dict[str, Gauge]:
-        """The same of the follower itself, where gauges are wider."""
+        """Gauges of the follower itself on the corrected surfaces, by surface, where `gauges` are wider."""
         return {name: self.on_metal[name].run_by(follower) for name, follower in self.exact.running.items()}
 
     def grow(self, out: float, scale: float) -> ExactCam:
-        """The nominal cam grown, and as far off."""
+        """The nominal cam grown by `out` mm and scaled, with deviations scaled likewise."""
         curves = {name: curve.times(scale) for name, curve in self.deviations.items()}
         return CorrectedCam(self.exact.grow(out, scale), curves)
 

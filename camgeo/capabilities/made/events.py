@@ -61,9 +61,10 @@ def stated_lifts(recipe: Recipe, design: Design, events: float | None = None) ->
 def events_section(
     recipe: Recipe, design: Design, result: PartMade, call: Call, shaft: tuple[float | None, float] = (None, 0.0)
 ) -> dict[str, Any]:
-    """Section `events`: lift, velocity and what is above each stated lift; nothing where no lift is stated.
+    """Section `events` of the report: greatest lift and velocity, and the angles of each stated lift.
 
-    `shaft` has the lift of a shaft's events and the shaft angle, rad, at which the motion begins.
+    It is empty where no lift is stated. `shaft` has the lift of a shaft's events, mm or None, and the shaft angle, rad,
+    at which the lobe's motion begins.
     """
     events, zero = shaft
     lifts = stated_lifts(recipe, design, events)

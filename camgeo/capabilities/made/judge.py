@@ -40,7 +40,7 @@ TURNED = math.radians(0.25)  # from which on lifts, and cams of a shaft, are sai
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMade:
-    """What the points of one surface tell: itself, its smoothed deviation, errors of its follower and their play."""
+    """Result for one surface: its points, its smoothed deviation, the errors of its follower, and the play."""
 
     on: OnSurface
     fit: Fit
@@ -50,14 +50,14 @@ class SurfaceMade:
 
 @dataclass(frozen=True, eq=False)
 class DiscMade:
-    """What the points of one disc tell.
+    """Result for one disc, from its measured points.
 
-    surfaces     each of its surfaces
-    profile      of all their points, by the datum
-    placing      that was taken out before (`align`)
-    turned       angle, rad, by which it is known to be turned: points are turned back by it, its motion is not
+    surfaces     results of each of its surfaces
+    profile      deviation of the profile over all their points, by the datum
+    placing      shift and turn that were taken out before (`align`)
+    turned       known turn of the disc, rad: its points are turned back by it, its motion is not
     uncertain    expanded uncertainty of every point's deviation (n,), mm
-    smoothed     greatest |e| of the smoothed deviation as the datum places it, mm
+    smoothed     greatest magnitude of the smoothed deviation as the datum places it, mm
     """
 
     part: PartIntent
@@ -71,12 +71,13 @@ class DiscMade:
 
 @dataclass(frozen=True, eq=False)
 class PartMade:
-    """What all points of a call tell of a part, mm and radians.
+    """Result for a part, from all points of a call; mm and rad.
 
-    motion, play   of the follower: midway where two contacts or surfaces hold it
-    output         of a linkage
-    lifts          zero of the readings, and by how much they are late and turned back, of lifts alone
-    remarks        sentences
+    motion, play   errors of the follower and its play: midway where two contacts or surfaces hold it
+    output         errors of a linkage's output; None without a linkage
+    lifts          zero of the readings, and their lateness that was turned back; None of points that are not lifts
+    remarks        sentences for the report
+    unit           mm in the unit of the files
     """
 
     discs: tuple[DiscMade, ...]
@@ -94,7 +95,10 @@ class PartMade:
 
 
 def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], call: Call) -> PartMade:
-    """All that points tell of a part; raises CallError, and as kin does."""
+    """Judge a part by its measured points; give deviations, errors of the motion, and remarks.
+
+    Raises CallError for points that cannot be judged, and the errors of kin.
+    """
     datum = datum_of(recipe.of(Made), recipe.part)
     return part_of_points(recipe, design, points_of(recipe, design, paths, call.probing), call, datum)
 
@@ -171,7 +175,10 @@ def systematic(call: Call) -> float:
 
 
 def expanded(call: Call, influence: Influence) -> float:
-    """Expanded uncertainty of a sum of errors: of noise, of the probe as it acts at worst, of a shift of the axes."""
+    """Expanded uncertainty (k = 2) of a figure: root sum of squares of noise, probe and shift of the axes.
+
+    The probe's error acts at worst, as it is common to all points. The result is in the unit of the figure.
+    """
     shift = 0.0 if call.axes is None else call.axes[0]
     shifted = math.hypot(*influence.shifted.tolist())
     return math.hypot(COVERAGE * influence.sd, influence.worst * (call.error or 0.0), shifted * shift)
@@ -232,7 +239,7 @@ def _held(name: str, value: Array, uncertain: Array, limit: float, unit: str) ->
 
 
 def _remarks(recipe: Recipe, discs: Sequence[DiscMade], call: Call, lifts: tuple[float, float] | None) -> list[str]:
-    """What is taken as it is, cannot be seen, or was left out."""
+    """Remarks in sentences: what is assumed, what the points cannot show, and which points were left out."""
     remarks = []
     limits = permitted(recipe, recipe.export.tolerance)
     zone = recipe.of(Made)

@@ -27,9 +27,9 @@ DATUMS = ("part", "bore", "none")
 
 @dataclass(frozen=True)
 class Made:
-    """How a made part is judged: width of its profile's zone, mm, and its datum; None where the recipe gives none.
+    """Key `made`: width of the profile's zone, mm, and its datum; None where the recipe gives none.
 
-    `points` are those of parts that were made, run by run.
+    `points` are the points of parts that were made, run by run.
     """
 
     profile: float | None = None

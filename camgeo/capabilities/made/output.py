@@ -237,7 +237,10 @@ def _plot(
 
 
 def stretches(one: SurfaceMade) -> list[tuple[float, float, float, float]]:
-    """Where metal is certainly too much: from and to as shaft degrees, the most of it, mm, and the angle of that."""
+    """Stretches of a surface with certainly too much metal, as (begin, end, greatest excess, its angle).
+
+    Angles are degrees of the shaft, the excess is in mm; it exceeds twice its standard deviation all along.
+    """
     t = equal_steps(LOOKS)
     e, band = one.fit.curve.rows(t)[0], COVERAGE * one.fit.curve.deviations(t)
     over = e > np.maximum(band, 1e-6)

@@ -62,12 +62,12 @@ class Points:
 
     @property
     def discs(self) -> tuple[DiscPoints, ...]:
-        """Those that have points."""
+        """Discs of the part that have points."""
         return tuple(disc for disc in self.every if disc.surfaces)
 
     @property
     def missing(self) -> tuple[DiscPoints, ...]:
-        """Those of which there is no file."""
+        """Discs of the part without points."""
         return tuple(disc for disc in self.every if not disc.surfaces)
 
 
@@ -105,7 +105,7 @@ def points_of_tables(
 
 
 def by_disc(names: Sequence[Sequence[str]], table: PointTable, path: Path, place: int) -> list[tuple[int, PointTable]]:
-    """Which disc a file is of, by the names of each disc's surfaces; of one that names those of several, the rows."""
+    """Rows of a file by disc index: by the surface that each row names, else by the file's name or place."""
     owners = {label_of(name): rank for rank, own in enumerate(names) for name in own}
     labels = [label_of(label) for label in table.labels]
     if len(names) == 1:

@@ -50,13 +50,13 @@ def claims(path: Path, options: Mapping[str, object]) -> bool:
 
 @dataclass(frozen=True)
 class Probing:
-    """How points were measured.
+    """Way in which points were measured.
 
-    align   unknowns that are placed by least squares before all else: of g, x, y
+    align   unknowns that are placed by least squares before all else: letters of "gxy", the turn and the shift
     ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
     face    width of an indicator's flat face, mm
     units   mm in a unit of files whose headings state none; None for that of the recipe
-    alone   turn, rad, by which a cam on a shaft is known to stand off the others; None for a part of its own
+    alone   known turn, rad, of a cam on a shaft against the others; None for a part of its own
     """
 
     align: str = ""
@@ -68,11 +68,11 @@ class Probing:
 
 @dataclass(frozen=True)
 class Call:
-    """What a call says of the points, mm and radians; None where it says nothing.
+    """Options of a call, mm and radians; None for an option that is not given.
 
     error        expanded uncertainty of a point, k = 2
-    axes         of the part's axes: shift, and turn
-    spans        of the smoothed deviation
+    axes         expanded uncertainty of the part's axes: shift, and turn
+    spans        number of spans of the smoothed deviation
     out          folder for a page, a drawing and a table
     """
 
@@ -173,7 +173,10 @@ def tables_of(paths: Sequence[Path]) -> list[PointTable]:
 
 
 def disc_of(path: Path, place: int, discs: int) -> int:
-    """Which disc a file is of: the end of its name, `-1` or `-2`, or its place among the files."""
+    """Index of the disc that a file is of, from 0: the end of its name, `-1` or `-2`, else its place in the call.
+
+    Raises CallError where the cam has no such disc.
+    """
     ending = re.fullmatch(r".+-([1-9])", path.stem)
     number = int(ending[1]) - 1 if ending else place
     if not 0 <= number < discs:
@@ -224,7 +227,10 @@ def label_of(name: str) -> str:
 
 
 def _owners(part: PartIntent, table: PointTable, places: Array) -> Indices:
-    """Which surface each point is on (n,)."""
+    """Index (n,) of the surface that each point is on, by its label, else by the least distance.
+
+    Raises CallError for a label that is no surface.
+    """
     names = [label_of(surface.name) for surface in part.surfaces]
     labels = [label_of(label) for label in table.labels]
     if len(names) == 1:

@@ -138,7 +138,10 @@ def _reduction(recipe: Recipe, disc: DiscMade, lack: float) -> dict[str, Any]:
 
 
 def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
-    """Causes of the deviations as the points stand, the greatest first; directions as the file is drawn."""
+    """Report rows of the causes of the deviations, greatest effect first; directions are those of the drawing.
+
+    The points are taken as they stand, before they are placed by a datum.
+    """
     sign = -1.0 if recipe.rotation == "ccw" else 1.0
     rows = []
     deviations, curves = [one.on.points.deviations for one in disc.surfaces], [one.fit.curve for one in disc.surfaces]

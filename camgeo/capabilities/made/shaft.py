@@ -108,9 +108,9 @@ class CamPoints:
 
 @dataclass(frozen=True, eq=False)
 class Phase:
-    """How much later than meant a cam moves its follower, rad of the shaft, and its expanded uncertainty.
+    """Lateness of a cam's motion, rad of the shaft, above 0 for later than meant, and its expanded uncertainty.
 
-    `against` is that less the phase of the first cam that was measured.
+    `against` is that lateness less the one of the first cam that was measured.
     """
 
     late: float
@@ -146,7 +146,10 @@ class ShaftMade:
 
 
 def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], call: Call) -> ShaftMade:
-    """All that points tell of the cams of a shaft; raises CallError for what is not judged."""
+    """Judge the cams of a shaft by their measured points; give each cam's result and phase, and the axis of the shaft.
+
+    Raises CallError for points that cannot be judged.
+    """
     tables, removing = tables_of(paths), call.probing.align == "gxy"
     if len({table.measured for table in tables}) > 1:
         raise CallError("some files have lifts and others places: give them in calls of their own")
@@ -234,7 +237,7 @@ def _by_cam(
 
 
 def _owners(cams: Sequence[ShaftCam], path: Path, table: PointTable, scale: float) -> Indices:
-    """Which cam each point of a file is of (n,)."""
+    """Index (n,) of the cam that each point of a file is on, by its label or z; raises CallError where none is sure."""
     name, z = escaped(str(path)), table.columns.get("z")
     by_label = _by_label(cams, name, table) if table.labels else None
     if z is None:
@@ -289,7 +292,7 @@ def _heights_alike(cams: Sequence[ShaftCam], height: Array) -> str:
 
 
 def _by_label(cams: Sequence[ShaftCam], name: str, table: PointTable) -> Indices:
-    """Which cam each point is of by its label: a name, or a number from 1."""
+    """Index (n,) of each point's cam by its label, a name or a number from 1; raises CallError for an unknown label."""
     ranks = {str(rank + 1): rank for rank in range(len(cams))}
     ranks |= {label_of(cam.name): rank for rank, cam in enumerate(cams)}
     owners = {label: ranks.get(_plain(label)) for label in set(table.labels)}
@@ -488,7 +491,7 @@ def _phases(measured: Sequence[CamPoints], motions: Sequence[Errors], call: Call
 
 
 def _on_shaft(part: Influence, at: float) -> Influence:
-    """Give an influence on a cam's phase in the shaft's axes, from which the cam's are turned by an angle, rad."""
+    """Turn an influence on a cam's phase from the cam's axes into the shaft's, by the angle `at`, rad."""
     c, s = math.cos(at), math.sin(at)
     return part._replace(shifted=np.array([[c, -s], [s, c]]) @ part.shifted)
 

@@ -104,7 +104,7 @@ def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
 
 
 def _by_strokes(measured: _MeasuredCam, source: Source, name: str) -> tuple[Source, dict[str, str], list[str]]:
-    """The recipe with base radius and motion by strokes or a table, files beside it, and what there is to say."""
+    """Recipe with base radius and a motion by strokes or a table, the files beside it by name, and lines of text."""
     keys, made, lines = measured.keys, source, []
     if measured.base is not None:
         mm, unit = measured.recipe.mm, UNIT_NAMES[measured.recipe.units]
@@ -131,7 +131,7 @@ def _by_strokes(measured: _MeasuredCam, source: Source, name: str) -> tuple[Sour
 
 
 def _by_series(measured: _MeasuredCam, source: Source, _: str) -> tuple[Source, dict[str, str], list[str]]:
-    """The same with the support function as a series, about the place of the shaft that the recipe gives.
+    """Recipe with the support function as a Fourier series about the shaft, files beside it (none), and lines of text.
 
     Raises CallError where the harmonics that stand out of the noise leave more than the reading.
     """
@@ -247,7 +247,7 @@ def _joined(pieces: Sequence[tuple[Array, Array | None]]) -> tuple[Array, Array 
 
 
 def _flanks(table: PointTable, names: Sequence[str], places: Array) -> Indices:
-    """Which of a disc's surfaces, from the shaft outwards, each point is on (n,): as it says, or by the gap between."""
+    """Index (n,) of each point's surface, counted from the shaft: by its label, else by the gap between flanks."""
     if len(names) == 1:
         return np.zeros(len(places), dtype=np.intp)
     own = [label_of(name) for name in names]
@@ -390,7 +390,7 @@ def _heights(measured: _MeasuredCam, programme: Programme) -> list[float]:
 
 
 def _told(measured: _MeasuredCam, programme: Programme) -> list[str]:
-    """What was recognised of each stroke, and how sure that is."""
+    """Lines of text on each recognised stroke: height, angles and law, with uncertainties."""
     unsure, lines = programme.uncertainty[0], []
     order = sorted(
         programme.strokes, key=lambda one: _angle(measured, programme.boundaries[one.first], unsure[one.first])

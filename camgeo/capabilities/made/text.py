@@ -120,7 +120,10 @@ def _against(own: dict[str, Any], unit: str) -> str:
 
 
 def shaft_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
-    """Give what was found of each lobe, row by row; with everything all that a cam alone has."""
+    """Rows of text (label, value) on each lobe of a shaft: profile, motion and phase.
+
+    With `everything` they have all rows of a single cam as well.
+    """
     rows = _axis(section["axis"]) if "axis" in section else []
     for lobe in section["lobes"]:
         (disc,), motion, phase = lobe["discs"], lobe["motion"], lobe["phase"]
@@ -138,7 +141,7 @@ def shaft_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
 
 
 def _axis(axis: dict[str, Any]) -> list[tuple[str, str]]:
-    """How far the shaft's axis leans and is shifted, and cams that are certainly off it by themselves."""
+    """Rows of text (label, value): lean and shift of the shaft's axis, and cams certainly eccentric to it."""
     x, y = axis["shifted"]
     unit = axis["unit"]
     leans = (

@@ -43,7 +43,7 @@ def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tup
 
 
 def _join(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh, float]:
-    """See `body_mesh`; errors are without the body's name."""
+    """Closed mesh of a body's joined plates, and the greatest error of its walls, mm; errors as in `body_mesh`."""
     joined: Any = None
     worst = 0.0
     for plate in body.plates:
@@ -72,9 +72,9 @@ def _join(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh
 
 
 def _stacks(walls: Sequence[tuple[Outline, float, float]]) -> list[list[int]]:
-    """Indices of walls (outline, lower z, upper z), upward; equal outlines directly above each other in one list.
+    """Indices of walls (outline, lower z, upper z), upward, with equal outlines directly above each other in one list.
 
-    Each level's corners would be rounded by itself where walls cross, and leave slivers when they are joined.
+    Such a list is made as one prism: walls of separate levels would round corners separately and leave slivers.
     """
     stacks: list[list[int]] = []
     for k in sorted(range(len(walls)), key=lambda k: walls[k][1]):

@@ -60,8 +60,9 @@ class MeshedBody(NamedTuple):
 def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[PrintBody]) -> Made:
     """Write and judge all bodies, drawn for a shaft that turns clockwise; one of them is named "cam".
 
-    A format with a file for each disc has one for each body; another has two files of all, laid out and assembled; a
-    format for viewers has one in which they move. Raises RecipeErrors and SurroundingsError as `make` does.
+    A format that has one file for each disc writes one for each body. A format of contours writes two files of all
+    bodies, laid out and assembled. A format for viewers writes one file in which they move. Raises RecipeErrors and
+    SurroundingsError as `make` does.
     """
     record = request.format
     write = write_each if record.by_disc else write_together if record.contour else write_moving

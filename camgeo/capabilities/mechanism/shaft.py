@@ -199,7 +199,7 @@ def _turning_widths(part: Part, clearance: float) -> tuple[float, float] | None:
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """What every mechanism has: the cam and its greatest radius `reach`, mm, the shaft, and the sizes."""
+    """Parts that every mechanism has: the cam and its greatest radius `reach`, mm, the shaft, and the sizes."""
 
     disk: Disk
     reach: float

@@ -69,7 +69,7 @@ def bars(s: Sizes, ends: Sequence[tuple[Point, Point]], holes: Sequence[Point], 
 
 
 def _segment_distance(point: Point, a: Point, b: Point) -> float:
-    """Distance of a point from the segment between two others."""
+    """Distance of a point from the line segment from a to b."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     px, py = point[0] - a[0], point[1] - a[1]
     length = dx * dx + dy * dy

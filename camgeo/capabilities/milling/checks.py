@@ -18,7 +18,7 @@ def _program(_: Scene, file: FileRequest) -> bool:
 
 
 def _pocketed(scene: Scene, file: FileRequest) -> bool:
-    """Of a program that mills between two surfaces that one touch runs on."""
+    """Whether a milling program cuts the groove between two surfaces that one touch runs on."""
     follower = scene.follower
     return file.format.program and follower.arrangement.contacts < len(follower.contacts)
 

@@ -32,7 +32,7 @@ _COMMENT = 200  # characters
 
 @dataclass(frozen=True)
 class Cutting:
-    """What the machine is given besides the path: mm, mm a minute, turns a minute."""
+    """Machine settings besides the path: feeds in mm a minute, spindle in turns a minute, safe height in mm."""
 
     feed: float
     plunge: float
@@ -54,7 +54,7 @@ def places(tolerance: float, mm: float, lengths: Sequence[float] = ()) -> int:
 
 
 def rounding(count: int, mm: float) -> float:
-    """By how much a path may be off through numbers of so many places, mm."""
+    """Greatest error of a path by numbers of `count` decimals in units of `mm`, mm."""
     return 2.5 * mm * 10.0**-count
 
 
@@ -89,7 +89,7 @@ def write_gcode(
 
 
 class _Numbers:
-    """Numbers as they are written: lengths in mm in the program's unit."""
+    """Formatter of lengths in mm as decimals in the program's unit."""
 
     def __init__(self, count: int, mm: float) -> None:
         self.count, self.mm = count, mm

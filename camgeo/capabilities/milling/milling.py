@@ -30,7 +30,7 @@ class RoundHole(NamedTuple):
 
 
 def pocket_of(design: Design) -> float | None:
-    """Depth of what lies between two surfaces, mm; None of a cam that is cut through."""
+    """Depth of the groove between two surfaces, mm; None for a cam that is cut through."""
     return next((disc.body.pocket for disc in design.discs if disc.body is not None), None)
 
 
@@ -48,7 +48,7 @@ def few_passes(recipe: Recipe, depth: float | None, paths: int = 1) -> None:
 
 
 def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
-    """Name what of the part a program leaves unmade, with the reason: it cuts straight down into a disc."""
+    """Features of the part that a program leaves unmade, with the reasons; a program cuts straight down into a disc."""
     part = recipe.part
     found = list(milled_holes(recipe, design)[1])
     if part.outer is not None:
@@ -81,7 +81,7 @@ def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[
 
 
 def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
-    """What kin is given of a program: the part as `intended`, but for what is not milled, and the machine's side."""
+    """Intent by which kin judges a milling program: the part without what is not milled, and the machine's side."""
     from kin.judge.intent import Milling
 
     _, asked = milled_contours(recipe, design)

@@ -70,7 +70,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
 
 
 def _told_apart(job: Job, manufacture: Manufacture) -> list[float]:
-    """Lengths by which places of the program lie apart, mm."""
+    """Differences between heights and paths of the program, mm, which its decimals must show."""
     pocket, thickness = pocket_of(job.design), job.recipe.part.thickness or 0.0
     step = -max(depths(depth, manufacture.depth_of_cut or math.inf)[0] for depth in (pocket or thickness, thickness))
     found, _ = milled_holes(job.recipe, job.design)
@@ -79,7 +79,7 @@ def _told_apart(job: Job, manufacture: Manufacture) -> list[float]:
 
 
 def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
-    """The cutter's path as arcs, which share the part's precautions against a formula that rounds."""
+    """Path of the cutter as arcs within `tolerance` mm, widened by the fits' bound on rounding in the formula."""
     unsure = max(fit.unsure for fit in job.fits)
 
     def fit_curve(curve: Curve, within: float) -> ArcSpline:

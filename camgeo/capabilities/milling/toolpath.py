@@ -27,7 +27,7 @@ QUARTER = math.tan(math.pi / 8.0)  # bulge of a quarter turn
 
 @dataclass(frozen=True, eq=False)
 class ClosedPath:
-    """A closed path with its ways in and out: chains of points (n, 2), bulges (n - 1,) of what lies between them."""
+    """Closed path with lead-in and lead-out: points (n, 2), mm, and bulges (n - 1,) of the pieces between them."""
 
     points: Array
     bulges: Array
@@ -45,7 +45,7 @@ class Pass:
 
 
 def begun_at(path: ArcSpline, direction: float) -> ArcSpline:
-    """The same closed path, begun in its point that lies farthest in a direction (rad)."""
+    """Closed path that begins in its point farthest in a direction, rad; a piece is cut in two there where needed."""
     contour = Contour.from_bulges(path.points, path.bulges)
     found = contour.support(np.array([direction]))
     piece, point = int(found.piece[0]), found.point[0]

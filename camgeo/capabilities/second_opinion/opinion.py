@@ -80,9 +80,9 @@ def demand_libraries(recipe: Recipe) -> None:
 
 
 def look(recipe: Recipe, design: Design, files: Sequence[FileResult], checks: Sequence[Check], clock: Clock) -> Results:
-    """Checks of the libraries on files that were judged with `checks`, and the rows left out.
+    """Checks by other libraries of files that were judged with `checks`, and the rows left out, with reasons.
 
-    A file that kin refuses to read is left out, as it refuses files that would take without bound.
+    A file that kin refuses to read is left out too: kin refuses files whose reading would have no bound.
     """
     if not design.contours:
         return Results(skipped=[(f"second opinion[{file.path.name}]", UNMADE) for file in files])
@@ -200,7 +200,10 @@ class _Distance(NamedTuple):
 
 
 def _farthest(points: Array, polygon: Array) -> _Distance:
-    """Greatest distance from a polygon's edges of the vertices and edges' middles of another."""
+    """Greatest distance, with its point, from the edges of `polygon` (m, 2) to a closed polygon `points` (n, 2), mm.
+
+    Measured at the vertices and at the middles of the edges of `points`.
+    """
     import shapely
 
     candidates = np.concatenate([points, 0.5 * (points + np.roll(points, -1, axis=0))])

@@ -58,7 +58,7 @@ class LongTextError(CamgeoError, ValueError):
 
 
 class Facts(NamedTuple):
-    """What the title block says beside the options: scale, mass, number of this page and of all."""
+    """Entries of the title block that are not options: scale, mass, page number and number of pages."""
 
     scale: str
     mass: str
@@ -80,7 +80,7 @@ def framed_page(name: str, paper: str) -> Page:
 
 
 def free(paper: str, *, block: bool, notes: float = 0.0) -> Area:
-    """What is free on a page above its title block and notes of a height; `notes` stand beside the block on A3."""
+    """Free area of a page above its title block and notes of a height, mm; the notes stand beside the block on A3."""
     wide, high = SIZES[paper]
     beside = wide - BINDING - EDGE - BLOCK > 100.0
     low = EDGE + (ROWS * ROW if block else ROW)

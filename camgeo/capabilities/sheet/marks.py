@@ -181,7 +181,10 @@ def has_room(long: float) -> bool:
 
 
 def text_beyond(between: float, text: str) -> float:
-    """How far a text reaches beyond the end of a dimension, mm, whose ends are so far apart; 0 where it fits within."""
+    """Length of a text beyond the end of its dimension line, mm, for ends `between` mm apart.
+
+    0 where it fits within.
+    """
     inside, long = has_room(between), width(text, SMALL)
     if inside and long + 2.0 <= between:
         return 0.0

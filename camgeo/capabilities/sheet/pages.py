@@ -29,7 +29,7 @@ BAR = 100.0  # mm
 
 
 class Table(NamedTuple):
-    """Rows of the contour in the drawing: what the columns are, numbers (n, columns), and notes on them."""
+    """Table of a contour on the drawing: headings of its columns, numbers (n, columns), and notes."""
 
     heads: tuple[str, ...]
     rows: Array
@@ -37,7 +37,11 @@ class Table(NamedTuple):
 
 
 def polar_table(contours: Sequence[tuple[str, Curve]], step: float, *, ccw: bool) -> Table:
-    """Polar radii of contours, by name, at every step; places X, Y where a ray may cross one more than once."""
+    """Table of polar radii of the contours, by name, at every step, rad; notes give the error of interpolation.
+
+    Where a ray may cross a contour more than once, places X, Y stand instead. The angles run as the disc is drawn:
+    mirrored with `ccw`.
+    """
     from camgeo.curve.measures import StarError, polar_radius
 
     count = round(2.0 * math.pi / step)

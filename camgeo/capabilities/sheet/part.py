@@ -25,7 +25,7 @@ MOST_CHORDS = 90  # of one arc
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """A closed outline: points (n, 2), its layer, and whether it goes right through; `surface` is a contour."""
+    """Closed outline: points (n, 2), mm, its layer, and whether it is cut right through; `surface` is a cam contour."""
 
     points: Array
     layer: str
@@ -35,7 +35,7 @@ class Loop:
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A disc as it is drawn: loops, body, part of the recipe; `ccw` where it is mirrored."""
+    """Disc as it is drawn, in mm: loops, body, and part of the recipe; with `ccw` it is mirrored."""
 
     loops: tuple[Loop, ...]
     body: Body
@@ -55,7 +55,7 @@ class Drawn:
 
     @property
     def view(self) -> View:
-        """What the features' own sizes are written by."""
+        """View by which features write their own sizes."""
         openings = {opening.name: opening for opening in self.body.openings}
         return View(self.part, openings, number, self.degrees, self.direction)
 
@@ -64,7 +64,7 @@ class Drawn:
         return -at if self.ccw else at
 
     def degrees(self, at: float) -> str:
-        """The direction in words: degrees from 0 to less than 360."""
+        """Direction of a feature in the drawing as text with the sign °: degrees from 0 to less than 360."""
         angle = math.degrees(self.direction(at)) % 360.0
         return f"{number(angle if angle < 359.99995 else 0.0)}°"
 

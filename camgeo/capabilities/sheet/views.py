@@ -91,12 +91,12 @@ class Callout(NamedTuple):
 
     @property
     def high(self) -> float:
-        """From its first line to the next callout's, mm."""
+        """Height from its first line to the next callout's, mm on the paper."""
         return PITCH + (SECOND if self.note else 0.0)
 
     @property
     def tip(self) -> Point:
-        """Where its leader ends, mm of the part."""
+        """End of the leader on the part, x and y, mm."""
         return (
             self.centre[0] + self.radius * math.cos(self.angle),
             self.centre[1] + self.radius * math.sin(self.angle),
@@ -200,10 +200,10 @@ def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Toleranc
 
 
 class Layout(NamedTuple):
-    """Where the views stand at a scale: centre of the face, left end of the section, centre of the bore's own view.
+    """Places of the views at a scale: centre of the face, left end of the section, centre of the view of the bore.
 
-    `column` is the right end of the column, `area` all that is free. `sense` is the direction of view along x: the
-    section stands on the right, so it is seen from the left in the first angle.
+    `column` is the right end of the column, `area` the free area, mm on the paper. `sense` is the direction of view
+    along x: the section stands on the right, so it is seen from the left in the first angle.
     """
 
     word: str
@@ -217,7 +217,10 @@ class Layout(NamedTuple):
 
 
 def lay_out(drawn: Drawn, sizes: Sizes, area: Area, scale: str | None, sense: float) -> Layout:
-    """Place the views at a scale, or at the largest that fits; raises NoRoomError."""
+    """Place the views at a scale, or at the largest that fits; `sense` is the direction of view.
+
+    Raises NoRoomError, which names the largest scale that fits, if there is one.
+    """
     words = SCALES if scale is None else (scale,)
     for word in words:
         for beside in (True, False):
@@ -251,13 +254,13 @@ def _lay_out_at(drawn: Drawn, sizes: Sizes, area: Area, word: str, *, beside: bo
 
 
 def _beyond(sizes: Sizes, k: float) -> float:
-    """What stands on the right of the section, mm: lanes, and texts of lengths beyond their dimension lines."""
+    """Width to the right of the section, mm on the paper: lanes of dimensions, or texts beyond their lines."""
     texts = (text_beyond(k * (length.high - length.low), length.text) for length in sizes.under)
     return max(LANE * len(sizes.right), *texts) + 1.0
 
 
 class BoreView(NamedTuple):
-    """What the bore's own view takes on the paper: its width, and how far it reaches above and below the shaft, mm."""
+    """Space of the view of the bore on the paper, mm: its width, and its extent above and below the shaft."""
 
     wide: float
     above: float

@@ -91,7 +91,7 @@ def _margin(recipe: Recipe, margin: Margin) -> Entry:
 
 
 def table(study: Entry) -> str:
-    """The study as text for a terminal: rows, ends of the ladders, margins, and what failed or was skipped."""
+    """The study as text for a terminal: a row for each file, ends of the ladders, margins, failures and omissions."""
     linkage = any("output_error" in row for row in study["rows"])
     errors = ["tolerance", "geometry", "motion", *(["output"] if linkage else [])]
     times = ["fit ms", "write ms", "judge ms"]

@@ -47,7 +47,7 @@ def margins(recipe: Recipe, design: Design) -> list[Margin]:
 
 
 def _undercut_margins(design: Design) -> list[Margin]:
-    """Distances of each surface from undercut: in mm, and as a share of its roller or its size."""
+    """Distance of each surface from undercut: mm, and as a share of the roller radius or of the size."""
     margins = []
     for drawn in design.surfaces:
         surface, value = drawn.surface, drawn.bent.value
@@ -85,7 +85,7 @@ def _linkage_margins(design: Design) -> list[Margin]:
 
 
 def _error_factors(recipe: Recipe, design: Design) -> list[Margin]:
-    """Factors by which errors of the follower grow with those of the profile; the tolerance over rounding."""
+    """Factors by which errors of the profile act on the follower, by surface; tolerance over rounding error."""
     if not design.contours:
         return []
     factors = []

@@ -124,7 +124,10 @@ def _compute_exactly(task: Task, selection: Selection, place: int) -> ExactDesig
 
 
 def _nearest(task: Task, selection: Selection, exact_designs: Mapping[int, ExactDesign]) -> Nearest | None:
-    """Of the exact designs, all rejected, that which misses the limits by least."""
+    """The exact design that misses the limits by least, where all of them were rejected.
+
+    It is the nearest of the estimates where no exact design has figures.
+    """
     nearest, least = selection.nearest, np.inf
     for place, design in exact_designs.items():
         figures = {name: np.array([value]) for name, value in design.figures.items()}

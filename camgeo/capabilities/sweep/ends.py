@@ -91,7 +91,7 @@ class _Cubic(NamedTuple):
         return self.g + x * (2.0 * self.c + x * (3.0 * self.d))
 
     def turns(self) -> tuple[Array, Array]:
-        """Where in (0, 1) the slope is 0, first and second place; nan where it is not."""
+        """Places in (0, 1) at which the slope is 0, the smaller and the greater, nan where there are fewer."""
         g, c, d = self.g, self.c, self.d
         with np.errstate(divide="ignore", invalid="ignore"):
             q = -(c + np.copysign(np.sqrt(c * c - 3.0 * d * g), c))
@@ -235,9 +235,9 @@ def _first_exit(cell: _Cubic, lowest: Array, highest: Array) -> tuple[Array, NDA
 
 
 def _crossing(cell: _Cubic, sense: NDArray[np.int8], level: Array, low: Array, high: Array) -> Array:
-    """Where in [low, high] a monotone cubic crosses a level, upward where `sense` is 1, else downward.
+    """Place in [low, high] at which a monotone cubic crosses a level, (m,); upward where `sense` is 1, else downward.
 
-    Exact to `_PRECISION` of a cell: rows that a few steps of all together leave open are solved alone.
+    Exact to `_PRECISION` of a cell. A few steps are made of all rows together; rows still open are solved alone.
     """
     x, moved = 0.5 * (low + high), np.zeros_like(low)
     for step in range(_STEPS):

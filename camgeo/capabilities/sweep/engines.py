@@ -37,9 +37,9 @@ class EngineError(CamgeoError):
 
 
 def in_processes(function: Callable[[T], R], items: Iterable[T], count: int) -> Generator[tuple[T, R], None, None]:
-    """Each item, as it is done, with the function's result, `count` at once; the function is one of a module.
+    """Each item with its result as soon as it is done, `count` at once in processes.
 
-    Raises EngineError where a process is killed.
+    The function must be defined in a module, not inside another. Raises EngineError where a process is killed.
     """
     from concurrent.futures.process import BrokenProcessPool
 

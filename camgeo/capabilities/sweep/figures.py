@@ -51,7 +51,10 @@ _HEAP = 3 << 20  # numbers, 24 MB
 
 
 class FigureTable(NamedTuple):
-    """Figures by name, (m,) each, in mm and degrees, rates by radian of shaft angle; index into REASONS (m,)."""
+    """Figures by name, (m,) each, in mm and degrees, rates by radian of shaft angle, and their reasons.
+
+    `reason` (m,) is an index into REASONS.
+    """
 
     figures: dict[str, Array]
     reason: Codes

@@ -47,7 +47,7 @@ class Ranking:
         return (figures[limit.figure] >= least) & (figures[limit.figure] <= most)
 
     def miss(self, limit: Limit, figures: Mapping[str, Array]) -> Array:
-        """By how much figures (m,) lie outside a limit, as a share of the bound they break; 0 within."""
+        """Excess (m,) of figures outside a limit, as a share of the bound that they break; 0 for figures within."""
         figure = figures[limit.figure]
         excess = np.zeros_like(figure)
         for bound, sign in ((limit.at_least, -1.0), (limit.at_most, 1.0)):
@@ -114,7 +114,7 @@ class Cells:
     state: NDArray[np.uint8]
 
     def scaled(self, factor: float) -> Cells:
-        """The same cells with the figure multiplied by a factor."""
+        """Copy of these cells with the ranking's figure multiplied by a factor."""
         return replace(self, best=self.best * factor)
 
 

@@ -352,7 +352,7 @@ class SliderLoop(CouplerLoop):
 
     @cached_property
     def frame_second(self) -> Array:
-        """theta_3''."""
+        """Second derivative of the frame's angle, theta_3'', by the cam's relative angle."""
         turning = -(self.lengths.offset * self.second) - self.spin_rate
         return (turning - 2.0 * self.frame_rate * self.half_rate) / self.q
 

@@ -54,7 +54,7 @@ class Engine:
 
     @property
     def processes(self) -> int:
-        """Processes at most on this machine, also for what follows the chunks."""
+        """Greatest number of processes on this machine, also for the work after the chunks."""
         return self.jobs or workers.available()
 
 

@@ -108,10 +108,10 @@ def sample_cam(cam: Cam, count: int, counts: tuple[int, ...] = ()) -> CamSample:
 
 @dataclass(frozen=True, eq=False)
 class Template:
-    """How a cam depends on the numbers (k,) of a recipe: a centre, and a slope by each number that acts linearly.
+    """Cam in dependence on the numbers (k,) of a recipe: a centre, and a slope for each number that acts linearly.
 
     `resampled` are the columns of the other numbers, for which the motion is sampled anew. `sample` gives the cam with
-    some numbers, None where there is none; `centre_cam` is that with the numbers `centre`.
+    some numbers, None where there is none; `centre_cam` is the cam with the numbers `centre`.
     """
 
     sample: Sampling

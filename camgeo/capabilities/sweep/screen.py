@@ -103,7 +103,7 @@ class ScreenedCams:
 
     @property
     def undercut(self) -> Mask:
-        """Which cams have a contour that turns back, (m,)."""
+        """Mask (m,) of the cams with undercut: the least radius of the pitch curve is not above the roller radius."""
         return ~(self.pitch > self.size("radius"))
 
     @property
@@ -155,7 +155,7 @@ def _degrees(slope: Array) -> Array:
 
 
 class FigureEstimate(NamedTuple):
-    """How a figure is estimated: `compute` gives it in mm and degrees (m,).
+    """Estimate of a figure: `compute` gives it in mm and degrees, (m,).
 
     `error` is the greatest seen, in degrees where `in_degrees`, else as a share of the value; None for an exact figure.
     """

@@ -35,7 +35,10 @@ class Extreme(NamedTuple):
 
 
 def valve_event(valve: Valve, design: Design, lift: float) -> Event:
-    """When the valve is above a lift, mm: shaft angles, rad. Raises EventError unless it crosses it once either way."""
+    """Stretch of a turn in which the valve is above a lift, mm: shaft angles, rad.
+
+    Raises EventError unless it crosses that lift once upward and once downward.
+    """
     most = greatest_lift(valve, design)
     if lift > most or most == 0.0:
         lifted = f"lifts {most:.6g} mm" if most else f"never opens with a lash of {valve.lash:.6g} mm"
@@ -86,7 +89,7 @@ def measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measur
 
 
 def measure(recipe: Recipe, design: Design, names: Sequence[str]) -> dict[str, Measured]:
-    """Measure figures, those at a lift at the one that the recipe's first limit states, or at the usual one."""
+    """Measure figures by name; a figure at a lift is measured at that of the recipe's first limit, or the usual one."""
     valve, figures = valve_of(recipe, design), dict[str, Measured]()
     for name in names:
         usual = FIGURES[name].at_lift

@@ -50,7 +50,10 @@ def section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
 
 
 def _event(valve: Valve, design: Design, lift: float, mm: float) -> dict[str, Any]:
-    """When the valve is above a lift: cam angles, and crank degrees in all; None where it does not cross it twice."""
+    """Report entry of a lift: opening, closing and centre, cam degrees, and duration, crank degrees.
+
+    All are None where the valve does not cross the lift just twice. `mm` is the recipe's unit.
+    """
     lifts: dict[str, Any] = {"lift": lift / mm, "tappet_lift": valve.follower_lift(lift) / mm}
     try:
         event = valve_event(valve, design, lift)

@@ -32,7 +32,7 @@ class Valve:
     name: str = "valve"
 
     def travel(self, lift: Array) -> Array:
-        """What the rocker makes of tappet lifts (n,), mm, with its first two derivatives by them, (3, n)."""
+        """Travel of the valve, mm, by the tappet's lift (n,), mm, without lash, and its two derivatives, (3, n)."""
         ratio = _ratio(self.ratios, lift)
         return np.array([ratio[0] * lift, ratio[1] * lift + ratio[0], ratio[2] * lift + 2.0 * ratio[1]])
 
