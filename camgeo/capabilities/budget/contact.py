@@ -1,9 +1,9 @@
-"""Where a made follower stands on a made cam, by contact: each size off by its own amount, the metal as it is.
+"""Position of a made follower on a made cam, by contact, for given errors of all sizes.
 
-Nothing here knows an influence. The metal stays in its own axes, and what its displacements do is done to the guide
-the other way round: the touch runs on a line or about a pivot that is off, until it meets the metal. The metal is
-displaced against the bore, then turned with the cam on the shaft, then displaced with the shaft. All arrays are
-(parts, angles), or broadcast to that.
+No influence coefficient is used here. The metal stays in its own axes, and its displacements are applied inversely to
+the guide: the touch moves on a displaced line, or about a displaced pivot, until it meets the metal. The metal is
+displaced against the bore, then turned with the cam on the shaft, then displaced with the shaft. All arrays are (parts,
+angles), or broadcast to that.
 """
 
 from __future__ import annotations
@@ -71,10 +71,10 @@ class Off:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """A contact at shaft angles (n,): its record, the metal, and its own position (n,) as it is meant.
+    """Contact at shaft angles (n,): its record, the metal, and its intended position `own` (n,), mm or rad.
 
-    `first` is the x axis of the follower's frame, `eccentric` the eccentricity of its stem, `middle` the distance of
-    the guide's middle from the shaft's foot, mm.
+    `first` is the x axis of the follower's frame, `eccentric` the eccentricity of its stem, mm, and `middle` the
+    distance of the guide's middle from the foot of the perpendicular from the shaft, mm.
     """
 
     contact: Contact[Guide, Touch]
@@ -108,7 +108,7 @@ def positions(place: Place, off: Off) -> Array:
 
 
 def _own_on_stem(place: Place, off: Off, middle: Complexes, way: Complexes) -> Array:
-    """Distance along a stem's line from the middle of its guide at which the touch meets the metal."""
+    """Distance, mm, along a stem's line from the middle of its guide at which the touch meets the metal."""
     touch = place.contact.touch
     if isinstance(touch, Flat):
         normal = way * np.exp(1j * (touch.tilt + off.face))

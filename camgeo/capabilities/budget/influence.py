@@ -194,21 +194,21 @@ class Held:
         return [self._alone(index, change(self.bearings[index])[None])]
 
     def first(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """A size of the first touch, which on the flanks of a groove is the second one too."""
+        """Influence of a size of the first touch, which in a groove bears on the second flank too."""
         return self.only(0, change) if self.discs > 1 else self.shared(change)
 
     def shifted(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:
-        """A displacement in any direction that acts at every contact."""
+        """Influence of a displacement in any direction that acts at every contact: one entry of two components."""
         return [np.stack([self._components(bearing, change) for bearing in self.bearings])]
 
     def bored(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:
-        """A displacement in any direction of each disc."""
+        """Influence of a displacement of each disc in any direction: an entry of two components for each disc."""
         if self.discs == 1:
             return self.shifted(change)
         return [self._alone(i, self._components(bearing, change)) for i, bearing in enumerate(self.bearings)]
 
     def faced(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """A size of each face: two on one arm are two, two of one frame one."""
+        """Influence of a size of each face: an entry for each of two faces on one arm, else one entry for all."""
         on_one_arm = len(self.contacts) > 1 and self.contacts[0].apart != 0.0
         return (self.each if on_one_arm else self.shared)(change)
 
@@ -311,13 +311,13 @@ def _at_each(first: Array, second: Array) -> Array:
 
 
 def _faces(frame: FrameBearing) -> list[Array]:
-    """The profile under each of four faces."""
+    """Influences of the profile's error under each of the four faces of a frame: four entries (2, 1, n)."""
     y, x = frame.output(across=1.0), frame.output(along=1.0)
     return [_at_each(y, 0.0 * y), _at_each(-x, 0.0 * x), _at_each(0.0 * y, -y), _at_each(0.0 * x, x)]
 
 
 def _breadths(frame: FrameBearing) -> list[Array]:
-    """Between the x faces, of which +x holds the joint, and between the y faces, whose middle holds it."""
+    """Influences of the frame's two breadths: +x of the x faces holds the joint; of the y faces their middle does."""
     x, half = frame.output(along=1.0), frame.output(across=0.5)
     return [_at_each(x, 0.0 * x), _at_each(-half, half)]
 

@@ -40,7 +40,10 @@ MOST_STEPS = 200  # of Newton's method; ten are usual
 
 
 class TakenError(CamgeoError, ValueError):
-    """A budget of which the stated dimensions leave nothing: which takes most, and its share, at an angle, rad."""
+    """The stated dimensions leave nothing of the permitted error.
+
+    It names the dimension that takes most, what it takes, mm or rad of the motion, and the shaft angle, rad.
+    """
 
     def __init__(self, name: str, taken: float, at: float) -> None:
         super().__init__(f"{name} takes most of it")
@@ -125,7 +128,7 @@ def widest(
 
 
 class Problem(NamedTuple):
-    """Least sum costs/t^k of tolerances t (f,) with weights (n, f) @ t^q <= 1."""
+    """Optimisation problem: least sum of costs/t^k over tolerances t (f,), subject to weights (n, f) @ t^q <= 1."""
 
     weights: Array
     costs: Array
@@ -133,7 +136,7 @@ class Problem(NamedTuple):
     k: float
 
     def at(self, angles: Indices) -> Problem:
-        """The problem with the constraints of these angles alone."""
+        """Problem with the constraints of these indices alone."""
         return self._replace(weights=self.weights[angles])
 
     def cost(self, tolerances: Array) -> float:

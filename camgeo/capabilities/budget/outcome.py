@@ -90,7 +90,7 @@ def _play(rows: Influence, kind: Sum) -> tuple[float, float] | None:
 
 
 def _taken(recipe: Recipe, budget: Budget, error: TakenError) -> RecipeErrors:
-    """The fault of a budget that leaves nothing: of the dimension that takes most."""
+    """RecipeErrors for a budget in which the stated dimensions leave nothing, at the dimension that takes most."""
     scale, unit = motion_unit(recipe)
     taken, permitted = scale * error.taken, scale * budget.permitted
     paths = (f"budget.tolerances.{error.name}", f"budget.tolerances.{error.name!r}")

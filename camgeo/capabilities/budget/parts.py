@@ -143,17 +143,17 @@ class Sizes(Protocol):
     """Errors of the sizes of made parts: (parts, 1), and (parts, angles) for the error of the profile."""
 
     def size(self, name: str) -> Array:
-        """A size, mm or rad, by the word of its dimension; each that is asked for is another one."""
+        """Error of a size, mm or rad, by the word of its dimension; each call is for another made size."""
 
     def radius(self, name: str) -> Complexes:
-        """A displacement, mm, likewise."""
+        """Displacement, mm, complex, by the word of its dimension; each call is for another made size."""
 
 
 class Drawn:
-    """Sizes of parts drawn by chance: each `size` or `radius` that is asked for is another one."""
+    """Sizes of parts drawn at random: each call of `size` or `radius` draws the errors of another made size."""
 
     def __init__(self, rng: np.random.Generator, budget: Budget, count: int, angles: int) -> None:
-        """Draw for so many parts at so many angles."""
+        """Prepare random errors for `count` parts at `angles` shaft angles, within the budget's tolerances."""
         self._rng, self._count, self._angles = rng, count, angles
         self._tolerances = dict(budget.tolerances)
 
@@ -167,7 +167,7 @@ class Drawn:
         return tolerance * self._rng.uniform(-1.0, 1.0, shape) if tolerance else np.zeros(shape)
 
     def radius(self, name: str) -> Complexes:
-        """A displacement by all of a radius in any direction, (parts, 1), complex; 0 of one without a tolerance."""
+        """Displacement (parts, 1), mm, complex: the full radius in a random direction; 0 without a tolerance."""
         tolerance, shape = self._tolerances.get(name) or 0.0, (self._count, 1)
         turned = self._rng.uniform(0.0, TURN, shape) if tolerance else np.zeros(shape)
         displacement: Complexes = tolerance * np.exp(1j * turned)

@@ -72,7 +72,10 @@ def _panel(report: dict[str, Any]) -> str:
 
 
 def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
-    """Both sums over the turn, at the contact that is worst of all."""
+    """Plot of both sums of errors over the turn at the worst contact, with the permitted error.
+
+    None without a budget.
+    """
     from camgeo.capabilities.budget.section import sums_over_turn
     from camgeo.capabilities.budget.units import motion_unit
     from camgeo.report.page.curves import Plot, Series
@@ -88,7 +91,7 @@ def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
 
 
 def _profile(recipe: Recipe) -> tuple[str, float] | None:
-    """Zone of a contour that may be off by as much on either side; None where that is to be found."""
+    """Key and width, mm, of the contour's tolerance zone, twice the plus and minus; None where it is to be found."""
     budget = recipe.of(Budget)
     stated = None if budget is None else dict(budget.tolerances).get(PROFILE)
     return None if stated is None else (f"budget.tolerances.{PROFILE}", 2.0 * stated)

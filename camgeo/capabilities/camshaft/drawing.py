@@ -104,7 +104,7 @@ def _from_the_end(
 
 
 def _turned(recipe: CamshaftRecipe, lobe: PlacedLobe) -> Array:
-    """Return the contour of a lobe, mm (n, 2), as it stands on the shaft; of one that is not made, as it is meant."""
+    """Return the contour of a lobe, mm (n, 2), as it stands on the shaft; the intended one where it cannot be made."""
     surface = lobe.design.only_surface
     ring = exact(surface.surface.curve, whole=True) if surface.contour is None else exact(surface.contour)
     c, s = math.cos(lobe.at), math.sin(lobe.at)

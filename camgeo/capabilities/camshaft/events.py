@@ -71,8 +71,9 @@ def event(exact: ExactCam, zero: float, lift: float) -> Event | None:
 def stretches(exact: ExactCam, zero: float) -> tuple[Stretch, ...]:
     """Rises, dwells and returns of a lobe whose motion begins at `zero`, rad, in their order round the turn.
 
-    They are those of the motion, whatever its source: segments that follow one another in one direction are one
-    stretch, and waves below a thousandth of the stroke are a dwell. None of a motion that is too rough to be followed.
+    They are found in the motion, whatever its source: segments that follow one another in one direction are one
+    stretch, and waves below a thousandth of the stroke are a dwell. The result is empty for a motion too rough to be
+    followed.
     """
     try:
         followed = lift_pieces(exact)

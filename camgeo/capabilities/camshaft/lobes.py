@@ -52,7 +52,10 @@ class PlacedLobe:
         return self.at - self.lobe.direction
 
     def on_shaft(self, engine: Engine | None) -> ShaftCam:
-        """The lobe as capabilities that judge files are given it."""
+        """Lobe as a ShaftCam for capabilities that judge files.
+
+        Its event lift is None without an engine, or where it swings.
+        """
         lobe = self.lobe
         told = engine is not None and lobe.recipe.cam.arrangement.unit == "mm"
         events = self.event_lift(engine) if told and engine is not None else None
@@ -75,7 +78,7 @@ class PlacedLobe:
         return moved_by(self.lobe.recipe, self.design)
 
     def event_lift(self, engine: Engine) -> float:
-        """Lift of its follower, mm, that an engine's events are of."""
+        """Lift of the lobe's follower, mm, at which the engine's events are stated; a valve's lift is converted."""
         return self.moved.follower_lift(engine.lift) if engine.at_valve and self.moved is not None else engine.lift
 
     @property
@@ -89,7 +92,10 @@ class PlacedLobe:
 
 
 def placed(recipe: CamshaftRecipe, clock: Clock) -> tuple[PlacedLobe, ...]:
-    """Design each lobe, those of one recipe once; raises RecipeErrors as `designed` does, or for what is no lobe."""
+    """Design each lobe, each recipe once, and find its angle on the shaft.
+
+    Raises RecipeErrors as `designed` does, and for a cam that cannot be a lobe.
+    """
     _demand_thick(recipe)
     designs: dict[str, Design] = {}
     lobes = []

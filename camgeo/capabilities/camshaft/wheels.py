@@ -129,7 +129,10 @@ def cam_wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], engine: Engin
 def _listed(
     recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], engine: Engine, parts: list[str], foot: tuple[float, float]
 ) -> str:
-    """Return the wheel with a line of events below it for each cylinder, and for each other lobe."""
+    """Return the wheel of the SVG `parts` with a row of events below it for each cylinder, and for each other lobe.
+
+    `foot` is the wheel's width and the height from which the rows start, px.
+    """
     side, y = foot
     columns = [14.0, 84.0, 232.0, 380.0]
     heads = zip(columns, ("cylinder", "intake", "exhaust"), ("ink", "intake", "exhaust"), strict=False)

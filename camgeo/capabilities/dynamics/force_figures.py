@@ -35,7 +35,7 @@ FORCES = {
 
 @dataclass(frozen=True, eq=False)
 class Extremes:
-    """Least and greatest of every force over the turn: of each contact, the torque, F, reactions and pressures."""
+    """Least and greatest value of each force over the turn: contacts, torque, F, reactions and pressures."""
 
     contacts: tuple[tuple[Extreme, Extreme], ...]
     torque: tuple[Extreme, Extreme]
@@ -45,7 +45,7 @@ class Extremes:
 
 
 def extremes_of(running: Running) -> Extremes:
-    """Find them, none sampled past. Raises RoughError where the motion is too abrupt."""
+    """Find the extremes of all forces over the turn, between samples too; raises RoughError for too abrupt a motion."""
     count = len(running.turn.names)
 
     def values(t: Array) -> Array:
@@ -65,7 +65,7 @@ def extremes_of(running: Running) -> Extremes:
 
 
 def float_check(running: Running, extremes: Extremes) -> Check | None:
-    """Whether the force along the travel holds a single contact on the cam; None of one that two contacts hold."""
+    """Check that the force along the travel keeps a single contact on the cam; None where two contacts hold it."""
     if len(extremes.contacts) > 1:
         return None
     least, most = extremes.along
@@ -75,7 +75,7 @@ def float_check(running: Running, extremes: Extremes) -> Check | None:
 
 
 def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
-    """The report's section."""
+    """Section `forces` of the report: ranges of contact forces, torque, reactions and pressures, with angles."""
     names, turn = running.turn.names, running.turn
     section: dict[str, object] = {
         "rpm": running.train.rpm,
@@ -106,14 +106,14 @@ def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
 
 
 class Forces(NamedTuple):
-    """The report's section, and the check of a rigid follower."""
+    """Section `forces` of the report on a rigid follower, and its checks."""
 
     section: dict[str, object]
     checks: tuple[Check, ...]
 
 
 def found_forces(recipe: Recipe, design: Design) -> Forces | None:
-    """Find the forces of a rigid follower; None where there is none. Raises RecipeErrors for a motion too abrupt."""
+    """Find the forces of a rigid follower; None where there is none. Raises RecipeErrors for too abrupt a motion."""
     running = running_of(recipe, design)
     if running is None:
         return None

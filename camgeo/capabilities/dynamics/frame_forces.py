@@ -49,7 +49,7 @@ class FrameTurn(Turn):
 
     @property
     def swings(self) -> bool:
-        """Whether the output does."""
+        """Whether the linkage's output swings."""
         return self.mechanism.unit == "deg"
 
     @property
@@ -75,7 +75,7 @@ class FrameTurn(Turn):
         return shaft
 
     def parameter(self, phi: Array) -> Array:
-        """Relative angles."""
+        """Relative angles between cam and frame, rad, at shaft angles (n,)."""
         return self.mechanism.relative(phi)
 
 
@@ -91,11 +91,11 @@ class FrameRunning(Running):
         return FrameTurn(self.mechanism, self.corners)
 
     def position(self, rows: Array) -> Array:
-        """Output and two derivatives, SI."""
+        """Output y and two derivatives by the shaft angle, SI, (3, n)."""
         return rows if self.turn.swings else PER_MM * rows
 
     def at(self, t: Array) -> State:
-        """All of it at relative angles (n,)."""
+        """State of motion and forces at relative angles (n,), rad."""
         motion = self.mechanism.at(t, 2)
         rows = motion.over_shaft(motion.output)
         y = self.position(rows)
@@ -151,7 +151,10 @@ class FrameRunning(Running):
         return sorted(first + second)
 
     def _joints(self, motion: LinkageMotion, force: Array) -> dict[str, Array]:
-        """Size of the force in joint D, and what the slide gives its link across its line; none with dyads on it."""
+        """Force at joint D, N (n,), and on a slide its part across the slide's line.
+
+        Empty with dyads, or with a slot.
+        """
         joint = self.mechanism.linkage.joints(motion.solved.linkage)["D"]
         if self.mechanism.dyads or joint.kind == "slot":
             return {}
@@ -174,7 +177,7 @@ class FrameRunning(Running):
 
 
 def frame_running(recipe: Recipe, design: Design, driven: Driven, train: Dynamics) -> FrameRunning:
-    """A linkage as it runs. Raises RecipeErrors for one that does not turn right round."""
+    """Forces of a linkage that runs; raises RecipeErrors for one that does not turn right round."""
     mobile = driven.mechanism.mobility()
     if not mobile.turns:
         why, at = "a loop of the linkage cannot be closed", mobile.margin_at

@@ -420,7 +420,7 @@ def _check_width(values: Values, reader: Reader) -> None:
 
 
 def _check_guide(values: Values, reader: Reader) -> None:
-    """Note a guide that is not found for the follower of a cam."""
+    """Note a guide for a follower without a stem of its own, and for a tilted face."""
     if "dynamics.guide" not in reader.marks:
         return
     if "led" not in reader.offers or "linkage" in reader.marks:
@@ -494,7 +494,7 @@ def _check_preloaded(values: Values, reader: Reader) -> None:
 
 
 def _check_elastic(values: Values, reader: Reader) -> None:
-    """Note an elastic train of a cam that has none."""
+    """Note an elastic train for a cam that cannot have one: a groove, and conjugate discs without preload."""
     cam = values.get("cam", {})
     if "stiffness" not in values.get("dynamics", {}):
         return

@@ -1,11 +1,11 @@
 """Forces, pressures and float speeds of a follower train in the motion that a made part gives it.
 
-Those of a rigid follower follow from position, velocity and acceleration as those of the intended motion do, curvature
-of the contour included, and under preload from the room that the metal leaves the contacts. Their uncertainty is that
-of these, each by what a standard deviation more of it adds.
+The figures of a rigid follower follow from position, velocity and acceleration, as for the intended motion, with the
+curvature of the made contour, and under preload with the gap that the metal leaves between the contacts. Their
+uncertainty comes from these quantities: by how much one standard deviation of each changes the figure.
 
-An elastic train is linear while contact holds: to its intended steady force comes its response to the error of the
-motion, whose uncertainty is that of the sum of errors that the response is.
+An elastic train is linear while contact holds: its steady force is the intended one plus its response to the error of
+the motion. The uncertainty is that of the sum of errors of which the response is made.
 """
 
 from __future__ import annotations

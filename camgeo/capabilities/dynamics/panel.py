@@ -19,7 +19,7 @@ def panel(report: dict[str, Any]) -> str:
 
 
 def forces(report: dict[str, Any]) -> str:
-    """Return the extremes of the forces of a rigid follower at its speed; nothing without them."""
+    """Return the HTML section on the extreme forces of a rigid follower at its speed; empty without them."""
     section = report.get("forces")
     if section is None:
         return ""
@@ -61,7 +61,7 @@ def forces(report: dict[str, Any]) -> str:
 
 
 def dynamics(report: dict[str, Any]) -> str:
-    """Return what drives the follower train to what, as intended and by each file; nothing without a train."""
+    """Return the HTML section on an elastic train: its response as intended and by each file; empty without a train."""
     section = report.get("dynamics")
     if section is None:
         return ""
@@ -94,7 +94,7 @@ def dynamics(report: dict[str, Any]) -> str:
 
 
 def _force(steady: dict[str, Any], name: str, si: str, units: str) -> str:
-    """Return an extreme of a train's force with the place where it is; of a recipe in inches in pounds."""
+    """Return an extreme of a train's force with its shaft angle, as text; in pounds for a recipe in inches."""
     value, angle = steady.get(f"{name}_force"), steady.get(f"{name}_at_deg")
     if value is None or angle is None:
         return number(value)

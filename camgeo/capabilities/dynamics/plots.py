@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def plots(recipe: Recipe, design: Design) -> list[Plot]:
-    """Return the plots of load, forces at the contacts and of the shaft's torque; none but of a rigid train.
+    """Return the plots of load, contact forces and torque over the turn; none where the train is not rigid or jams.
 
-    Of a recipe in inches they are in pounds.
+    They are in pounds for a recipe in inches.
     """
     running = running_of(recipe, design)
     if running is None or running.jam_deg is not None:
@@ -35,7 +35,7 @@ def plots(recipe: Recipe, design: Design) -> list[Plot]:
         return Plot(title, unit, series, limits=lines, dwells=True, note=note, axis=axis, holds=(0.0,))
 
     def opposite(title: str, axis: str, si: str, rows: Array, sides: Mapping[str, Sequence[float]]) -> list[Plot]:
-        """Return a plot for one contact, or for two that stand opposite each other."""
+        """Return one plot of one or two contacts, or of four contacts one plot for each pair of opposite ones."""
         named = list(zip(running.turn.names, rows, strict=True))
         step = max(1, len(named) // 2)
         groups = [dict(named[k::step]) for k in range(step)]

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def lost_contact(recipe: Recipe, design: Design) -> list[Remark]:
-    """A contact under preload that the follower's own inertia and load lift off at its speed: then there is play."""
+    """Remark on a preloaded contact that inertia and load lift off at the train's speed, which leaves play there."""
     if design.exact.preload is None:
         return []
     running = running_of(recipe, design)

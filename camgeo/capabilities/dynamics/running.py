@@ -1,7 +1,8 @@
-"""What runs at a speed and is rigid: what its cam must give, and the interface by which its forces are asked for.
+"""Forces of a rigid train at a speed, and the interface by which they are obtained.
 
-In SI: N and m, about a pivot N m and rad. F is what the cam must give along the travel, above 0 where the first contact
-pushes, or the way the output of a linkage grows: m Omega^2 y'' + k (y - least y) + F0 + load, y counted that way.
+In SI: N and m, about a pivot N m and rad. F is the force of the cam along the travel, above 0 where the first contact
+pushes, or in the direction in which the output of a linkage grows: m Omega^2 y'' + k (y - least y) + F0 + load, with y
+counted in that direction.
 """
 
 from __future__ import annotations
@@ -55,7 +56,10 @@ class State(NamedTuple):
 
 
 class Lost(NamedTuple):
-    """The speed from which a contact under preload is lost, None where it never is, and where."""
+    """Speed, turns a minute, from which a preloaded contact is lost, and the shaft angle, degrees.
+
+    None where it never is.
+    """
 
     contact: str
     rpm: float | None
@@ -157,13 +161,13 @@ class Running(ABC):
         return rest
 
     def inertia(self, rows: Array, speed: float) -> Array:
-        """Inertia's share of F at a speed, rad/s."""
+        """Inertia force in F at a speed, rad/s: N or N m, (n,), from the follower's motion `rows`."""
         force: Array = self.train.mass * speed**2 * self.position(rows)[2]
         return force
 
     @cached_property
     def preload(self) -> float:
-        """Force of the spring at the lowest place: as given, or the least that leaves `least_force` all round."""
+        """Force of the spring at the lowest position, N or N m: as stated, or the least that keeps `least_force`."""
         if self.train.least_force is None:
             return self.train.preload or 0.0
 

@@ -39,7 +39,7 @@ PANELS, NODES = 48, 8  # of Gauss's rule between any two places of the mean
 
 @dataclass(frozen=True, eq=False)
 class FollowerRunning(Running):
-    """A follower without a linkage."""
+    """Forces of a follower without a linkage."""
 
     @cached_property
     def turn(self) -> FollowerTurn:
@@ -59,7 +59,7 @@ class FollowerRunning(Running):
 
     @property
     def unit(self) -> float:
-        """Metres in one of position, or radians."""
+        """Metres, or radians, in one unit of the follower's position: 0.001 for mm, 1 for rad."""
         return 1.0 if self.turn.swings else PER_MM
 
     def position(self, rows: Array) -> Array:
@@ -68,13 +68,14 @@ class FollowerRunning(Running):
         return found
 
     def at(self, t: Array) -> State:
-        """All of it at shaft angles (n,)."""
+        """State of motion and forces at shaft angles (n,), rad."""
         return self.in_motion(t, self.turn.rows(t))
 
     def in_motion(self, t: Array, rows: Array, gap: Array | None = None) -> State:
-        """All of it at shaft angles (n,) where position and two derivatives are these, mm or rad (3, n).
+        """State of motion and forces at shaft angles (n,), rad, for a given motion `rows` (3, n).
 
-        `gap` (n,), mm or rad, is how much more room than intended the metal leaves contacts under preload.
+        `rows` are position, mm or rad, and two derivatives by the shaft angle. `gap` (n,), mm or rad, is by how much
+        the made metal leaves preloaded contacts wider apart than intended.
         """
         lines = self.turn.lines(rows)
         y = self.position(rows)
@@ -106,7 +107,10 @@ class FollowerRunning(Running):
         return None if preload is None or preload.stiffness is None else preload
 
     def preload_force(self, rows: Array, gap: Array) -> Array | None:
-        """Force of the preload along the travel (n,), N or N m, as `in_motion`; None without one."""
+        """Force of the preload along the travel (n,), N or N m; `rows` and `gap` as in `in_motion`.
+
+        None without preload.
+        """
         if self.held_by is None:
             return None
         scale = PER_MM if self.turn.swings else 1.0

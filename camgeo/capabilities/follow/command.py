@@ -155,7 +155,7 @@ def document(followed: Followed) -> dict[str, Any]:
 
 
 def _least(followed: Followed, values: Array) -> dict[str, float] | None:
-    """Absolute value of the least of values (n,) over the turn, and its shaft angle; None where it is not finite."""
+    """Least of values (n,) over the turn as an absolute value, with its shaft angle; None where it is not finite."""
     place = int(values.argmin())
     if not math.isfinite(values[place]):
         return None

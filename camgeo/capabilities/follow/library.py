@@ -84,7 +84,7 @@ class Followed:
 
     @property
     def openings(self) -> int:
-        """Number of other closed contours in the file, such as a bore with a keyway: its motion is without them."""
+        """Number of other closed contours in the file, such as a bore with a keyway; the motion disregards them."""
         return self._outline.openings
 
     @property
@@ -188,10 +188,10 @@ class Followed:
         return "\n".join([",".join(columns), *lines, ""])
 
     def lifts(self) -> str:
-        """The motion as a table of lifts that a recipe reads: shaft angle in degrees, lift in mm or degrees.
+        """Motion as a CSV table of lifts that a recipe reads: shaft angle in degrees, lift in mm or degrees.
 
-        That of a yoke is over half a turn, from its position at 0; a deviation of the breadth from its mean is shared
-        by both faces.
+        The table of a yoke covers half a turn, from its position at 0; a deviation of the breadth from its mean is
+        shared by both faces.
         """
         scale = 1.0 if self.unit == "mm" else math.degrees(1.0)
         theta, lift = self.theta, scale * (self.position - self._motion.least[0])
@@ -203,12 +203,12 @@ class Followed:
         return "".join(["angle,lift\n", *(f"{angle:.12g},{value:.9f}\n" for angle, value in pairs)])
 
     def recipe(self, table: str) -> str:
-        """The recipe of a cam with this motion, whose lifts are in the file `table`.
+        """Text of a recipe of a cam with this motion, whose lifts are in the file `table`.
 
-        Its motion is within the reading of the rows, and so about is its contour of that of the file. It has no
-        opening but a round bore, and passes over the others when files are judged by it. Raises CallError
-        for a yoke whose breadth varies by more than two readings, or with an odd number of steps, and for a ring
-        without a round outline.
+        Its motion is within the reading of the rows, and its contour is within about as much of the file's. It has no
+        opening but a round bore, and passes over others when files are judged by it. Raises CallError for a yoke whose
+        breadth varies by more than two readings, or with an odd number of steps, and for a ring without a round
+        outline.
         """
         is_a("table", table, str, "a str")
         if not table.isprintable() or not table:
@@ -371,7 +371,7 @@ def _require_groove(name: str, motion: MeasuredMotion, follower: FollowerDescrip
 
 
 def _numbers(name: str, values: object) -> tuple[float, ...]:
-    """Numbers of an argument; raises CallError for another thing than a tuple of them."""
+    """Numbers of an argument; raises CallError for anything but a tuple of numbers."""
     is_a(name, values, tuple, "a tuple of numbers")
     return tuple(number_of(name, value) for value in values) if isinstance(values, tuple) else ()
 

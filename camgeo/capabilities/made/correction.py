@@ -78,7 +78,7 @@ class _FilePoints(NamedTuple):
     deviations: Mapping[str, Deviations]
 
     def smooth(self, surface: str, spans: int | None = None) -> Smooth:
-        """Their curve; raises RecipeErrors for a gap."""
+        """Smoothed deviation of a surface over a number of spans; raises RecipeErrors where the points leave a gap."""
         points = self.deviations[surface]
         with refused_at(self.recipe, self.place, self.name):
             return fit(points.parameter, points.e, spans).curve
@@ -141,7 +141,7 @@ def _files(recipe: Recipe, design: Design, run: Run, place: str) -> list[_FilePo
 
 
 def _points(recipe: Recipe, design: Design, file: PointFile, place: str, rank: int) -> Points:
-    """Points of a file at its place in the recipe, which is the `rank`-th of its run."""
+    """Points of a file of a run, by its own options; `place` is its path in the recipe, `rank` its index in the run."""
     path = Path(recipe.path).parent / file.file
     with refused_at(recipe, place, file.file, path):
         return points_of(recipe, design, [path], Probing(file.align, file.ball, file.face, file.units), rank)

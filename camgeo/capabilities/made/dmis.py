@@ -1,8 +1,8 @@
-"""What a measuring machine is to measure, as DMIS (ISO 22093): a point of each contact with its normal, and the zone.
+"""Measuring program for a coordinate measuring machine in DMIS (ISO 22093): contact points with normals, and the zone.
 
-Each point is a feature F(Pn) with place and normal of the exact contour, as the part is drawn, half as high as the
-part; a MEAS with the same as PTMEAS has it approached along its normal, and OUTPUT asks for the actual FA(Pn), which
-`camgeo verify` reads.
+Each point is a feature F(Pn) with place and normal of the exact contour, as the part is drawn, at half the height of
+the part. A MEAS with the same data as its PTMEAS has it approached along its normal, and OUTPUT asks for the actual
+FA(Pn), which `camgeo verify` reads.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ def _surface(recipe: Recipe, design: Design, name: str, curve: Smooth, error: fl
 
 
 def _corrected_files(recipe: Recipe) -> dict[float, list[str]]:
-    """Names of the files that are corrected, by their share."""
+    """Names of the corrected files, by the share of the deviations that is taken off."""
     files: dict[float, list[str]] = {}
     for request in recipe.export.files:
         for one in request.compensation.altered if request.compensation else ():

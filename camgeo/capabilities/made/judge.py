@@ -104,7 +104,7 @@ def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], call: Call)
 
 
 def part_of_points(recipe: Recipe, design: Design, points: Points, call: Call, datum: Datum) -> PartMade:
-    """All that points tell of a part whose profile has a datum; raises as `made_part`."""
+    """Judge a part by its points, with the profile's datum given; raises as `made_part`."""
     demand_discs(points.missing)
     discs = [_disc(recipe, disc, call, datum) for disc in points.discs]
     each = {one.on.surface.name: (one.errors, one.play) for disc in discs for one in disc.surfaces}
@@ -152,7 +152,7 @@ def _uncertain(surfaces: Sequence[SurfaceMade], call: Call) -> Array:
 
 
 def follower_motion(design: Design, each: Mapping[str, tuple[Errors, Play | None]]) -> tuple[Errors, Play | None]:
-    """Motion of the follower by that on each surface: of its one, or midway between the two that hold it."""
+    """Motion errors and play of the follower: on its only surface, or midway between the two that hold it."""
     for closure in closures_between(design):
         return between(each[closure.pushes][0], each[closure.stops][0])
     (motion,) = each.values()
@@ -160,7 +160,7 @@ def follower_motion(design: Design, each: Mapping[str, tuple[Errors, Play | None
 
 
 def _output(parts: Sequence[PartIntent], discs: Sequence[DiscMade]) -> OutputErrors | None:
-    """Errors of a linkage's output."""
+    """Errors of a linkage's output that the made cam gives; None without a linkage."""
     linkage = parts[0].linkage
     if linkage is None:
         return None

@@ -162,7 +162,7 @@ def _page(recipe: Recipe, result: PartMade, section: dict[str, Any], call: Call,
 
 
 def document(name: str, body: str) -> str:
-    """A page of its own on what was made of a recipe of a name."""
+    """HTML page on the part that was made of a recipe, by its name."""
     return (
         '<!doctype html>\n<html lang="en"><meta charset="utf-8">'
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">"

@@ -35,8 +35,8 @@ class DiscPoints:
     """Points of one disc.
 
     surfaces   each of its surfaces with its points; empty where no file is of this disc
-    placing    that was taken out (`align`)
-    turned     angle, rad, by which it is known to be turned: its points are placed by it too
+    placing    turn and shift that were taken out (`align`)
+    turned     known turn of the disc, rad: its points are placed by it too
     """
 
     part: PartIntent

@@ -160,7 +160,7 @@ class OnSurface:
 
 
 def tables_of(paths: Sequence[Path]) -> list[PointTable]:
-    """Read all files; raises CallError for what is none of points."""
+    """Read all files; raises CallError for a file that holds no points."""
     tables, faults = [], []
     for path in paths:
         try:

@@ -60,7 +60,7 @@ WITHIN = 1e-6  # mm, by which a height may lie beyond a cam's end: rounding of w
 
 @dataclass(frozen=True, eq=False)
 class CamPoints:
-    """The points of one cam: files, each with the rows of it that are of this cam."""
+    """Points of one cam: the files that have any, each with the rows that are on this cam."""
 
     cam: ShaftCam
     files: tuple[tuple[Path, PointTable], ...]
@@ -129,13 +129,13 @@ class CamMade(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ShaftMade:
-    """A measured shaft.
+    """Result for a measured shaft.
 
-    cams     those that were measured, in the order of the recipe
-    missing  names of those that were not
-    late     turn of the shaft as one that was taken out, rad; None where none was to be
-    leaning  its axis as the points have it; None of lifts, and of cams at fewer than three heights
-    remarks  sentences
+    cams     results of the cams that were measured, in the order of the recipe
+    missing  names of the cams that were not measured
+    late     lateness of the whole shaft that was taken out, rad; None where none was to be
+    leaning  axis of the shaft by the points; None of lifts, and of cams at fewer than three heights
+    remarks  sentences for the report
     """
 
     cams: tuple[CamMade, ...]
@@ -319,7 +319,7 @@ def _names(cams: Sequence[ShaftCam]) -> str:
 
 
 def _turn_table(table: PointTable, drawn: float, angle: float) -> PointTable:
-    """A table turned by an angle as drawn, rad; of lifts the shaft's angle is that of a motion so much earlier."""
+    """Table with points and normals turned by `drawn`, rad, and the angles of lifts made greater by `angle`, rad."""
     columns = dict(table.columns)
     if "angle" in columns:
         columns["angle"] = columns["angle"] + math.degrees(angle)
@@ -497,7 +497,10 @@ def _on_shaft(part: Influence, at: float) -> Influence:
 
 
 def _lone_remarks(measured: Sequence[CamPoints], phases: Sequence[Phase]) -> list[str]:
-    """Cams that stand off the others by far more than is uncertain: of two alone, off the recipe; and all as one."""
+    """Remarks on cams turned against the median of all by far more than the uncertainty, and on the shaft as one.
+
+    One or two cams are compared with the recipe itself.
+    """
     middle = float(np.median([phase.late for phase in phases])) if len(phases) > TWO else 0.0
     as_one = abs(middle) > max(TURNED, CERTAIN * max(phase.uncertainty for phase in phases))
     return [f"the shaft looks turned by {math.degrees(middle):.3g} degrees: `--align rotation`"] * as_one + [

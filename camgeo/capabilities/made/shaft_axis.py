@@ -36,7 +36,7 @@ class Leaning(NamedTuple):
     removed: bool
 
     def after(self, later: Leaning) -> Leaning:
-        """Add what a later round found besides."""
+        """Axis with the lean and the shift of a later round added."""
         axis = replace(later.axis, shift=self.axis.shift + later.axis.shift, lean=self.axis.lean + later.axis.lean)
         return self._replace(axis=axis)
 
@@ -83,9 +83,10 @@ class Leaning(NamedTuple):
 def leaning_of(
     names: Sequence[str], cams: Sequence[tuple[float, float, tuple[Array, Array]]], *, removed: bool = False
 ) -> Leaning | None:
-    """The axis by each cam's height, mm, angle by which its shift was turned back, rad, and that with its covariance.
+    """Axis of a shaft by the shift of each cam; None where cams stand at fewer than three heights.
 
-    None where cams stand at fewer than three heights.
+    Each of `cams` has its height, mm, the angle by which its shift was turned back, rad, and its shift, mm, with the
+    covariance.
     """
     shifts = []
     for height, angle, (shift, covariance) in cams:

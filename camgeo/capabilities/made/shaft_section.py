@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def shaft_section(
     recipe: Order, paths: Sequence[Path], result: ShaftMade, sections: Sequence[dict[str, Any]]
 ) -> dict[str, Any]:
-    """Give the section `made` of a shaft out of those of its cams; angles are degrees of the shaft."""
+    """Section `made` of the report on a shaft, from the sections of its cams; angles are degrees of the shaft."""
     entry: dict[str, Any] = {
         "files": [path.name for path in paths],
         "unit": UNIT_NAMES[recipe.units],

@@ -164,7 +164,7 @@ def _with(source: Source, path: str, value: Value) -> Source:
 
 
 def _with_motion(source: Source, keys: ByMotion, key: str, value: Value) -> Source:
-    """Give a motion by a key, in the place of what stands for one."""
+    """Recipe with a motion under `key`, in place of the former one."""
     for other in (keys.motion, *keys.instead):
         if other != key and other in _cam_keys(source):
             return Source.of(replace_entry(source, f"cam.{other}", key, value), source.file)
@@ -191,7 +191,10 @@ class _Rough(NamedTuple):
 
 
 def _placeholders(path: Path, paths: Sequence[Path]) -> _Rough:
-    """Give the recipe what it need not say, by the size of the points."""
+    """Complete a recipe with a provisional base radius, sized by the points, and nearly no motion.
+
+    Raises CallError for lifts, which show no base radius.
+    """
     source = Source.of(path.read_text("utf-8"), str(path))
     keys = _keys(source)
     if keys.base and not keys.series:

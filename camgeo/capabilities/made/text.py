@@ -10,7 +10,7 @@ PER = {"error": "motion, error", "velocity": "  velocity", "acceleration": "  ac
 
 
 def shown(report: dict[str, Any], *, everything: bool) -> str:
-    """Give the table; with everything also spans, multipliers and each outlier."""
+    """Text of the table; with `everything` also spans, multipliers and each outlier."""
     section, verdict = report["made"], "ok" if report["ok"] else "FAILED"
     if not report["ok"] and "failed" not in section["verdicts"].values():
         if any(not check["ok"] and not check["name"].startswith("made-") for check in report["checks"]):

@@ -44,7 +44,7 @@ class Carrier:
     holes: tuple[Point, ...] = ()
 
     def extend(self, point: Point, s: Sizes, field_path: str) -> Point:
-        """Add a bar to a point of the link's axes, and return that in the body's.
+        """Add a bar from the link's origin to a point in the link's axes; return the point in the body's axes.
 
         Raises BodyError, at the field, where the bar would cut a hole.
         """

@@ -75,7 +75,7 @@ def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[Prin
 
 
 def _mesh(job: Job, request: FileRequest, body: PrintBody) -> MeshedBody:
-    """The body with its mesh; raises RecipeErrors where it has none."""
+    """Body with its closed mesh; raises RecipeErrors where no mesh can be made."""
     if body.name == CAM:
         mesh, facts = cam_mesh(job, request)
         return MeshedBody(body, mesh, facts.bound, body.low - float(mesh.points[:, 2].min()), facts.vertices)

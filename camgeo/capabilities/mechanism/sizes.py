@@ -153,7 +153,7 @@ def _check_sizes(s: Sizes, bore: float) -> None:
 
 
 def require_thickness(field: str, length: float, least: float = LINE) -> None:
-    """Raise BodyError for a length, mm, that is too thin to be printed."""
+    """Raise BodyError for a length below `least`, mm, which is too thin to be printed."""
     if length < least:
         message, remedy = "{length} is too thin to be printed", "give at least {least}"
         raise BodyError(field, message, remedy, length=length, least=least)

@@ -70,7 +70,7 @@ def _bored(recipe: Recipe) -> bool:
 
 
 def _drilled(recipe: Recipe) -> bool:
-    """Whether other holes are milled; where lightening holes find their place is not known beforehand."""
+    """Whether holes other than the bore are milled; lightening holes do not count, as they are placed later."""
     part, asked = recipe.part, recipe.manufacture
     if asked is None or not asked.holes:
         return False

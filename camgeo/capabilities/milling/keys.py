@@ -34,7 +34,7 @@ def check_milling(path: str, reader: Reader) -> None:
 
 
 def check_slight(values: Values, reader: Reader) -> None:
-    """Note figures so slight that a program would need its digits for them alone."""
+    """Note machine settings, and a thickness, below the least that the decimals of a program can state."""
     for table, least_told in (("manufacture", LEAST_TOLD), ("part", {"thickness": SHORTEST})):
         for name, least in least_told.items():
             unit, mm = ("turns a minute", 1.0) if name == "spindle" else (reader.units, reader.mm)

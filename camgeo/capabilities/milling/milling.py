@@ -1,4 +1,4 @@
-"""What of a part is milled_contours, which holes and how deep, and what kin is told of it."""
+"""Milled features of a part: contours, holes and depths; and the intent by which kin judges a program."""
 
 from __future__ import annotations
 

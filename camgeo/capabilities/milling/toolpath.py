@@ -38,7 +38,7 @@ class ClosedPath:
 
 @dataclass(frozen=True, eq=False)
 class Pass:
-    """One way round at one height z, mm, 0 at the top of the stock."""
+    """Round of the cutter on a closed path at one height z, mm, 0 at the top of the stock."""
 
     z: float
     loop: ClosedPath

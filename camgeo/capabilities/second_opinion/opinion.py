@@ -284,7 +284,7 @@ def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN4
 
 
 def _discs_of(job: Job, file: FileResult) -> tuple[PartIntent, ...]:
-    """The discs that a file holds, as the judge compares them."""
+    """Intents of the discs that a file holds, as the judge compares them."""
     job, _ = job.of_file(file.request)
     parts = shaft_of_file(job.recipe, job.design, file.request.kind).parts
     return parts if file.disc is None else (parts[file.disc],)

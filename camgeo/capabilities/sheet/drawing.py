@@ -95,7 +95,10 @@ def _tolerance(recipe: Recipe, sheet: Sheet, field: str) -> Tolerance:
 
 
 class Pages(NamedTuple):
-    """The pages of one disc, the last at 1 : 1 if there is one; where the shaft is on the first, and its scale."""
+    """Pages of one disc: the annotated ones, and the last at 1 : 1, if there is one.
+
+    `origin` is the place of the shaft on the first page, mm, and `scale` the scale of its views.
+    """
 
     annotated: list[Page]
     last: Page | None

@@ -28,7 +28,7 @@ PATTERNS = {"": "BYLAYER", "dashed": "DASHED", "chain": "CENTER"}
 
 
 def annotation(pages: Sequence[Page], origin: Point, scale: float) -> Callable[[Modelspace], Box]:
-    """Give what draws pages side by side at the size of the part, `origin` of the first page at the drawing's own."""
+    """Function that draws pages side by side at the size of the part, the first page's `origin` at the drawing's."""
 
     def annotate(space: Modelspace) -> Box:
         _prepare(space, scale)
@@ -69,7 +69,7 @@ class _Pen:
         self._space, self._x, self._y, self._scale = space, x, y, scale
 
     def draw(self, marks: Sequence[Mark]) -> None:
-        """Draw marks; what is on no layer stands in the drawing already."""
+        """Draw marks; lines on the layer "" are left out, as they stand in the drawing already."""
         for mark in marks:
             match mark:
                 case Line() if mark.layer:

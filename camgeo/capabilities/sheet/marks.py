@@ -94,7 +94,7 @@ Mark: TypeAlias = Line | Circle | Text | Dimension
 
 @dataclass(frozen=True)
 class Page:
-    """A page of a size, mm, with what stands on it."""
+    """Page of a size, mm, with the marks that stand on it."""
 
     name: str
     width: float

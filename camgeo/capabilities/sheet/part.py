@@ -44,13 +44,13 @@ class Drawn:
 
     @property
     def reach(self) -> float:
-        """Greatest distance of an outline, or of the hub, from the shaft."""
+        """Greatest distance of an outline, or of the hub, from the shaft, mm."""
         far = max(float(np.hypot(*loop.points.T).max()) for loop in self.loops)
         return far if self.body.hub is None else max(far, 0.5 * self.body.hub.diameter)
 
     @property
     def depth(self) -> float:
-        """Length along the shaft."""
+        """Length of the body along the shaft, mm."""
         return self.body.top - self.body.bottom
 
     @property

@@ -45,7 +45,11 @@ def least_spline(curve: Curve, tolerance: float) -> float:
 
 
 def _arc_density(frame: Frame) -> Array:
-    """(|kappa'|/124.7)^(1/3) ds by the parameter: the cube root of |omega' sigma - omega sigma'| takes no division."""
+    """Density of tangent-continuous arcs by the parameter at unit tolerance: (|kappa'|/124.7)^(1/3) ds.
+
+    Computed as the cube root of |omega' sigma - omega sigma'|, with sigma the speed and omega the rate at which the
+    tangent turns, it needs no division.
+    """
     slope = np.abs(frame.turn_slope * frame.speed - frame.turn * frame.speed_slope)
     density: Array = np.cbrt(slope / FREE_ARCS)
     return density

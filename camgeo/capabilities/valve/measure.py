@@ -28,7 +28,7 @@ _UNITS = {LIFT: "mm", DURATION: "deg", VELOCITY: "mm/rad", ACCELERATION: "mm/rad
 
 
 class Extreme(NamedTuple):
-    """Greatest magnitude of a derivative while the valve is open, by rad of the cam, and where, degrees of the cam."""
+    """Greatest magnitude of a derivative while the valve is open, by rad of the cam, and its cam angle, degrees."""
 
     value: float
     at_deg: float

@@ -24,7 +24,10 @@ TITLES = ("Valve lift", "Valve velocity", "Valve acceleration")
 
 
 def section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
-    """Lift and lash in the recipe's unit, events in degrees of the cam and of the crank, peaks by rad of the cam."""
+    """Section `valve` of the report; None without a valve.
+
+    Lift and lash are in the recipe's unit, events in degrees of the cam and of the crank, peaks by rad of the cam.
+    """
     valve = valve_of(recipe, design)
     if valve is None:
         return None

@@ -22,9 +22,10 @@ _WITHIN = 1e-9  # of the greatest lift: so far a table may end before it
 
 @dataclass(frozen=True)
 class Valve:
-    """Rows of a tappet's lift, mm, and the rocker's ratio there, one of a constant ratio; the lash at the valve, mm.
+    """Valve train: `ratios` are rows of the tappet's lift, mm, and the rocker's ratio there.
 
-    Between rows the ratio is a natural cubic spline.
+    One row is a constant ratio. Between rows the ratio is a natural cubic spline. `lash` is the clearance at the valve,
+    mm.
     """
 
     ratios: tuple[tuple[float, float], ...]
@@ -48,7 +49,10 @@ class Valve:
         return np.where(lift > 0.0, np.array([lift, velocity, acceleration]), 0.0)
 
     def follower_lift(self, lift: float) -> float:
-        """Lift of the tappet, mm, at which the valve is at a lift, mm, of 0 or more, by halving; the travel rises."""
+        """Lift of the tappet, mm, at which the valve has a lift, mm, of 0 or more.
+
+        By bisection, as the travel rises.
+        """
         wanted = lift + self.lash
         if len(self.ratios) == 1:
             return wanted / self.ratios[0][1]
