@@ -165,7 +165,7 @@ class _Cells(NamedTuple):
     pairs: Pairs | None = None
 
     def within(self, mask: Mask) -> _Cells:
-        """Return the intervals kept (m,)."""
+        """Intervals for which the mask (m,) holds, with their pairs."""
         pairs = self.pairs and self.pairs.within(mask)
         return self._replace(phi=self.phi[mask], half=self.half[mask], lower=self.lower[mask], pairs=pairs)
 

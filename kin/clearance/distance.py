@@ -83,18 +83,19 @@ class Relative:
 
     @cached_property
     def spin(self) -> Array:
-        """Greatest relative turning (m,)."""
+        """Upper bound (m,) of the relative rate of turning |dangle/dphi|, rad/rad."""
         return np.abs(self.turn) + self.twist
 
     def at(self, cell: Indices, point: Array) -> tuple[Array, Array]:
-        """Velocity (k, 2) of the body where home's points (k, 2) are, and by how much it may be off (k,)."""
+        """Velocity (k, 2), mm/rad, of the body where the home's points (k, 2) are, and its greatest error (k,)."""
         velocity = self.drift[cell] + self.turn[cell, None] * left(point)
         return velocity, self.stray[cell] + self.twist[cell] * np.hypot(point[:, 0], point[:, 1])
 
     def along(self, cell: Indices, point: Array) -> tuple[Array, Array]:
-        """Velocity of the body's own points (k, 2), that are there at the middle, and by how much it may be off (k,).
+        """Velocity (k, 2), mm/rad, of the body's points that are at `point` (k, 2) at the middle, and its error.
 
-        They move with their velocity, which changes by the turning times how far they get: hence the exponential.
+        The error (k,) is a bound over the whole interval. The points move with their velocity, which changes by the
+        turning times how far they get: hence the exponential.
         """
         velocity, off = self.at(cell, point)
         spin, half = self.spin[cell], self.half[cell]
@@ -153,7 +154,7 @@ class Encounter:
 
     @cached_property
     def fastest(self) -> Array:
-        """Greatest speed of any point of either region relative to the other (m,)."""
+        """Upper bound (m,) of the speed, mm/rad, of any point of either region relative to the other."""
         return np.minimum(fastest(self.second, self.motion), fastest(self.first, self.back))
 
     @cached_property
@@ -185,7 +186,7 @@ class Encounter:
 
 
 def fastest(body: Region, motion: Relative) -> Array:
-    """Greatest speed of any point of the body over intervals (m,): that of a disc's centre, and what turning adds."""
+    """Upper bound (m,) of the speed, mm/rad, of any point of the body: of its disc's centre, plus spin times radius."""
     centre, radius = body.disc
     velocity, off = motion.along(np.arange(len(motion.half)), _placed(centre[None], motion)[:, 0])
     speed: Array = np.hypot(velocity[:, 0], velocity[:, 1]) + off + motion.spin * radius
@@ -215,9 +216,12 @@ class GapSamples(NamedTuple):
 
 
 def see(meeting: Encounter, pairs: Pairs, precision: float, *, whole: bool = False) -> GapSamples:
-    """Find D at the middle of each interval from the pairs that may be the nearest there; every interval has one.
+    """Find D at the middle of each interval from the pairs that may be the nearest there.
 
-    Depths are found to `precision`, or 2 %; `whole`: among all features, not only those paired.
+    Every interval has one or more.
+
+    The depth of an overlap is found to `precision`, mm, or to 2 % of it if that is more. `whole` looks for the deepest
+    point among all features, not only those paired.
     """
     first, second, motion = meeting.first, meeting.second, meeting.motion
     cell, every = pairs.cell, np.arange(len(motion.half))

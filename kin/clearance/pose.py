@@ -113,7 +113,7 @@ class Sampled:
 
     @property
     def steps(self) -> int:
-        """Number of steps of a turn."""
+        """Number of equal steps of the turn."""
         return len(self.pose) - 1
 
     @cached_property
@@ -181,7 +181,7 @@ class Sampled:
 
 
 def alike(first: PlaneMotion, other: PlaneMotion) -> bool:
-    """Whether two bodies move as one, or both stand still."""
+    """Whether two bodies never move relative to each other: both at rest, or with the same motion."""
     if first is other or (isinstance(first, Still) and isinstance(other, Still)):
         return True
     if isinstance(first, Turning) and isinstance(other, Turning):

@@ -55,7 +55,7 @@ class Support(NamedTuple):
 
 
 class Box(NamedTuple):
-    """Least and greatest coordinates, mm."""
+    """Box parallel to the axes: least and greatest x and y, mm."""
 
     x_min: float
     y_min: float
@@ -245,7 +245,7 @@ class Contour(Pieces):
 
     @cached_property
     def box(self) -> Box:
-        """Bounding box, exact."""
+        """Exact bounding box, mm: extremes of arcs and Bezier pieces count, not only their ends."""
         point = self.support(np.array([0.0, 0.5, 1.0, 1.5]) * np.pi).point
         return Box(float(point[2, 0]), float(point[3, 1]), float(point[0, 0]), float(point[1, 1]))
 

@@ -294,5 +294,5 @@ class Pieces:
 
 
 def wrapped(angle: Array) -> Array:
-    """Angles brought to [-pi, pi)."""
+    """Angles, rad, brought to [-pi, pi) by whole turns."""
     return np.mod(angle + np.pi, TURN) - np.pi

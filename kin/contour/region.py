@@ -99,7 +99,7 @@ class Region:
 
     @cached_property
     def chain(self) -> Arcs:
-        """The pieces alone, in order."""
+        """Pieces of the boundary in order, without its corners and the point inside."""
         return self.arcs.take(np.arange(self.pieces))
 
     @cached_property

@@ -39,7 +39,7 @@ class Elastic(NamedTuple):
 
     @property
     def together(self) -> Array:
-        """Share of the stiffness along the travel that is left while both bear (n,): all of it."""
+        """Share of the stiffness along the travel that is left while both contacts bear (n,): 1, as nothing rubs."""
         return np.ones_like(self.preload)
 
     def apart(self, gap: Array) -> Elastic:

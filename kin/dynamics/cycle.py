@@ -53,7 +53,7 @@ class ContactSamples:
         return ContactSamples(self.stretch[:count], self.time[:count], self.level[:count], self.knots)
 
     def phi(self, i: int) -> float:
-        """Shaft angle of a sample."""
+        """Shaft angle, rad, of sample i."""
         return float(self.knots[self.stretch[i]] + self.time[i])
 
 
@@ -117,7 +117,10 @@ class Log:
             self.force(value, knot + at)
 
     def force(self, value: float, phi: float) -> None:
-        """Note a contact force."""
+        """Take in a contact force, N or N m, at the shaft angle phi, rad, for the turn's extremes.
+
+        A force below 0 counts as 0.
+        """
         value = max(value, 0.0)
         if value > self._greatest:
             self._greatest, self._greatest_at = value, phi
@@ -125,13 +128,13 @@ class Log:
             self._least, self._least_at = value, phi
 
     def meet(self, speed: float, phi: float) -> None:
-        """Note a meeting with a face."""
+        """Count an impact of the follower on a face, at a relative speed, m/s or rad/s, and shaft angle phi, rad."""
         self._impacts += 1
         if speed > self._velocity:
             self._velocity, self._velocity_at = speed, phi
 
     def turn(self) -> Turn:
-        """Sum up."""
+        """Result of the turn."""
         return Turn(
             self._greatest,
             self._greatest_at,

@@ -64,7 +64,7 @@ class Drive:
 
     @cached_property
     def half(self) -> Array:
-        """Half widths of the stretches (m,)."""
+        """Half widths of the stretches (m,), rad."""
         return 0.5 * np.diff(self.knots)
 
     def find(self, phi: float) -> int:
@@ -105,7 +105,7 @@ class Drive:
         return Drive(knots, series[0], series[1], series[2], jumps)
 
     def scaled(self, factor: float) -> Drive:
-        """The motion in another unit."""
+        """Give the motion with position, velocity and acceleration times a factor, such as for another unit."""
         rows = (factor * row for row in (self.position, self.velocity, self.acceleration, self.jumps))
         return Drive(self.knots, *rows)
 

@@ -72,11 +72,11 @@ class Span(Protocol):
         ...
 
     def at(self, time: Array) -> Array:
-        """Level (n,) at times (n,)."""
+        """Level (n,), above 0 while the state of contact lasts, at times (n,) from the knot, rad."""
         ...
 
     def once(self, time: float) -> float:
-        """Level at one time."""
+        """Level at one time from the knot, rad."""
         ...
 
 

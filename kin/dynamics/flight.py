@@ -100,7 +100,7 @@ class Flight:
         return None
 
     def face(self, time: float) -> int:
-        """The face that bears."""
+        """Face, LOWER or UPPER, whose contact force is the greater at a time."""
         depths = self._depths(time)
         return LOWER if len(depths) == 1 or self._force(depths[0]) > self._force(depths[1]) else UPPER
 

@@ -42,7 +42,7 @@ class Oscillator:
 
     @cached_property
     def natural(self) -> float:
-        """Undamped natural frequency r."""
+        """Undamped natural frequency r, radians per unit of time."""
         return math.sqrt(self.square)
 
     @cached_property
@@ -57,12 +57,12 @@ class Oscillator:
 
     @cached_property
     def fast(self) -> float:
-        """Greatest modulus of the two roots."""
+        """Greater modulus of the two roots of lambda^2 + 2 a lambda + r^2 = 0."""
         return self.natural if self.swings else self.decay + self.split
 
     @cached_property
     def slow(self) -> float:
-        """Least modulus of the two roots."""
+        """Lesser modulus of the two roots of lambda^2 + 2 a lambda + r^2 = 0."""
         return self.natural if self.swings else self._gentle
 
     @cached_property
@@ -107,7 +107,7 @@ class Oscillator:
         return math.exp(-(a + b) * time), math.exp(-self._gentle * time) * time * share
 
     def propagator(self, time: Array) -> Propagator:
-        """Move states on by times (n,), 0 or above."""
+        """Propagator over times (n,), 0 or above: the matrix that takes a state to the one that much later."""
         cosine, other = self.basis(time)
         p, q = self.weights
         return Propagator(cosine + p * other, other, -self.square * other, cosine - q * other)
@@ -183,7 +183,7 @@ class Free:
         return z * self.z + v * self.v, other
 
     def after(self, time: float) -> tuple[float, float]:
-        """State at a time."""
+        """State (z, z') a time after the start, 0 or above."""
         cosine, other = self.oscillator.basis_at(time - self.since)
         (a, b), (c, d) = self.summed(1.0, 0.0), self.summed(0.0, 1.0)
         return a * cosine + b * other, c * cosine + d * other

@@ -90,7 +90,7 @@ class Response:
 
     @cached_property
     def half(self) -> Array:
-        """Half widths of the stretches (m,)."""
+        """Half widths of the stretches (m,), rad."""
         return self.drive.half
 
     @cached_property

@@ -243,7 +243,7 @@ class Range:
 
     @property
     def sure(self) -> bool:
-        """Whether contact holds whatever the phases."""
+        """Whether contact is proved to hold at all speeds of the range, whatever the phases of the kicks."""
         return self.high.surely > 0.0
 
     @property

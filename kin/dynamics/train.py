@@ -93,7 +93,7 @@ class Train:
 
 
 def speed(rpm: float) -> float:
-    """Revolutions a minute in rad/s."""
+    """Angular velocity, rad/s, of a speed in revolutions a minute."""
     return rpm * TURN / 60.0
 
 
@@ -121,13 +121,13 @@ class Running:
 
     @property
     def bound(self) -> Oscillator:
-        """The train in contact."""
+        """Oscillator of the train in contact: spring, contact stiffness and damping act."""
         square = (self.train.stiffness + self.train.rate) / self.inertia
         return Oscillator(0.5 * self.train.damping / (self.train.mass * self.speed), square)
 
     @property
     def loose(self) -> Oscillator:
-        """The train without contact."""
+        """Oscillator of the train out of contact: the preload spring alone acts, without damping."""
         return Oscillator(0.0, self.train.rate / self.inertia)
 
     def response(self, drive: Drive) -> Response:
@@ -148,13 +148,13 @@ class Running:
         return transfer
 
     def static(self, position: float) -> float:
-        """Place z at rest on a face that stands still at a position."""
+        """Static z = x - s, m or rad, of the train at rest on a face that stands still at s = `position`."""
         train = self.train
         return -(train.preload + train.rate * position) / (train.stiffness + train.rate)
 
 
 class Residual(NamedTuple):
-    """Vibration in a dwell of the drive: its shaft angles (radians), and the greatest |z| beyond the static one."""
+    """Vibration in a dwell of the drive: its shaft angles, rad, and the greatest |z - static z|, m or rad."""
 
     start: float
     end: float
@@ -163,10 +163,10 @@ class Residual(NamedTuple):
 
 @dataclass(frozen=True)
 class Steady:
-    """The motion that repeats every turn, as long as contact holds: a contact force below 0 says that it does not.
+    """Steady state, which repeats every turn, on the assumption that contact holds; a force below 0 refutes that.
 
-    force       extremes of the contact force, N (N m), with shaft angles in radians
-    residual    one for each rest that was asked about
+    force       extremes of the contact force, N or N m, with shaft angles, rad
+    residual    vibration in each of the dwells passed to `steady`
     state       z and z' at shaft angle 0, before any jump there
     response    for values in between
     """
@@ -178,7 +178,7 @@ class Steady:
 
     @property
     def holds(self) -> bool:
-        """Whether contact is never lost."""
+        """Whether the contact force is nowhere below 0."""
         return self.force.least >= 0.0
 
     @property

@@ -93,7 +93,7 @@ class Follower(ABC):
     @property
     @abstractmethod
     def motion(self) -> IntendedMotion:
-        """The intended motion."""
+        """Intended motion over the shaft angle, mm or rad."""
 
     @property
     @abstractmethod
@@ -103,7 +103,7 @@ class Follower(ABC):
     @property
     @abstractmethod
     def envelope(self) -> Envelope:
-        """The exact contour."""
+        """Exact contour of the cam: the envelope of the roller or face."""
 
     @property
     def closure(self) -> Closure | None:
@@ -112,7 +112,7 @@ class Follower(ABC):
 
     @property
     def unit(self) -> Unit:
-        """Unit of the errors: mm, or deg where it swings."""
+        """Unit of motion errors: deg for a follower that swings, else mm."""
         return self.contacts[0].guide.unit
 
     def intended(self, phi: Array) -> Array:
@@ -126,11 +126,11 @@ class Follower(ABC):
 
     @property
     def si(self) -> float:
-        """Metres or radians in one of position."""
+        """Metres in a millimetre, or 1 for a position in radians."""
         return METRE if self.unit == "mm" else 1.0
 
     def moved_by(self, length: float) -> float:
-        """Position, metres or radians, by which a contact that moves by a length, mm, moves the follower, about."""
+        """Travel, m or rad, of the follower, about, as its contact moves by `length`, mm."""
         return METRE * length if self.unit == "mm" else length / self.lever
 
     @property
@@ -167,7 +167,7 @@ class Follower(ABC):
         """
 
     def resting(self, contour: Contour) -> list[Shifted]:
-        """Position, metres or radians, with each of its contacts resting on a contour."""
+        """Drives of the follower's position, m or rad, one for each of its contacts as it rests on a contour alone."""
         each = zip(self.contacts, self.drives(contour), strict=True)
         return [Shifted(drive, float(one.sense), -one.sense * self.si * one.zero) for one, drive in each]
 
@@ -217,7 +217,7 @@ class OfLaw(Moved):
 
     @property
     def motion(self) -> Piecewise:
-        """The law."""
+        """Intended motion: the law over the shaft angle."""
         return self.law
 
     @cached_property
@@ -252,7 +252,7 @@ class OfTransmission(Moved):
 
     @cached_property
     def motion(self) -> Swing:
-        """The swing over the shaft angle."""
+        """Intended motion: the swing psi over the shaft angle, rad."""
         from kin.follower.laws import Swing
 
         return Swing(self.transmission, self.share)
@@ -264,7 +264,7 @@ class OfTransmission(Moved):
 
     @cached_property
     def rests(self) -> Rests:
-        """Dwells of psi."""
+        """Dwells of psi over the shaft angle."""
         return tuple(dwells_of_transmission(self.transmission))
 
     @property

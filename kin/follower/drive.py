@@ -27,7 +27,7 @@ CLOSE = 1e-9  # rad: breaks that are closer are one
 
 
 class Excitation(Protocol):
-    """A position over the shaft angle, of period one turn, smooth between `breaks`: of a contact its own position."""
+    """Position over the shaft angle, of period one turn, smooth between `breaks`; such as a contact's own position."""
 
     @property
     def breaks(self) -> Array:
@@ -43,7 +43,7 @@ class Excitation(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Shifted:
-    """sign * drive + offset."""
+    """Excitation sign * drive + offset."""
 
     drive: Excitation
     sign: float = 1.0
@@ -51,7 +51,7 @@ class Shifted:
 
     @property
     def breaks(self) -> Array:
-        """The drive's."""
+        """Breaks of the drive that is shifted, rad of shaft."""
         return self.drive.breaks
 
     @property
@@ -67,7 +67,10 @@ class Shifted:
 
 
 def extremes_between(first: Excitation, second: Excitation, size: float) -> Extremes:
-    """Least and greatest of second - first over a turn, in SI; `size` is that of the positions, whose digits count."""
+    """Least and greatest of second - first over a turn, m or rad.
+
+    `size` is the size of the positions, of which rounding is a share.
+    """
     ends = np.concatenate([first.breaks, second.breaks, np.arange(LEAST) * TURN / LEAST])
     ends = distinct(np.mod(ends, TURN))
     ends = ends[np.diff(ends, prepend=-np.inf) > CLOSE]

@@ -162,7 +162,7 @@ class DisplacedFace:
 
     @property
     def breaks(self) -> Array:
-        """Breaks of the face."""
+        """Parameters of the breaks of the face displaced, rad."""
         return self.face.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
@@ -203,7 +203,7 @@ class FlatEnvelope:
         return points
 
     def frames(self, parameter: Array) -> Frames:
-        """Points, outward normals and their rates."""
+        """Points and outward normals of the contour at parameters (n,), and their rates by the parameter."""
         (p, slope, bend), t = self._support(np.asarray(parameter, dtype=float))
         u = unit(t[0])
         return Frames(p[:, None] * u + slope[:, None] * left(u), u, (p + bend) * t[1], t[1])
@@ -225,12 +225,12 @@ class FlatEnvelope:
 
     @property
     def extent(self) -> float:
-        """Greatest distance of the face."""
+        """Greatest distance of the face from the shaft, mm."""
         return float(np.abs(self._table[2]).max())
 
     @cached_property
     def regular(self) -> bool:
-        """Whether rho >= 0 all round."""
+        """Whether the contour has no undercut: its radius of curvature rho is 0 or above all round."""
         _, rho, p, _ = self._table
         return bool(rho.min() >= -1e-12 * np.abs(p).max())
 
@@ -288,7 +288,7 @@ class FlatEnvelope:
         return float(0.5 * weight @ (p * p - slope * slope)), float(weight @ p)
 
     def inset(self, distance: float) -> FlatEnvelope:
-        """Give the parallel contour inside."""
+        """Give the parallel contour inside, at a distance, mm."""
         return FlatEnvelope(self.pitch, self.out - distance)
 
     def displaced(self, by: Outwards) -> FlatEnvelope:
@@ -384,7 +384,7 @@ class RollerEnvelope:
         return points
 
     def frames(self, parameter: Array) -> Frames:
-        """Points, outward normals and their rates."""
+        """Points and outward normals of the contour at parameters (n,), and their rates by the parameter."""
         point, first, second = self.pitch.points(np.asarray(parameter, dtype=float))
         speed = np.hypot(first[:, 0], first[:, 1])
         normal = right(first) / speed[:, None]
@@ -408,7 +408,7 @@ class RollerEnvelope:
 
     @property
     def extent(self) -> float:
-        """Greatest coordinate of the pitch curve."""
+        """Greatest coordinate of the pitch curve, mm."""
         return float(np.abs(self._table[1]).max())
 
     @cached_property

@@ -380,7 +380,7 @@ class FlatPair(OfTransmission, _OnArm):
 
     @property
     def lever(self) -> float:
-        """About how far from the pivot the faces are touched, mm: the law's arm l."""
+        """Distance, mm, of the contacts from the pivot, about: the law's arm l."""
         return self.transmission.arm
 
     @cached_property
@@ -392,16 +392,16 @@ class FlatPair(OfTransmission, _OnArm):
 
     @property
     def closure(self) -> Closure:
-        """The angle by which the faces stand wider than they need."""
+        """Rule for the backlash: the angle by which the faces stand wider apart than the contour needs."""
         return Closure(self.play_limit, lever=2.0)
 
     @property
     def pitch(self) -> Transmission:
-        """The line through the pivot along face A: W's polar pitch curve."""
+        """Line through the pivot along face A, which envelops W's polar pitch curve."""
         return self.transmission
 
     def play_limit(self, tolerance: float) -> float:
-        """Greatest play, degrees, from such shifts at both faces."""
+        """Greatest play or interference, degrees, of a contour that is off by `tolerance`, mm, at both faces."""
         first, second = self.faces
         swing = first.leeway(*self._touched, tolerance) + second.leeway(*self._touched_ahead, tolerance)
         return float(np.degrees(swing.max()))

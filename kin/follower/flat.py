@@ -70,7 +70,7 @@ class FlatFace(Follower):
 
     @property
     def motion(self) -> Lift:
-        """The lift: of a yoke that of face 1."""
+        """Intended lift; of a yoke that of face 1, mm."""
         return self.lift
 
     @property
@@ -211,7 +211,7 @@ class Yoke(FlatFace):
 
 
 def lift_range(bearing: Bearing, begin: float, end: float) -> float:
-    """Range of q over [begin, end]."""
+    """Greatest less least q over the angles [begin, end], mm."""
     nodes = bearing.nodes(begin, end, np.empty(0))
     stretch, at_low, at_high = bearing.between(nodes)
 

@@ -93,7 +93,7 @@ class _Intended:
         return error - TURN * np.round(error / TURN) if self.mechanism.unit == "deg" else error
 
     def output(self, shaft: Array) -> Array:
-        """Output at shaft angles (n,)."""
+        """Intended output, rad or mm, at shaft angles (n,)."""
         return self.mechanism.output(shaft)
 
     def rows(self, theta: Array) -> Array:

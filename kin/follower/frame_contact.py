@@ -111,7 +111,7 @@ class Resting:
 
     @cached_property
     def over_shaft(self) -> Quintics:
-        """Output over the shaft angle."""
+        """Output over the shaft angle as quintics between the nodes."""
         return Quintics(self.shaft, _by_shaft(self.low), _by_shaft(self.high))
 
     def rows(self, theta: Array, interval: Indices) -> Array:

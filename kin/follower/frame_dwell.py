@@ -43,7 +43,7 @@ class Output(NamedTuple):
 
     @property
     def period(self) -> float:
-        """Length of the period."""
+        """Length of the period, rad."""
         return float(self.x[-1] - self.x[0])
 
 

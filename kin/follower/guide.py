@@ -48,12 +48,12 @@ class Arm:
 
     @property
     def unit(self) -> Unit:
-        """Degrees."""
+        """Unit of the position as reported: degrees."""
         return "deg"
 
     @property
     def si(self) -> float:
-        """Radians in a radian."""
+        """SI units in one unit of the position: 1, as it is in radians."""
         return 1.0
 
     @property
@@ -62,7 +62,7 @@ class Arm:
         return self.length
 
     def slack(self, extent: float = 0.0) -> float:  # noqa: ARG002 - an arm knows its own size
-        """Length, mm, that rounding may make of nothing."""
+        """Greatest length, mm, that rounding may feign."""
         return SLACK * (self.length + self.pivot)
 
     def step(self, extent: float) -> float:  # noqa: ARG002
@@ -188,16 +188,16 @@ class Arm:
 
     @property
     def square_bend(self) -> float:
-        """Second derivative of S^2 by u."""
+        """Second derivative of S^2 by u, a constant; see the module."""
         return -2.0
 
     def moment(self, u: Array) -> Array:
-        """The term m at u (n,)."""
+        """Term m of the module's formulas at u = r^2 (n,)."""
         return -0.5 * self.side * (u + (self.length - self.pivot) * (self.length + self.pivot))
 
     @property
     def moment_slope(self) -> float:
-        """Derivative of m by u."""
+        """Derivative of m by u, a constant; see the module."""
         return -0.5 * self.side
 
 
@@ -214,21 +214,21 @@ class Line:
 
     @property
     def unit(self) -> Unit:
-        """Millimetres."""
+        """Unit of the position as reported: millimetres."""
         return "mm"
 
     @property
     def si(self) -> float:
-        """Metres in a millimetre."""
+        """SI units in one unit of the position: metres in a millimetre."""
         return METRE
 
     @property
     def lever(self) -> float:
-        """A line has none."""
+        """Infinite: a line of travel has no arm."""
         return float("inf")
 
     def slack(self, extent: float) -> float:
-        """Length, mm, that rounding may make of nothing on a cam of that extent."""
+        """Greatest length, mm, that rounding may feign on a cam of that extent, mm."""
         return SLACK * (extent + abs(self.offset))
 
     def step(self, extent: float) -> float:
@@ -261,7 +261,7 @@ class Line:
 
     @property
     def turning(self) -> float:
-        """The lead falls all the way."""
+        """Zero: the lead falls at all distances from the shaft."""
         return 0.0
 
     def position(self, r: Array) -> Array:
@@ -332,16 +332,16 @@ class Line:
 
     @property
     def square_bend(self) -> float:
-        """Second derivative of S^2 by u."""
+        """Second derivative of S^2 by u, a constant; see the module."""
         return 0.0
 
     def moment(self, u: Array) -> Array:
-        """The term m at u (n,)."""
+        """Term m of the module's formulas at u = r^2 (n,)."""
         return np.full_like(u, self.offset)
 
     @property
     def moment_slope(self) -> float:
-        """Derivative of m by u."""
+        """Derivative of m by u, a constant; see the module."""
         return 0.0
 
 

@@ -48,25 +48,25 @@ class Bearing:
 
     @property
     def grown(self) -> Array:
-        """Change of the position per mm by which metal or touch grows along the normal, (n,): 1/K."""
+        """Change (n,) of the position, mm or rad, per mm by which metal or touch grows along the normal: 1/K."""
         grown: Array = 1.0 / self.gain
         return grown
 
     def metal(self, displacement: Complexes | complex) -> Array:
-        """Change of the position for displacements (n,) of the metal at the contact, mm."""
+        """Change (n,) of the follower's position, mm or rad, for displacements (n,) of the metal at the contact, mm."""
         change: Array = (np.conj(self.normal) * displacement).real / self.gain
         return change
 
     def touch(self, displacement: Complexes | complex) -> Array:
-        """Change of the position for displacements (n,) of the touch at the contact, mm."""
+        """Change (n,) of the follower's position, mm or rad, for displacements (n,) of the touch at the contact, mm."""
         return -self.metal(displacement)
 
     def metal_turned(self) -> Array:
-        """Change per rad by which the metal is turned counter-clockwise about the shaft, (n,)."""
+        """Change (n,) of the position, mm or rad, per rad of the metal's turn counter-clockwise about the shaft."""
         return self.metal(1j * self.point)
 
     def touch_turned(self, centre: Complexes) -> Array:
-        """Change per rad by which the touch is turned counter-clockwise about centres (n,)."""
+        """Change (n,) of the position, mm or rad, per rad of the touch's turn counter-clockwise about `centre` (n,)."""
         return self.touch(1j * (self.point - centre))
 
 

@@ -71,7 +71,7 @@ class GuidedPitch:
 
 
 def leeway(slope: Array, sag: Array, tolerance: float) -> Array:
-    """How far a roller may move before it leaves the pitch curve by `tolerance`, to second order: rad or mm (n,).
+    """Travel (n,), rad or mm, at which a roller leaves the pitch curve by `tolerance`, mm, to second order.
 
     `slope` and `sag` are those of `GuidedPitch.rates`.
     """

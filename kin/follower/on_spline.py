@@ -244,11 +244,11 @@ class OnSpline:
         return self.path.reached(phi)
 
     def looked_at_about(self, phi: Array) -> OnSpline:  # noqa: ARG002 - nothing is hidden
-        """Itself."""
+        """Give the roller itself: on a spline no contacts need to be known."""
         return self
 
     def spans(self) -> BezierSpans:
-        """Stretches of the whole path."""
+        """Stretches of the path all round."""
         return BezierSpans.over(self, *self.path.parts())
 
 
@@ -264,13 +264,13 @@ class BezierSpans:
 
     @staticmethod
     def over(held: OnSpline, row: Indices, low: Array, high: Array) -> BezierSpans:
-        """Stretches of pieces `row` (n,)."""
+        """Make the stretches of pieces `row` (n,) from parameter `low` to `high`, (n,) each."""
         shape = Shape.of(restrict(held.path.beziers.control[row], low, high), held.path.offset)
         return BezierSpans(held, row, low, high, shape)
 
     @property
     def middle(self) -> Array:
-        """Parameters (n,) of the middles."""
+        """Parameters (n,) of the middles of the stretches."""
         return 0.5 * (self.low + self.high)
 
     @property
@@ -279,11 +279,11 @@ class BezierSpans:
         return self.shape.half
 
     def quarters(self, which: NDArray[np.bool_]) -> BezierSpans:
-        """Quarters of some, by the parameter."""
+        """Four equal parts, by the parameter, of each stretch that the mask (n,) marks."""
         return BezierSpans.over(self.held, *quartered(self.piece, self.low, self.high, which))
 
     def one(self, i: int) -> BezierSpans:
-        """One of them."""
+        """Stretch i alone."""
         return BezierSpans.over(self.held, self.piece[[i]], self.low[[i]], self.high[[i]])
 
     def summit(self, law: Law, where: float) -> Array:
@@ -298,11 +298,11 @@ class BezierSpans:
         return np.concatenate([state.phi, near.phi])
 
     def state(self) -> State:
-        """The roller's centre at the middles."""
+        """Roller centre and its derivatives at the middles of the stretches."""
         return self.held.path.at(self.piece, self.middle)[0]
 
     def limits(self, state: State) -> Limits:
-        """Bounds over the spans."""
+        """Bounds of the derivatives over the stretches."""
         return state.limits(self.half, self.shape.curvature, self.shape.change)
 
     def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:

@@ -118,7 +118,7 @@ class OfRoller:
 
 @dataclass(frozen=True, eq=False)
 class _Rollers(Moved):
-    """What one roller and two have in common; each of the contacts has a roller of the same radius."""
+    """Common part of a follower with one roller and one with two rollers of the same radius."""
 
     side: Side  # of the contour on which the metal lies: 1 inside, -1 outside
     judged: ClassVar[int]  # the first so many contacts, by their motion error
@@ -135,7 +135,7 @@ class _Rollers(Moved):
 
     @property
     def lever(self) -> float:
-        """Length of the arm."""
+        """Length of the arm, mm; infinite on a line of travel."""
         return self.guides[0].lever
 
     def drives(self, contour: Contour) -> list[OfRoller]:
@@ -326,7 +326,7 @@ class DoubleRoller(OfTransmission, _Rollers):
 
     @property
     def closure(self) -> Closure:
-        """The gap at roller B while A is held in contact."""
+        """Rule for the play: the gap at roller B while roller A is held in contact."""
         return Closure(self.play_limit, lever=float(np.radians(self.transmission.arm)), radius=self.radius)
 
     @cached_property
@@ -335,7 +335,10 @@ class DoubleRoller(OfTransmission, _Rollers):
         return RollerEnvelope(TransmissionPitch(self.transmission), self.radius)
 
     def play_limit(self, tolerance: float) -> float:
-        """Greatest gap or interference at B, mm: e there, and how far the swing from e at A moves B on the cam."""
+        """Greatest gap or interference at roller B, mm, of a contour within `tolerance`, with roller A in contact.
+
+        It sums the error at B and the travel of B that comes of the swing by an error at A.
+        """
         first, (slope, bend) = self._rates
         swing = leeway(*first, tolerance)
         return float((tolerance + slope * swing + 0.5 * bend * swing**2).max())

@@ -58,7 +58,7 @@ class Law(Protocol):
 
 
 class Greatest(NamedTuple):
-    """An error that is reached, its shaft angle, and by how much the greatest of all may exceed it, proved."""
+    """Greatest error found, mm or rad, its shaft angle, and the proved remainder by which any error may exceed it."""
 
     error: float
     at: float
@@ -70,26 +70,26 @@ class Stretches(Protocol):
 
     @property
     def piece(self) -> Indices:
-        """Pieces they are on."""
+        """Piece (n,) on which each stretch lies."""
 
     @property
     def half(self) -> Array:
-        """Arc lengths, mm, from the middles within which both ends lie."""
+        """Greatest arc length (n,), mm, from the middle of each stretch to its ends."""
 
     def quarters(self, which: NDArray[np.bool_]) -> Stretches:
-        """Quarters of some."""
+        """Four parts of each stretch that the mask (n,) marks."""
 
     def one(self, i: int) -> Stretches:
-        """One of them."""
+        """Stretch i alone."""
 
     def summit(self, law: Law, where: float) -> Array:
         """Shaft angles (2,) near the greatest error of a single one, about `where` off its middle."""
 
     def state(self) -> State:
-        """The roller's centre at the middles."""
+        """Roller centre and its derivatives at the middles of the stretches."""
 
     def limits(self, state: State) -> Limits:
-        """Bounds over the stretches, whose state that is."""
+        """Bounds of the derivatives over the stretches, from the state at their middles."""
 
     def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
         """Upper bounds of the error, an error reached in each, and where, off the middle: (n,) each.
@@ -106,13 +106,13 @@ class Tracked(Protocol):
         """Greatest motion error, mm or rad, that rounding may feign."""
 
     def meant(self, rows: Array) -> Array:
-        """Intended position and its derivatives (m, n) from the law's."""
+        """Intended own position and its derivatives (m, n), mm or rad, from the law's rows (m, n)."""
 
     def reached(self, phi: Array) -> Array:
-        """Position, mm or radians, at shaft angles phi (n,)."""
+        """Own position (n,), mm or rad, of the roller in contact at shaft angles phi (n,), rad."""
 
     def spans(self) -> Stretches:
-        """Stretches of all that it may touch."""
+        """Stretches of all pieces that the roller may touch."""
 
     def looked_at_about(self, phi: Array) -> Tracked:
         """Give the roller with the contacts at and next to the shaft angles (n,), rad, added to those known."""
@@ -147,7 +147,7 @@ class Held:
 
     @cached_property
     def position(self) -> Array:
-        """Position (n,), mm or radians."""
+        """Position (n,) of the guide, mm or rad, in the contacts known."""
         return self.guide.position(self.r)
 
     def meant(self, rows: Array) -> Array:
@@ -162,7 +162,7 @@ class Held:
 
     @cached_property
     def slack(self) -> float:
-        """Length, mm, that rounding may make of nothing."""
+        """Greatest length, mm, that rounding may feign."""
         return self.guide.slack(extent(self.pieces))
 
     @cached_property
@@ -307,14 +307,14 @@ class Spans:
     half: Array
 
     def quarters(self, which: NDArray[np.bool_]) -> Spans:
-        """Quarters of some."""
+        """Four equal parts of each stretch that the mask (n,) marks."""
         half = 0.25 * self.half[which]
         middle = np.concatenate([self.middle[which] + k * half for k in (-3.0, -1.0, 1.0, 3.0)])
         sign, piece = np.tile(self.sign[which], 4), np.tile(self.piece[which], 4)
         return Spans(self.held, sign, piece, middle, np.tile(half, 4))
 
     def one(self, i: int) -> Spans:
-        """One of them."""
+        """Stretch i alone."""
         return Spans(self.held, self.sign[[i]], self.piece[[i]], self.middle[[i]], self.half[[i]])
 
     def summit(self, law: Law, where: float) -> Array:
@@ -326,12 +326,12 @@ class Spans:
         return np.concatenate([state.phi, near.state().phi])
 
     def state(self) -> State:
-        """The roller's centre at the middles."""
+        """Roller centre and its derivatives at the middles of the stretches."""
         pieces = self.held.pieces.take(self.piece)
         return State.of(pieces.points(self.middle), pieces.tangents(self.middle), pieces.curvature, self.held.guide)
 
     def limits(self, state: State) -> Limits:
-        """Bounds over the spans."""
+        """Bounds of the derivatives over the stretches."""
         return state.limits(self.half, np.abs(state.k))
 
     def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:

@@ -84,7 +84,7 @@ class CamshaftIntent:
 
     @property
     def stretches(self) -> list[tuple[float, float, LobeIntent | BarIntent]]:
-        """From below: from, to, and what is outermost there."""
+        """Outermost lobe or bar in each interval of height, from below: (from, to, part), mm."""
         shaft, *journals = self.bars
         parts: list[LobeIntent | BarIntent] = [*self.lobes, *journals, shaft]
         levels = sorted({z for part in parts for z in (part.low, part.high)})

@@ -49,7 +49,7 @@ class Cut:
 
     @cached_property
     def path(self) -> Arcs:
-        """The closed path."""
+        """Closed path of the cutter's centre in the plane, mm."""
         return arcs_of(self.loop)
 
     @cached_property

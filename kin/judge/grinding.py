@@ -49,7 +49,7 @@ COARSE = 0.9  # of a join's radius: its centre lies nearer the shaft than that
 
 @dataclass(frozen=True)
 class Grinding:
-    """How tables of a lobe are meant, mm.
+    """Meaning of the tables of a lobe, mm.
 
     wheel   radius of the wheel whose distance from the shaft is tabled; None where none is given
     roller  radius of the roller whose lift is tabled; None where there is no such table
@@ -85,7 +85,11 @@ class Ground(NamedTuple):
 
 
 def ground(path: Path, grinding: Grinding, tolerance: float) -> Ground:
-    """Simulate a table of the wheel's or the roller's places; raises ReadError for what is none or grinds no lobe."""
+    """Contour that a grinder's table leaves of a lobe, by simulating the wheel at its rows.
+
+    Pieces shorter than a thousandth of `tolerance`, mm, are left out. Raises ReadError for a file that is no such
+    table, or whose wheel leaves no single contour.
+    """
     table = _read(path, grinding)
     loop, off = _joins(table.angles, table.distance, path)
     fine = FINE * tolerance
@@ -243,5 +247,8 @@ def _joins(angles: Array, distance: Array, path: Path) -> tuple[Arcs, float]:
 
 
 def bend(away: Array, share: Array) -> Array:
-    """Bound of |r'''|, mm/rad^3, of circles in polar coordinates whose centres lie `away`, a `share` of the radius."""
+    """Upper bound (n,) of |r'''|, mm/rad^3, of circular arcs r(angle) about the shaft in polar coordinates.
+
+    Their centres lie `away`, mm, from the shaft, and `share` is that distance over the radius, below 1.
+    """
     return away * (1.0 + share * (1.0 + 3.0 / (1.0 - share * share)))

@@ -46,31 +46,36 @@ class Hole:
 
     @cached_property
     def contour(self) -> Contour:
-        """The outline."""
+        """Outline of the hole as a contour, mm."""
         return Contour.from_bulges(np.array(self.points), np.array(self.bulges))
 
 
 def round_hole(name: str, kind: str, centre: tuple[float, float], diameter: float) -> Hole:
-    """A circle, as two halves."""
+    """Make a round hole, diameter in mm, its outline two half circles."""
     x, y = centre
     return Hole(name, kind, ((x + 0.5 * diameter, y), (x - 0.5 * diameter, y)), (1.0, 1.0))
 
 
 @dataclass()
 class Tally:
-    """What was found of one kind of opening or outline, over all sections of a part."""
+    """Deviations and faults of one kind of opening or outline, gathered over all sections of a part.
+
+    worst   greatest deviation so far, mm
+    detail  words for the place of it
+    faults  faults in words, each of which fails the check
+    """
 
     worst: float = 0.0
     detail: str = ""
     faults: list[str] = field(default_factory=list)
 
     def measured(self, off: float, detail: str) -> None:
-        """Take in a deviation, mm."""
+        """Note a deviation, mm, and its words if it is the greatest so far."""
         if off >= self.worst:
             self.worst, self.detail = off, detail
 
     def check(self, name: str, tolerance: float) -> Check:
-        """Make the check."""
+        """Check that fails on any fault, else compares the greatest deviation with the tolerance, mm."""
         if self.faults:
             more = f"; and {len(self.faults) - MOST_NAMED} more" if len(self.faults) > MOST_NAMED else ""
             detail = "; ".join(self.faults[:MOST_NAMED]) + more

@@ -95,7 +95,10 @@ class Lean(NamedTuple):
 
 
 def heights(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[tuple[float, Layer]]:
-    """Heights at which a solid is looked at, the plain disc's first, with their layers."""
+    """Heights z, mm, at which a solid's sections are judged, each with its layer.
+
+    The plain disc's height is the first.
+    """
     samples = []
     main = max((layer for layer in layers if layer.outline is None and layer.inset == (0.0, 0.0)), key=_height)
     for layer in (main, *(other for other in layers if other is not main)):

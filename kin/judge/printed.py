@@ -73,7 +73,10 @@ def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, pat
 
 
 def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
-    """How far the section at a height is from the union of the slabs there."""
+    """Greatest distance, mm, of the section at a height from the union of the slabs there.
+
+    It is inf where the one or the other is empty.
+    """
     _, outline = section(mesh, height)
     loops = [outline.points[ring] for ring in rings(outline, path)]
     if not loops or not slabs:

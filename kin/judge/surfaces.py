@@ -83,9 +83,9 @@ def outermost_first(surfaces: Sequence[SurfaceIntent]) -> list[SurfaceIntent]:
 
 
 def deepest(part: PartIntent) -> int:
-    """How many others a closed chain of a part may lie inside: holes lie in metal, and nothing in the air.
+    """Greatest number of other chains that a closed chain of a part may lie inside.
 
-    Where openings are passed over, so is what is drawn in them.
+    Holes lie in metal, and nothing lies in the air. Where openings are passed over, so is what is drawn in them.
     """
     if not part.closed:
         return MOST_CONTOURS

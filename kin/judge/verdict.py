@@ -74,7 +74,7 @@ class OfSurfaces:
 
     @property
     def motion(self) -> MotionError | None:
-        """Error of the follower's motion."""
+        """Motion error of the follower on the first surface; None without contact."""
         return self.surface.motion
 
     @property
@@ -94,12 +94,12 @@ class OfSurfaces:
 
     @property
     def perimeter(self) -> float | None:
-        """Length of the contour, mm."""
+        """Length of the first surface's contour, mm."""
         return self.surface.perimeter
 
     @property
     def area(self) -> float | None:
-        """Area that the contour encloses, mm^2."""
+        """Area that the first surface's contour encloses, mm^2."""
         return self.surface.area
 
 

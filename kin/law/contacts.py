@@ -64,7 +64,7 @@ class Roller:
 
 @dataclass(frozen=True)
 class KnifeEdge:
-    """A point."""
+    """Touch of a knife edge: a point."""
 
     radius: ClassVar[float] = 0.0
     word: ClassVar[str] = "knife edge"
@@ -136,7 +136,7 @@ class Contact(Generic[G_co, T_co]):
         return own
 
     def away_from(self, side: Side) -> Contact[G_co, T_co]:
-        """The contact with its own position counted away from metal that lies inside (1) or outside (-1)."""
+        """Give the contact with its own position counted away from metal inside (1) or outside (-1) the contour."""
         sense: Side = 1 if self.sense == side else -1
         return replace(self, datum=side * self.datum, apart=side * self.apart, sense=sense)
 
@@ -146,7 +146,7 @@ class Contact(Generic[G_co, T_co]):
         return Contact(self.guide, KnifeEdge(), self.datum, self.sense, self.apart, self.turned)
 
     def raised(self, by: float) -> Contact[G_co, T_co]:
-        """The contact for positions of the follower that count from `by` below their zero."""
+        """Give the contact for a follower's position that counts from `by`, mm or rad, below its zero."""
         return replace(self, datum=self.datum - self.sense * by)
 
 

@@ -98,7 +98,7 @@ class FrameSwing:
         return self.motion.on(phi) + self.start
 
     def image(self, swing: Series) -> Series:
-        """psi* of psi."""
+        """Swing psi* that follows after half a turn of the relative angle, from the swing psi; rad."""
         return asin(self.lean - sin(swing))
 
     def _later(self, phi: Array, order: int) -> Array:
@@ -144,7 +144,7 @@ class FrameSwing:
         return joined(places, made, -1)
 
     def lift(self, moved: float) -> float:
-        """S - S(0) where the swing is psi_0 + `moved`, mm."""
+        """Lift S - S(0), mm, of the frame where the swing is psi_0 + `moved`, rad."""
         return self.side * 2.0 * self.ground * math.cos(self.start + 0.5 * moved) * math.sin(0.5 * moved)
 
 

@@ -98,7 +98,7 @@ class AcceleratedPiece(Alike):
 
     @property
     def kind(self) -> tuple[str, int]:
-        """Accelerations of one shape."""
+        """Key of pieces whose acceleration has one shape."""
         return self.shape, 0
 
     @property

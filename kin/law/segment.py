@@ -31,16 +31,16 @@ class Stretch(Protocol):
 
 
 class Round(ABC):
-    """A stretch mean + x cos t + y sin t; such stretches are worked out together."""
+    """A stretch mean + x cos t + y sin t. Stretches of this class are evaluated together."""
 
     @property
     @abstractmethod
     def first_harmonic(self) -> tuple[float, float, float]:
-        """Mean, x and y."""
+        """Coefficients (mean, x, y) of mean + x cos t + y sin t."""
 
 
 class Alike(ABC):
-    """A stretch that a few numbers describe; all of a kind are worked out together."""
+    """A stretch that a few numbers describe. Stretches of one kind are evaluated together."""
 
     @property
     @abstractmethod
@@ -50,7 +50,7 @@ class Alike(ABC):
     @property
     @abstractmethod
     def numbers(self) -> tuple[float, ...]:
-        """The numbers."""
+        """Numbers that describe the stretch, as many for all of one kind: a column of `together`."""
 
     @abstractmethod
     def together(self, rows: Array) -> Stretch:
@@ -65,7 +65,7 @@ class Constant(Round):
 
     @property
     def first_harmonic(self) -> tuple[float, float, float]:
-        """The value, and nothing more."""
+        """Coefficients (value, 0, 0)."""
         return self.value, 0.0, 0.0
 
     def __call__(self, t: Series, /) -> Series:
@@ -117,16 +117,16 @@ class Power(Alike):
 
     @property
     def kind(self) -> tuple[str, int]:
-        """Polynomials of one length."""
+        """Key of polynomials with as many coefficients."""
         return "power", len(self.coefficients)
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """The coefficients."""
+        """Coefficients of the polynomial."""
         return self.coefficients
 
     def together(self, rows: Array) -> Stretch:
-        """Polynomials by their coefficients."""
+        """Give one function for n polynomials: column i of `rows` (k, n) is for point or interval i."""
         return partial(horner, rows)
 
     def __call__(self, u: Series, /) -> Series:

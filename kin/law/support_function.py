@@ -58,7 +58,7 @@ class Circle(Round):
 
     @property
     def first_harmonic(self) -> tuple[float, float, float]:
-        """Radius and centre."""
+        """Coefficients of the support function r + x cos t + y sin t: radius and centre, mm."""
         return self.radius, self.x, self.y
 
     def __call__(self, t: Series, /) -> Series:
@@ -141,7 +141,7 @@ class Lift:
         return rho.mid, rho.rad
 
     def radius_on(self, t: Series, side: Side = 1) -> Series:
-        """Give rho = p + p'' as a jet or ball jet of the shaft angle, two orders fewer."""
+        """Radius of curvature rho = p + p'', mm, as a jet or ball jet two orders lower than the shaft angle's, `t`."""
         p = self._centred.on(t, side)
         bend = p.derivative().derivative()
         for _ in range(2):

@@ -109,7 +109,7 @@ class RRR(_Pivoted):
         return Reached(arm.bearing(about) + gqp.beside * side, joint)
 
     def joints(self, point: Place, reached: Reached) -> dict[str, Joint]:
-        """P, Q and the pivot G."""
+        """Joints by their letters: P, Q, and the pivot G."""
         pins = {"P": point, "Q": reached.joint}
         return {
             **{name: Joint("pin", Link(place, None)) for name, place in pins.items()},
@@ -157,20 +157,20 @@ class RRP:
         return Reached(output, (output * c + self.through[0], output * s + self.through[1]))
 
     def output_link(self, reached: Reached) -> Link:
-        """Return the slide."""
+        """Return the slide as a link."""
         return Link(reached.joint, None)
 
     def joints(self, point: Place, reached: Reached) -> dict[str, Joint]:
-        """P, and Q on the fixed line."""
+        """Joints by their letters: P, and Q, which slides on the fixed line."""
         slide = Link(reached.joint, reached.output.constant(self.direction))
         return {"P": Joint("pin", Link(point, None)), "Q": Joint("slide", slide)}
 
     def middle(self, x: Array, y: Array) -> float:  # noqa: ARG002 - one call for all dyads
-        """Return 0: no angle is taken."""
+        """Return 0: a slide's output has no angle to choose."""
         return 0.0
 
     def turned(self, x: Array, y: Array) -> float:  # noqa: ARG002 - one call for all dyads
-        """Return 0: nothing turns."""
+        """Return 0: a slide does not turn."""
         return 0.0
 
 

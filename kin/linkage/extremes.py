@@ -61,7 +61,7 @@ class Figures:
 
     @property
     def swing(self) -> float:
-        """Range of the output."""
+        """Greatest less least output, rad or mm."""
         return self.greatest.value - self.least.value
 
 

@@ -107,7 +107,7 @@ class FourBar:
         demand_finite("joint's offset", self.joint_offset)
 
     def margins(self, s: float | Array, s1: float | Array, w: float) -> Array:
-        """How far AD is from |r1 - r4| and from r1 + r4, mm (2, n): negative where the loop cannot close."""
+        """Distances of AD from its limits |r1 - r4| and r1 + r4, mm (2, n): negative where the loop cannot close."""
         x, y = _frame_terms(s, s1, w, self.coupler, self.joint_offset)
         q = np.atleast_1d(total(*x) ** 2 + total(*y) ** 2)
         return triangle_margins(self.ground, self.rocker, q, *excesses(x, y, self.ground, self.rocker))
@@ -130,7 +130,7 @@ class FourBar:
         return _rocker(self.ground, positions)
 
     def joints(self, positions: Positions) -> dict[str, Joint]:
-        """B and D."""
+        """Joints by their letters: B and D."""
         return {"B": pivot((self.ground, 0.0), positions.output), "D": Joint("pin", Link(positions.joint, None))}
 
     def deviation(
@@ -166,12 +166,12 @@ class FourBar:
         return np.abs(arm) - self.rocker - link, math.pi - np.angle(arm)
 
     def transmission(self, positions: Positions) -> tuple[Array, Array]:
-        """Between frame and rocker."""
+        """Sine and cosine (n,) of the angle between frame and rocker."""
         frame, output = positions.frame.c[0], positions.output.c[0]
         return np.sin(frame + output), -np.cos(frame + output)
 
     def force(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
-        """Between DP and DB."""
+        """Sine and cosine (n,) of the angle between DP, along which the frame's force acts, and the rocker DB."""
         ax, ay = positions.from_instant_centre(slope, slope1)
         dx, dy = (row.c[0] for row in positions.joint)
         bx, by = dx - self.ground, dy
@@ -274,12 +274,12 @@ class InvertedSliderCrank:
         return off, QUARTER - np.angle(along)
 
     def transmission(self, positions: Positions) -> tuple[Array, Array]:
-        """A right angle throughout: the block presses across the frame's line."""
+        """Sine and cosine (n,) of a right angle: the block always presses across the frame's line."""
         frame = positions.frame.c[0]
         return np.ones_like(frame), np.zeros_like(frame)
 
     def force(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
-        """Between BP and the force, which passes through P across the frame's line."""
+        """Sine and cosine (n,) of the angle between BP and the force through P, across the frame's line."""
         frame = positions.frame.c[0]
         c, s = np.cos(frame), np.sin(frame)
         px, py = positions.instant_centre(slope, slope1)
@@ -340,7 +340,7 @@ class SliderCrank:
         return Link(positions.joint, None)
 
     def joints(self, positions: Positions) -> dict[str, Joint]:
-        """D, on the fixed line."""
+        """Joints by their letters: D, which slides on the fixed line."""
         return {"D": Joint("slide", Link(positions.joint, positions.output.constant(0.0)))}
 
     def deviation(
@@ -375,12 +375,12 @@ class SliderCrank:
         return place.imag - self.offset - link, place.real
 
     def transmission(self, positions: Positions) -> tuple[Array, Array]:
-        """Between frame and the slide's normal."""
+        """Sine and cosine (n,) of the angle between the frame and the slide's normal."""
         frame = positions.frame.c[0]
         return np.cos(frame), np.sin(frame)
 
     def force(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
-        """Between DP and the slide's normal."""
+        """Sine and cosine (n,) of the angle between DP, along which the frame's force acts, and the slide's normal."""
         return angle(*positions.from_instant_centre(slope, slope1), positions.joint[0].c[0])
 
     def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:

@@ -73,7 +73,10 @@ class FrameBearing:
         return self.output(slope1, -slope)
 
     def squareness(self) -> Array:
-        """Change per rad by which faces 2 and its opposite are turned counter-clockwise about the frame's mid-line."""
+        """Change (n,) of the output, rad or mm, per rad by which face 2 and its opposite are out of square.
+
+        They turn counter-clockwise about a point of the frame's mid-line.
+        """
         (s, _), (_, slope1) = self.motion.faces
         middle = s - 0.5 * self.mechanism.breadth
         return self.output(-(slope1 + middle))

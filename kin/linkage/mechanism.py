@@ -83,32 +83,32 @@ class LinkageMotion:
 
     @cached_property
     def frame(self) -> Array:
-        """theta_3."""
+        """Angle theta_3 of the frame and its derivatives by the relative angle, rad."""
         return self.solved.linkage.frame.derivatives()
 
     @cached_property
     def outputs(self) -> tuple[Array, ...]:
-        """Output of the linkage, then of each dyad."""
+        """Outputs of linkage and dyads, rad or mm, with derivatives by the relative angle: (order + 1, n) each."""
         return tuple(output.derivatives() for output in self.solved.outputs)
 
     @cached_property
     def joints(self) -> tuple[Array, ...]:
-        """Joint D, then the joint that each dyad's point drives."""
+        """Joint D, then the joint that each dyad's point drives, mm, with derivatives: (2, order + 1, n) each."""
         return tuple(np.stack([row.derivatives() for row in joint]) for joint in self.solved.joints)
 
     @cached_property
     def faces(self) -> Array:
-        """Lifts S and S1."""
+        """Lifts S and S1 with derivatives by the relative angle, mm: (2, order + 1, n)."""
         return np.stack([lift.derivatives() for lift in self.solved.lifts])
 
     @property
     def joint(self) -> Array:
-        """Joint D between frame and output link."""
+        """Joint D between frame and output link, mm, with derivatives: (2, order + 1, n)."""
         return self.joints[0]
 
     @property
     def output(self) -> Array:
-        """Output of the last link."""
+        """Output of the last link with derivatives by the relative angle, rad or mm: (order + 1, n)."""
         return self.outputs[-1]
 
     def over_shaft(self, row: Array) -> Array:
@@ -296,7 +296,10 @@ class Mechanism:
 
     @cached_property
     def about(self) -> tuple[float, ...]:
-        """Direction that each dyad takes the direction of its point about, for an output without a jump."""
+        """Directions, rad, one a dyad: the angle of its point counts within half a turn of it, so as not to jump.
+
+        Raises IntentError for a dyad whose point circles its ground pivot: its output would rotate.
+        """
         found: tuple[float, ...] = ()
         theta: Array = np.linspace(0.0, TURN, _LOOKS, endpoint=False)
         for loop, dyad in enumerate(self.dyads):

@@ -35,14 +35,14 @@ class CamShift(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """The line that most cams stand about.
+    """Straight axis through most of the cams.
 
-    middle                 height, mm, at which the shift is told
+    middle                 height, mm, at which the shift is stated
     shift, lean (2,)       mm, and mm by mm of height
-    covariance (4, 4)      of both
-    own (m, 2)             eccentricity of each cam about the line, mm
+    covariance (4, 4)      of shift and lean
+    own (m, 2)             eccentricity of each cam about the axis, mm
     own_deviations (m,)    its standard deviation, in the direction in which it is the greatest, mm
-    length                 heights over which the cams lie, mm
+    length                 range of the heights of the cams, mm
     """
 
     middle: float
@@ -55,7 +55,7 @@ class Axis:
 
     @property
     def lean_deviation(self) -> float:
-        """Standard deviation of the lean in its own direction, mm by mm."""
+        """Standard deviation of the lean, along its own direction, mm by mm of height."""
         size = float(np.hypot(*self.lean))
         direction = self.lean / size if size else np.array([1.0, 0.0])
         return float(np.sqrt(direction @ self.covariance[2:, 2:] @ direction))

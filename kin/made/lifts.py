@@ -114,10 +114,11 @@ def probe_of(follower: Follower, side: Side, touch: Touch | None) -> Follower:
 
 
 def points_of_lifts(readings: Readings, *, aligned: bool = False, alone: bool = False) -> Lifts:
-    """Make points of lifts, as they stand, or `aligned`: with the angle taken out by which they are late.
+    """Turn lifts into points of the surface as they stand, or `aligned`, with their lateness taken out.
 
-    Raises UnlikePointsError where the contact would leave the probe's face, and for readings that are far off, saying
-    what they look like; those of a cam that is known to be turned `alone` may be so however it is turned.
+    Lateness is the angle by which the lifts follow the exact cam. A constant in them is always taken out, as their zero
+    is arbitrary. Raises UnlikePointsError where the contact would leave the probe's face, and for readings that are far
+    off; its message says what they look like. `alone` says that the cam may be turned on its shaft by any angle.
     """
     follower, side, shaft, lift, touch, _ = readings
     late = lateness([readings if aligned else readings.few()])  # else it is put back, so that near it will do
@@ -206,7 +207,7 @@ def rows_of_lifts(readings: Sequence[Readings], zeros: Sequence[float]) -> tuple
 
 
 def of_other_shaft(readings: Sequence[Readings]) -> _Factor | None:
-    """What the angles of several cams have to be multiplied by to be those of their cams; None where by nothing."""
+    """Factor that turns crank angles into cam angles, or back, if only then the readings fit their cams; else None."""
     few = [one.few() for one in readings]
     longest = max(few, key=lambda one: float(np.ptp(one.shaft)))
     for other in _factors(longest):
@@ -251,7 +252,7 @@ def _demand_alike(readings: Readings, late: float, *, aligned: bool) -> None:
 
 
 class _Factor(NamedTuple):
-    """What angles, and lifts, may have to be multiplied by, what they then look, and remedies."""
+    """A mistake in angles or lifts: the factors that undo it, words for how the readings look, and remedies."""
 
     factor: float
     words: list[str]
@@ -268,7 +269,7 @@ class _Look(NamedTuple):
 
 
 def _factors(readings: Readings) -> list[_Factor]:
-    """What may have happened to angles and lifts; nothing is the first, those of another shaft are the last."""
+    """Mistakes that angles and lifts may hold: none first, degrees of another shaft last."""
     span = float(np.ptp(readings.shaft))
     factors = [_Factor(1.0, [], []), _Factor(1.0, ["to fall as the follower rises"], ["turn their sign round"], -1.0)]
     if abs(math.degrees(span) / TURN - 1.0) < 1.0 - BETWEEN:

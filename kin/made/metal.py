@@ -88,9 +88,9 @@ class Metal:
     def of(
         follower: Follower, side: Side, deviation: Deviation, finest: int = 0, gauge: Follower | None = None
     ) -> Metal:
-        """Metal whose surface lies at a deviation along the normals of the exact contour, above 0 for metal too much.
+        """Metal whose surface lies `deviation` mm off the exact contour along its normal, above 0 for too much.
 
-        It lies inside that contour (`side` 1) or outside (-1); the deviation has `finest` spans or waves a turn.
+        It lies inside the contour (`side` 1) or outside (-1). The deviation has `finest` spans or waves a turn.
         """
 
         def skin(parameter: Array, height: float) -> tuple[Array, Array]:

@@ -91,7 +91,7 @@ class Errors:
 
     @property
     def remaining(self) -> Array:
-        """Error less the offset (n,)."""
+        """Error less the offset (n,), mm or rad."""
         remaining: Array = self.rows[0] - self.offset
         return remaining
 
@@ -170,12 +170,12 @@ class Play:
 
 
 def metal_of(follower: Follower, side: Side, curve: Smooth) -> Metal:
-    """The metal of a smoothed deviation."""
+    """Metal whose surface lies off the exact contour by a smoothed deviation, mm."""
     return Metal.of(follower, side, lambda t: curve.rows(t, 1), curve.spans)
 
 
 def step_of(curve: Smooth) -> float:
-    """Step, rad, of the differences that give derivatives of what a curve adds to a motion."""
+    """Step, rad of shaft, of the differences by which the derivatives of a curve's effect on the motion are taken."""
     return min(STEP_SHARE * TURN / curve.spans, MOST_STEP)
 
 

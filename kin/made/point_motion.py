@@ -80,12 +80,12 @@ class PointMotion:
 
     @property
     def closed(self) -> bool:
-        """Whether it is that of a whole turn."""
+        """Whether the span is a whole turn."""
         return self.span == TURN
 
     @property
     def shaft(self) -> Array:
-        """Shaft angles (k,)."""
+        """Shaft angles (k,) of `position`, rad."""
         shaft: Array = self.span / len(self.position) * np.arange(len(self.position), dtype=np.float64)
         return shaft
 
@@ -97,7 +97,7 @@ class PointMotion:
         return tuple(k for k in (first, 3 * first) if k <= max(most, first))
 
     def lifted_circle(self, level: float) -> float:
-        """How much larger than the gauge's circle one is, mm, on which it stands at a level."""
+        """Radius, mm, of the circle on which the follower stands at `level`, mm or rad, less the gauge's circle's."""
 
         def stands(height: float) -> float:
             metal = Metal.of(self.gauge, self.side, lambda t: np.stack([np.full_like(t, height), np.zeros_like(t)]))

@@ -88,7 +88,7 @@ class Programme:
 
     @property
     def greatest(self) -> float:
-        """Greatest size of what is left."""
+        """Greatest |residual|, mm or rad."""
         return float(np.abs(self.residual).max())
 
     def written(self, motion: PointMotion, boundaries: Array, levels: Array) -> Programme:

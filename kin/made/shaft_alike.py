@@ -29,7 +29,7 @@ NEAR = 1.2  # ratio of sizes within which rows may be of these cams
 
 
 class Words(NamedTuple):
-    """What is said of rows that lie far off: from which share of their size on, how far, and remedies.
+    """Words for rows that lie far off: the share of their size from which on they do, the problem, and remedies.
 
     `turned_over` is the remedy of a shaft that is counted from its other end, None where rows do not show that.
     """

@@ -92,12 +92,12 @@ class Smooth:
         return pieces
 
     def times(self, factor: float) -> Smooth:
-        """The curve so many times as high."""
+        """Give the curve times a factor."""
         return replace(self, coefficients=factor * self.coefficients, sigma=abs(factor) * self.sigma)
 
     @staticmethod
     def total(curves: Sequence[Smooth]) -> Smooth:
-        """Sum of curves on the same spans, of points that were measured independently."""
+        """Sum of curves on the same spans, fitted to independent sets of points; their variances add."""
         factor = sum((one.widened * one.sigma) ** 2 * one.factor for one in curves)
         return Smooth(np.sum([one.coefficients for one in curves], axis=0), 1.0, 1.0, np.asarray(factor))
 

@@ -134,9 +134,10 @@ def restrict(coefficients: Array, a: Array, b: Array) -> Array:
 
 
 def rising_root(coefficients: Array) -> Array:
-    """Where polynomials (n, k+1) that rise through zero at most once do so: t (n,), 0 or 1 where they do not.
+    """Roots t (n,) in [0, 1] of polynomials (n, k+1) that rise through zero at most once.
 
-    To within `SETTLED`, mostly to rounding. Raises UnsettledError where a coefficient is not a number.
+    A polynomial that is 0 or above from the start gives 0, one that stays below gives 1. Good to `SETTLED`, mostly to
+    rounding. Raises UnsettledError where a coefficient is not a number.
     """
     first, last = _first_sign(coefficients), _first_sign(coefficients[:, ::-1])
     root = np.where(first >= 0.0, 0.0, 1.0)

@@ -46,14 +46,14 @@ class Extremes:
 
     @property
     def worst(self) -> tuple[float, float]:
-        """Greatest absolute value and where."""
+        """Value of greatest size, and the place where it is."""
         if abs(self.least) > abs(self.greatest):
             return abs(self.least), self.least_at
         return abs(self.greatest), self.greatest_at
 
     @property
     def span(self) -> float:
-        """Range."""
+        """Greatest less least value."""
         return self.greatest - self.least
 
 

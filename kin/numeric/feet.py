@@ -46,7 +46,7 @@ class Feet:
 
     @property
     def rows(self) -> tuple[Array, Array, Array, Array]:
-        """All four arrays."""
+        """Parameter, excess, normal and curvature as a tuple."""
         return self.parameter, self.excess, self.normal, self.curvature
 
 

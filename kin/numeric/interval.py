@@ -48,7 +48,7 @@ class Ball:
 
     @staticmethod
     def exact(value: float | Array) -> Ball:
-        """Return the numbers themselves, radius 0."""
+        """Return balls of radius 0 about these numbers."""
         mid = np.array(value, dtype=float)
         return _ball(mid, np.where(np.isfinite(mid), 0.0, np.inf))
 
@@ -248,7 +248,7 @@ def tan(x: Ball) -> Ball:
 
 
 def exp(x: Ball) -> Ball:
-    """Image under exp."""
+    """Ball that encloses exp of every number in the ball."""
     return rising(np.exp, x, tiny=_TINY, floor=0.0)
 
 
@@ -263,7 +263,7 @@ def sqrt(x: Ball) -> Ball:
 
 
 def cbrt(x: Ball) -> Ball:
-    """Image under the cube root."""
+    """Ball that encloses the cube root of every number in the ball."""
     return rising(np.cbrt, x)
 
 
@@ -278,12 +278,12 @@ def acos(x: Ball) -> Ball:
 
 
 def atan(x: Ball) -> Ball:
-    """Image under atan."""
+    """Ball that encloses atan of every number in the ball, rad."""
     return rising(np.arctan, x)
 
 
 def sinh(x: Ball) -> Ball:
-    """Image under sinh."""
+    """Ball that encloses sinh of every number in the ball."""
     return rising(np.sinh, x)
 
 
@@ -296,7 +296,7 @@ def cosh(x: Ball) -> Ball:
 
 
 def tanh(x: Ball) -> Ball:
-    """Image under tanh."""
+    """Ball that encloses tanh of every number in the ball."""
     return rising(np.tanh, x)
 
 
@@ -312,7 +312,7 @@ def atan2(y: Ball, x: Ball) -> Ball:
 
 
 def absolute(x: Ball) -> Ball:
-    """Image under the absolute value."""
+    """Ball that encloses the absolute value of every number in the ball."""
     lower, upper = x.bounds()
     return Ball.between(np.maximum(np.maximum(lower, -upper), 0.0), np.maximum(-lower, upper))
 

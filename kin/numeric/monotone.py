@@ -219,7 +219,7 @@ class Pieces:
         return distinct(np.concatenate([runs, self.crossing(through, np.full(len(through), level))]))
 
     def least(self) -> tuple[float, float]:
-        """Least value and where."""
+        """Least value, and the x at which it is reached."""
         ends = self.coefficients[:, [0, -1]]
         k, end = divmod(int(ends.argmin()), 2)
         return float(ends[k, end]), float(self.x[k + end])

@@ -39,7 +39,7 @@ class DrawingReader(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Format:
-    """What is known of a format.
+    """Facts of a file format.
 
     name      its word
     contents  what a file holds: a drawing, a solid, a program for a machine or a table; the judge goes by that
@@ -178,7 +178,7 @@ FORMATS: dict[str, Format] = {
 
 
 def suffixes() -> dict[str, str]:
-    """Give the format of each suffix, first those of the words."""
+    """Name of the format by file suffix, each format's own suffix before the alternative ones."""
     pairs = [(suffix, record.name) for record in FORMATS.values() for suffix in record.suffixes[:1]]
     pairs += [(suffix, record.name) for record in FORMATS.values() for suffix in record.suffixes[1:]]
     return dict(pairs)

@@ -129,7 +129,7 @@ class _Machine:
         self.turning = self.ended = False
 
     def block(self, number: int, line: str) -> None:
-        """Follow one line."""
+        """Carry out one line of the program."""
         words = self._words(number, line)
         if not words:
             return

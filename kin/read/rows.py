@@ -122,7 +122,7 @@ def read_rows(text: str, comments: tuple[str, ...] = ("#",)) -> Rows:
 
 
 def short(text: str) -> str:
-    """A text, cut where it is long."""
+    """Text, cut to the length of a message."""
     return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."
 
 

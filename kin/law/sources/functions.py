@@ -99,11 +99,12 @@ class Flank:
     def of(
         powers: Sequence[int], top: float = 1.0, foot: float = 0.0, slope: float = 0.0
     ) -> tuple[Flank, tuple[float, ...]]:
-        """Make top + C2 u**2 + ... less foot + slope v, u = 1 - v, from its five powers, and give the C as well.
+        """Make the flank less foot + slope v, of the lobe top + sum of C_k u**k, u = 1 - v, from its five powers k.
 
-        Its value and four derivatives vanish at v = 0. With l_k Lagrange's polynomials over the powers C_k is
-        (foot - top + slope) l_k(0) - slope l_k(1): so the sums of C_k, k C_k, k (k - 1) C_k ... are as those at u = 1
-        must be. The division by (1 - u)**5 is done in whole fractions, so that nothing cancels near u = 1.
+        Returns the flank and the five coefficients C_k. Value and four derivatives of the flank vanish at v = 0. With
+        l_k Lagrange's polynomials over the powers, C_k is (foot - top + slope) l_k(0) - slope l_k(1): so the sums of
+        C_k, k C_k, k (k - 1) C_k ... are as those at u = 1 must be. The division by (1 - u)**5 is done in exact
+        fractions, so that nothing cancels near u = 1.
         """
         from fractions import Fraction
 

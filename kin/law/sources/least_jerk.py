@@ -79,7 +79,7 @@ class Bounds(NamedTuple):
     row: Indices
 
     def at(self, which: Indices) -> Bounds:
-        """Some of the bounds."""
+        """Bounds with the indices `which` (k,)."""
         return Bounds(self.x[which], self.lo[which], self.hi[which], self.unit[which], self.row[which])
 
     def with_more(self, more: Bounds, period: float) -> Bounds:
@@ -182,7 +182,7 @@ class Curve(NamedTuple):
         return float(weights @ jerk**2 @ half)
 
     def lowest(self) -> tuple[float, float]:
-        """Where the function is least, and its value there."""
+        """The place, rad, at which the function is least, and its value there."""
         place = np.concatenate([self.starts, self.dips(np.inf)[0]])
         value = self(place)
         i = int(np.argmin(value))
@@ -237,7 +237,7 @@ class _Spline(NamedTuple):
     square: float  # integral of S'''^2
 
     def pull(self) -> Array:
-        """Multipliers of the values (k,)."""
+        """Lagrange multipliers (k,) of the values."""
         pull = _fall(_fall(_fall(2.0 * self.mu) * self.far) * self.near)
         if not self.period:
             return pull[3:-3]

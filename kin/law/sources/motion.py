@@ -150,12 +150,12 @@ class Motion:
 
     @cached_property
     def range(self) -> tuple[float, float]:
-        """Least and greatest displacement."""
+        """Least and greatest displacement, mm or rad."""
         least, _, greatest, _ = extremes(self.motion, 0)
         return least, greatest
 
     def raised(self, by: float) -> Motion:
-        """The motion with a constant added."""
+        """Give the motion with a constant added, mm or rad."""
         if by == 0.0:
             return self
         functions = tuple(_raised(f, by) for f in self.motion.functions)

@@ -50,7 +50,7 @@ class Matched:
 
 @dataclass(frozen=True)
 class Dwell:
-    """A rest over an angle, rad."""
+    """A dwell of the programme: the shaft angle that it takes, rad."""
 
     over: float
 

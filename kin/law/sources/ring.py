@@ -41,7 +41,7 @@ class Samples(NamedTuple):
     turned: float = 1.0
 
     def part(self, which: slice) -> Samples:
-        """Some of the rows."""
+        """Samples of a slice of the rows."""
         return self._replace(theta=self.theta[which], s=self.s[which], lines=self.lines[which])
 
 

@@ -32,7 +32,13 @@ _COARSEST = 0.02  # of the stroke
 
 
 class Suspect(NamedTuple):
-    """Rows by their places, how many times less the mean square is without them, and what their neighbours suggest."""
+    """Rows that look wrong.
+
+    rows      their indices
+    falls     factor by which the mean square jerk falls without them
+    expected  values, mm or rad, of the curve through the other rows at their angles
+    certain   whether nothing but an error explains them
+    """
 
     rows: tuple[int, ...]
     falls: float
@@ -73,9 +79,10 @@ def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
 
 
 def suspect(rows: Tabled, plain: Least, *, noisy: bool) -> Suspect | None:
-    """The one row, or two side by side, without which the mean square falls most, if it falls by half or is certain.
+    """The row, or two neighbouring rows, without which the mean square jerk falls most; None where no row stands out.
 
-    Of `noisy` rows, of which greater readings would take the scatter, one must tell as much as in a short stroke.
+    To stand out, the fall must be to half or less, or certain. `noisy` says that the rows scatter more than they are
+    rounded: then a single row must show as great a fall as one in a short stroke.
     """
     best = None
     for places in _likely(rows, plain):

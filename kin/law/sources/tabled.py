@@ -61,7 +61,7 @@ class Tabled:
 
     @property
     def stroke(self) -> float:
-        """Greatest difference of two rows."""
+        """Greatest less least value of the rows, mm or rad."""
         levels = self.s if self.space.rest is None else np.append(self.s, self.space.rest)
         return float(np.ptp(levels))
 

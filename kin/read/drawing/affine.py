@@ -39,7 +39,7 @@ class Affine(NamedTuple):
         )
 
     def at(self, x: float, y: float) -> tuple[float, float]:
-        """Map a point."""
+        """Give the image (x, y) of a point."""
         return self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f
 
     def similar(self) -> tuple[float, float]:

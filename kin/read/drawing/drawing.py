@@ -288,7 +288,7 @@ class Chained(NamedTuple):
     gap: float
 
     def spans(self, shapes: list[Shape]) -> int:
-        """Pieces as the file counts them."""
+        """Number of pieces as the file counts them."""
         return sum(shapes[k].spans for k in self.entities)
 
 
@@ -341,7 +341,7 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
 
 
 def runs_of(rings: list[Loop]) -> Indices:
-    """Runs that belong to loops."""
+    """Indices of the runs that belong to loops."""
     return np.concatenate([np.empty(0, dtype=np.intp), *(loop.runs for loop in rings)])
 
 

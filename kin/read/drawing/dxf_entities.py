@@ -45,7 +45,7 @@ def facing(entity: Any) -> float:  # noqa: ANN401
 
 
 def line(entity: Any) -> Shape:  # noqa: ANN401
-    """Return a LINE."""
+    """Return the shape of a LINE."""
     needs(entity, "start", "end")
     (x, y, z), (x2, y2, z2) = entity.dxf.start, entity.dxf.end
     return shape(chords=(x, y, x2, y2, 0.0), heights=(z, z2))
@@ -61,7 +61,7 @@ def arc(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def circle(entity: Any) -> Shape:  # noqa: ANN401
-    """Return a CIRCLE as two halves."""
+    """Return the shape of a CIRCLE: two half circles."""
     needs(entity, "center", "radius")
     return circular(entity, [0.0, np.pi], np.pi)
 

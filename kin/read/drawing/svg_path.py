@@ -35,7 +35,7 @@ class Loose(NamedTuple):
 
     @property
     def end(self) -> tuple[float, float]:
-        """Where the pen stands after it."""
+        """Point (x, y) at which the pen stands after the piece."""
         return self.numbers[-2], self.numbers[-1]
 
 

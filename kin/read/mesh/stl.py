@@ -52,7 +52,7 @@ NOT_ONE = frozenset({"several", "island", "crossing"})
 
 @dataclass(frozen=True, eq=False)
 class Section(Nest):
-    """A section at a height, mm."""
+    """Section of a solid at a height, mm: its closed chains."""
 
     height: float
 

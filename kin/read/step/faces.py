@@ -45,16 +45,16 @@ class Plane(NamedTuple):
 
     @property
     def level(self) -> bool:
-        """Whether it is horizontal."""
+        """Whether the plane is horizontal."""
         return bool(np.hypot(*self.normal[:2]) <= LEVEL)
 
     @property
     def upright(self) -> bool:
-        """Whether it stands upright."""
+        """Whether the plane is vertical."""
         return bool(abs(self.normal[2]) <= LEVEL)
 
     def off(self, points: Array) -> Array:
-        """Distances of points (k, 3)."""
+        """Distances (k,) of points (k, 3) from the plane, mm."""
         off: Array = np.abs((points - self.point) @ self.normal)
         return off
 
@@ -72,15 +72,15 @@ class Round:
 
     @property
     def upright(self) -> bool:
-        """Whether it is a cylinder."""
+        """Whether the surface is a cylinder, not a cone."""
         return self.slope == 0.0
 
     def radius_at(self, z: float) -> float:
-        """Radius at a height."""
+        """Radius at height z, mm."""
         return self.radius + self.slope * (z - self.base)
 
     def off(self, points: Array) -> Array:
-        """Distances of points (k, 3)."""
+        """Distances (k,) of points (k, 3) from the surface, mm."""
         radius = self.radius + self.slope * (points[:, 2] - self.base)
         off: Array = np.abs(np.hypot(*(points[:, :2] - self.centre).T) - radius) / np.hypot(1.0, self.slope)
         return off
@@ -98,7 +98,7 @@ class Tube:
     upright: ClassVar[bool] = False
 
     def off(self, points: Array) -> Array:
-        """Distances of points (k, 3)."""
+        """Distances (k,) of points (k, 3) from the cylinder, mm."""
         away = points - self.point
         away = away - np.outer(away @ self.along, self.along)
         off: Array = np.abs(np.linalg.norm(away, axis=1) - self.radius)
@@ -107,7 +107,7 @@ class Tube:
 
 @dataclass(frozen=True, eq=False)
 class Swept:
-    """What a plane curve sweeps along the vertical: its spans as seen from above."""
+    """Vertical wall over a plane curve: its spans as seen from above."""
 
     spans: Beziers
 
@@ -116,12 +116,12 @@ class Swept:
 
     @cached_property
     def arcs(self) -> Arcs:
-        """The curve as arcs."""
+        """Arcs in place of the curve's spans."""
         extent = float(np.abs(self.spans.control).max())
         return arcs_along(self.spans.unrolled().pieces, max(SPLINE_ERROR, FINE * extent))[0]
 
     def off(self, points: Array) -> Array:
-        """Distances of points (k, 3)."""
+        """Distances (k,) of points (k, 3) from the wall, mm."""
         return nearest(self.arcs, points[:, :2])[1]
 
 

@@ -30,7 +30,7 @@ DEEPEST = 64  # of lists within lists
 
 
 class Reference(int):
-    """Number of another instance."""
+    """Reference to another instance: its number."""
 
     __slots__ = ()
 
@@ -105,7 +105,7 @@ class Exchange(NamedTuple):
         return int(value)
 
     def several(self, value: Value, by: int) -> tuple[Value, ...]:
-        """Return a value as a list."""
+        """Return a value that is a list; raises ReadError for one that is none."""
         if not isinstance(value, tuple) or isinstance(value, Typed):
             raise self.error(by, f"{shown(value)} is not a list", "syntax")
         return value
@@ -118,7 +118,7 @@ class Exchange(NamedTuple):
 
 
 def shown(value: Value) -> str:
-    """A value in a message."""
+    """Text of a value for a message."""
     return "$" if value is None else repr(value)[:LONGEST]
 
 
