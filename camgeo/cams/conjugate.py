@@ -50,7 +50,10 @@ FEASIBLE = 1e-11  # of the distance: by so much a limit may be missed
 
 @dataclass(frozen=True)
 class Conjugate(Holding):
-    """A second contact: its touch, its distance `apart`, mm or rad, and for a bell crank its arm's length, mm."""
+    """Second contact of a follower on conjugate discs: its touch and its distance `apart` from the first, mm or rad.
+
+    For a bell crank also the length of the second arm, mm.
+    """
 
     closure: ClassVar[str] = "form-closure"
     discs: ClassVar[int] = 2
@@ -65,12 +68,12 @@ class Conjugate(Holding):
 
     @property
     def larger(self) -> str:
-        """Base radius of disc 1 and distance: a larger disc 1 alone leaves less to disc 2."""
+        """Words for a larger base radius of disc 1 and a larger distance: disc 1 alone would leave less to disc 2."""
         return f"{LARGER_BASE} and {self.key}"
 
     @property
     def beside(self) -> str:
-        """The distance, by which disc 2 stays as it is."""
+        """Words for the distance of the contacts, which must grow with the base radius so that disc 2 stays."""
         return f" with a {self.key} larger by as much"
 
     @property
@@ -79,7 +82,7 @@ class Conjugate(Holding):
         return None if self.length is None else (self.length, self.apart)
 
     def follower_name(self, name: str) -> str:
-        """Name in reports: that of guide and touch, on conjugate discs."""
+        """Name of the follower in reports: that of guide and touch, followed by `on conjugate discs`."""
         return f"{name} on conjugate discs"
 
     def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:
@@ -87,7 +90,7 @@ class Conjugate(Holding):
         return Flank(FIRST, side, touch.radius), Flank(SECOND, side, self.touch.radius, disc=1)
 
     def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
-        """Both contacts of the follower."""
+        """Contacts of the follower: the first on disc 1, and the opposite one on disc 2, which pushes it back."""
         guide, datum = first.guide, self.apart - first.datum
         if isinstance(guide, Translating):
             second = Contact(Translating(-guide.offset), self.touch, datum, -1, turned=math.pi, surface=SECOND)

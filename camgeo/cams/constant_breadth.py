@@ -28,7 +28,10 @@ ROUNDED = 1e-9  # rad, by which segments may miss their angle (as in kin.law.sou
 
 @dataclass(frozen=True)
 class SlidingFrame:
-    """Links that the square frame slides on, mm: the rocker less the offset of the slide's line; side -1 is crossed."""
+    """Links of the inverted slider-crank on which the square frame slides, mm.
+
+    `rocker` is the rocker's length less the offset of the slide's line; `side` is -1 for the crossed assembly.
+    """
 
     ground: float
     rocker: float
@@ -67,7 +70,10 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         return super().joints() if self.frame_swing is None else self.frame_swing.joints
 
     def kept(self) -> Kept | None:
-        """Greatest distance of the half turn's motion, mm, or the swing, rad, from a row of its table; None without."""
+        """Record of how the half turn's motion, mm, or the swing, rad, keeps the rows of its table; None without one.
+
+        It has the greatest distance from a row, the row's line, and remarks.
+        """
         return super().kept() if self.frame_swing is None else self.frame_swing.motion.kept
 
     @property

@@ -223,7 +223,7 @@ def _values(cam: Values) -> Values:
 
 
 def _holding(cam: Values, touch: Touch) -> Holding:
-    """How the follower is held on the cam."""
+    """Way in which the follower is held on the cam, from values without fault."""
     if "conjugate" in cam:
         return conjugate_of(cam["conjugate"], touch)
     track = cam.get("track")

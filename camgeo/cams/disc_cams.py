@@ -87,7 +87,10 @@ class DiscCam(GuidedCam):
         return self._turn.joints
 
     def kept(self) -> Kept | None:
-        """Greatest distance of the motion from a row of its table, mm or rad; None without a table."""
+        """Record of how the motion keeps the rows of its table, mm or rad; None without a table or cam card.
+
+        It has the greatest distance from a row, the row's line, and remarks.
+        """
         return self._turn.kept
 
     def follower(self, law: Displacement) -> Follower:  # noqa: ARG002 - the motion has no say in it

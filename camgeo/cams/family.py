@@ -257,7 +257,10 @@ class ExactCam(ABC):
 
     @property
     def kept(self) -> Kept | None:
-        """Greatest distance of the motion from a row of the recipe's table, mm or rad; None without a table."""
+        """Record of how the motion keeps the rows of the recipe's table, mm or rad; None without a table or cam card.
+
+        It has the greatest distance from a row, the row's line, and remarks.
+        """
         return self.cam.kept()
 
     def circles(self, surface: str) -> tuple[Circle, ...]:  # noqa: ARG002 - most have one disc
@@ -354,7 +357,10 @@ class Cam(ABC):
         """Remedies in the words of the recipe."""
 
     def kept(self) -> Kept | None:
-        """Greatest distance of the motion from a row of the recipe's table, mm or rad; None without a table."""
+        """Record of how the motion keeps the rows of the recipe's table, mm or rad; None without a table or cam card.
+
+        It has the greatest distance from a row, the row's line, and remarks.
+        """
         return None
 
     @property

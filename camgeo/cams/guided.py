@@ -48,13 +48,13 @@ class RoundAdvice(Advice):
         return self.cam.touch.radius
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A smaller roller on the same pitch curve."""
+        """Words for a smaller roller on the same pitch curve, whose contour has no undercut."""
         if not free_at / mm > 0.0:
             return f"no {self.radius_field} is proved to be free of it"
         return f"a {self.radius_field} below {downward(free_at / mm)}{self.same_pitch(mm)} would be free of it"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """A smaller roller on the same pitch curve."""
+        """Words for a smaller roller on the same pitch curve, whose contour has the wanted least radius."""
         mm = 25.4 if unit == "in" else 1.0
         return f"a {self.radius_field} below {downward(value)} {unit}{self.same_pitch(mm)}" if value > 0.0 else ""
 
@@ -181,7 +181,11 @@ def shrink_touch(touch: Touch, out: float, scale: float) -> Touch:
 
 
 def base_size(cam: GuidedCam, prime: float, mm: float, pivot: float | None = None) -> tuple[str, GuidedCam] | None:
-    """Base radius of a prime circle, mm, and pivot's distance, mm, in words, with the cam; None for no radius."""
+    """Words for the base radius that gives a prime circle of radius `prime`, mm, and the cam of that size.
+
+    `pivot` is the distance of an arm's pivot from the shaft, mm, if it changes too. None where no base radius above 0
+    does.
+    """
     base = (prime - cam.side * cam.touch.radius) / mm
     if base <= 0.0:
         return None
@@ -355,6 +359,6 @@ class ExactGuided(ExactLed):
         return self.cam.holding.gentler_size(self, rising, falling, mm)
 
     def rounder_pitch(self, surface: str, mm: float) -> str:
-        """The size for a half as large roller, by the way the follower is held; empty where nothing rolls."""
+        """Words for the size at which the roller is half the pitch curve's least convex radius; else empty."""
         rolls = isinstance(self.cam.touch, Roller)
         return self.cam.holding.rounder(surface, self, mm) if rolls else ""

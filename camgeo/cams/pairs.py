@@ -39,7 +39,10 @@ _OTHER_PARTS = "both sides of the follower touch the cam at once, so the motion 
 
 @dataclass(frozen=True)
 class DeltaRoute:
-    """D(t) = sum over odd j of cos[j] cos(j lambda t) + sin[j] sin(j lambda t), in mm^2 (Wunderlich 6.5)."""
+    """Route by harmonics: D(t) = sum over odd j of cos[j] cos(j lambda t) + sin[j] sin(j lambda t), in mm^2.
+
+    t is the polar angle of a roller; the pair swings by asin(D/arm^2) to each side (Wunderlich 6.5).
+    """
 
     cos: Harmonics
     sin: Harmonics
@@ -47,7 +50,7 @@ class DeltaRoute:
 
 @dataclass(frozen=True)
 class DeltaFormulaRoute:
-    """D(t) as text in t, the polar angle in rad; `scale` times its value is in mm^2."""
+    """Route by D(t) as text in t, the polar angle in rad; `scale` times its value is in mm^2, see `DeltaRoute`."""
 
     text: str
     scale: float
@@ -55,14 +58,14 @@ class DeltaFormulaRoute:
 
 @dataclass(frozen=True)
 class LawRoute:
-    """The follower's swing over delta = pi/lambda of shaft angle; of a flat pair the swing is psi/2."""
+    """Route by the follower's swing over delta = pi/lambda of shaft angle; of a flat pair the swing is psi/2."""
 
     motion: MotionSource
 
 
 @dataclass(frozen=True)
 class WantedRoute:
-    """The series D of odd harmonics up to one whose law is nearest to a wanted swing (Wunderlich 6.5)."""
+    """Route by the series D of odd harmonics up to one whose law is nearest to a wanted swing (Wunderlich 6.5)."""
 
     motion: MotionSource
     harmonics: int
@@ -70,7 +73,7 @@ class WantedRoute:
 
 @dataclass(frozen=True)
 class ArcRoute:
-    """A circular first arc of the pitch curve, radius in mm, symmetric about its bisector."""
+    """Route by a circular first arc of the pitch curve, radius in mm, symmetric about its bisector."""
 
     radius: float
     side: Literal["convex", "concave"]
@@ -78,7 +81,10 @@ class ArcRoute:
 
 @dataclass(frozen=True)
 class CurveRoute:
-    """Any first arc of the pitch curve: r as text in t, the polar angle in rad; `scale` times its value is in mm."""
+    """Route by any first arc of the pitch curve: r as text in t, the polar angle in rad.
+
+    `scale` times the value of the text is in mm.
+    """
 
     text: str
     scale: float
@@ -238,7 +244,10 @@ class PairCam(Cam):
         return Proof(error < still or not still, error, still, "deg", degrees(float(wanted.at(series.at, 0)[0][0, 0])))
 
     def kept(self) -> Kept | None:
-        """How the swing over 360/lambda degrees keeps the rows of its table, rad; None without one."""
+        """Record of how the swing over 360/lambda degrees keeps the rows of its table, rad; None without one.
+
+        It has the greatest distance from a row, the row's line, and remarks.
+        """
         if isinstance(self.route, LawRoute | WantedRoute):
             field = "law" if isinstance(self.route, LawRoute) else "delta.law"
             return self.route.motion.motion(math.pi / self.lam, field, None).kept
@@ -290,7 +299,7 @@ class ExactPair(ExactCam):
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """Surface of the disc, in a tuple of one: both followers touch it."""
+        """Surface of the disc, in a tuple of one: both contacts touch it."""
         return (self.cam.surface(self.law, self.out),)
 
     @property

@@ -121,7 +121,7 @@ class PreloadedCam(ExactCam):
         return self.nominal.less_pressure(rising, falling, mm)
 
     def rounder_pitch(self, surface: str, mm: float) -> str:
-        """The size for a half as large roller, for the nominal cam."""
+        """Words for the size at which the roller is half the pitch curve's least convex radius, for the nominal cam."""
         return self.nominal.rounder_pitch(surface, mm)
 
     @property

@@ -57,7 +57,7 @@ class Scene:
 
     @property
     def roller(self) -> bool:
-        """Whether rollers follow."""
+        """Whether the follower's touch is round: a roller or a curved shoe."""
         return self.recipe.cam.touch.radius > 0.0
 
     @property
@@ -67,12 +67,12 @@ class Scene:
 
     @property
     def swings(self) -> bool:
-        """Whether the follower swings."""
+        """Whether the follower swings: its position is an angle, not a length."""
         return self.recipe.cam.arrangement.unit == "deg"
 
     @property
     def linked(self) -> bool:
-        """Whether there is a linkage."""
+        """Whether the recipe has a linkage."""
         return self.recipe.linkage is not None
 
 
@@ -181,7 +181,7 @@ def _has(feature: Feature[Any]) -> Exact:
 
 
 def _with(feature: Feature[Any]) -> OfFile:
-    """Of solids, a feature of the part."""
+    """Whether a file is a solid and its part has the feature."""
     return lambda scene, file: _solid(scene, file) and scene.recipe.part.of(feature.kind) is not None
 
 

@@ -69,7 +69,7 @@ more_harmonics: Remedy = always(MORE_HARMONICS)
 
 
 def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Remedy for a least radius of curvature that is too small."""
+    """Remedy for too small a least radius of curvature; empty where the radius or its limit is unknown."""
     value, limit, unit = check["value"], check["limit"], check["unit"]
     if value is None or limit is None:
         return ""
@@ -77,7 +77,7 @@ def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
 
 
 def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Widest chamfer that the contour permits; empty for a check of a file."""
+    """Remedy for too wide a chamfer: the widest that the contour permits; empty for a check of a file."""
     value = check["value"]
     if value is None or check["limit"] is None or "file" in check:
         return ""
@@ -85,18 +85,21 @@ def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
 
 
 def smaller_wheel(check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Largest wheel that reaches into the hollows; empty for a sharp hollow."""
+    """Remedy for hollows: the largest grinding wheel that reaches into them; empty for a sharp hollow."""
     value = check["value"]
     return f"a manufacture.wheel of {downward(2.0 * value)} {check['unit']} or less" if value > 0.0 else ""
 
 
 def wider_face(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Least width of a face that the contact does not leave."""
+    """Remedy for a contact that leaves a flat face: the least width of a face that the contact does not leave."""
     return f"{recipe.cam.advice.wider_face(check['value'], recipe.mm)} {check['unit']} or more"
 
 
 def shorter_dwell(check: Entry, report: Entry, _recipe: Recipe) -> str:
-    """Dwell that the output has in the intended motion and with every file; empty for a linkage that does not turn."""
+    """Remedy for too short a dwell: the length that the output dwells in the intended motion and with every file.
+
+    Empty for a linkage that does not turn.
+    """
     length = worst(check, report)
     return f"a dwell.at_least of {downward(length)} or less, or a wider dwell.band" if length > 0.0 else ""
 
@@ -117,7 +120,10 @@ def lone_ring(recipe: Recipe) -> bool:
 
 
 def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Bore, or outline of a ring, that leaves the wall; empty for other parts, whose check names the edges."""
+    """Remedy for too thin a wall: a smaller bore, or for a ring a larger outline.
+
+    Empty for other parts, whose check names the edges.
+    """
     value, limit, part = check["value"], check["limit"], recipe.part
     detail = check.get("detail", "")
     outline = part.outer is not None and "opening and outline: " in detail and not detail.endswith(" would do")

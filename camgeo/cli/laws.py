@@ -137,7 +137,7 @@ def _svg(laws: list[Law]) -> str:
 
 
 def _frame(law: Law) -> str:
-    """One law: its name, its peaks, and its four curves, each within its own peak."""
+    """SVG group of one law: its name, its peaks, and its four curves, each drawn within its own peak."""
     curves, p = _curves(law), law.peaks
     scales = _scales(curves)
     figures = ", ".join(f"{value:.5g}" for value in (p.velocity, p.acceleration, p.jerk))

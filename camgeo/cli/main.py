@@ -32,7 +32,11 @@ O = TypeVar("O", bound="Order")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command; returns the exit status (0 every check holds, 1 a check fails, 2 wrong, 3 surroundings, 130)."""
+    """Run one command and return its exit status.
+
+    0: every check holds; 1: a check fails; 2: the recipe or the call is wrong; 3: disk, permission or package; 130:
+    interrupted.
+    """
     open_streams()
     try:
         words = sys.argv[1:] if argv is None else argv

@@ -43,7 +43,7 @@ class Progress:
             complain(f"{self._name}: {stage}")
 
     def clear(self) -> None:
-        """Take the line away again."""
+        """Stop the timer and erase the stage's line from the terminal."""
         self._stop()
         if self._shown:
             whisper("\r\x1b[K")

@@ -49,7 +49,7 @@ def _angle(text: str) -> float:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the page of each recipe; the exit status: 0 every check holds, 1 one fails, 2 wrong, 3 surroundings.
+    """Write the page of each recipe and return the exit status, with the meanings of `camgeo.cli.main.main`.
 
     With `--json` one recipe prints its page.json, several a list of theirs.
     """

@@ -52,7 +52,7 @@ class PageState:
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """One request: the page, or the events."""
+    """Handler of one request: for the page, or for the stream of events."""
 
     def __init__(self, state: PageState, *arguments: object) -> None:
         self._shown = state

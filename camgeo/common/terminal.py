@@ -35,7 +35,7 @@ def escaped(text: str, *, keep: str = "") -> str:
 
 
 def say(text: str, *, at_once: bool = False) -> None:
-    """Print lines of a result."""
+    """Print lines of a result on standard output, control characters escaped; `at_once` flushes them."""
     print(escaped(text, keep="\n"), flush=at_once)
 
 

@@ -36,7 +36,7 @@ class _OverError(BaseException):
 
 
 class _State:
-    """Of a worker's process: whether it is at work on an item, and whether its run is over."""
+    """State of a worker's process: whether it is at work on an item, and whether its run is over."""
 
     busy = False
     over = False
@@ -65,15 +65,15 @@ def alone() -> bool:
 
 
 def needed(processes: int, items: int) -> int:
-    """Processes that are started where so many are wanted: no more than there are items, nor than the system allows."""
+    """Number of processes to start: `processes`, but no more than items or than the system allows; at least 1."""
     return max(1, min(processes, items, MOST_ON_WINDOWS if sys.platform == "win32" else processes))
 
 
 @contextmanager
 def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
-    """Processes for a run, `fork`: with all that this one has imported, where the system is sure to do that well.
+    """Context of worker processes for a run; left by an exception or before all is done, it abandons work in progress.
 
-    Left by an exception, or before all is done, what is still at work is given up.
+    With `fork` the workers begin with all that this process has imported, where the system is sure to fork safely.
     """
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
@@ -121,7 +121,7 @@ def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Gen
 
 
 def _start_server() -> None:
-    """Start the process that workers are forked from, as deaf as they are."""
+    """Start the process that workers are forked from; like them it leaves interrupts to the run."""
     from multiprocessing import forkserver, resource_tracker
 
     resource_tracker.ensure_running()  # first: it is deaf by itself, and leaves this process hearing

@@ -52,13 +52,13 @@ class Backwards:
 
     @property
     def steady(self) -> Array:
-        """Stretches of constant speed and turn (m, 2)."""
+        """Speed and turn on the stretches where both are constant, nan on the others, (m, 2)."""
         table: Array = self.base.steady[self._stretches()] * np.array([1.0, -1.0])
         return table
 
     @property
     def radii(self) -> Array:
-        """Radii of the stretches that are circular arcs (m,)."""
+        """Signed radii of the stretches that are circular arcs, mm, nan of the others, (m,)."""
         radii: Array = -self.base.radii[self._stretches()]
         return radii
 

@@ -56,7 +56,10 @@ def columns(x: Array, y: Array) -> Array:
 
 @dataclass(frozen=True)
 class Frame:
-    """The moving frame at n parameters: point and tangent (n, 2); speed, turn and their derivatives (n,)."""
+    """The moving frame at n parameters: point, mm, and unit tangent (n, 2); speed, turn and their derivatives (n,).
+
+    Speed sigma is mm, turn omega rad, per unit of the parameter.
+    """
 
     point: Array
     tangent: Array
@@ -67,7 +70,7 @@ class Frame:
 
     @property
     def rows(self) -> tuple[Array, ...]:
-        """All six, in the order of the fields."""
+        """Fields of the record, in their order."""
         return self.point, self.tangent, self.speed, self.turn, self.speed_slope, self.turn_slope
 
     def split(self, count: int) -> tuple[Frame, Frame]:
@@ -118,7 +121,7 @@ class Bounds:
     turn_bend: Array
 
     def rows(self) -> Array:
-        """All eight as one (8, n) array, in the order of the fields."""
+        """Fields of the record as one array (8, n), in their order."""
         ranges = self.speed_low, self.speed_high, self.turn_low, self.turn_high
         return np.stack([*ranges, self.speed_slope, self.turn_slope, self.speed_bend, self.turn_bend])
 

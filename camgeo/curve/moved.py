@@ -63,7 +63,7 @@ class Spline:
 
 @dataclass(frozen=True, eq=False)
 class Moved(ABC):
-    """Curve `by` outside `base`."""
+    """Curve outside `base` by a distance `by`, mm, that varies with the parameter."""
 
     base: Shape
     by: Spline
@@ -89,12 +89,12 @@ class Moved(ABC):
 
     @property
     def steady(self) -> Array:
-        """All nan (m, 2): no stretch of constant speed and turn."""
+        """Speed and turn on stretches where both are constant, (m, 2): nan, as there are none."""
         return np.full((len(self.breaks), 2), np.nan)
 
     @property
     def radii(self) -> Array:
-        """All nan (m,): no stretch that is a circular arc."""
+        """Radii of stretches that are circular arcs, (m,): nan, as there are none."""
         return np.full(len(self.breaks), np.nan)
 
     @abstractmethod
@@ -107,7 +107,7 @@ class Moved(ABC):
         return speed.c[: order + 1], turn.c[: order + 1]
 
     def bounds(self, low: Array, high: Array) -> Bounds:
-        """Proved bounds over intervals (n,)."""
+        """Proved bounds of speed and turn, and of their derivatives, over parameter intervals [low, high] (n,)."""
         return bounds_of(self._figures, low, high, self._rates)
 
     def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
@@ -126,7 +126,7 @@ class Moved(ABC):
 
 @dataclass(frozen=True, eq=False)
 class AlongNormals(Moved):
-    """Curve `by` outside `base` along its normals."""
+    """Curve outside `base` by the distance `by`, mm, measured along the normals of `base`."""
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""

@@ -185,7 +185,10 @@ class Translating:
         return Translating.on(prime, self.offset)
 
     def with_shaft(self, along: Array | float, across: Array | float) -> Translating:
-        """The line with the shaft elsewhere, by b and -a of a follower at rest at S = 0, mm."""
+        """Guide on the same line with the shaft elsewhere.
+
+        At rest, S = 0, b = `along` and a = -`across`, mm, see the head of this module.
+        """
         return Translating(cast("float", along), cast("float", across))
 
 

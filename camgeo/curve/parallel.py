@@ -43,13 +43,13 @@ class Parallel:
 
     @property
     def steady(self) -> Array:
-        """Stretches of constant speed and turn (m, 2)."""
+        """Speed and turn on the stretches where both are constant, nan on the others, (m, 2)."""
         table = self.base.steady
         return np.column_stack([table[:, 0] - self.distance * table[:, 1], table[:, 1]])
 
     @property
     def radii(self) -> Array:
-        """Radii of the stretches that are circular arcs (m,)."""
+        """Signed radii of the stretches that are circular arcs, mm, nan of the others, (m,)."""
         return self.base.radii - self.distance
 
     def sample(self, t: Array, side: Side = 1) -> Frame:

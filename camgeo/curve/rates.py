@@ -67,7 +67,7 @@ SourceT = TypeVar("SourceT", bound=Source)
 
 @dataclass(frozen=True)
 class MotionShape(ABC, Generic[SourceT]):
-    """A shape by its motion, whose parameter it shares."""
+    """Curve that a motion generates; both have the same parameter."""
 
     law: SourceT
 
@@ -98,7 +98,7 @@ class MotionShape(ABC, Generic[SourceT]):
 
     @property
     def period(self) -> float:
-        """A full turn."""
+        """Period of the parameter: a full turn, 2 pi rad."""
         return 2.0 * np.pi
 
     @property
@@ -123,7 +123,7 @@ class MotionShape(ABC, Generic[SourceT]):
 
     @property
     def radii(self) -> Array:
-        """Radii of the stretches that are circular arcs (m,); nan on the others."""
+        """Signed radii of the stretches that are circular arcs, mm, nan of the others, (m,)."""
         steady = self.steady
         return steady[:, 0] / steady[:, 1]
 

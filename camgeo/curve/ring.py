@@ -94,7 +94,7 @@ class Ring(ArcChain):
         return replace(self, points=factor * self.points)
 
     def mirrored(self) -> Ring:
-        """The image in the x axis."""
+        """Ring mirrored about the x axis."""
         return replace(self, points=self.points * MIRROR, bulges=-self.bulges)
 
     def flattened(self) -> Array:
@@ -134,7 +134,7 @@ def _text(values: Array, digits: int) -> list[str]:
 
 
 def disc(x: float, y: float, radius: float) -> Ring:
-    """A circle."""
+    """Circle of a radius about (x, y), mm, as a closed ring of two arcs."""
     return Ring(np.array([[x - radius, y], [x + radius, y]]), np.ones(2))
 
 

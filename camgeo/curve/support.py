@@ -29,7 +29,7 @@ class SupportShape:
 
     @property
     def period(self) -> float:
-        """A full turn."""
+        """Period of the parameter: a full turn, 2 pi rad."""
         return 2.0 * np.pi
 
     @property
@@ -39,7 +39,7 @@ class SupportShape:
 
     @property
     def repeats(self) -> int:
-        """1: equal parts are not used."""
+        """Number of equal parts of the curve per turn: always 1, as equal parts are not used."""
         return 1
 
     @property
@@ -50,7 +50,7 @@ class SupportShape:
 
     @property
     def radii(self) -> Array:
-        """Radii of the stretches that are circular arcs (m,)."""
+        """Signed radii of the stretches that are circular arcs, mm, nan of the others, (m,)."""
         return self.lift.radius
 
     def sample(self, t: Array, side: Side = 1) -> Frame:

@@ -37,7 +37,7 @@ class PitchShape(FramedShape[Transmission]):
 
     @property
     def radii(self) -> Array:
-        """Radii of the stretches that are circular arcs (m,): dwells, and the arcs of a law made from an arc."""
+        """Radii, mm (m,), of stretches that are circular arcs: dwells, and arcs of a law made from an arc; else nan."""
         return self.law.pitch_arcs[:, 2]
 
     def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
@@ -45,7 +45,7 @@ class PitchShape(FramedShape[Transmission]):
         return self.law.jets(tau, side)
 
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
-        """b, a and tau' as series, from phi and psi."""
+        """Terms b, a, mm, and tau' of the moving frame as series, from the series phi and psi; see this class."""
         phi, psi = figures
         rate, slope = phi.derivative(), psi.derivative()
         x, arm = cut(psi, slope.order) + self.law.alpha, self.law.arm

@@ -74,7 +74,7 @@ def alternate(ear: Mask, most: int) -> Mask:
 
 
 def _blockers(way: Indices, place: Array, ears: Indices, others: Indices) -> Indices:
-    """Of each triangle (t, 3) a vertex among the others that lies in it or on its rim, FREE where none does."""
+    """Index of a vertex among `others` that lies in each triangle (t, 3) or on its rim, FREE where none does."""
     blocker = np.full(len(ears), FREE)
     others = others[np.argsort(place[others, 0])]
     x, y = place[others].T
@@ -100,7 +100,10 @@ def _blockers(way: Indices, place: Array, ears: Indices, others: Indices) -> Ind
 
 
 def _bridge_holes(points: Array, loops: Sequence[Indices]) -> Indices:
-    """One way along the outermost loop, to each hole, along it, and back; a hole that no bridge reaches is left out."""
+    """Indices of a single path along the outermost loop, to each hole, along it, and back.
+
+    A hole that no bridge reaches is left out.
+    """
     way, *holes = loops
     for hole in sorted(holes, key=lambda hole: -points[hole, 0].max()):
         start = int(np.argmax(points[hole, 0]))

@@ -53,9 +53,10 @@ def extruded_mesh(
 def pocketed_mesh(
     outlines: Sequence[LayerOutline], *, depth: float, thickness: float, tolerance: float, precision: Precision
 ) -> tuple[Mesh, MeshFacts]:
-    """Closed solid within the first outline, with a pocket of a depth from the top face between its two contours; mm.
+    """Closed solid within the first outline, with a pocket between its two contours; lengths in mm.
 
-    What else is cut out goes through; it lies within the inner contour or beyond the outer one. Raises as `extruded`.
+    The pocket has a depth from the top face. All other outlines are holes through the solid and lie within the inner
+    contour or beyond the outer one. Raises as `extruded_mesh`.
     """
     for name, height in (("the thickness", thickness), ("the floor", thickness - depth)):
         precision.within(name, abs(precision.number(height) - height), tolerance)

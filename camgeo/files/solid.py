@@ -95,7 +95,7 @@ def hubbed_mesh(
     tolerance: float,
     precision: Precision,
 ) -> tuple[Mesh, MeshFacts]:
-    """Closed, oriented mesh of a manifold3d disc with its hub, and without what is cut out of both; as of `joined`."""
+    """Closed, oriented mesh of a manifold3d disc joined with its hub, its openings cut out; raises as `joined_mesh`."""
     moved, bound = facts.displacement, facts.bound
     for height in (solid.thickness, solid.low, solid.high, solid.chamfer or 0.0):
         precision.within("a height", abs(precision.number(height) - height), tolerance)
@@ -164,7 +164,10 @@ def _arrays(part: Any) -> tuple[Array, Triangles]:  # noqa: ANN401 - manifold3d 
 
 
 def prism(loop: Array, low: float, high: float, precision: Precision) -> tuple[Array, Triangles]:
-    """Points (2 n, 3) and triangles of the prism over a rounded counter-clockwise loop (n, 2)."""
+    """Points (2 n, 3) and triangles of the closed prism from z `low` to `high` over a counter-clockwise loop (n, 2).
+
+    The loop is rounded to `precision` already.
+    """
     return _stack([(loop, low), (loop, high)], disc(loop), precision)
 
 

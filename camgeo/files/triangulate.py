@@ -37,7 +37,7 @@ def ring(outer: Array, inner: Array) -> Triangles:
     """Triangles (n + m, 3), counter-clockwise, between two counter-clockwise loops, outer (n, 2) and inner (m, 2).
 
     Indices below n are of `outer`, the rest of `inner`. Where both loops run once round the origin without turning
-    back, they are merged in the order of their edges' angles, in O((n + m) log m). Other contours take `clipped`.
+    back, they are merged in the order of their edges' angles, in O((n + m) log m). Other contours take `clip_region`.
     Raises RegionError where the inner loop does not lie strictly inside the outer one or a loop is not simple.
     """
     if star_shaped(outer) and star_shaped(inner):
@@ -52,7 +52,7 @@ def region(outer: Array, inners: Sequence[Array]) -> Triangles:
     """Triangles, counter-clockwise, of a loop (n, 2) with several holes (m, 2) in it; all counter-clockwise.
 
     Indices count through the loop and the holes in their order. A loop alone goes to `disc`, one hole to `ring`, more
-    to `clipped`. Raises RegionError where a loop is not simple or a hole reaches another.
+    to `clip_region`. Raises RegionError where a loop is not simple or a hole reaches another.
     """
     if len(inners) < 2:
         return ring(outer, inners[0]) if len(inners) else disc(outer)
@@ -64,7 +64,7 @@ def disc(outer: Array) -> Triangles:
 
     From a loop that runs once round the middle of its vertices, ears are cut in rounds, as many at a time as are not
     neighbours: an ear that leaves the middle inside leaves the rest star-shaped. A convex loop takes O(log n) rounds,
-    a hollow takes one for each two of its vertices. What no round can cut goes to `clipped`, and so do
+    a hollow takes one for each two of its vertices. What no round can cut goes to `clip_region`, and so do
     other contours. Raises RegionError where the loop is not simple.
     """
     centre: Array = outer.mean(axis=0)

@@ -121,8 +121,8 @@ class SpanDensity:
 def span_density(curve: Curve, stretches: Array) -> SpanDensity:
     """Integral of (|c|/864)^(1/6) ds over each stretch (m, 2), none of which spans a break.
 
-    Over the sixth root of a tolerance it is the least number of spans, to leading order. Where the curve stands still
-    the density is taken as 0.
+    c, per mm^5, is the coefficient of the nearest cubic's miss (see this module). Over the sixth root of a tolerance
+    the integral is the least number of spans, to leading order. Where the curve stands still the density is taken as 0.
     """
     cells, edges = curve.cells, []
     for low, high in stretches:

@@ -222,7 +222,7 @@ def _ends(values: Array) -> tuple[Array, Array]:
 
 
 def peak(fa: Array, fb: Array, step: Array, bend: Array) -> Array:
-    """Greatest value over a step of a function with end values fa, fb whose second derivative is at least -bend."""
+    """Upper bound (n,) over steps of a function with end values `fa`, `fb` and second derivative at least -`bend`."""
     bend = np.maximum(bend, 0.0)
     sag = bend * step**2
     rise = np.abs(fb - fa)

@@ -125,11 +125,14 @@ class Density:
 
     @property
     def total(self) -> float:
-        """The whole integral."""
+        """Integral of the density over all its parameters."""
         return float(self.sum[-1])
 
     def parameters_at(self, share: Array) -> Array:
-        """Parameters (n,) at which the running integral reaches `share` (n,); even ones where it is 0 all along."""
+        """Parameters (n,) at which the running integral `sum` reaches the values `share` (n,), 0 to `total`.
+
+        Evenly spaced parameters where the integral is 0 throughout.
+        """
         if self.total <= 0.0:
             return np.linspace(self.t[0], self.t[-1], share.size)
         nodes: Array = np.interp(share, self.sum, self.t)

@@ -36,7 +36,7 @@ class Part:
 
     @property
     def total(self) -> float:
-        """The whole integral."""
+        """Number of arcs of the part at a tolerance of 1 mm: the integral `share` at its end."""
         return float(self.share[-1] - self.share[0])
 
     def count(self, tolerance: float) -> int:

@@ -77,15 +77,15 @@ class Cubics:
         return Cubics(self.start[:, None], self.a[:, None], self.b[:, None], self.c[:, None])
 
     def ahead(self, u: Array) -> Complex:
-        """Points less the start."""
+        """Points at u less the start point, complex, in the shape of `u` and the cubics."""
         return u * (self.a + u * (self.b + u * self.c))
 
     def velocity(self, u: Array) -> Complex:
-        """First derivative by u."""
+        """First derivative by the parameter at u, complex."""
         return self.a + u * (2.0 * self.b + u * (3.0 * self.c))
 
     def acceleration(self, u: Array) -> Complex:
-        """Second derivative by u; the third is 6 c."""
+        """Second derivative by the parameter at u, complex; the third is 6 c."""
         return 2.0 * self.b + u * (6.0 * self.c)
 
 

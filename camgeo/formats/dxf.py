@@ -280,7 +280,7 @@ def _check_points(points: Array) -> None:
 
 
 def _distinct(reference: Sequence[Reference]) -> list[tuple[Reference, list[str]]]:
-    """Each shape once, with all the names it is given: a prime circle may be the pivots' circle as well."""
+    """Distinct shapes of the reference, each with all its names: a prime circle may be the pivots' circle as well."""
     shapes: dict[tuple[float, ...] | int, tuple[Reference, list[str]]] = {}
     for item in reference:
         key: tuple[float, ...] | int

@@ -21,7 +21,10 @@ _FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
 
 
 def write_ply(path: Path, items: Sequence[Item], title: str, mm: float, _about: str) -> None:
-    """Write one mesh, mm, whose points are numbers of a unit of `mm` mm; raises OSError as the file system does."""
+    """Write the only mesh of `items`, mm, with coordinates in a unit of `mm` mm.
+
+    Raises OSError as the file system does, ValueError for several meshes.
+    """
     (item,) = items
     mesh, numbers = item.mesh, _numbers()
     points = mesh.points if mm == 1.0 else numbers.nearest(mesh.points / mm)  # which the quotient has missed

@@ -106,7 +106,7 @@ def _page(boxes: Sequence[Box], mm: float) -> tuple[str, str, str, str]:
 
 
 def _path(outline: Outline, mm: float) -> str:
-    """One closed path."""
+    """Path element of one closed outline, in drawing units of `mm` mm."""
     match outline:
         case Polygon():
             first = outline.vertices[0] / mm

@@ -29,7 +29,7 @@ class ContactPoints(NamedTuple):
     normals: Array
 
     def as_drawn(self, angle: float, rotation: str) -> ContactPoints:
-        """Copy of the points with the cam turned counter-clockwise by `angle`, rad, then mirrored in x if `ccw`.
+        """Copy of the points, cam turned counter-clockwise by `angle`, rad, then mirrored about the x axis for `ccw`.
 
         `rotation` is that of the shaft, `cw` or `ccw`.
         """

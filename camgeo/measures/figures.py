@@ -244,7 +244,7 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
 
 
 def motion_figures(design: Design, order: int) -> dict[str, Measured]:
-    """Stroke or swing of the follower, and the peaks of its derivatives by the shaft angle up to an order, 0 to 3.
+    """Stroke or swing of the follower, and absolute peaks of its derivatives by the shaft angle up to order 0 to 3.
 
     In mm or degrees and radians of the shaft; without values where the motion is too rough to be followed.
     """

@@ -91,7 +91,7 @@ class Turn(ABC):
         return degrees(float(self.shaft(np.array([t]))[0]))
 
     def extremes(self, values: Callable[[Array], Array]) -> list[tuple[Extreme, Extreme]]:
-        """Least and greatest value of each of r such functions over the turn, proved, not sampled."""
+        """Least and greatest value over the turn of r functions of the parameter, values(t (n,)) -> (r, n); proved."""
 
         def placed(extreme: tuple[float, float]) -> Extreme:
             return Extreme(extreme[0], self.degrees(extreme[1]))
@@ -113,7 +113,7 @@ class FollowerTurn(Turn):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Each contact's surface, or its touch, with a letter where there are several."""
+        """Name of each contact in reports: its surface, or its touch, with a letter where there are several."""
         contacts = self.design.follower.contacts
         letters = "AB" if len(contacts) > 1 else ("",)
         return tuple(

@@ -167,6 +167,6 @@ def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measure
 
 
 def moved_by(recipe: Recipe, design: Design) -> Moved | None:
-    """Motion of what the follower moves besides itself, such as a valve; None without it."""
+    """Motion of the body that the follower moves besides itself, such as a valve; None without one."""
     motions = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
     return next((moved for moved in motions if moved is not None), None)

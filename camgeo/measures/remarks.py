@@ -300,7 +300,7 @@ def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Remar
 
 
 def _openings(recipe: Recipe, files: Sequence[FileResult]) -> Remark | None:
-    """That openings of files are passed over, as the recipe asks for."""
+    """Remark that openings of files are not judged, as the recipe asks for; None where there are none."""
     names = [file.path.name for file in files if any(len(body) > len(file.surfaces) for body in file.bodies)]
     if recipe.verify.openings == "judge" or not names:
         return None

@@ -16,7 +16,7 @@ _POUNDS = {"N": ("lbf", LBF), "N m": ("lbf in", MOMENTS["Nm"] / MOMENTS["lbf*in"
 
 
 def pounds(units: str, unit: str) -> tuple[str, float] | None:
-    """Imperial unit of a force, moment or pressure where a recipe's `units` are inches, and how many are one `unit`.
+    """Imperial unit of a force, moment or pressure in a recipe in inches, and its number that makes one `unit`.
 
     None for other units, and for recipes in mm.
     """

@@ -19,7 +19,7 @@ class ByMotion:
     instead   keys that give the motion otherwise
     still     an entry that gives hardly any motion
     opposed   whether size and motion fix how far two opposite contacts are apart
-    lag       share of a swing by which the middle of its contacts lags the shaft: of what its symmetry is told over
+    lag       share of the swing to take off the shaft angle: over the rest the swing changes sign each section
     series    whether the motion is a Fourier series of the support function, of which `base` is the mean
     """
 

@@ -56,7 +56,10 @@ class HalfTurnCam:
         return self.half_turn.joints
 
     def kept(self) -> Kept | None:
-        """Greatest distance of the half turn's motion from a row of its table, mm; None without a table."""
+        """Record of how the half turn's motion keeps the rows of its table, mm; None without a table or cam card.
+
+        It has the greatest distance from a row, the row's line, and remarks.
+        """
         return self.half_turn.kept
 
 

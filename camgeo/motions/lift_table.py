@@ -50,7 +50,7 @@ class Rows:
     turned: float = 1.0
 
     def samples(self) -> Samples:
-        """The rows for kin."""
+        """Rows as the arrays that kin's laws take."""
         import numpy as np
 
         from kin.law.sources.ring import Samples

@@ -45,7 +45,11 @@ class SideShape:
 def lobe_motion(
     lift: float, sides: tuple[SideShape, SideShape], total: float, *, nose: float, around: int | None, field: str
 ) -> Motion:
-    """Motion of a lobe over `total` rad; raises IntentError where there is none."""
+    """Motion of a lobe of a lift, mm, over `total` rad; `nose` is the angle of its greatest lift, rad.
+
+    `around` is 1 where the motion repeats each turn, see kin's `Motion`. Raises IntentError, with a path below `field`,
+    where no such lobe exists.
+    """
     from kin.law.programme import IntentError
     from kin.law.sources.cam_card import sides_of_card
     from kin.law.sources.lobe import demand_lift, lobe_of

@@ -103,7 +103,7 @@ class MotionSource(ABC):
 
     @property
     def open(self) -> Open | None:
-        """The angles left open; None where all are given."""
+        """Angles that the recipe leaves open; None where all are numbers."""
         return None
 
     @abstractmethod
@@ -144,7 +144,7 @@ class Segments(MotionSource):
 
     @property
     def repeats(self) -> int:
-        """`repeat` of the recipe."""
+        """Number of times that the segments follow one another in the turn: `repeat` of the recipe."""
         return self.repeat
 
     @property
@@ -167,7 +167,7 @@ class Segments(MotionSource):
 
 @dataclass(frozen=True)
 class FormulaMotion(MotionSource):
-    """A formula in t, the angle in rad; its values times `scale`."""
+    """Motion by a formula in t, the angle in rad; its values times `scale` are mm or rad."""
 
     text: str
     scale: float
@@ -186,7 +186,7 @@ class FormulaMotion(MotionSource):
 
 @dataclass(frozen=True)
 class TableMotion(MotionSource):
-    """Rows of a table, each kept within a reading error; `scale` mm or rad are one of the recipe's units."""
+    """Motion by rows of a table, each kept within a reading error; `scale` mm or rad are one of the recipe's units."""
 
     file: str
     rows: Rows
@@ -234,7 +234,7 @@ class ContourMotion(MotionSource):
     source: ClassVar[str] = ".contour"
 
     def for_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> ContourMotion:
-        """The motion with its follower."""
+        """Copy of the motion that knows its follower, see `MotionSource.for_follower`."""
         return replace(self, contact=contact(), within=within)
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
@@ -249,7 +249,7 @@ class ContourMotion(MotionSource):
 
 @dataclass(frozen=True)
 class PointsMotion(MotionSource):
-    """Points (angle, displacement), rising; neighbours of one displacement have a dwell between them."""
+    """Motion through points (angle, displacement), angles rising; neighbours of equal displacement enclose a dwell."""
 
     points: tuple[tuple[float, float], ...]
     scale: float
@@ -291,7 +291,7 @@ class PointsMotion(MotionSource):
 
 @dataclass(frozen=True)
 class LobeMotion(MotionSource):
-    """The lobe of a valve train: its lift, mm or rad, its two sides, and the shaft angle of its nose, rad."""
+    """Motion by the lobe of a valve train: its lift, mm or rad, its two sides, and the shaft angle of its nose, rad."""
 
     lift: float
     sides: tuple[SideShape, SideShape]

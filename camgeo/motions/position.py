@@ -37,7 +37,7 @@ class _Turn(ABC):
 
 
 class _Swing:
-    """How an angle about a pivot is reported: in degrees."""
+    """Column, unit and factor by which an angle about a pivot is reported: in degrees."""
 
     title: ClassVar[str] = "swing"
     unit: ClassVar[str] = "deg"
@@ -83,7 +83,7 @@ class LiftPosition(_Turn):
         return rows
 
     def travel(self, shaft: Array, order: int) -> Array:
-        """Position from the zero of the contacts, not from the datum, and its derivatives, (order + 1, n)."""
+        """Position from the zero of the contacts, not from the datum, mm or rad, with derivatives, (order + 1, n)."""
         return self.law.derivatives(shaft, order)
 
     def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002

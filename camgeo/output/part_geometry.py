@@ -62,7 +62,7 @@ def part_mesh(
 ) -> tuple[Mesh, MeshFacts]:
     """Mesh of a body in its outlines, outermost first: a prism, or prisms joined by manifold3d.
 
-    Raises as `extruded` and `joined` do.
+    Raises as `extruded_mesh` and `joined_mesh` do.
     """
     if body.thickness is None:
         raise ValueError("a solid needs a thickness")

@@ -45,7 +45,10 @@ class FileSet:
 
 
 def sets_of(recipe: Recipe, paths: Sequence[Path], tolerance: float | None) -> list[FileSet]:
-    """Sets of files of any origin; `tolerance`, mm, replaces that of the recipe."""
+    """Sets of files of any origin: one file, or the files of all discs of a cam with several.
+
+    `tolerance`, mm, replaces that of the recipe; None leaves it.
+    """
     count, sets = recipe.cam.arrangement.discs, list[FileSet]()
     for place, path in enumerate(paths):
         kind, request = kind_of(path), recipe.request_of(path.name)

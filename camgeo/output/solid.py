@@ -51,7 +51,7 @@ def foresee(job: Job, request: FileRequest) -> None:
 
 
 def numbers(job: Job, request: FileRequest) -> Precision:
-    """Give the numbers that a request's file holds."""
+    """Precision of the coordinates in a request's mesh file, in its unit; raises ValueError for other formats."""
     return numbers_of(request.format, job.recipe.in_units_of(request).mm)
 
 

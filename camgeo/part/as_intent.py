@@ -17,12 +17,12 @@ KINDS = {"BORE": "bore", "HOLES": "holes", "MARK": "mark", "ENGRAVE": "mark"}
 
 
 def holes_of(body: Body) -> tuple[Hole, ...]:
-    """Every opening, in the cam's axes."""
+    """Record for kin of every opening, in the cam's axes."""
     return tuple(_hole(opening) for opening in body.openings)
 
 
 def layers_of(body: Body) -> tuple[Layer, ...]:
-    """Layers of the solid from below; none without a thickness."""
+    """Records for kin of the layers of the solid, from below; empty without a thickness."""
     thickness = body.thickness
     if thickness is None:
         return ()
@@ -61,7 +61,7 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
 
 
 def cross_holes_of(body: Body) -> tuple[CrossHole, ...]:
-    """The set screw's hole, if there is one."""
+    """Record for kin of the set screw's radial hole, in a tuple; empty without one."""
     height = body.screw_height
     if body.screw is None or height is None:
         return ()

@@ -25,12 +25,12 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Body:
-    """A part without its contour.
+    """A part without its contour; lengths in mm.
 
-    `openings` from the bore outward; `bore` is its diameter or width; `features` as the recipe has them.
-    `least_radius` is the contour's, mm, where it is convex. `outer` is the diameter of a ring, of which the contour is
-    an opening too; None for a disc. `pocket` is the depth of what lies between two surfaces, None where that goes
-    through or there is none. `checks` are those of what looked for its place.
+    `openings` are listed from the bore outward; `bore` is its diameter or width; `features` are as the recipe has them.
+    `least_radius` is the contour's, where it is convex. `outer` is the diameter of a ring, of which the contour is an
+    opening too; None for a disc. `pocket` is the depth of the recess between two surfaces, None where it goes through
+    or there is none. `checks` are those of openings that sought their place.
     """
 
     thickness: float | None
@@ -48,17 +48,17 @@ class Body:
 
     @property
     def hub(self) -> Hub | None:
-        """The hub."""
+        """Hub of the part; None without one."""
         return self.of(Hub)
 
     @property
     def screw(self) -> SetScrew | None:
-        """The set screw."""
+        """Set screw of the part; None without one."""
         return self.of(SetScrew)
 
     @property
     def chamfer(self) -> float | None:
-        """Height of the chamfer, mm."""
+        """Height of the chamfer, mm; None without one."""
         chamfer = self.of(Chamfer)
         return None if chamfer is None else chamfer.height
 
@@ -99,7 +99,7 @@ class Body:
         return -beyond if self.hub.side == "bottom" else (self.thickness or 0.0) + beyond
 
     def mirrored(self) -> Body:
-        """Mirror about the x axis."""
+        """Body mirrored about the x axis."""
         features = tuple(
             replace(value, at=-value.at) if isinstance(value, SetScrew) else value for value in self.features
         )
@@ -107,7 +107,7 @@ class Body:
 
 
 def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
-    """Make the part of a recipe round a contour; what places itself looks for its place here.
+    """Make the part of a recipe round a contour; openings without a stated place are placed here.
 
     Raises CurveError where the sharpest place of a contour that is to be chamfered cannot be proved.
     """

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Bolts:
-    """Equal round holes at equal angles; `circle` is the diameter that their centres lie on, `hole` their own."""
+    """Bolt circle of equal round holes at equal angles: diameter `circle` through their centres, `hole` each, mm."""
 
     count: int
     circle: float

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Chamfer:
-    """A chamfer of 45 degrees along both edges of the contour, `height` high."""
+    """Chamfer of 45 degrees along both edges of the contour, `height` mm high."""
 
     height: float
 

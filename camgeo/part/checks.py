@@ -112,7 +112,10 @@ def _holds(wall: float, least: float | None) -> bool:
 
 
 def thinnest(possible: Iterable[Possible], limit: float) -> list[Pair]:
-    """The least wall and all others up to a limit, thinnest first; what is thicker for sure is not found."""
+    """Pair with the least wall and all pairs with walls up to a limit, mm, thinnest first.
+
+    Walls whose lower bound is above both are not computed.
+    """
     found: list[tuple[float, int, Pair]] = []
     least = math.inf
     for number, (at_least, pair) in sorted(enumerate(possible), key=lambda one: one[1].at_least):

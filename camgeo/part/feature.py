@@ -160,7 +160,7 @@ def narrowed(width: float, out: float, scale: float) -> float:
 
 
 def angle(name: str, about: str) -> Field:
-    """Make the field of a direction."""
+    """Make the field of a direction, an angle in the recipe that is rad as a value."""
     return Field(name, Kind.ANGLE, about, default="0", at_least=-360, at_most=360)
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Flat:
-    """A flat of a D-shaped bore, `across` from the opposite side of the bore; `at` is the direction of its normal."""
+    """Flat of a D-shaped bore, `across` mm from the opposite side of the bore; its normal has direction `at`, rad."""
 
     across: float
     at: float = 0.0

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Hub:
-    """A round hub about the shaft: `height` beyond the face of the disc, on one side or on both."""
+    """Round hub about the shaft: `height` mm beyond the face of the disc, on one side or on both."""
 
     diameter: float
     height: float

@@ -23,9 +23,9 @@ STANDARDS = ("din6885", "jis-b1301")  # which have the same widths and depths
 
 @dataclass(frozen=True)
 class Keyway:
-    """A keyway in a round bore: `depth` is t2 of DIN 6885, from the bore's circle to the floor; `at` its middle.
+    """Keyway in a round bore, mm: `depth` is t2 of DIN 6885, from the bore's circle to the keyway's bottom.
 
-    `standard` is whether width and depth are those of that standard by the bore.
+    `at` is the direction of its middle, rad; `standard` is whether width and depth follow that standard by the bore.
     """
 
     width: float

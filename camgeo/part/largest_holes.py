@@ -36,7 +36,7 @@ Circles = list[tuple[tuple[float, float], float]]
 
 
 class Space:
-    """The radius that a hole about a point can have; grows fuller as holes are added."""
+    """Free space for round holes in a part, which shrinks as holes are added."""
 
     def __init__(self, looks: Looks, there: Sequence[Opening], wall: float, edge: float) -> None:
         self.looks, self.wall, self.edge = looks, wall, edge
@@ -61,7 +61,10 @@ class Space:
         return -signed_distance(self.polygon, points) - self.edge
 
     def left(self, points: Array, inside: Array) -> Array:
-        """Radius (n,) that openings, too, leave about points (n, 2) so far inside the contour."""
+        """Radius (n,), mm, that a hole about points (n, 2) can have between contour and openings, less the wall.
+
+        `inside` (n,) is the distance of the points inside the contour, mm.
+        """
         least = inside.copy()
         for x, y, radius in self.discs:
             least = np.minimum(least, np.hypot(points[:, 0] - x, points[:, 1] - y) - radius)
@@ -78,7 +81,7 @@ class Space:
         return float(self.left(np.array([centre]), np.array([inside - self.edge]))[0])
 
     def fill(self, centre: tuple[float, float], diameter: float) -> None:
-        """Take the place of a hole."""
+        """Add a hole of a diameter about a centre (x, y), mm, so that later ones keep their wall from it."""
         self.discs.append((*centre, 0.5 * diameter))
 
 

@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SetScrew:
-    """A radial hole from the hub's outside into the bore, `height` above the face of the disc (None: half the hub)."""
+    """Radial hole from the hub's outside into the bore, in direction `at`, rad; lengths in mm.
+
+    `height` is that of its axis above the face of the disc; None for half the hub.
+    """
 
     diameter: float
     at: float = 0.0

@@ -40,7 +40,7 @@ class Opening:
     island: bool = False
 
     def mirrored(self) -> Opening:
-        """Mirror about the x axis."""
+        """Opening mirrored about the x axis."""
         circle = self.circle and ((self.circle[0][0], -self.circle[0][1]), self.circle[1])
         return Opening(self.name, self.layer, self.outline.mirrored(), circle, self.depth, self.island)
 
@@ -51,13 +51,13 @@ class Opening:
 
     @cached_property
     def middle(self) -> tuple[float, float]:
-        """Middle of the bounding box."""
+        """Middle (x, y) of the bounding box, mm."""
         x_min, y_min, x_max, y_max = self.outline.box()
         return 0.5 * (x_min + x_max), 0.5 * (y_min + y_max)
 
     @cached_property
     def reach(self) -> float:
-        """Greatest distance from the middle, or a little more."""
+        """Upper bound of the distance of the outline's points from `middle`, mm: half the box's diagonal."""
         x_min, y_min, x_max, y_max = self.outline.box()
         return 0.5 * math.hypot(x_max - x_min, y_max - y_min)
 

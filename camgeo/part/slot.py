@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Slot:
-    """A slot, `length` over its round ends, square to the ray at `at`; its middle on a circle of diameter `circle`."""
+    """Slot, `length` over its round ends, square to the ray at `at`, rad; its middle on a circle of diameter `circle`.
+
+    Lengths are in mm.
+    """
 
     length: float
     width: float

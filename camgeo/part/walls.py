@@ -55,7 +55,7 @@ class Pair(NamedTuple):
 
 
 class Possible(NamedTuple):
-    """Two edges whose wall is no less than `at_least`, and what finds it."""
+    """Pair of edges whose wall is at least `at_least`, mm; `pair` computes the wall."""
 
     at_least: float
     pair: Callable[[], Pair]
@@ -89,7 +89,10 @@ class Looks(NamedTuple):
         return Looks(contour, low, high, *contour.span(low, high), side, name)
 
     def wall_at_least(self, middle: tuple[float, float], reach: float) -> float:
-        """Wall that what lies within a circle has at least, see `contour_gap`; -inf where that is not seen at once."""
+        """Lower bound, mm, of the wall to anything within a circle of radius `reach` about `middle`; see `contour_gap`.
+
+        -inf where the ends of the intervals show no such bound.
+        """
         first, last = (np.hypot(*(at.point - middle).T) for at in (self.first, self.last))
         bounds = self.contour.cells.over(self.low, self.high)
         longest = np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high)) * (self.high - self.low)
@@ -167,7 +170,7 @@ def to_surface(opening: Opening, body: Body, surfaces: Sequence[Looks]) -> Possi
 
 
 def known(name: str, other: str, gap: Gap) -> Possible:
-    """A wall that is known."""
+    """Pair of named edges whose wall is known already, as a `Possible`."""
     return Possible(gap.wall, lambda: Pair(name, other, gap))
 
 

@@ -131,7 +131,7 @@ class Order(Document):
         return (request.filename(self.name, self.export.files),)
 
     def request_of(self, filename: str) -> FileRequest | None:
-        """The request with a file of this name, the first for files of all bodies; None without one."""
+        """First file request of the recipe that writes a file of this name; None without one."""
         return next((request for request in self.export.files if filename in self.filenames(request)), None)
 
 
@@ -275,7 +275,10 @@ def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
 
 @contextmanager
 def without_places(name: str) -> Iterator[None]:
-    """Errors raised within name this text in place of lines, which it has none of; without a name they stay."""
+    """Context whose errors show `name` in place of line numbers, for a text that stands in no file.
+
+    With an empty name errors stay as they are.
+    """
     try:
         yield
     except RecipeErrors as errors:

@@ -114,7 +114,10 @@ class SampledCams(Protocol):
         """Greatest value of rows (m, n) over the turn, (m,)."""
 
     def peak(self, order: int, speed: float = 1.0) -> Array:
-        """Greatest derivative of the motion by the shaft angle, or by time at a speed in rad/s, (m,)."""
+        """Greatest value of a derivative of the motion by the shaft angle, or by time at a speed in rad/s, (m,).
+
+        The motion is in mm or degrees; `order` is that of the derivative.
+        """
 
     @property
     def slope(self) -> Array:

@@ -50,7 +50,7 @@ def has_holes(recipe: Recipe, /) -> bool:
 
 
 class Run(NamedTuple):
-    """A run as a file sees it that reports on all others; `job` is None where no cam is made."""
+    """Results of a run, for files that report on all others; `job` is None where no cam is made."""
 
     recipe: Recipe
     design: Design
@@ -118,7 +118,7 @@ class Form:
     """One form of a format, by its word after the key `as`.
 
     surfaces  greatest number of surfaces that it holds of a cam of one disc; a cam of more is refused
-    discs     the same of discs on one shaft
+    discs     greatest number of discs on one shaft that it holds
     pieces    noun for the pieces of its contour in reports
     listed    options that a report states
     ground    whether it is a table by which a lobe is ground, whose contour is judged

@@ -59,7 +59,7 @@ class Gathered(Mapping[str, E]):
     __hash__ = object.__hash__
 
     def __eq__(self, other: object) -> bool:
-        """Whether it is the same table: two are not compared entry by entry."""
+        """Whether both are the same object: two tables are not compared entry by entry."""
         return self is other
 
     def owner(self, name: str) -> str:

@@ -30,7 +30,7 @@ _OF_A_CAM = "camgeo.api.cam"  # the module that has the core's own
 
 
 class Designed(Protocol):
-    """Design as the library gives it."""
+    """Protocol of a design that the library returns for any kind of recipe."""
 
     @property
     def checks(self) -> tuple[Check, ...]:

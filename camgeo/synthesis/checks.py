@@ -100,7 +100,10 @@ def needed_width(surface: Surface) -> tuple[float, float]:
 
 
 def wheel_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surface, Curve]]) -> list[Check]:
-    """Whether a grinding wheel reaches into the hollows."""
+    """Check of each surface on the grinding wheel: the contour's least hollow radius must be at least the wheel's, mm.
+
+    Empty where the recipe has no wheel.
+    """
     found: list[Check] = []
     wheel = recipe.wheel
     if wheel is None:
@@ -123,7 +126,7 @@ def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
 
 
 def greatest(function: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:
-    """Greatest values of k continuous functions of period 2 pi, looked at at t (n,) and closely about the best; where.
+    """Greatest value of each of k continuous functions of period 2 pi, with its place: sampled at t (n,), then refined.
 
     `function` gives the values (k, n). Of places that are equal but for rounding the first.
     """

@@ -195,7 +195,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
 
 
 def sketched(recipe: Recipe) -> Design:
-    """The cam as its motion has it, and no check: nothing is known of its undercut and its walls.
+    """Design with the exact cam alone and no check: undercut and walls are not examined.
 
     Takes a fraction of the time of `designed`. Raises RecipeErrors where there is no such motion or curve.
     """

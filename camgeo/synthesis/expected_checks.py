@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Foreseen(NamedTuple):
-    """One check to come: its name, and the file it concerns, None for the exact curve and the intended motion."""
+    """Check that a run will make: its name, and the file it concerns, None for the exact curve and the motion."""
 
     name: str
     file: str | None = None

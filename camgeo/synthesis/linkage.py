@@ -165,7 +165,8 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
     """Mechanism of a recipe that has a linkage, with its checks; `breadth` (mm) is that of the cam, None if it varies.
 
     Raises RecipeErrors where no square frame holds the cam, or the shaft does not lie within it, where a dyad's output
-    would not swing, a band is lost in rounding, or the motion changes too abruptly to be resolved.
+    would not swing, the band of a dwell is too narrow for rounding errors, or the motion changes too abruptly to be
+    resolved.
     """
     if breadth is None:
         remedy = "give p odd harmonics alone, or take another kind of cam"

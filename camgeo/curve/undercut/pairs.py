@@ -79,11 +79,13 @@ class Boxes:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Bounds of the pairs of n boxes about their centres (n, 2); rows are one point's and the other's.
+    """Bounds for n pairs of boxes, parameter intervals of two points x and y, about their centres (n, 2).
 
-    `radius` (2, n) is an upper bound of R at the centres, `reach` (2, n) how far along the curve a box extends to
-    either side, `doubt` (2, n) by how much that and the turning there move the pair against each other, `chord` (n,) a
-    lower bound of |x - y|, `bowl` (n,) the least eigenvalue of the Hessian of |x - y|^2 / 2 in arc length.
+    R is the radius of the circle that touches the curve at one point and passes through the other. Rows of (2, n)
+    arrays are for the one point and for the other. `radius` (2, n) is an upper bound of R at the centres, `reach` (2,
+    n) how far along the curve a box extends to either side, `doubt` (2, n) by how much that and the turning there move
+    the pair against each other, `chord` (n,) a lower bound of |x - y|, `bowl` (n,) the least eigenvalue of the Hessian
+    of |x - y|^2 / 2 in arc length.
     """
 
     centre: Array

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 def ground_form(name: str, check: Callable[[Values, Values, Reader], None], *more: str) -> Form:
-    """Make the record of a table by which a lobe is ground, with `more` options; `check` notes what it lacks."""
+    """Make the record of a table by which a lobe is ground, with `more` options.
+
+    `check` notes what a recipe lacks for it.
+    """
 
     def checked(file: Values, values: Values, reader: Reader) -> None:
         check(file, values, reader)

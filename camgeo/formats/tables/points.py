@@ -74,7 +74,10 @@ class _Points(NamedTuple):
 
 
 def make(job: Job, request: FileRequest, path: Path) -> Made:
-    """Write the points by the step that is given, or the widest that holds the tolerance, and judge their spline."""
+    """Write the points by the step that is given, or the widest that holds the tolerance, and judge their spline.
+
+    Raises RecipeErrors for a contour with corners, and where no number of points holds the tolerance.
+    """
     from camgeo.output.job import Made
     from camgeo.synthesis.intent import intended, permitted
     from kin.judge.verify import verify_points

@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 
 
 def polar_table(recipe: Recipe, contour: Curve) -> tuple[tuple[str, ...], Array]:
-    """Column names and rows (angles + 1, 2): polar angle, in equal steps, and the contour's distance from the shaft.
+    """Column names and rows (angles + 1, 2): polar angle, degrees in equal steps, and the contour's radius there.
 
-    Raises StarError where a ray from the shaft may cross the contour more than once or not at all.
+    The radius, the distance from the shaft, is in the recipe's unit. Raises StarError where a ray from the shaft may
+    cross the contour more than once or not at all.
     """
     from camgeo.curve.measures import polar_radius
 

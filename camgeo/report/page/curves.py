@@ -48,7 +48,7 @@ COUNTS = 0.5  # of the longest dwell within a band: shorter ones are not shown
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """One curve: values (STEPS + 1,) at equal steps of the angle."""
+    """Curve of a plot: values (STEPS + 1,) at equal steps of the angle."""
 
     name: str
     values: Array

@@ -84,7 +84,7 @@ def shoe(radius: float, angle: Array, size: float) -> Touch:
 
 
 def face(tilt: float, low: float, high: float, size: float) -> Touch:
-    """Return a flat face whose normal is turned by `tilt`, from `low` to `high` along it."""
+    """Return a flat face whose normal is turned by `tilt`, rad, from `low` to `high` along it, mm; `size` scales it."""
     c, s = math.cos(tilt), math.sin(tilt)
     corners = np.array([(0.0, low), (0.0, high), (THICK * size, high), (THICK * size, low)])
     outline = Ring.through(corners @ np.array([[c, s], [-s, c]]))

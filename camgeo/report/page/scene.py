@@ -80,7 +80,7 @@ class Scene:
         return replace(self, bodies=tuple(_enlarged(body, factor) for body in self.bodies))
 
     def mirrored(self) -> Scene:
-        """Return its image in the x axis: the same mechanism with a shaft that turns the other way."""
+        """Scene mirrored about the x axis: the same mechanism with a shaft that turns the other way."""
         return replace(self, bodies=tuple(map(_reflected, self.bodies)))
 
     @cached_property
