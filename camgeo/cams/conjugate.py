@@ -179,7 +179,7 @@ class Conjugate(Holding):
         return f"{sentence} and a {self.key} of {apart}", resized.resized(resized.base_radius, None, farther)
 
     def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:
-        """For disc 2 the larger distance or angle at which its roller is half the least convex radius."""
+        """Words for the distance or angle of disc 2 at which its roller is half the least convex radius; else empty."""
         if surface != SECOND:
             return Holding.rounder(self, surface, exact, mm)
         first, second = exact.follower.contacts

@@ -33,13 +33,13 @@ class RollerPairAdvice(PairAdvice):
     """Advice for two rollers: smaller ones."""
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Radius of rollers without undercut."""
+        """Words for the radius of the rollers below which there is no undercut."""
         if not free_at / mm > 0.0:
             return "no roller radius is proved to have no undercut"
         return f"a roller radius below {downward(free_at / mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """Radius of rollers with the wanted radius of curvature; empty without one above 0."""
+        """Words for the radius of the rollers that gives the wanted radius of curvature; empty without one above 0."""
         return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
 
 

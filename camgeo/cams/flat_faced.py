@@ -55,17 +55,17 @@ class SizeAdvice(Advice):
         return f"a follower.diameter of {across}" if self.beyond else super().wider_face(width, mm)
 
     def enlarge(self, growth: float, unit: str = "") -> str:
-        """A larger size, in words, that raises all radii of curvature by more than `growth`, in `unit`."""
+        """Words for a larger size that raises all radii of curvature by more than `growth`, in `unit`."""
         if growth == 0.0:  # a radius that is 0 needs no more than not to be
             return f"a larger {self.size}{self.beside}"
         return f"{f'a {self.size} larger by more than {upward(self.share * growth)} {unit}'.rstrip()}{self.beside}"
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A size without undercut, in words."""
+        """Words for a size without undercut."""
         return f"{self.enlarge(free_at / mm)} would {self.free}"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """A size with the wanted radius of curvature, in words."""
+        """Words for a size that gives the wanted radius of curvature."""
         return self.enlarge(limit - value, unit)
 
 
@@ -136,12 +136,12 @@ class ExactLifted(ExactCam):
 
     @cached_property
     def motion(self) -> Position:
-        """Lift of the face from its datum."""
+        """Position of the face over the shaft angle: its lift from the datum, mm."""
         return LiftPosition(self.law, self.law.datum)
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The envelope of the face (AS eqs. 2, 3; SW eqs. 14, 17)."""
+        """Surface of the disc, in a tuple of one: the envelope of the face (AS eqs. 2, 3; SW eqs. 14, 17)."""
         from camgeo.curve.support import SupportShape
 
         shape = SupportShape(self.law)
@@ -164,7 +164,7 @@ class ExactLifted(ExactCam):
 
     @property
     def proofs(self) -> Mapping[str, Callable[[], Proof]]:
-        """The check of a yoke's breadth."""
+        """Check of the motion, by its name: whether the breadth is constant, for a yoke."""
         return {"constant-breadth": self._constant_breadth}
 
     def _constant_breadth(self) -> Proof:

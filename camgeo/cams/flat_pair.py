@@ -28,11 +28,11 @@ class FacePairAdvice(PairAdvice):
     """Advice for two faces: a smaller swing, as a larger base radius r + const closes no pair."""
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002
-        """A swing without undercut, in words."""
+        """Words for a smaller swing, without undercut."""
         return f"{self.less_swing(mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """Empty: no remedy is known."""
+        """Words for a larger radius of curvature: empty, as no remedy is known."""
         return ""
 
 

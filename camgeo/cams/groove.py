@@ -64,11 +64,11 @@ class GrooveAdvice(RoundAdvice):
     clearance: float = 0.0
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Radius of a roller without undercut, in words."""
+        """Words for the radius of a roller without undercut."""
         return super().free_of_undercut(free_at - self.clearance, mm)
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """Radius of a roller with the wanted radius of curvature, in words."""
+        """Words for the radius of a roller that gives the wanted radius of curvature."""
         return super().rounder(value - self.clearance / (25.4 if unit == "in" else 1.0), limit, unit)
 
 

@@ -162,7 +162,7 @@ class PairCam(Cam):
 
     @abstractmethod
     def surface(self, law: Transmission, out: float) -> Surface:
-        """The surface; for faces `out` mm beside their lines."""
+        """Surface of the disc for a law; for faces they stand `out` mm beside the lines through their pivot."""
 
     @abstractmethod
     def grow(self, out: float, scale: float) -> PairCam:
@@ -273,7 +273,7 @@ class PairAdvice(Advice):
         return self.cam.touch.radius
 
     def less_swing(self, mm: float) -> str:
-        """A smaller swing, in words: of an arc one nearer to the circle about the shaft."""
+        """Words for a smaller swing; of an arc, for one nearer to the circle about the shaft."""
         if not isinstance(self.cam.route, ArcRoute):
             return super().less_swing(mm)
         return f"an arc.radius nearer to {self.cam.mean_distance / mm:.6g}"

@@ -83,7 +83,7 @@ class PreloadedCam(ExactCam):
 
     @property
     def running(self) -> dict[str, Gauge]:
-        """The real follower, which overlaps the metal."""
+        """Real follower on each surface, by the surface's name; it overlaps the metal."""
         return self.nominal.gauges
 
     @property

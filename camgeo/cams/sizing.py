@@ -117,7 +117,7 @@ class SizedAdvice(Advice):
         return f"{_at_least(radius)} would be free of it"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """The wanted radius of curvature under `sizing`, in words; in a ring a smaller roller."""
+        """Words for the wanted radius of curvature under `sizing`; in a ring for a smaller roller."""
         if self.cam.side < 0:
             return f"a {self.radius_field} below {downward(value)} {unit}" if value > 0.0 else ""
         return _at_least(limit)

@@ -140,7 +140,7 @@ class ReuleauxAdvice(SizeAdvice):
     shape: ReuleauxShape = field(kw_only=True)
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A larger rounding, in words, and where that reaches half the breadth a larger breadth."""
+        """Words for a larger rounding of the corners, and where that reaches half the breadth for a larger breadth."""
         sentence = super().free_of_undercut(free_at, mm)
         if self.shape.rounding + free_at < 0.5 * self.shape.breadth:
             return sentence

@@ -79,7 +79,7 @@ class Backwards:
         return speed, -turn
 
     def bounds(self, low: Array, high: Array) -> Bounds:
-        """Proved bounds over intervals (n,)."""
+        """Proved bounds of speed, turn and their derivatives over parameter intervals [low, high] (n,)."""
         b = self.base.bounds(-high, -low)
         return replace(b, turn_low=-b.turn_high, turn_high=-b.turn_low)
 

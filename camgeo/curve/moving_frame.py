@@ -322,7 +322,10 @@ class FramedShape(MotionShape[SourceT]):
         )
 
     def bounds(self, low: Array, high: Array) -> Bounds:
-        """Proved bounds over intervals (n,), kept for parallels of the curve, which need the same."""
+        """Proved bounds of speed, turn and their derivatives over intervals [low, high] (n,).
+
+        They are kept for parallels of the curve, which need the same.
+        """
         key = low.tobytes(), high.tobytes()
         if key not in self._bounds:
             if len(self._bounds) == MOST_KEPT:

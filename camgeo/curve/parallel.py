@@ -75,7 +75,7 @@ class Parallel:
         return speed - turn * self.distance, turn
 
     def bounds(self, low: Array, high: Array) -> Bounds:
-        """Proved bounds over intervals (n,)."""
+        """Proved bounds of speed, turn and their derivatives over parameter intervals [low, high] (n,)."""
         b, d = self.base.bounds(low, high), self.distance
         if d == 0.0:
             return b  # a bound that is infinite stays one

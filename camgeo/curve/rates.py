@@ -93,7 +93,7 @@ class MotionShape(ABC, Generic[SourceT]):
         return speed.c, turn.c
 
     def bounds(self, low: Array, high: Array) -> Bounds:
-        """Proved bounds over intervals (n,)."""
+        """Proved bounds of speed, turn and their derivatives over parameter intervals [low, high] (n,)."""
         return bounds_of(self.figures, low, high, self.rates_of)
 
     @property

@@ -27,7 +27,7 @@ Number = TypeVar("Number", float, "Array")
 
 
 def radius_of(length: Number, bulge: Number) -> Number:
-    """Radius of arcs, by their chords' lengths and bulges."""
+    """Radius of arcs, in the unit of `length`, from their chords' lengths and their bulges."""
     return length * (1.0 + bulge * bulge) / (4.0 * abs(bulge))
 
 
@@ -90,7 +90,7 @@ class Ring(ArcChain):
         return Ring(vertices, np.zeros(len(vertices)), closed)
 
     def scaled(self, factor: float) -> Ring:
-        """The ring enlarged about the origin."""
+        """Ring enlarged by a factor about the origin."""
         return replace(self, points=factor * self.points)
 
     def mirrored(self) -> Ring:

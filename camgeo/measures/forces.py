@@ -168,7 +168,10 @@ def preload_force(design: Design, preload: Preload) -> tuple[Extreme, Extreme]:
 
 
 def preload_section(recipe: Recipe, design: Design) -> dict[str, object] | None:
-    """The report's section on the preload: its force, and the load along the travel at which a contact is lost."""
+    """Section of the report on the preload: its force, and the load along the travel at which a contact is lost.
+
+    None without a preload; without a stiffness the section has the interference alone.
+    """
     preload = design.exact.preload
     if preload is None:
         return None

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 def make(job: Job, request: FileRequest, path: Path) -> Made:
     """Make and judge the files of one request: one at `path`, or one for each disc beside it.
 
-    None are made where the format needs a mechanism that turns right round and this one does not. Raises RecipeErrors
-    where a tolerance cannot be held or no such file can be made, SurroundingsError for the disk or a missing extra.
+    No file is made of an altered part whose contour fails a check: then the failed checks come back alone; nor where
+    the format needs a mechanism that turns right round and this one does not. Raises RecipeErrors where a tolerance
+    cannot be held or no such file can be made, SurroundingsError for the disk or a missing extra.
     """
     job, failed = job.of_file(request)
     if failed:

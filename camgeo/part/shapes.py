@@ -80,7 +80,10 @@ def hole_at(name: str, circle: float, diameter: float, angle: float) -> Opening:
 
 
 def keyed(radius: float, width: float, depth: float, angle: float) -> ArcSpline:
-    """Circle about the origin with a keyway of this width, its floor `depth` beyond the circle (DIN 6885 t2)."""
+    """Circle about the origin with a keyway of this width, mm; its bottom is `depth` beyond the circle (DIN 6885 t2).
+
+    `angle`, rad, is the direction of the keyway's middle.
+    """
     half = 0.5 * width
     floor, corner = radius + depth, math.sqrt(radius * radius - half * half)
     sweep = 2.0 * (math.pi - math.asin(half / radius))
@@ -89,7 +92,7 @@ def keyed(radius: float, width: float, depth: float, angle: float) -> ArcSpline:
 
 
 def flattened(radius: float, across: float, angle: float) -> ArcSpline:
-    """Circle about the origin with a flat, `across` from its opposite side; the flat's normal points to `angle`."""
+    """Circle about the origin with a flat, `across` mm from its opposite side; its normal points to `angle`, rad."""
     height = across - radius
     half = math.sqrt(radius * radius - height * height)
     sweep = 2.0 * (math.pi - math.acos(height / radius))
@@ -106,28 +109,28 @@ def polygonal(sides: int, across: float, normal: float) -> ArcSpline:
 
 
 def slot(inner: float, outer: float, width: float) -> ArcSpline:
-    """Slot with round ends on the ray at 0, from radius `inner` to `outer`."""
+    """Slot with round ends along the x axis, its ends at the radii `inner` and `outer`, mm."""
     half = 0.5 * width
     points = np.array([[inner + half, -half], [outer - half, -half], [outer - half, half], [inner + half, half]])
     return ArcSpline(points, np.array([0.0, 1.0, 0.0, 1.0]), EXACT)
 
 
 def slot_across(radius: float, length: float, width: float, angle: float) -> ArcSpline:
-    """Slot with round ends, `length` over them, square to the ray at an angle, its middle at a radius."""
+    """Slot with round ends, `length` over them, mm, square to the ray at `angle`, rad, its middle at `radius`."""
     half, end = 0.5 * width, 0.5 * (length - width)
     points = np.array([[radius + half, -end], [radius + half, end], [radius - half, end], [radius - half, -end]])
     return ArcSpline(_turned(points, angle), np.array([0.0, 1.0, 0.0, 1.0]), EXACT)
 
 
 def strip(reach: float, width: float, angle: float) -> ArcSpline:
-    """Rectangle of this width along a ray, from the origin to a radius."""
+    """Rectangle of this width, mm, along the ray at `angle`, rad, from the origin to the radius `reach`."""
     half = 0.5 * width
     points = np.array([[0.0, -half], [reach, -half], [reach, half], [0.0, half]])
     return ArcSpline(_turned(points, angle), np.zeros(4), EXACT)
 
 
 def polar(radius: float, angle: float) -> tuple[float, float]:
-    """Point at a radius and angle; exact on the axes."""
+    """Point (x, y) at a radius, mm, and an angle, rad; exact on the axes."""
     c, s = _direction(angle)
     return radius * c + 0.0, radius * s + 0.0
 

@@ -40,9 +40,10 @@ CHANGES = (1.05, 0.95, 1.1, 0.9, 1.2, 0.8, 1.5, 0.65, 2.0, 0.5, 3.0)  # of a lin
 
 
 def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
-    """Mechanism of a recipe that has a linkage.
+    """Mechanism of a recipe that has a linkage; `breadth`, mm, is that of the cam.
 
-    Raises RecipeErrors where the shaft does not lie within the cam, or a dyad's output would not swing.
+    Raises RecipeErrors where the shaft does not lie within the cam, or a dyad's output would not swing, ValueError for
+    a recipe without a linkage.
     """
     from kin.law.programme import IntentError
     from kin.linkage.mechanism import Mechanism, OutsideError

@@ -35,7 +35,10 @@ class Pitch:
         return Pitch(Curve(contour.shape.base, contour.runs))
 
     def bounds(self, low: Array, high: Array, points: Frame, t: Array) -> Bends:
-        """Bounds over intervals [low, high] (n,), each about a point at t (n,) of its own."""
+        """Bounds of speed and curvature over intervals [low, high] (n,), sharpened about a parameter t (n,) in each.
+
+        `points` are the frames at t.
+        """
         b = self.curve.cells.over(low, high)
         far = np.maximum(t - low, high - t)
         # breaks inside an interval spoil Taylor's series about the point, not the bounds of the cells

@@ -80,7 +80,10 @@ def flat(view: View[Translating, Flat], reach: float, size: float) -> list[Body]
 
 
 def faces(p: Array, breadth: float, reach: float, size: float, y: float = 0.0) -> list[Body]:
-    """Return a frame of two faces, the first at p (n,), on a stem on a line at y, and its guide."""
+    """Return a frame of two faces, the first at x = p (n,), mm, the second `breadth` behind, and its guide.
+
+    Its stem lies on a line at `y`, mm; `reach` is the cam's greatest radius, `size` scales the parts.
+    """
     thick, half_stem, gap = 2.2 * size, 1.3 * size, 1.0 * size
     run = 4.5 * size
     first_guide = float(p.max()) + thick + gap

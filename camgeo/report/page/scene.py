@@ -161,7 +161,7 @@ def pivot(name: str, x: float, y: float, size: float, letter: str = "", *, angle
 
 
 def pin(size: float, x: float = 0.0, y: float = 0.0) -> Shape:
-    """Return a revolute joint."""
+    """Return the pin of a revolute joint at (x, y), a disc scaled by `size`."""
     return Shape("pin", (disc(x, y, 0.55 * size),))
 
 
