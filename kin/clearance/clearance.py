@@ -200,7 +200,7 @@ class _Search:
         return max(self.accuracy, SHARE * abs(self.least), -2.5 * DEPTH_SHARE * self.least)
 
     def run(self, regions: tuple[Region, Region]) -> None:
-        """Search the turn for one pair of slabs."""
+        """Search the whole turn for the least D of one pair of slabs' regions; updates `least` and `proved`."""
         stack = self._begin(regions)
         while stack:
             cells = stack.pop()

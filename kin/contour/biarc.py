@@ -24,7 +24,7 @@ MOST_TURN = np.pi / 2.0
 
 
 class Pair(NamedTuple):
-    """Two arcs, tangent to each other, and the bound on their distance from the curve (m,), mm."""
+    """Two arcs tangent to each other, a pair for each of m curves, and a bound (m,), mm, of their distance from it."""
 
     first: Arcs
     second: Arcs

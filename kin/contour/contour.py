@@ -80,7 +80,7 @@ class Contour(Pieces):
 
     @staticmethod
     def from_vertices(vertices: Array) -> Contour:
-        """Return the closed polygon through vertices (n, 2)."""
+        """Return the closed polygon through vertices (n, 2), mm."""
         return Contour.from_bulges(vertices, np.zeros(len(vertices)))
 
     @staticmethod

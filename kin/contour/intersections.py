@@ -40,7 +40,7 @@ class Crossings(NamedTuple):
 
 
 def crossings(contour: Contour) -> Crossings:
-    """Where the contour crosses, touches or covers itself, to within a nanometre; each place once a pair of pieces.
+    """Points at which the contour crosses, touches or covers itself, to a nanometre: one a pair of pieces there.
 
     A convex contour, or one seen whole from its middle or from the origin, has none, without further work. Else pieces
     whose boxes overlap are found by descending a tree of boxes against itself, and intersected in closed form. The

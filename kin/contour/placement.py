@@ -32,10 +32,10 @@ SAME_SIZE = 0.1  # share by which an area may differ from that of one of these
 
 
 def placement(contour: Contour, exact: Array, tolerance: float) -> str:
-    """How the exact contour has to be placed to fit a file's contour within some tolerances, mm, in words.
+    """Words for how the exact contour must be placed, turned, mirrored, scaled or offset to fit a file's contour.
 
-    `exact` are some hundred points of it (n, 2), in order. Empty where no turn, shift, mirror image, change of unit or
-    offset makes it fit, or none is needed.
+    `exact` are some hundred points of it (n, 2), in order; `tolerance` is in mm. Empty where no turn, shift, mirror
+    image, change of unit or offset makes it fit, or none is needed.
     """
     if len(contour) > MOST_PIECES or not contour.area > 0.0:
         return ""

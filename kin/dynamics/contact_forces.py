@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Elastic(NamedTuple):
-    """Two contacts under preload: its force along the travel, and the stiffness of each along it; (n,) each."""
+    """Two contacts under preload: preload P and stiffness K of each contact, both along the travel; (n,) each."""
 
     preload: Array
     first: Array
@@ -33,7 +33,7 @@ class Elastic(NamedTuple):
 
     @property
     def loses_first(self) -> Array:
-        """Force F, below 0, at which contact 1 is lost (n,)."""
+        """Force F below 0 (n,) from which on downwards contact 1 is lost and contact 2 bears alone."""
         force: Array = -self.preload * (1.0 + self.second / self.first)
         return force
 
@@ -43,7 +43,7 @@ class Elastic(NamedTuple):
         return np.ones_like(self.preload)
 
     def apart(self, gap: Array) -> Elastic:
-        """Give the pair on metal that leaves it more room, `gap` (n,) along the travel; a preload that is gone is 0."""
+        """Give the pair on metal that leaves a wider `gap` (n,) along the travel: the preload falls, at most to 0."""
         compliance = 1.0 / self.first + 1.0 / self.second
         return self._replace(preload=np.maximum(self.preload - gap / compliance, 0.0))
 

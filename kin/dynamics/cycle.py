@@ -90,7 +90,7 @@ class Log:
             self._extremes(-1.0, samples, span_of, end)
 
     def fly(self, begin: float, end: float) -> None:
-        """Note a time without contact, as shaft angles."""
+        """Take in a flight without contact from shaft angle `begin` to `end`, rad."""
         self.reached = end
         self._free += end - begin
         self.force(0.0, begin)

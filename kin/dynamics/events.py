@@ -68,7 +68,10 @@ class Span(Protocol):
 
     @property
     def limit(self) -> float:
-        """See above."""
+        """Level, a little below 0, below which the state of contact has ended.
+
+        Above it a negative level may be rounding.
+        """
         ...
 
     def at(self, time: Array) -> Array:
@@ -176,9 +179,10 @@ def _dip(span: Span, low: float, high: float, work: Work) -> float | None:
 def crossing(
     level: Callable[[float], float], low: float, high: float, limit: float, work: Work, *, room: float = 2.0 * _EPS
 ) -> float:
-    """Where a level falls below `limit` between two times, narrowed to `room` of the later; the later side of that.
+    """Time between two others at which a level falls below `limit`: later end of a bracket of relative width `room`.
 
-    Chandrupatla's method, Adv. Eng. Softw. 28, 1997: inverse interpolation where it is safe, else halving.
+    Chandrupatla's method, Adv. Eng. Softw. 28, 1997: inverse interpolation where it is safe, else halving. A level that
+    is below the limit at the start gives the start.
     """
     work.take(0)
     room *= max(abs(low), abs(high))

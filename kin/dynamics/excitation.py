@@ -37,7 +37,7 @@ class Intended:
 
     @property
     def breaks(self) -> Array:
-        """Jumps of the acceleration or of its derivatives."""
+        """Shaft angles, rad, at which the acceleration or a derivative of it may jump."""
         return self.follower.motion.breaks
 
     def rows(self, phi: Array) -> Array:

@@ -47,7 +47,7 @@ class Path:
         self.bend_rate = float(np.abs(bend @ DERIVATIVE.T).sum()) / half
 
     def at(self, time: float) -> Depth:
-        """Value and two derivatives at a time."""
+        """Place and two derivatives at a time, rad of shaft."""
         x = (time + self._ahead) / self.half - 1.0
         place, rate, bend = (self._series @ np.cos(math.acos(min(max(x, -1.0), 1.0)) * ORDERS)).tolist()
         return Depth(place, rate, bend)

@@ -74,9 +74,10 @@ class Forcing:
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Response to a drive; `drive` is already cut as the oscillator needs it, `p` and `v` are the series of p and p'.
+    """Response z = p + h to a drive, already cut into m stretches as the oscillator needs it; states are (z, z').
 
-    Each (m, DEGREE + 1). States are (2,) or (2, n): z and z'.
+    p, v (m, DEGREE + 1)  Chebyshev series of p and p'
+    slow (m,)             whether p is the slow solution on a stretch, else it starts at rest
     """
 
     oscillator: Oscillator

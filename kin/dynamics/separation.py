@@ -41,7 +41,7 @@ _LEAST_RATIO = 0.5  # natural frequency in turns of the shaft, below which none 
 
 @dataclass(frozen=True)
 class FloatSpeed:
-    """Where float begins.
+    """Shaft speed from which on contact is lost (float).
 
     rpm       least speed at which the contact force of the steady state falls to 0; None where that is not reached
               while the natural frequency is above half the shaft's
@@ -92,7 +92,7 @@ class _Search:
         self.floats: float | None = None
 
     def run(self) -> float | None:
-        """The least speed at which contact is lost."""
+        """Least speed, rpm, at which contact is lost; None where it holds at all speeds looked at."""
         last = _last(self.train)
         low = self._look(self.holds)
         while low.rpm < last:

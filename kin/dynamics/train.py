@@ -78,7 +78,7 @@ class Train:
 
     @property
     def damping_ratio(self) -> float:
-        """Damping as a share of the critical."""
+        """Damping ratio: the damping over the critical damping."""
         return 0.5 * self.damping / math.sqrt((self.stiffness + self.rate) * self.mass)
 
     def ratio(self, rpm: float) -> float:

@@ -238,7 +238,7 @@ class OfLaw(Moved):
         return self.law.breaks
 
     def over(self, parameter: Array) -> tuple[Array, Array]:
-        """Shaft angle and position, (3, n) each."""
+        """Shaft angle and position, with two derivatives by the parameter: (3, n) each."""
         angle = np.stack([parameter, np.ones_like(parameter), np.zeros_like(parameter)])
         return angle, self.law.derivatives(parameter, 2)
 
@@ -273,7 +273,7 @@ class OfTransmission(Moved):
         return self.transmission.breaks
 
     def over(self, parameter: Array) -> tuple[Array, Array]:
-        """Shaft angle and swing, (3, n) each."""
+        """Shaft angle and swing, with two derivatives by the parameter: (3, n) each."""
         phi, psi = self.transmission.at(parameter, 2)
         return phi, self.share * psi
 

@@ -138,7 +138,7 @@ class Search:
 
 
 def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
-    """Search an obstacle once, as `Search.first` does."""
+    """Distance, mm, and piece, (n,) each, of the first contact at shaft angles phi (n,); see `Search.first`."""
     return Search.of(obstacle, guide).first(phi)
 
 

@@ -60,7 +60,7 @@ class Deviation:
 
     @property
     def worst(self) -> tuple[float, float]:
-        """Two-sided deviation, mm, and where: the envelope's parameter."""
+        """Greatest two-sided deviation, mm, and the envelope's parameter there."""
         return max((self.outside, self.outside_at), (self.inside, self.inside_at), (self.bare, self.bare_at))
 
     def less_sure(self, by: float) -> Deviation:

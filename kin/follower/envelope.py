@@ -86,7 +86,10 @@ class Outwards(Protocol):
 
 
 class FacePitch(Protocol):
-    """Where a flat face stands over a parameter of period 2 pi; `Transmission` is one, of face A of its pair."""
+    """A moving line along a flat face, over a parameter of period 2 pi.
+
+    `Transmission` is one, of face A of its pair.
+    """
 
     @property
     def breaks(self) -> Array:
@@ -315,11 +318,11 @@ class TransmissionPitch:
 
     @property
     def breaks(self) -> Array:
-        """Parameters where the second derivative may jump."""
+        """Parameters in [0, 2 pi) at which the second derivative may jump."""
         return self.transmission.breaks
 
     def points(self, tau: Array) -> tuple[Array, Array, Array]:
-        """Centre and two derivatives, each (n, 2)."""
+        """Roller centre and its two derivatives by the parameter, mm, each (n, 2)."""
         r, t = self.transmission.pitch(tau, 2)
         u = unit(t[0])
         n = left(u)
@@ -378,7 +381,7 @@ class RollerEnvelope:
         return self.pitch.breaks
 
     def points(self, parameter: Array) -> Array:
-        """Points (n, 2) at the radius inside the pitch curve."""
+        """Points (n, 2) of the contour, mm: a roller radius inside the pitch curve along its normal."""
         point, first, _ = self.pitch.points(parameter)
         points: Array = point - self.radius * right(first) / np.hypot(first[:, 0], first[:, 1])[:, None]
         return points

@@ -57,13 +57,16 @@ class ArmFace:
 
     @staticmethod
     def of(contact: Contact[Guide, Touch]) -> ArmFace:
-        """Take the face of a contact's record."""
+        """Make the formulas of a face on an arm from its contact."""
         if not (isinstance(contact.guide, Oscillating) and isinstance(contact.touch, Flat)):
             raise TypeError("a flat face on an arm has a pivot")
         return ArmFace(contact.guide.pivot, contact.guide.side, -contact.touch.nearer)
 
     def bearing(self, contour: Contour) -> Bearing:
-        """Where a contour bears all round; ContactError if the face's contact reaches the pivot."""
+        """Contacts of a contour with the face all round.
+
+        Raises ContactError if the face's contact reaches the pivot.
+        """
         bearing = replace(bearing_of(contour), back=self.out)
         nodes = np.append(bearing.breaks, bearing.breaks[:1] + TURN)
         _, *ends = bearing.between(nodes)
@@ -144,7 +147,7 @@ class OfArmFace:
 
     @cached_property
     def breaks(self) -> Array:
-        """Where the contact passes from piece to piece."""
+        """Shaft angles, rad, at which the contact passes from one piece of the contour to the next."""
         return np.mod(self.face.starts(self.bearing), TURN)
 
     def rows(self, phi: Array) -> Array:
@@ -348,7 +351,10 @@ class SwingingFace(OfLaw, _OnArm):
         return float(place.min()), float(place.max())
 
     def motion_limit(self, tolerance: float) -> float:
-        """Greatest swing, degrees, that a shift of the contour by `tolerance` gives the face."""
+        """Greatest swing error, degrees, of a contour within `tolerance`, mm.
+
+        Raises ContactError where the intended contact reaches the pivot.
+        """
         phi = grid(self.law.breaks)
         psi = self.intended(phi)
         if (psi >= 0.5 * np.pi).any():

@@ -192,7 +192,7 @@ class Yoke(FlatFace):
 
     @property
     def closure(self) -> Closure:
-        """The breadth of the contour, and its greatest."""
+        """Rule for the play: checks on the contour's breadth, mm, for constancy and for its greatest value."""
         return Closure(self.play_limit, "constant-breadth", "breadth-max", self.breadth)
 
     def play_limit(self, tolerance: float) -> float:

@@ -48,7 +48,11 @@ class FrameError(CamgeoError, ValueError):
 
 @dataclass(frozen=True)
 class Rest:
-    """How the frame lies on the cam: face 1 has the share `first` in placing it, face 3 the rest, face 2 `second`."""
+    """One way in which the frame lies on the cam, by weights 0 to 1 of the faces that place it.
+
+    first    weight of face 1; face 3 has the rest
+    second   weight of face 2; face 4 has the rest
+    """
 
     name: str
     first: float

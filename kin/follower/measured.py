@@ -68,7 +68,7 @@ class MeasuredMotion:
 
     @property
     def lift(self) -> float:
-        """Greatest position less the least, mm or rad."""
+        """Greatest less least position, mm or rad."""
         return self.most[0] - self.least[0]
 
     def dwells(self, reading: float) -> list[Dwell]:

@@ -254,7 +254,10 @@ class OnSpline:
 
 @dataclass(frozen=True, eq=False)
 class BezierSpans:
-    """Stretches of pieces (n,) between parameters low and high, (n,) each; errors both ways are looked for at once."""
+    """Stretches (n,) of Bezier pieces from parameter `low` to `high`, (n,) each.
+
+    Errors of both signs are sought at once.
+    """
 
     held: OnSpline
     piece: Indices

@@ -76,7 +76,10 @@ class OfRoller:
 
     @cached_property
     def breaks(self) -> Array:
-        """Where the roller passes from piece to piece; two passages within a millionth of an interval may be lost."""
+        """Shaft angles, rad, at which the roller passes from piece to piece.
+
+        Two passages within a millionth of an interval may be lost.
+        """
         ends = self.guide.shaft_angle(np.concatenate([self.obstacle.start, self.obstacle.ends])) - self.turned
         ends = np.unique(np.mod(ends[np.isfinite(ends)], TURN))
         width = np.diff(ends, append=ends[:1] + TURN)

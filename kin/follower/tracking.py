@@ -48,7 +48,7 @@ DOUBT = 1e-9  # of a radian, or of the cam's extent: pieces that are farther apa
 
 
 class Law(Protocol):
-    """An intended motion over the shaft angle."""
+    """Intended motion over the shaft angle, with bounds of its derivatives."""
 
     def rows(self, phi: Array) -> Array:
         """Position, mm or radians, and two derivatives at shaft angles phi (n,): (3, n)."""
@@ -340,7 +340,7 @@ class Spans:
 
 
 def greatest(error: Array, phi: Array) -> tuple[float, float]:
-    """Greatest absolute error (n,), and its shaft angle."""
+    """Greatest of the absolute errors (n,), and its shaft angle out of `phi` (n,)."""
     i = int(np.argmax(np.abs(error)))
     return float(abs(error[i])), float(phi[i])
 

@@ -74,5 +74,5 @@ def less_sure(check: Check, by: float) -> Check:
 
 
 def about(check: Check, file: str) -> Check:
-    """Name the file that a check concerns."""
+    """Give the check with the name of the file that it concerns."""
     return replace(check, file=file)

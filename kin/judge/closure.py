@@ -35,7 +35,7 @@ Surface = tuple["SurfaceIntent", "Contour"]
 def judge_closures(
     surfaces: Sequence[Surface], closures: Sequence[ClosureIntent], limits: Limits, uneven: float = 0.0
 ) -> tuple[tuple[ClosureVerdict, ...], list[Check]]:
-    """Judge what is left between surfaces, of one file or of several, in mm and as if not mirrored.
+    """Judge the play between pairs of surfaces, of one file or of several, in mm and as if not mirrored.
 
     A closure one of whose surfaces is not among these is left out. `uneven` as of `judge_contour`, for either.
     """

@@ -180,7 +180,11 @@ def beside_interference(check: Check, play: Play, own: Play) -> Check:
 def play_checks(
     play: Play, closure: Closure, follower: Follower, limits: Limits, slack: float, *, detail: str
 ) -> list[Check]:
-    """Check what is left to a follower that is held from two sides, and how far it interferes."""
+    """Check the play of a follower that is held from both sides: the worse of play and interference, against the limit.
+
+    A closure with a name `tight` has a second check, of the interference alone. The limit is given, or implied by the
+    tolerance; an implied limit that is too large fails the check.
+    """
     given = limits.play
     if given is None and limits.motion is not None and closure.lever is not None:
         given = closure.lever * limits.motion

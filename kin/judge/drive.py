@@ -42,7 +42,7 @@ SHARE = 1e-12  # of the stroke, to which its lowest place is found
 
 
 class Table(NamedTuple):
-    """A table as read: rows in mm or rad, what one unit of the slave is, and the error that the head states in it."""
+    """A cam table of a drive as read: rows in mm or rad, the slave's unit in these, and the error stated in it."""
 
     rows: JoinedRows
     unit: float

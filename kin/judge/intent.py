@@ -41,9 +41,9 @@ class SurfaceIntent:
 
 @dataclass(frozen=True)
 class ClosureIntent:
-    """What is left to a follower between two surfaces: by name the one that pushes it out and the one that stops it.
+    """A follower between two surfaces, by name: the one that pushes it out and the one that stops it.
 
-    `name` is that of the check. What the gauges find left is meant to be nothing.
+    `name` is that of the check. The play of the gauges is meant to be 0.
     """
 
     pushes: str
@@ -53,7 +53,10 @@ class ClosureIntent:
 
 @dataclass(frozen=True)
 class DwellAsked:
-    """A dwell: the output stays within a range of `band`, rad or mm, for `at_least`, rad (None: it is only told)."""
+    """A dwell of the output: it stays within `band`, rad or mm, over an angle of `at_least`, rad, if that is set.
+
+    `over` says whether the angle is the shaft's or the relative one.
+    """
 
     band: float
     at_least: float | None = None

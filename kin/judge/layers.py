@@ -32,10 +32,10 @@ MOST_NAMED = 3  # places where walls lean, in a message
 
 @dataclass(frozen=True)
 class Layer:
-    """What a solid is meant to be from z = low to high, mm.
+    """Slab of a solid as intended, from z = low to high, mm.
 
-    outline     None for the cam's contour, `inset` (at low, at high) inside it
-    holes       openings through the layer
+    outline  None for the cam's contour, `inset` (at low, at high) inside it
+    holes    openings through the layer
     """
 
     low: float
@@ -45,7 +45,7 @@ class Layer:
     inset: tuple[float, float] = (0.0, 0.0)
 
     def inset_at(self, z: float) -> float:
-        """How far inside the contour the outline lies at a height."""
+        """Distance, mm, of the outline inside the cam's contour, at height z, mm."""
         share = (z - self.low) / (self.high - self.low)
         return self.inset[0] + share * (self.inset[1] - self.inset[0])
 
@@ -137,7 +137,7 @@ def faces(layers: Sequence[Layer]) -> list[tuple[str, float]]:
 
 
 def leans(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[Lean]:
-    """Where walls are meant to be anything but upright."""
+    """Heights at which walls are meant to lean: those of cross holes and of chamfers."""
     rows = []
     for hole in cross_holes:
         outline = next(

@@ -32,17 +32,20 @@ def stroke_of(follower: Follower) -> float:
 
 
 def is_loose(limit: float, direct: float, size: Callable[[], float], share: float = MOST_SHARE) -> bool:
-    """Whether a limit is above that share of a size, and far above what the same tolerance gives directly."""
+    """Whether a limit is too large to limit anything: above `share` of `size`, and over 10 times `direct`.
+
+    `direct` is what the same tolerance permits at a pressure angle of 0.
+    """
     return limit > STEEP * direct and limit > share * size()
 
 
 def direct_play(closure: Closure, follower: Follower, tolerance: float) -> float:
-    """What the limit of play, mm or degrees, is at a pressure angle of 0: two contacts, each off by the tolerance."""
+    """Greatest play, mm or degrees, at a pressure angle of 0, of two contacts each off by the tolerance, mm."""
     return 2.0 * (follower.direct_limit(tolerance) if closure.radius is None else tolerance)
 
 
 def unlimited(check: Check) -> Check:
-    """Fail a check whose limit is none."""
+    """Turn a check into a failed one, since its implied limit is so large that it is no limit."""
     detail = f"{NO_LIMIT}; {amount_words(check.limit or 0.0, check.unit, '.3g')} would be permitted"
     return replace(check, ok=False, limit=None, detail=f"{detail}; {marked(check.detail)}" if check.detail else detail)
 

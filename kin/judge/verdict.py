@@ -84,7 +84,7 @@ class OfSurfaces:
 
     @property
     def measured_error(self) -> float | None:
-        """Two-sided distance from the exact contour, mm."""
+        """Two-sided distance of the first surface from its exact contour, mm."""
         return self.surface.measured_error
 
     @property

@@ -55,7 +55,7 @@ class Oscillating:
 
 @dataclass(frozen=True)
 class Roller:
-    """A roller that turns on its pin; `radius` in mm."""
+    """A roller on a pin, which the cam turns; `radius` in mm."""
 
     radius: float
     word: ClassVar[str] = "roller"
@@ -73,7 +73,7 @@ class KnifeEdge:
 
 @dataclass(frozen=True)
 class Shoe:
-    """A curved shoe that slides; `radius` in mm."""
+    """A curved shoe that slides on the cam; `radius` in mm."""
 
     radius: float
     word: ClassVar[str] = "shoe"

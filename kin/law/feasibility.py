@@ -90,7 +90,7 @@ def _shaft_deg(law: Transmission, tau: float) -> float:
 
 
 def steepest(law: Transmission) -> tuple[float, float]:
-    """Where psi'(phi) is largest, a parameter tau, and how large: found, however short the stretch that has it."""
+    """Parameter tau at which psi'(phi) is greatest, and that slope: found, however short the stretch that has it."""
     weights = [1 - w for w in law.lean]
     weight = max(weights)  # 1/2 on every polar stretch; 1 on a given law, 0 on its image
     at, most = highest(law.psi, weights, 1)
@@ -99,7 +99,7 @@ def steepest(law: Transmission) -> tuple[float, float]:
 
 
 def too_steep(law: Transmission, field: str) -> IntentError:
-    """Say where psi'(phi) is largest, and how large."""
+    """Make the error for a law whose slope psi'(phi) reaches 1: its greatest value and the shaft angle there."""
     at, figure = steepest(law)
     degrees = _shaft_deg(law, at)
     return IntentError(

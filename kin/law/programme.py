@@ -107,7 +107,7 @@ class AcceleratedPiece(Alike):
         return self.start, self.s, self.v, self.rate, self.peak / (self.rate**2 if self.rate else 2.0)
 
     def together(self, rows: Array) -> Stretch:
-        """Pieces of one shape by their numbers."""
+        """Give one function for n pieces of one shape, a column of `rows` each."""
         return _Accelerated(self.shape, tuple(rows))
 
     def __call__(self, u: Series, /) -> Series:

@@ -31,7 +31,7 @@ class FromDelta:
     square: float
 
     def scaled(self, scale: float) -> FromDelta:
-        """The law for arms `scale` times as long."""
+        """Give the law for arms `scale` times as long."""
         area, delta = scale * scale, self.delta
         terms = tuple((k, area * a, area * b) for k, a, b in delta.terms)
         return FromDelta(Harmonics(area * delta.mean, terms), area * self.square)
@@ -136,7 +136,7 @@ class FromArc:
         return acos(self.distance(t) / (2 * self.arm)) * 2.0 - self.alpha
 
     def distance(self, t: Series) -> Series:
-        """Give r over the polar angle t."""
+        """Distance r of the arc from the shaft, mm, at the polar angle t."""
         x = t - self.delta / 2
         along = cos(x) * self.centre
         root = sqrt(self.radius**2 - sin(x) ** 2 * self.centre**2)

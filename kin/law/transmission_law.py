@@ -80,7 +80,7 @@ class Transmission:
 
     @property
     def repeats(self) -> int:
-        """Equal parts of a turn of tau."""
+        """Number of equal periods in a turn of tau."""
         return self.lam
 
     @property
@@ -209,7 +209,7 @@ class Transmission:
         return joints_of(((float(at[i]), before[:, i], after[:, i]) for i in order), size)
 
     def parameter(self, phi: float | Array, side: int = 1) -> Array:
-        """Solve phi(tau) = phi for tau, (n,)."""
+        """Parameter tau (n,) at which phi(tau) is the shaft angle phi (n,), rad."""
         return self._solved(self._lead, phi, side)
 
     def polar_parameter(self, t: float | Array, side: int = 1) -> Array:

@@ -116,9 +116,9 @@ class Chain:
         return self.dyads[loop - 1].joints(self.hung(solved, loop - 1), solved.dyads[loop - 1])
 
     def margins(self, loop: int, s: Array, s1: Array, about: Sequence[float]) -> Array:
-        """How far a loop is from each of its k limits, mm (k, n), negative where it binds.
+        """Distances of a loop from its k limits, mm (k, n), below 0 where it binds.
 
-        Each is smooth where the lifts (n,) are. BindingError where an earlier loop binds.
+        Each is smooth where the lifts (n,) are. Raises BindingError where an earlier loop binds.
         """
         if loop == 0:
             return self.linkage.margins(s, s1, self.breadth)

@@ -94,7 +94,7 @@ class RRR(_Pivoted):
         demand_lengths(self.assembly, **{"first link": self.links[0], "second link": self.links[1]})
 
     def margins(self, x: float | Array, y: float | Array) -> Array:
-        """How far GP is from the least and greatest length that the bars span, mm (2, n), for P at x, y (n,)."""
+        """Distances of GP from the least and the greatest length that the bars span, mm (2, n), for P at x, y (n,)."""
         a, b = self.links[1], self.links[0]
         terms = _arm_terms(x, y, self.ground)
         return triangle_margins(a, b, _square(*terms), *excesses(*terms, a, b))
@@ -140,7 +140,7 @@ class RRP:
         demand_lengths(self.assembly, link=self.link)
 
     def margins(self, x: float | Array, y: float | Array) -> Array:
-        """How much longer the bar is than P's distance from the line, on either side, mm (2, n), for P at x, y (n,)."""
+        """Length of the bar less P's distance from the line, on either side, mm (2, n), for P at x, y (n,)."""
         c, s = math.cos(self.direction), math.sin(self.direction)
         across = np.atleast_1d((y - self.through[1]) * c - (x - self.through[0]) * s)
         return np.stack([self.link - across, self.link + across])
@@ -207,7 +207,7 @@ class RPR(_Pivoted):
         return Reached(arm.bearing(about) - bearing(slide, slide.constant(self.offset), arm.q), (x, y))
 
     def joints(self, point: Place, reached: Reached) -> dict[str, Joint]:
-        """P in the slot, and the pivot G."""
+        """Joints by their letters: P in the slot, and the pivot G."""
         return {"P": Joint("slot", Link(point, reached.output)), "G": pivot(self.ground, reached.output)}
 
 

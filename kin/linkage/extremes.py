@@ -92,7 +92,10 @@ _OF_OUTPUT = {"output", "velocity_relative", "acceleration_relative", "velocity"
 
 
 def figures(rows: Callable[[Array], Rows], shaft: Callable[[Array], Array], breaks: Array) -> Figures:
-    """Find the figures from the rows, smooth between breaks, and the shaft angles at relative angles."""
+    """Find the figures from `rows`, smooth between breaks (k,), at relative angles.
+
+    `shaft` gives the shaft angles of these.
+    """
     places = between(0.0, TURN, breaks.tolist())
     size = max(1.0, float(np.abs(rows(0.5 * (places[:-1] + places[1:])).output).max()))
     rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Rows._fields])

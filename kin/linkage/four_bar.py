@@ -79,7 +79,7 @@ class Positions:
         return -slope * c + slope1 * s, -slope * s - slope1 * c
 
     def from_instant_centre(self, slope: Array, slope1: Array) -> tuple[Array, Array]:
-        """Vector from there to D (n,), mm."""
+        """Vector (x, y) from the instant centre P to the joint D, (n,) each, mm."""
         px, py = self.instant_centre(slope, slope1)
         return self.joint[0].c[0] - px, self.joint[1].c[0] - py
 
@@ -178,7 +178,10 @@ class FourBar:
         return angle(ax * by - ay * bx, ax * bx + ay * by, dy)
 
     def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
-        """Along DP, in the sense in which it pushes the rocker on; the positions to first order."""
+        """Line of the frame's force: along DP, in the sense in which it pushes the rocker on.
+
+        Positions are to first order.
+        """
         dx, dy = (row.c[0] for row in positions.joint)
         along = positions.from_instant_centre(slope, slope1)
         return pushing((dx, dy), along, (-dy, dx - self.ground), -positions.output.c[1])
@@ -210,9 +213,9 @@ class InvertedSliderCrank:
         demand_finite("joint's offset", self.joint_offset)
 
     def margins(self, s: float | Array, s1: float | Array, w: float) -> Array:  # noqa: ARG002 - one call for all linkages
-        """How far Y is from the ends of its range, r4 - r1 and r4 + r1, mm (2, n): negative out of reach.
+        """Distances of Y from the ends of its range, r4 - r1 and r4 + r1, mm (2, n), negative out of reach.
 
-        So it is r1 (1 - cos theta_4) and r1 (1 + cos theta_4).
+        They are r1 (1 - cos theta_4) and r1 (1 + cos theta_4).
         """
         r1, r4, e = self.ground, self.rocker, self.joint_offset
         near, far = total(r1, -r4, s, -w / 2, e), total(r1, r4, -s, w / 2, -e)
@@ -287,7 +290,7 @@ class InvertedSliderCrank:
         return angle(ax * c + ay * s, ay * c - ax * s, positions.slide.c[0])
 
     def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
-        """Across the frame's line, where P stands along it; the positions to first order."""
+        """Line of the frame's force: across the frame's line, where P stands along it. Positions are to first order."""
         frame = positions.frame.c[0]
         c, s = np.cos(frame), np.sin(frame)
         fx, fy = positions.from_instant_centre(slope, slope1)
@@ -384,7 +387,10 @@ class SliderCrank:
         return angle(*positions.from_instant_centre(slope, slope1), positions.joint[0].c[0])
 
     def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
-        """Along DP, in the sense in which it pushes the slide on; the positions to first order."""
+        """Line of the frame's force: along DP, in the sense in which it pushes the slide on.
+
+        Positions are to first order.
+        """
         dx, dy = (row.c[0] for row in positions.joint)
         way = np.ones_like(dx), np.zeros_like(dx)
         return pushing((dx, dy), positions.from_instant_centre(slope, slope1), way, positions.output.c[1])

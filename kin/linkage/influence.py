@@ -83,7 +83,7 @@ class FrameBearing:
 
 
 def frame_bearing(mechanism: Mechanism, relative: Array) -> FrameBearing:
-    """Where the frame bears at relative angles (n,); raises ValueError for a linkage with dyads."""
+    """Bearing of the frame at relative angles (n,); raises ValueError for a linkage with dyads."""
     if mechanism.dyads:
         raise ValueError("the influence of dyads is not known")
     return FrameBearing(mechanism, mechanism.at(relative, 1))

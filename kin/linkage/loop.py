@@ -91,7 +91,7 @@ def excess(x: Sequence[Term], y: Sequence[Term], z: Sequence[Term]) -> Array:
 
 
 def excesses(x: Sequence[Term], y: Sequence[Term], a: float, b: float) -> tuple[Array, Array]:
-    """Give x^2 + y^2 - (a - b)^2 and (a + b)^2 - x^2 - y^2, (n,) each, likewise."""
+    """Give x^2 + y^2 - (a - b)^2 and (a + b)^2 - x^2 - y^2, (n,) each, as `excess` does, without cancellation."""
     value = excess(x, y, (a, np.array([[-b], [b]])))
     return value[0], -value[1]
 
@@ -178,7 +178,7 @@ class Triangle:
 
 
 def triangle_margins(a: float, b: float, q: Array, near: Array, far: Array) -> Array:
-    """How far the third side is from its least and greatest length, |a - b|, a + b: (2, n), negative out of reach."""
+    """Distances of the third side from its limits |a - b| and a + b, mm (2, n), negative out of reach."""
     side, least = np.sqrt(q), abs(a - b)
     with np.errstate(invalid="ignore"):
         inner = np.where(side + least > 0, near / (side + least), 0.0)

@@ -149,7 +149,7 @@ class Mechanism:
 
     @property
     def outputs(self) -> int:
-        """Number of outputs: the linkage's and each dyad's."""
+        """Number of outputs: the linkage's, and one for each dyad."""
         return 1 + len(self.dyads)
 
     @cached_property
@@ -198,7 +198,7 @@ class Mechanism:
         return low + share * (high - low) + turns
 
     def output(self, shaft: Array) -> Array:
-        """Output (n,) at shaft angles (n,), likewise, by polynomials that follow it to its rounding."""
+        """Output (n,), rad or mm, at shaft angles (n,), any real numbers, to its rounding by polynomials."""
         cell, share = self._relation.reach(np.mod(shaft, TURN))
         return values(self._relation.coefficients[1, cell], share)
 

@@ -60,7 +60,10 @@ class Readings(NamedTuple):
 
     @property
     def exact(self) -> Exact:
-        """The probe's position on the exact cam over the shaft angle."""
+        """Function that gives the probe's position, mm or rad, and the parameter touched, (n,) each, on the exact cam.
+
+        It takes shaft angles (n,), rad, and by how much the metal is raised, mm.
+        """
         probe = probe_of(self.follower, self.side, self.touch)
 
         def position(angle: Array, raised: float = 0.0) -> tuple[Array, Array]:
@@ -78,7 +81,7 @@ class Readings(NamedTuple):
         return float(np.ptp(self.exact(equal_steps(COARSE_TURNS))[0]))
 
     def few(self) -> Readings:
-        """Some of them, evenly chosen: at most FEW."""
+        """Evenly chosen readings, at most FEW."""
         chosen = np.linspace(0, len(self.lift) - 1, min(FEW, len(self.lift))).astype(np.intp)
         return self._replace(shaft=self.shaft[chosen], lift=self.lift[chosen])
 
@@ -195,7 +198,7 @@ def _least_squares_lateness(
 
 
 def rows_of_lifts(readings: Sequence[Readings], zeros: Sequence[float]) -> tuple[Array, Array]:
-    """Lifts of several cams over the shaft's angle, each less its mean: as read, and as meant; (m, LOOKS) each.
+    """Lifts of several cams over the shaft's angle, each less its mean: as read, and exact; (m, LOOKS), mm or rad.
 
     Readings are at angles from the `zeros`, rad, at which each one's motion begins.
     """

@@ -180,10 +180,10 @@ def step_of(curve: Smooth) -> float:
 
 
 def positions_about(metal: Metal, shaft: Array, step: float) -> tuple[Array, Array]:
-    """What metal adds to the intended position of each contact, and the places where they rest, (c, 5, n) each.
+    """Effect of the metal on each contact's position, mm or rad, and the parameters touched, (c, 5, n) each.
 
-    At five shaft angles in steps about each of those given (n,), mm or radians. Raises ContactError where a contact
-    finds no metal.
+    They are at five shaft angles in steps about each of those given (n,). Raises ContactError where a contact finds no
+    metal.
     """
     every = (shaft + step * np.array(OFFSETS)[:, None]).ravel()
     positions, places = metal.positions(every)

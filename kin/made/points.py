@@ -141,7 +141,7 @@ class SurfacePoints:
         return replace(self, placing=placing)
 
     def part(self, chosen: Array) -> SurfacePoints:
-        """Some of the points, by index or mask."""
+        """Points chosen by index or mask."""
         directions = None if self.directions is None else self.directions[chosen]
         return replace(self, places=self.places[chosen], directions=directions)
 
@@ -234,7 +234,10 @@ def told_apart(deviations: Sequence[Deviations], wanted: str) -> str:
 
 
 def turned_at(surfaces: Sequence[SurfacePoints], free: str = "g") -> Placing:
-    """Placing by least squares from the best of equal turns: points whose zero of the angle is arbitrary."""
+    """Placing of points whose zero of the angle is arbitrary: a least-squares fit from the best of many turns.
+
+    `free` names the unknowns of the fit: g, x, y.
+    """
     few = [one.part(np.linspace(0, len(one) - 1, min(FEW, len(one))).astype(np.intp)) for one in surfaces]
     turns = np.arange(COARSE_TURNS) * (TURN / COARSE_TURNS)
     turn = min(turns.tolist(), key=lambda angle: _off(few, Placing(angle)))

@@ -61,7 +61,7 @@ def values(coefficients: Array, t: Array) -> Array:
 
 @lru_cache
 def binomials(k: int) -> tuple[float, ...]:
-    """Binomial coefficients k over 0 .. k."""
+    """Binomial coefficients "k choose i" for i from 0 to k."""
     return tuple(float(comb(k, i)) for i in range(k + 1))
 
 
@@ -159,7 +159,7 @@ def _first_sign(coefficients: Array) -> Array:
 
 
 def roots(coefficients: Array) -> list[float]:
-    """Where a Bernstein polynomial (k+1,) changes sign inside (0, 1), rising; a touching root may be listed too.
+    """Roots in (0, 1), rising, at which a Bernstein polynomial (k+1,) changes sign; a touching root may be listed too.
 
     The number of sign changes of the coefficients bounds the number of roots (variation diminishing): none or one is
     decided at once, more are halved.

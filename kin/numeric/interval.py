@@ -153,17 +153,17 @@ class Ball:
 
     @property
     def positive(self) -> Mask:
-        """Where every number in the ball is above 0."""
+        """Whether every number in the ball is above 0 (n,)."""
         return self.mid > self.rad
 
     @property
     def negative(self) -> Mask:
-        """Where every number in the ball is below 0."""
+        """Whether every number in the ball is below 0 (n,)."""
         return -self.mid > self.rad
 
     @property
     def zero(self) -> Mask:
-        """Where the ball is the number 0 itself."""
+        """Whether the ball is the number 0 itself (n,)."""
         return np.logical_not(np.logical_or(self.mid, self.rad))
 
 
@@ -217,7 +217,7 @@ def rising(
 
 
 def sin_cos(x: Ball) -> tuple[Ball, Ball]:
-    """Images of x (n,) under sin and cos: true ranges, [-1, 1] where x says nothing."""
+    """Balls (n,) that enclose sin and cos of every number in the ball x (n,), never wider than [-1, 1]."""
     with _fresh():
         ends = np.stack(x.bounds())
         values = np.concatenate((np.sin(ends), np.cos(ends))).reshape(2, 2, -1)
@@ -238,7 +238,7 @@ def sin_cos(x: Ball) -> tuple[Ball, Ball]:
 
 
 def tan(x: Ball) -> Ball:
-    """Image under tan; says nothing where x may hold a pole."""
+    """Ball that encloses tan of every number in the ball; its radius is infinite where the ball may hold a pole."""
     lower, upper = x.bounds()
     with _fresh():
         slack = 8 * _ULP * (1 + np.maximum(np.abs(lower), np.abs(upper)))
@@ -253,12 +253,15 @@ def exp(x: Ball) -> Ball:
 
 
 def log(x: Ball) -> Ball:
-    """Image under log; says nothing where x is not wholly positive."""
+    """Ball that encloses log of every number in the ball.
+
+    Its radius is infinite where the ball is not wholly above 0.
+    """
     return rising(np.log, x, (math.ulp(0.0), math.inf))
 
 
 def sqrt(x: Ball) -> Ball:
-    """Image under sqrt; says nothing where x reaches below 0."""
+    """Ball that encloses the square root of every number in the ball; its radius is infinite where one is below 0."""
     return rising(np.sqrt, x, (0.0, math.inf), floor=0.0)
 
 
@@ -268,12 +271,12 @@ def cbrt(x: Ball) -> Ball:
 
 
 def asin(x: Ball) -> Ball:
-    """Image under asin; says nothing where x leaves [-1, 1]."""
+    """Ball that encloses asin of every number in the ball, rad; its radius is infinite where one is outside [-1, 1]."""
     return rising(np.arcsin, x, (-1.0, 1.0))
 
 
 def acos(x: Ball) -> Ball:
-    """Image under acos; says nothing where x leaves [-1, 1]."""
+    """Ball that encloses acos of every number in the ball, rad; its radius is infinite where one is outside [-1, 1]."""
     return -rising(lambda a: -np.arccos(a), x, (-1.0, 1.0))
 
 
@@ -288,7 +291,7 @@ def sinh(x: Ball) -> Ball:
 
 
 def cosh(x: Ball) -> Ball:
-    """Image under cosh; its least value 1 where x holds 0."""
+    """Ball that encloses cosh of every number in the ball."""
     lower, upper = x.bounds()
     with _fresh():
         least = np.where((lower < 0) & (upper > 0), 0.0, np.minimum(np.abs(lower), np.abs(upper)))
@@ -318,6 +321,6 @@ def absolute(x: Ball) -> Ball:
 
 
 def hull(a: Ball, b: Ball) -> Ball:
-    """Return the least ball found that holds both."""
+    """Return a ball that holds both balls, as small as rounding allows."""
     (a0, a1), (b0, b1) = a.bounds(), b.bounds()
     return Ball.between(np.minimum(a0, b0), np.maximum(a1, b1))

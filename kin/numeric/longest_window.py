@@ -66,7 +66,7 @@ class Dwell:
 
     @property
     def end(self) -> float:
-        """Where the window ends; beyond the period where it runs through zero."""
+        """End of the window; beyond the period where the window runs through zero."""
         return self.start + self.length
 
 

@@ -73,7 +73,7 @@ class Cells:
     noise: Array
 
     def at(self, x: Array) -> Array:
-        """All functions at x (n,): (r, n)."""
+        """Values (r, n) of all r functions at x (n,)."""
         cell = np.clip(np.searchsorted(self.low, x, side="right") - 1, 0, len(self.low) - 1)
         share = (x - self.low[cell]) / (self.high - self.low)[cell]
         return np.stack([values(c[cell], share) for c in self.coefficients])
@@ -194,7 +194,7 @@ class Pieces:
         return values(c, (x - self.x[piece]) / width) / width
 
     def crossing(self, piece: Indices, level: Array) -> Array:
-        """Where the given pieces (n,) reach levels (n,): x (n,), the nearer end of a piece that does not.
+        """Points x (n,) at which the given pieces (n,) reach levels (n,), or the nearer ends.
 
         An end whose value is the level but for rounding is that place: a piece may be flat there.
         """

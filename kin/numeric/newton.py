@@ -24,7 +24,7 @@ ROUNDING = 1e-15  # of a place, or of 1 where that is more: a step that is none
 def zeros(
     function: Callable[[Array], tuple[Array, Array]], low: Array, high: Array, start: Array, close: float | Array
 ) -> Array:
-    """Where functions that rise through zero between low and high (n,) do so: (n,), from `start` (n,) between them.
+    """Zeros (n,) of n functions that rise through zero between low and high (n,), from `start` (n,) between these.
 
     `function(x)` gives values and slopes at x, (n,) each. A step that leaves what remains of its bracket ends at its
     end or, every other time, in its middle; after the first `FREE` steps brackets are halved alone. A zero has settled,

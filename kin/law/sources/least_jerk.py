@@ -50,7 +50,7 @@ class UnsolvedError(CamgeoError, ArithmeticError):
 
 
 class CrowdedError(CamgeoError, ArithmeticError):
-    """So many bounds are touched, and found one by one, that the search would take minutes."""
+    """A search that would take minutes: too many bounds are touched, and found one by one."""
 
 
 class Space(NamedTuple):
@@ -83,7 +83,7 @@ class Bounds(NamedTuple):
         return Bounds(self.x[which], self.lo[which], self.hi[which], self.unit[which], self.row[which])
 
     def with_more(self, more: Bounds, period: float) -> Bounds:
-        """These and others, by their angles; one at the angle of one of these narrows that one."""
+        """Bounds joined with `more`, in the order of their angles; of two at one angle the narrower limits hold."""
         at, away = self.nearest(more.x, period)
         same = away <= SAME_ANGLE
         lo, hi, unit, at = self.lo.copy(), self.hi.copy(), self.unit.copy(), at[same]
@@ -159,7 +159,7 @@ class Curve(NamedTuple):
         return rows
 
     def peak(self, begin: float, end: float) -> float:
-        """Greatest absolute acceleration from `begin` to `end`."""
+        """Greatest |acceleration| from angle `begin` to `end`."""
         _, q1, q2, q3 = self._rows(2)
         root = np.sqrt(np.maximum(q2 * q2 - 3.0 * q1 * q3, 0.0))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -513,7 +513,7 @@ def _of_many(space: Space, bounds: Bounds, start: Touch | None, ample: float) ->
 
 
 def excess_of_bounds(curve: Curve, bounds: Bounds) -> tuple[Array, NDArray[np.bool_]]:
-    """By how many units each bound is missed, below 0 inside, and whether the upper one is the nearer, (n,) each."""
+    """Excess (n,) over each bound in its unit, below 0 inside; and whether the upper limit is the nearer (n,)."""
     s = curve(bounds.x)
     under, over = (bounds.lo - s) / bounds.unit, (s - bounds.hi) / bounds.unit
     return np.maximum(under, over), over > under

@@ -57,7 +57,7 @@ class LobeSide(NamedTuple):
 
     @staticmethod
     def of(lift: float, half: float, powers: Sequence[int], ramp: Ramp | None) -> LobeSide:
-        """Make it of five powers; nothing is checked."""
+        """Make the side of a lobe from its five powers, without checks."""
         if ramp is None:
             return LobeSide(half, Flank.of(powers)[0], lift)
         return LobeSide(half, Flank.of(powers, lift, ramp.height, ramp.velocity * half)[0], 1.0, ramp)
@@ -186,7 +186,7 @@ def _rising(side: LobeSide) -> list[_Stretch]:
 
 
 def demand_lift(lift: float, field: str) -> None:
-    """Raise IntentError for a lift that is none."""
+    """Raise IntentError for a lift that is not above 0 and finite."""
     if not (math.isfinite(lift) and lift > 0):
         raise IntentError(f"the lift of a lobe must be above 0, not {lift:.6g}", f"{field}.lift")
 

@@ -33,7 +33,7 @@ class Basis:
 
     @cached_property
     def knots(self) -> Array:
-        """All knots, five more to each side."""
+        """All knots, with five more beyond each end."""
         x, m = self.sites, len(self.sites) - 1
         if not self.periodic:
             return np.concatenate([[x[0]] * DEGREE, x, [x[-1]] * DEGREE])

@@ -92,7 +92,7 @@ class Tabled:
         return joined_bounds(parts)
 
     def off(self, curve: Curve) -> Array:
-        """Distances of the rows from a curve, (n,)."""
+        """Distance (n,) of each row's value from a curve, mm or rad."""
         return np.abs(curve(self.x) - self.s)
 
 
