@@ -72,7 +72,10 @@ class Check(judge.Check):
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure of a design in `unit`, None where it has none, as `detail` explains; the shaft angle of its place."""
+    """A figure of a design in `unit`; `value` is None where it has none, as `detail` explains.
+
+    `at_deg` is the shaft angle of its place, degrees, None without one.
+    """
 
     value: float | None
     unit: str

@@ -39,7 +39,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Show the laws' peaks for unit stroke over unit time."""
+    """Print the laws' peaks for unit stroke over unit time, draw them if wanted, and return the exit status."""
     from kin.law.programme import IntentError
     from kin.law.sources.laws import NAMES, named
 

@@ -25,7 +25,10 @@ def demand_new(*names: str | None) -> None:
 
 
 def write_new(texts: Mapping[str, str]) -> None:
-    """Write texts by their file names, all or none; raises CallError for a file that exists, SurroundingsError."""
+    """Write texts by their file names, all or none.
+
+    Raises CallError for a file that exists, SurroundingsError where the file system refuses.
+    """
     paths: list[Path] = []
     try:
         for name, text in texts.items():

@@ -59,7 +59,10 @@ def number_of(name: str, value: object) -> float:
 
 
 def numbers_of(name: str, value: object) -> Array:
-    """Argument that is a number or an array of numbers, as floats in its shape; raises TypeError, and CallError."""
+    """Argument that is a number or an array of numbers, as floats in its shape.
+
+    Raises TypeError for what is no number, CallError for rows that differ in length.
+    """
     import numpy as np
 
     try:
@@ -105,7 +108,7 @@ def text_of(name: str, value: object, choices: Sequence[str], subject: str) -> s
 
 
 def texts_of(name: str, value: object) -> tuple[str, ...]:
-    """Argument that is a text or several, as a tuple; raises TypeError."""
+    """Argument that is a str or a sequence of str, as a tuple of str; raises TypeError for anything else."""
     if isinstance(value, str):
         return (value,)
     try:

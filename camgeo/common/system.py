@@ -63,9 +63,9 @@ def lock_file(path: Path) -> int | None:
 
 
 def unlock(lock: int, path: Path) -> None:
-    """Remove a lock's file while it is held, then let go of it.
+    """Remove a lock's file while it is held, then close it.
 
-    The other way round on Windows, which removes no file that is open, here or in another run that waits for nothing.
+    On Windows it is closed first, as that system removes no open file.
     """
     if WINDOWS:
         os.close(lock)

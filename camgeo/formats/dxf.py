@@ -110,15 +110,15 @@ def write_dxf(
     """Write what is cut or engraved, with reference geometry, as a DXF drawing with the shaft at the origin.
 
     A polygon becomes one closed LWPOLYLINE, arcs one with bulges (in R12 a POLYLINE), a B-spline a SPLINE by its
-    control points and knots, a circle a CIRCLE. All lengths are given in mm; the drawing's
-    unit is `mm` mm long (1.0 or 25.4), stated in the header and, since R12 knows no such header, in a comment on top.
-    `$EXTMIN` and `$EXTMAX` are the exact extremes of all that is drawn. `name`, `about` and `remarks` go into
-    comments. `annotate` draws what else there is, on layers of its own, and gives its extremes in drawing units.
+    control points and knots, a circle a CIRCLE. All lengths are given in mm; the drawing's unit is `mm` mm long (1.0 or
+    25.4), stated in the header and, since R12 knows no such header, in a comment on top. `$EXTMIN` and `$EXTMAX` are
+    the exact extremes of all that is drawn. `name`, `about` and `remarks` go into comments. `annotate` draws further
+    contents on layers of its own and returns their extremes in drawing units.
 
     Nothing is drawn twice: shapes of the reference that coincide become one entity with all their names.
 
-    Raises ValueError for a spline in R12, for a contour that comes twice through a point, and for a circle or a span
-    without extent; OSError as the file system does.
+    Raises ValueError for another version or unit, for a spline in R12, for a contour that comes twice through a point,
+    and for a circle or a span without extent; OSError as the file system does.
     """
     if version not in VERSIONS:
         raise ValueError(f"DXF version must be one of {', '.join(VERSIONS)}, not {version!r}")

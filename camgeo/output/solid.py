@@ -40,7 +40,7 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
 
 
 def foresee(job: Job, request: FileRequest) -> None:
-    """Refuse a tolerance that the numbers of the file cannot hold, and a part that a missing package would join.
+    """Refuse a tolerance that the precision of the file cannot hold, and a part that needs a missing package.
 
     Raises RecipeErrors; MissingExtraError for the package.
     """
@@ -56,9 +56,9 @@ def numbers(job: Job, request: FileRequest) -> Precision:
 
 
 def aim(job: Job, request: FileRequest) -> float:
-    """Tolerance left to the fit: what rounding to the file's numbers and a chamfer leave of the file's.
+    """Tolerance, mm, left to the fit once rounding in the file and a chamfer have taken their share.
 
-    Raises RecipeErrors where that is nothing.
+    Raises RecipeErrors where nothing is left.
     """
     contours = (contour for _, contour in job.design.contours)
     size = max(float(np.abs(contour.sample(contour.cells.low).point).max()) for contour in contours)
@@ -85,7 +85,10 @@ class DiscMesh(NamedTuple):
 
 
 def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
-    """Every disc of the cam, within a request's tolerance and in its file's numbers; raises as `cam_mesh` does."""
+    """Mesh of every disc of the cam, within a request's tolerance, in the precision of its file.
+
+    Raises as `cam_mesh` does.
+    """
     discs = job.design.discs
     if len(discs) == 1:
         return [DiscMesh("cam", *cam_mesh(job, request))]
@@ -97,9 +100,9 @@ def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
 
 
 def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:
-    """A cam of one disc with everything that its part has, within a request's tolerance and in its file's numbers.
+    """Mesh of a cam of one disc with its whole part, within a request's tolerance, in the precision of its file.
 
-    Raises RecipeErrors and SurroundingsError as `make` does.
+    Raises RecipeErrors and SurroundingsError as `camgeo.output.dispatch.make` does.
     """
     recipe, tolerance, precision = job.recipe, job.tolerance(request), numbers(job, request)
     if recipe.part.thickness is None:

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 
 def read_text(reader: Reader, field: Field, node: Node, path: str) -> object:
-    """Text of a note, a name, or a ratio as a pair (lambda, mu); None where faulty, with the fault noted."""
+    """Value of a text by its field: a note, a name, or a ratio as a pair (lambda, mu); None where faulty.
+
+    The fault is noted.
+    """
     readers: dict[Kind, Callable[[str], object]] = {
         Kind.TEXT: read_paragraph,
         Kind.NAME: read_name,
