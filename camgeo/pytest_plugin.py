@@ -326,7 +326,7 @@ class VerifyItem(RecipeItem):
         self.options = options
 
     def runtest(self) -> None:
-        """Hold every check of the files."""
+        """Judge the files, and fail unless every check of them holds."""
         from camgeo import verify
         from camgeo.common.errors import CallError
 

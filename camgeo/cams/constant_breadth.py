@@ -78,7 +78,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
 
     @property
     def by_linkage(self) -> bool:
-        """Whether the frame's swing is given."""
+        """Whether the links shape the cam: the recipe gives the swing of the frame, not the lift."""
         return self.swings
 
     def in_frame(self, ground: float, rocker: float, side: float) -> Cam:
@@ -142,7 +142,7 @@ def check(cam: Values, reader: Reader) -> None:
 
 
 def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
-    """The cam of values without fault."""
+    """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     undercut: Undercut = cam.get("undercut", "refuse")
     motion = cam["swing" if "swing" in cam else "motion"]
     return ConstantBreadthCam(cam["base_radius"], motion, undercut, "swing" in cam, preload=build_preload(cam))

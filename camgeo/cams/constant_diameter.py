@@ -108,7 +108,7 @@ def check(cam: Values, reader: Reader) -> None:
 
 
 def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
-    """The cam of values without fault."""
+    """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     undercut, preload = cam.get("undercut", "refuse"), build_preload(cam)
     return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut, preload)
 

@@ -192,7 +192,7 @@ def _with_pivot(follower: Values) -> Values:
 
 
 def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
-    """The cam of values without fault."""
+    """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     if "sized" in cam:
         sized: DiscCam = cam["sized"]
         return sized

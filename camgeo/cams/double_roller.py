@@ -118,7 +118,7 @@ TABLE = pair_table(
 
 
 def build(cam: Values, mm: float) -> Cam:
-    """The cam of values without fault."""
+    """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     (lam, mu), undercut = cam["ratio"], cam.get("undercut", "refuse")
     route, preload = build_route(cam, mm), build_preload(cam)
     return DoubleRollerCam(lam, mu, cam["arm"], cam["roller_radius"], route, undercut, preload)

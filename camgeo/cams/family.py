@@ -232,7 +232,7 @@ class ExactCam(ABC):
 
     @property
     def gauge(self) -> Gauge:
-        """The gauge of the first surface."""
+        """Follower by which kin judges the first surface, see `gauges`."""
         return self.gauges[self.surfaces[0].name]
 
     @property

@@ -149,7 +149,7 @@ class ExactLifted(ExactCam):
 
     @property
     def judged_law(self) -> Piecewise:
-        """The lift, by pieces."""
+        """Lift over the shaft angle, mm, as pieces, by which kin judges the files."""
         return self.law.law
 
     @cached_property

@@ -73,11 +73,11 @@ class FlatPairCam(PairCam):
         return Surface(whole, Curve.whole(Parallel(whole.shape, -out)) if out else whole)
 
     def circles(self) -> tuple[Circle, ...]:
-        """The circle of the pivot."""
+        """Reference circle of the pivot about the shaft, of radius 2 arm."""
         return (Circle("pivot circle", 2.0 * self.arm),)
 
     def grow(self, out: float, scale: float) -> FlatPairCam:  # noqa: ARG002 - the faces stand beside by it
-        """The pair with its arm scaled."""
+        """Copy of the pair with its arm scaled; growth of the metal moves the faces of `ExactPair` alone."""
         return replace(self, arm=scale * self.arm)
 
 
@@ -85,7 +85,7 @@ TABLE = pair_table("swing of the pair, psi/2, over 180/lambda degrees of shaft a
 
 
 def build(cam: Values, mm: float) -> Cam:
-    """The cam of values without fault."""
+    """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     lam, mu = cam["ratio"]
     undercut, preload = cam.get("undercut", "refuse"), build_preload(cam)
     return FlatPairCam(lam, mu, cam["arm"], build_route(cam, mm), undercut, preload)

@@ -47,7 +47,7 @@ class Groove(Holding):
         return tuple(replace(first, touch=Roller(flank.radius), surface=flank.name) for flank in flanks)
 
     def grow(self, out: float, scale: float, *, flat: bool) -> Groove:  # noqa: ARG002
-        """The groove scaled."""
+        """Copy of the groove with clearance and depth scaled; growth of the metal leaves both as they are."""
         return Groove(clearance=scale * self.clearance, depth=None if self.depth is None else scale * self.depth)
 
     def advice(self, cam: GuidedCam, own: Advice) -> Advice:

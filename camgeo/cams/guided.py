@@ -289,7 +289,7 @@ class ExactLed(ExactCam):
 
     @cached_property
     def judged_law(self) -> Piecewise:
-        """The displacement over the shaft angle."""
+        """Displacement over the shaft angle, mm or rad, by which kin judges the files."""
         return self.law.law()
 
     @cached_property

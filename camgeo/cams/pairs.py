@@ -304,7 +304,7 @@ class ExactPair(ExactCam):
 
     @property
     def judged_law(self) -> Transmission:
-        """The law of transmission."""
+        """Law of transmission, by which kin judges the files."""
         return self.law
 
     @cached_property
@@ -472,7 +472,7 @@ def _harmonics(cam: Values, reader: Reader) -> None:
 
 
 def build_route(cam: Values, mm: float) -> Route:
-    """The route of values without fault."""
+    """Build the route from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     if "formula" in cam.get("delta", ()):
         return DeltaFormulaRoute(cam["delta"]["formula"], mm * mm)
     if "law" in cam.get("delta", ()):

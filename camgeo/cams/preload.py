@@ -54,17 +54,17 @@ class PreloadedCam(ExactCam):
 
     @property
     def law(self) -> Lift | Displacement | Transmission:
-        """The law of the nominal motion."""
+        """Law of the nominal motion, without preload."""
         return self.nominal.law
 
     @property
     def follower(self) -> Follower:
-        """The real follower."""
+        """Follower of the nominal cam."""
         return self.nominal.follower
 
     @property
     def motion(self) -> Position:
-        """The nominal motion."""
+        """Position of the follower in the nominal motion, over the shaft angle."""
         return self.nominal.motion
 
     @cached_property

@@ -330,7 +330,7 @@ def _least_angle(sides: int, angles: tuple[float, ...] = (), **_: float) -> floa
 
 
 def build(cam: Values, mm: float) -> Cam:
-    """The cam of values without fault."""
+    """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     return SupportCam(_shape(cam, mm), cam.get("shaft", (0.0, 0.0)), cam.get("undercut", "refuse"), build_preload(cam))
 
 

@@ -29,12 +29,12 @@ class Backwards:
 
     @property
     def period(self) -> float:
-        """Length of the parameter's turn."""
+        """Period of the parameter."""
         return self.base.period
 
     @property
     def breaks(self) -> Array:
-        """Breaks of the base."""
+        """Breaks of the base in the negated parameter, from 0 to less than the period, rising."""
         return np.sort(np.mod(-np.asarray(self.base.breaks, dtype=np.float64), self.period))
 
     @property

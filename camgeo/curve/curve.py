@@ -131,7 +131,7 @@ class Shape(Protocol):
 
     @property
     def period(self) -> float:
-        """Length of the parameter's turn."""
+        """Period of the parameter."""
         ...
 
     @property
@@ -188,7 +188,7 @@ class Run:
 
     @property
     def stretches(self) -> Array:
-        """Smooth stretches (m, 2) in order."""
+        """Ends (m, 2) of the smooth stretches between breaks, in order."""
         knots = np.array([self.low, *self.breaks, self.high])
         return np.column_stack([knots[:-1], knots[1:]])
 

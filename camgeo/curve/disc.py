@@ -56,7 +56,7 @@ class _Face(ABC):
 
     @property
     def breaks(self) -> Array:
-        """Breaks of the motion."""
+        """Shaft angles at which a derivative of the motion may jump, rising."""
         return self.motion.breaks
 
     @property

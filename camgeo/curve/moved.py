@@ -70,7 +70,7 @@ class Moved(ABC):
 
     @property
     def period(self) -> float:
-        """Length of the parameter's turn."""
+        """Period of the parameter."""
         return self.base.period
 
     @cached_property

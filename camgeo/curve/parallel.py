@@ -28,7 +28,7 @@ class Parallel:
 
     @property
     def period(self) -> float:
-        """Length of the parameter's turn."""
+        """Period of the parameter."""
         return self.base.period
 
     @property

@@ -44,7 +44,7 @@ FINE_ORDER = 9
 
 
 class Source(Protocol):
-    """The stretches of a motion."""
+    """Protocol of a motion over a turn: its breaks, equal parts, and stretches of constant speed and turn."""
 
     @property
     def breaks(self) -> Array:
@@ -103,7 +103,7 @@ class MotionShape(ABC, Generic[SourceT]):
 
     @property
     def breaks(self) -> Array:
-        """Breaks of the motion."""
+        """Parameters at which a derivative of the motion may jump, rising."""
         return self.law.breaks
 
     @property

@@ -85,7 +85,7 @@ class Ring(ArcChain):
 
     @staticmethod
     def through(points: Sequence[tuple[float, float]] | Array, *, closed: bool = True) -> Ring:
-        """Straight lines through points (n, 2)."""
+        """Ring of straight lines through points (n, 2), back to the first if `closed`."""
         vertices = np.asarray(points, dtype=np.float64)
         return Ring(vertices, np.zeros(len(vertices)), closed)
 

@@ -114,7 +114,7 @@ class SpanDensity:
 
     @property
     def totals(self) -> Array:
-        """The integral over each stretch (m,)."""
+        """Integral of the density over each stretch (m,)."""
         return np.array([density.total for density in self.densities])
 
 

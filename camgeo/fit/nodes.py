@@ -139,7 +139,7 @@ class Density:
         return nodes
 
     def share(self, t: float) -> float:
-        """The running integral at a parameter."""
+        """Running integral `sum` at a parameter, interpolated."""
         return float(np.interp(t, self.t, self.sum))
 
     def nodes(self, count: int) -> Array:

@@ -62,7 +62,7 @@ class Polygon:
         return Polygon(self.vertices * _positive(k), self.bound.scaled(k))
 
     def box(self) -> Box:
-        """Extremes (x_min, y_min, x_max, y_max)."""
+        """Least and greatest coordinates (x_min, y_min, x_max, y_max), mm."""
         return _box(self.vertices)
 
 

@@ -47,7 +47,7 @@ class Event(NamedTuple):
 
     @property
     def duration(self) -> float:
-        """Crank degrees between the crossings."""
+        """Duration from opening to closing, crank degrees: two per degree of the cam."""
         return CRANK * math.degrees(self.closing - self.opening)
 
     @property

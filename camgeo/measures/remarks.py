@@ -507,7 +507,7 @@ def _thickness(recipe: Recipe, design: Design) -> Remark | None:
 
 
 def size_of(design: Design) -> float:
-    """Size of the largest surface, mm."""
+    """Greatest distance from the shaft over all surfaces of the exact cam, mm."""
     return max(surface.curve.size for surface in design.exact.surfaces)
 
 

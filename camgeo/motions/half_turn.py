@@ -43,7 +43,7 @@ class HalfTurnCam:
 
     @property
     def motion_span(self) -> float:
-        """Half a turn, rad."""
+        """Shaft angle over which the recipe gives the motion: half a turn, rad."""
         return math.pi
 
     @cached_property

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Law(Protocol):
-    """A motion over the shaft angle."""
+    """Protocol of a motion over the shaft angle."""
 
     def derivatives(self, theta: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Position and its derivatives at theta (n,), (order + 1, n)."""

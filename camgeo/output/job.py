@@ -95,7 +95,7 @@ class Job:
 
     @property
     def single(self) -> tuple[Job, ...]:
-        """Job for each disc alone."""
+        """Jobs of the discs, each with that disc's design and fits alone."""
         fits = iter(self.fits)
         return tuple(
             replace(self, design=design, fits=tuple(islice(fits, len(design.surfaces))))
@@ -104,7 +104,7 @@ class Job:
 
     @property
     def clock(self) -> Clock:
-        """Clock of the stages."""
+        """Clock that counts the seconds of the stages."""
         return self.fits[0].clock
 
     @property

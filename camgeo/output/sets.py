@@ -40,7 +40,7 @@ class FileSet:
 
     @property
     def discs(self) -> set[int | None]:
-        """Discs of the files."""
+        """Discs that the files hold, counted from 0; None among them for a file with all discs."""
         return {disc for _, _, disc in self.files}
 
 

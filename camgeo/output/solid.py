@@ -80,7 +80,7 @@ class DiscMesh(NamedTuple):
 
     @property
     def standing(self) -> Mesh:
-        """The mesh where it stands."""
+        """Mesh moved to its place on the shaft."""
         return self.mesh if self.place is None else replace(self.mesh, points=self.mesh.points + self.place[3])
 
 

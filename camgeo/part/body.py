@@ -86,7 +86,7 @@ class Body:
 
     @property
     def top(self) -> float:
-        """Greatest z, mm."""
+        """Greatest z, mm: that of the disc, or of a hub above it."""
         above = self.hub.height if self.hub is not None and self.hub.side != "bottom" else 0.0
         return (self.thickness or 0.0) + above
 

@@ -132,7 +132,7 @@ def _check_sizes(part: Values, reader: Reader) -> None:
 
 
 def build_part(values: Values) -> Part:
-    """Make the part of values in which there is no fault."""
+    """Build the part from values of `part` in which no fault was noted."""
     features = tuple(value for feature in FEATURES if (value := feature.build(values)) is not None)
     own = {name: values[name] for name in ("thickness", "wall", "outer", "density") if name in values}
     return Part(features=features, **bore.build_bore(values), **own)

@@ -59,5 +59,5 @@ def check_tappet(values: Values, reader: Reader) -> None:
 
 
 def build_cam(cam: Values, mm: float) -> Cam:
-    """The cam of values without fault; `mm` is the recipe's unit of length, mm."""
+    """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     return FAMILIES[cam["kind"]].build(cam, mm)

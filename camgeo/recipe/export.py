@@ -271,7 +271,7 @@ SHARED = frozenset({"as", "tolerance", "units", *(item.name for item in COMPENSA
 
 
 def requests(files: list[Values]) -> tuple[FileRequest, ...]:
-    """Requests of the files, from values without fault."""
+    """Build the requests of the files from values of a recipe in which no fault was noted."""
     return tuple(_request(file["kind"], file) for file in files)
 
 
@@ -290,5 +290,5 @@ def _request(kind: str, file: Values) -> FileRequest:
 
 
 def build_export(values: Values) -> Export:
-    """Export of values without fault."""
+    """Build the export from values of a recipe in which no fault was noted."""
     return Export(values.get("tolerance", TOLERANCE), requests(values.get("files", [{"kind": "dxf"}])))

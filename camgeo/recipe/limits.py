@@ -190,6 +190,6 @@ def check_limits(limits: list[Values], reader: Reader) -> None:
 
 
 def build_limits(limits: list[Values]) -> tuple[Limit, ...]:
-    """Limits of values without fault."""
+    """Build the limits from values of a recipe in which no fault was noted."""
     values = ({name: value for name, value in limit.items() if name != "at"} for limit in limits)
     return tuple(Limit(**limit) for limit in values)

@@ -357,7 +357,7 @@ def check_linkage(values: Values, reader: Reader) -> None:
 
 
 def build_linkage(linkage: Values) -> Linkage:
-    """Linkage of values without fault."""
+    """Build the linkage from values of a recipe in which no fault was noted."""
     from kin.linkage.dyad import RPR, RRP, RRR
     from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 

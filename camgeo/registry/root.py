@@ -34,7 +34,7 @@ class Designed(Protocol):
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Checks that need no file."""
+        """Checks of the design that need no file."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -74,7 +74,7 @@ class View(Generic[G_co, T_co]):
         return self.surface(self.contacts[0]).pressure(shaft)
 
     def surface(self, contact: Contact[G_co, T_co]) -> Surface:
-        """The surface that a contact touches."""
+        """Surface of the exact cam that a contact touches."""
         return next(surface for surface in self.design.exact.surfaces if surface.name == contact.surface)
 
     def place(self, shaft: Array) -> Array:

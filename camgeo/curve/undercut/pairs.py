@@ -107,7 +107,7 @@ class Pairs:
 
     @staticmethod
     def of(pitch: Pitch, boxes: Boxes) -> Pairs:
-        """Bounds of the pairs of boxes."""
+        """Compute the bounds for n boxes of pairs of a pitch curve."""
         count = boxes.low.shape[0]
         centre = 0.5 * (boxes.low + boxes.high)
         both = pitch.curve.sample(centre.T.ravel())

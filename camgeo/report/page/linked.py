@@ -46,7 +46,7 @@ class Driven:
 
     @staticmethod
     def of(mechanism: Mechanism) -> Driven:
-        """Solve a mechanism that turns."""
+        """Solve a mechanism that turns, at the page's equal steps of the shaft."""
         from kin.numeric.elementary import Jet
 
         theta = mechanism.relative(SHAFT)

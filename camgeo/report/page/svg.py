@@ -41,7 +41,7 @@ class View:
 
     @staticmethod
     def of(scene: Scene) -> View:
-        """Fit a scene into `SIDE`."""
+        """View that fits a scene into a square of `SIDE` px."""
         x0, y0, x1, y1 = scene.box
         scale = SIDE / max(x1 - x0, y1 - y0)
         return View(scale, x0, y1, scale * (x1 - x0), scale * (y1 - y0))
