@@ -150,7 +150,8 @@ def _runs(low: Array, high: Array, band: float) -> list[int]:
     lows, highs = doubled(np.tile(low, 2), np.minimum), doubled(np.tile(high, 2), np.maximum)
     runs, least, most = np.zeros(count, dtype=np.intp), np.full(count, np.inf), np.full(count, -np.inf)
     for level in range(count.bit_length() - 1, -1, -1):
-        further = np.minimum(least, lows[level][begin + runs]), np.maximum(most, highs[level][begin + runs])
+        place = np.minimum(begin + runs, len(lows[level]) - 1)  # beyond, too many blocks are asked
+        further = np.minimum(least, lows[level][place]), np.maximum(most, highs[level][place])
         longer = (runs + 2**level <= count) & (further[1] - further[0] <= band)
         least, most = np.where(longer, further[0], least), np.where(longer, further[1], most)
         runs += longer * 2**level

@@ -11,7 +11,7 @@ from kin.contour.contour import Contour
 from kin.follower.frame import FrameError, _output, implied_limit, judge_frame
 from kin.follower.frame_contact import WAYS, Rest
 from kin.follower.frame_contact import laid as all_laid
-from kin.follower.frame_dwell import Output, longest_dwell
+from kin.follower.frame_dwell import Output, _runs, longest_dwell
 from kin.follower.support import bearing_of
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 from kin.linkage.dyad import RPR
@@ -386,6 +386,19 @@ def test_the_longest_dwell_wherever_it_starts(band, count):
         assert 0.0 <= found.start < TURN
         inside = wavy(found.start + found.length * np.linspace(0, 1, 5001))
         assert np.ptp(inside) <= band * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 5, 8, 60])
+@pytest.mark.parametrize("band", [0.0, 0.3, 0.9, 1.5, 4.0])
+def test_runs_of_blocks_within_a_band_are_those_of_a_count_one_by_one(count, band):
+    middle = np.random.default_rng(count).uniform(0.0, 1.0, count)
+    low, high = middle - 0.1, middle + 0.1
+    ring = np.arange(2 * count) % count
+    fits = [
+        [np.ptp(np.r_[low[ring[i : i + n]], high[ring[i : i + n]]]) <= band for n in range(1, count + 1)]
+        for i in range(count)
+    ]
+    assert _runs(low, high, band) == [sum(np.cumprod(row)) for row in fits]
 
 
 @pytest.mark.slow
