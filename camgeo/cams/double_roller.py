@@ -93,7 +93,7 @@ class DoubleRollerCam(PairCam):
         return Follower("double roller", contacts, checks, "form-closure")
 
     def surface(self, law: Transmission, out: float) -> Surface:  # noqa: ARG002 - the rollers are smaller by it
-        """The pitch curve (W section 4), and the contour within it by the roller's radius."""
+        """Surface of the disc: the pitch curve (W section 4), and the contour within it at the roller's radius."""
         from camgeo.curve.wunderlich import PitchShape
 
         pitch = PitchShape(law)

@@ -323,7 +323,7 @@ class ExactCam(ABC):
 
 
 class Cam(ABC):
-    """A cam of a recipe, checked and converted: lengths in mm, angles in radians. Its fields are its family's own."""
+    """A cam of a recipe, checked and converted: lengths in mm, angles in rad; each family has fields of its own."""
 
     kind: ClassVar[str]
     undercut: Undercut

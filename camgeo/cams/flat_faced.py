@@ -99,7 +99,7 @@ class FlatFacedCam(Cam):
         return ()
 
     def surface(self, whole: Curve) -> Surface:
-        """The envelope of the face as the contour; a family may have corners on it."""
+        """Surface of the disc for the envelope of the face as a whole curve; a family may have corners on it."""
         return Surface(whole, whole)
 
     @abstractmethod

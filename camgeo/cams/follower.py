@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 class Follower:
     """A follower: its name in reports, its contacts, the checks of its intended motion in their order.
 
-    `closure` is the name of the check of files on what is left between the cam and a follower that is held from both
-    sides, empty for other followers.
+    `closure` names the check of the play or interference that a file leaves a follower held from both sides; it is
+    empty for other followers.
     """
 
     name: str

@@ -328,9 +328,10 @@ class ExactGuided(ExactLed):
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The centre's path, and the contours within it by the radius (around it, of a ring and of an outer flank).
+        """Surface of each flank: the pitch curve, and the contour parallel to it at the touch's radius.
 
-        A knife edge's contour is the parallel at 0: it may be hollow, which a flat face's own contour may not.
+        The contour lies within the pitch curve, for a ring and an outer flank around it. A knife edge's contour is the
+        parallel at 0: it may be hollow, which a flat face's own contour may not.
         """
         from camgeo.curve.moving_frame import CentreShape
 

@@ -358,10 +358,10 @@ def least_swing(motion: Displacement, pivot: float, nearer: float, side: int, ra
 def least_prime(
     shape: Callable[[float], Shape], radius: float, start: float, bend: Callable[[Curve], float] | None = None
 ) -> float:
-    """Prime circle from `start` on, mm, at which the pitch curve's least convex radius comes up to `radius`.
+    """Least radius of a prime circle, mm, from `start` on, whose pitch curve has a least convex radius of `radius`, mm.
 
-    `shape` makes the pitch curve of a prime circle, `bend` measures another radius of it. What lies just below the
-    size found is too sharp.
+    `shape` makes the pitch curve of a prime circle, `bend` measures another radius of it. Just below the result the
+    least convex radius is smaller than `radius`.
     """
 
     def short(prime: Array) -> Array:

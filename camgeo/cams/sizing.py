@@ -109,7 +109,10 @@ class SizedAdvice(Advice):
         return self.cam.touch.radius
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A radius of curvature as large as the roller, in words; it makes the roller half of the pitch curve's."""
+        """Words for a `sizing` radius of curvature as large as the roller, which is then half the pitch curve's.
+
+        In a ring the words are for a smaller roller.
+        """
         if self.cam.side < 0:
             less = free_at / mm
             return f"a {self.radius_field} below {downward(less)} would be free of it" if less > 0.0 else ""

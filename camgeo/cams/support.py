@@ -103,7 +103,7 @@ class SupportCam(FlatFacedCam):
         return _with_size(lift, "hypocycloid.breadth")
 
     def surface(self, whole: Curve) -> Surface:
-        """The contour; sharp corners of a Reuleaux polygon are corners of it."""
+        """Surface of the disc for a whole curve; sharp corners of a Reuleaux polygon are corners of the contour."""
         if not isinstance(self.shape, ReuleauxShape):
             return super().surface(whole)
         from camgeo.curve.support import with_corners

@@ -172,7 +172,10 @@ def nearest(curve: Curve) -> Extreme:
 
 
 def least_support(curve: Curve) -> Extreme:
-    """Least distance of the shaft from a tangent, mm; below 0 outside. Above 0 each ray meets the contour once."""
+    """Least distance of the shaft from a tangent of a contour, mm, and its parameter; below 0 on the outer side.
+
+    Where it is above 0 each ray from the shaft meets the contour once.
+    """
     extreme = _greatest(curve, lambda frame: -np.sum(frame.point * frame.normal, axis=1), _turning)
     return Extreme(-extreme.value, extreme.at, extreme.excess)
 

@@ -71,9 +71,8 @@ class Precision:
     def fit_tolerance(self, tolerance: float, size: float) -> float:
         """Tolerance, mm, that is left to the fit of a polygon with coordinates up to `size` mm.
 
-        What saving it again in coarser numbers may take is kept back where as much is left.
-
-        Raises ToleranceError, with the least tolerance that can be held, where too little is left.
+        The error of saving the file again in coarser numbers is subtracted too, where enough is left. Raises
+        ToleranceError, with the least tolerance that can be held, where too little is left.
         """
         moved = self.bound(size + tolerance)
         if not tolerance >= _LEAST * moved:

@@ -63,9 +63,9 @@ def disc(outer: Array) -> Triangles:
     """Triangles (n - 2, 3), counter-clockwise, of the region inside a counter-clockwise loop (n, 2).
 
     From a loop that runs once round the middle of its vertices, ears are cut in rounds, as many at a time as are not
-    neighbours: an ear that leaves the middle inside leaves the rest star-shaped. A convex loop takes O(log n) rounds,
-    a hollow takes one for each two of its vertices. What no round can cut goes to `clip_region`, and so do
-    other contours. Raises RegionError where the loop is not simple.
+    neighbours: an ear that leaves the middle inside leaves the rest star-shaped. A convex loop takes O(log n) rounds, a
+    hollow takes one for each two of its vertices. The rest that no round can cut, and any other loop, goes to
+    `clip_region`. Raises RegionError where the loop is not simple.
     """
     centre: Array = outer.mean(axis=0)
     cut, remaining = _cut_rounds(outer, centre) if star_shaped(outer, centre) else ([], np.arange(len(outer)))

@@ -287,8 +287,8 @@ def _circular_arcs(curve: Curve, stretch: tuple[float, float], radius: float) ->
 def _unknown_circle(curve: Curve, density: Density, inner: Array, limit: float) -> FittedArcs | None:
     """Fewest arcs, of half a turn at most, for a stretch that proves to be a circular arc; else None.
 
-    It is one if the arcs leave in the curve's direction, arrive in it to within rounding, and are proved to hold.
-    `inner` (m - 2, 2) are the curve's tangents on the inner grid.
+    The stretch is one if the arcs leave in the curve's direction, arrive in it to within rounding, and are proved to
+    hold. `inner` (m - 2, 2) are the curve's tangents on the inner grid.
     """
     first, last = curve.span(density.t[:1], density.t[-1:])
     along = np.concatenate([first.tangent, inner, last.tangent])

@@ -39,7 +39,7 @@ def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) ->
     """Parameters (n,) at which the sampled turn changes its sign, rising, and its sign (1 or -1) before the first.
 
     They lie inside the stretches or at the breaks between them; a change where a closed run ends is not among them.
-    They are as exact as edges across them within `tolerance`, mm, need.
+    Their error is aimed to be below `_NEAR` of the reach of an edge across them within `tolerance`, mm.
     """
     if float(curve.cells.rows[2].min()) >= 0.0:
         return np.zeros(0), 1.0

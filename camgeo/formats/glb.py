@@ -98,7 +98,7 @@ def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
 
 
 class _Buffer:
-    """The binary part as it grows, with the views and accessors that tell what lies where in it."""
+    """Binary part of a glTF file under construction, with its views and accessors."""
 
     def __init__(self) -> None:
         self.data = bytearray()

@@ -40,9 +40,9 @@ def milled_contours(recipe: Recipe, design: Design) -> tuple[tuple[tuple[Surface
 
 
 def path_arcs(recipe: Recipe, path: CutterPath, tolerance: float, fit_curve: Fit = fit_arcs) -> ArcSpline:
-    """Arcs within `tolerance` mm of the cutter's path; raises RecipeErrors where part of the path is one point.
+    """Arcs within `tolerance` mm of the cutter's path.
 
-    It is one in a hollow arc of the cutter's own radius.
+    Raises RecipeErrors where part of the path shrinks to a point, as in a hollow arc of the cutter's own radius.
     """
     try:
         return path.arcs(tolerance, fit_curve)

@@ -102,7 +102,10 @@ class LiftPosition(_Turn):
         return float(np.ptp(self.law.derivatives(parameter, 0)[0])), 1.0
 
     def by_parameter(self, parameter: Array, order: int) -> Array:
-        """Lift, mm, without datum, and its derivatives by the shaft angle at parameters of the law, (order + 1, n)."""
+        """Lift, mm, from the zero of the contacts, and derivatives by the shaft angle at parameters, (order + 1, n).
+
+        The parameters are those of the law.
+        """
         return self.law.derivatives(parameter, order)
 
 

@@ -22,13 +22,13 @@ _NO_SIZES = frozenset({"wall", "least"})  # what has to be left, which may be as
 
 @dataclass(frozen=True)
 class Part:
-    """The part round the contour, mm.
+    """The part round the contour; lengths in mm.
 
-    `thickness` of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or 6) are
-    given; `bore_at` is then the direction of one flat's normal. `fit` is the tolerance class of a round one, empty
-    where none is stated; files have the nominal size. `wall` is the least that may be left between any two
-    edges; without it what is left is reported and must be above 0. `outer` is the diameter of a ring, whose opening is
-    the cam. `density` is in kg/m^3. `features` are the values of those in FEATURES that the recipe gives.
+    `thickness` is that of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or
+    6) are given; `bore_at`, rad, is then the direction of one flat's normal. `fit` is the tolerance class of a round
+    bore, empty where none is stated; files have the nominal size. `wall` is the least wall permitted between any two
+    edges; without it the least wall is reported and must be above 0. `outer` is the diameter of a ring, whose opening
+    is the cam. `density` is in kg/m^3. `features` are the values of those in FEATURES that the recipe gives.
     """
 
     thickness: float | None = None

@@ -29,7 +29,7 @@ def load_order(path: str | PathLike[str]) -> Order:
 
 
 def load_order_text(text: str, path: str, unplaced: str = "") -> Order:
-    """Read a recipe of any kind from a text, as `load_text` does; files that it names are found from this folder."""
+    """Read a recipe of any kind from a text, as `load_text` does; the folder of `path` has the files that it names."""
     with without_places(unplaced):
         return replace(_order(text.encode("utf-8", "surrogatepass"), path), unplaced=unplaced)
 

@@ -87,7 +87,10 @@ class Compensation:
         return ", ".join(parts)
 
     def entry(self, mm: float) -> dict[str, float]:
-        """The compensation for a report: lengths in units of `mm` mm, the shrinkage in percent."""
+        """Compensation for a report: lengths in units of `mm` mm, the shrinkage in percent.
+
+        Besides what the file gives, `outward` is the movement of the edges, and `scale` the factor of the drawing.
+        """
         amounts = {name: getattr(self, name) / mm for name in ("kerf", "clearance") if getattr(self, name)}
         if self.shrinkage:
             amounts["shrinkage"] = 100.0 * self.shrinkage

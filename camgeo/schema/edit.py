@@ -23,9 +23,9 @@ _NAME = "recipe"  # of a text in errors
 def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float]) -> str:
     """Text of a recipe with numbers in the place of others, by paths such as `cam.shaft[0]`.
 
-    A number is written as briefly as reads back exactly, in the recipe's unit: that of the old one goes with it. Raises
-    CallError for a path at which no number stands, for one whose number an alias shares with other fields, and for a
-    number that is not finite; RecipeErrors for a text that is no YAML.
+    A number is written as the shortest text that reads back exactly, in the recipe's unit; a unit behind the old number
+    is removed. Raises CallError for a path at which no number stands, for one whose number an alias shares with other
+    fields, and for a number that is not finite; RecipeErrors for a text that is no YAML.
     """
     source = _source(recipe)
     placed = list(scalars(source.root))

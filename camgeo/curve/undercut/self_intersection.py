@@ -114,8 +114,8 @@ def all_breaks(curve: Curve, low: float, high: float) -> Array:
 def polygon_crossings(t: Array, points: Array, period: float, own: int) -> Array:
     """Parameters (m, 2) of crossings of the closed polygon with vertices `points` (n, 2) at parameters t (n,).
 
-    They are those of the first `own` edges with any edge. Linear along each edge: a beginning for `newton_crossings`.
-    Cost grows as own n.
+    They are crossings of the first `own` edges with any edge, interpolated along each edge: a beginning for
+    `newton_crossings`. Cost grows as own n.
     """
     count = t.size
     edge = np.roll(points, -1, axis=0) - points

@@ -67,7 +67,7 @@ class Driven:
 
     @property
     def slopes(self) -> tuple[Array, Array]:
-        """Slopes S' and S1' of faces 1 and 2."""
+        """Slopes S' and S1' of the lifts of faces 1 and 2, mm/rad, (STEPS + 1,) each."""
         return self.lifts[0, 1], self.lifts[1, 1]
 
     def joints(self, loop: int) -> dict[str, Joint]:
@@ -162,7 +162,7 @@ def _with_label(body: Body, text: str) -> Body:
 def _frame(driven: Driven, low: float, reach: float, size: float) -> Body:
     """Return the square frame about its middle, with the coupler's bar along u from `low` to `reach`.
 
-    A bar beyond the end of the frame's side hangs on an arm that prolongs this.
+    Where the bar lies beyond the end of the frame's side, an arm in line with that side carries it.
     """
     w, middle = driven.mechanism.breadth, driven.mechanism.chain.frame(driven.solved)
     inner, outer = 0.5 * w, 0.5 * w + 1.8 * size
