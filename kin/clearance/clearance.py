@@ -112,12 +112,12 @@ class Clearance:
 
     @property
     def holds(self) -> bool:
-        """Whether it is proved that they do not overlap, sampling considered."""
+        """Whether it is proved that the two bodies never overlap, the slack of sampled motions included."""
         return self.proved - self.slack >= 0.0
 
     @property
     def collides(self) -> bool:
-        """Whether an angle was found at which they overlap for certain."""
+        """Whether the two bodies overlap for certain at `at_deg`, the slack of sampled motions included."""
         return self.least + self.slack < 0.0
 
 

@@ -257,7 +257,7 @@ def _by_discs(meeting: Encounter, pairs: Pairs) -> tuple[Array, Array]:
 
 
 def distances(meeting: Encounter, pairs: Pairs) -> Gaps:
-    """Distance of each pair at the middle of its interval, in the first region's axes."""
+    """Exact distances, mm, and nearest points of each pair at its interval's middle, in the first region's axes."""
     motion, cell = meeting.motion, pairs.cell
     body = moved(meeting.second.arcs.take(pairs.second), motion.place[cell], motion.angle[cell])
     return gaps(meeting.first.arcs.take(pairs.first), body)

@@ -262,7 +262,7 @@ class Pieces:
 
     @cached_property
     def normal_ranges(self) -> NormalRanges:
-        """The normals at which each curved piece can be the farthest."""
+        """Ranges of normal directions, rad, over which each curved piece can be the farthest."""
         curved = np.flatnonzero(self.kind != LINE)
         first, last = (d[curved] for d in self.directions)
         turn = self.turns[curved]

@@ -92,13 +92,13 @@ class Guided(NamedTuple):
 
     @property
     def loses_second(self) -> Array:
-        """Force F at which contact 2 is lost (n,)."""
+        """Force F (n,), friction included, from which on contact 2 is lost and contact 1 bears alone."""
         force: Array = self.elastic.loses_second * self.alone[0]
         return force
 
     @property
     def loses_first(self) -> Array:
-        """Force F, below 0, at which contact 1 is lost (n,)."""
+        """Force F (n,) below 0, friction included, below which contact 1 is lost and contact 2 bears alone."""
         force: Array = self.elastic.loses_first * self.alone[1]
         return force
 

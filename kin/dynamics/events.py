@@ -36,7 +36,7 @@ _STRIDE = 40  # places that a stride of a flight costs
 
 
 class SpentError(CamgeoError):
-    """More places would be looked at than may be."""
+    """A search that would look at more places than are permitted."""
 
 
 @dataclass()
@@ -148,9 +148,9 @@ def first(span: Span, time: Array, level: Array, work: Work) -> float | None:
 
 
 def dips(level: Array) -> NDArray[np.intp]:
-    """Samples, lowest among their neighbours, that between these may be as deep again as they are below them.
+    """Indices of samples that are lowest among their neighbours, and beside which the level may dip below 0.
 
-    A smooth dip is a quarter as deep, at most, so this asks for room.
+    The dip may be as deep again as the sample is below its neighbours; a smooth one is a quarter as deep at most.
     """
     if len(level) < 3:
         return np.empty(0, dtype=np.intp)

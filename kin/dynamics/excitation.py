@@ -30,7 +30,7 @@ class Faces(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Intended:
-    """The intended motion of a follower, which is smooth."""
+    """Intended motion of a follower as an excitation, smooth between its breaks."""
 
     follower: Follower
     smooth: ClassVar[bool] = True
@@ -47,7 +47,7 @@ class Intended:
 
 @dataclass(frozen=True, eq=False)
 class OfMechanism:
-    """The intended output of a mechanism over its shaft angle."""
+    """Intended output of a mechanism over its shaft angle, as an excitation."""
 
     mechanism: Mechanism
     smooth: ClassVar[bool] = True

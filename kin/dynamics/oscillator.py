@@ -67,7 +67,7 @@ class Oscillator:
 
     @cached_property
     def fading(self) -> float:
-        """Rate at which the slower part of a free motion decays."""
+        """Rate of decay, per unit of time, of the slower part of a free motion; 0 without damping."""
         return self.decay if self.swings else self._gentle
 
     @cached_property

@@ -55,7 +55,7 @@ class ResponseFigure:
         return ResponseFigure(response, series, z, v)
 
     def at(self, starts: Array, samples: Samples) -> Array:
-        """Values (n,) from the states at the starts (2, m)."""
+        """Values (n,) of the figure at the samples, from the states (2, m) at the starts of all stretches."""
         response = self.response
         free_z, free_v = response.rung(starts, samples)
         x = samples.time / response.half[samples.stretch] - 1.0

@@ -164,7 +164,7 @@ class Response:
         return states
 
     def rung(self, starts: Array, samples: Samples) -> Array:
-        """The free part of z and z' (2, n), as `states`."""
+        """Free part h of z and z' (2, n) at the samples, from the states (2, m) at the starts of all stretches."""
         return self.oscillator.moved((starts - self._steps[0].T)[:, samples.stretch], samples.time)
 
     def lasting(self, bound: Array, stretches: Indices) -> Array:

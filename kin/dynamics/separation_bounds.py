@@ -125,7 +125,7 @@ class Look:
 
     @cached_property
     def inertial(self) -> float:
-        """Greatest departure of that force from the preload spring's own."""
+        """Greatest |force that belongs to q - force of the preload spring|, N or N m."""
         series = self._series - self.train.rate * self.found.drive.position
         series[:, 0] -= self.train.preload
         return float(np.abs(series).sum(axis=1).max())
@@ -140,7 +140,7 @@ class Look:
         return lowest
 
     def summed(self, decay: float) -> tuple[Array, float]:
-        """Sum of the moduli of a turn's kicks (m,), as they have faded at each stretch; what a turn leaves of one."""
+        """Sums (m,) of the sizes of a turn's kicks, faded by `decay` per rad; and what a turn leaves of a kick of 1."""
         kicks = self.kicks.tolist()
         fade = np.exp(-decay * np.diff(self.found.drive.knots)).tolist()
         left = math.exp(-decay * TURN)
@@ -157,17 +157,17 @@ class Look:
 
     @cached_property
     def turn(self) -> Array:
-        """Sum of the moduli of the last turn's kicks at each stretch (m,)."""
+        """Sums (m,) of the sizes of the last turn's kicks, as they have faded at each stretch."""
         return self.summed(self.fading)[0]
 
     @cached_property
     def states(self) -> Array:
-        """States at the starts of all stretches (2, m)."""
+        """States (z, z') (2, m) at the starts of all stretches."""
         return self.found.starts(periodic(self._running, self.found), 0, len(self.found))
 
     @cached_property
     def rung(self) -> Array:
-        """Size (m,) of h at the start of each stretch."""
+        """Size (m,) of the free motion h at the start of each stretch."""
         start = np.stack([self._q @ AT_START, self._rate @ AT_START])
         return self._size(self.states - start)
 
@@ -203,7 +203,7 @@ class Look:
 
     @cached_property
     def reached(self) -> float:
-        """The least force; where it is below 0 one that it reaches."""
+        """Least contact force over the turn, N or N m; where that is below 0, a force below 0 that is reached."""
         first = self._samples(np.array([int(np.argmin(self.lowest))]))
         seen = float(self._figure.at(self.states, first).min())
         if seen < 0.0:
@@ -231,7 +231,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Range:
-    """Speeds from `low` to `high`, by looks at both."""
+    """A range of shaft speeds, from looks at its lower and its upper end."""
 
     low: Look
     high: Look
@@ -255,7 +255,7 @@ class Range:
 
     @cached_property
     def detuning(self) -> float:
-        """Least |1 - w|, for a train that swings."""
+        """Least |1 - w| over the range, w = exp(lambda 2 pi) the factor of a turn, for a train that swings."""
         low, high = self.low.oscillator, self.high.oscillator
         sine = 0.0
         if math.floor(low.split) < high.split:

@@ -131,7 +131,7 @@ class Running:
         return Oscillator(0.0, self.train.rate / self.inertia)
 
     def response(self, drive: Drive) -> Response:
-        """Response in contact with one face that drives it."""
+        """Response z, as if in contact all round, with one face that follows the drive."""
         return response(self.bound, drive, self.forcing)
 
     def force(self, response: Response, side: int = 1) -> ResponseFigure:

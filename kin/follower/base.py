@@ -53,7 +53,7 @@ class IntendedMotion(Protocol):
 
 @dataclass(frozen=True)
 class Closure:
-    """How the play of a follower that is held from two sides is judged.
+    """Rule by which the play of a follower held from two sides is judged.
 
     limit    greatest play or interference of a contour within a tolerance of the exact one
     name     of the check on both, play and interference
@@ -116,12 +116,12 @@ class Follower(ABC):
         return self.contacts[0].guide.unit
 
     def intended(self, phi: Array) -> Array:
-        """Intended position at shaft angles phi (n,), mm or radians (n,)."""
+        """Intended position (n,), mm or rad, at shaft angles phi (n,), rad."""
         position: Array = self.motion.derivatives(phi, 0)[0]
         return position
 
     def shaft_angle(self, parameter: Array) -> Array:
-        """Shaft angle at which the envelope's point of that parameter is touched (n,)."""
+        """Shaft angle (n,), rad, at which the point of the envelope at a parameter (n,) is touched."""
         return parameter
 
     @property
@@ -222,7 +222,7 @@ class OfLaw(Moved):
 
     @cached_property
     def course(self) -> ByLaw:
-        """The law with bounds of how steep it is."""
+        """Law with proved bounds of its derivatives, along which contact is followed."""
         from kin.follower.laws import ByLaw
 
         return ByLaw(self.law)
@@ -259,7 +259,7 @@ class OfTransmission(Moved):
 
     @property
     def course(self) -> Swing:
-        """The swing over the shaft angle, along which contact is followed."""
+        """Swing over the shaft angle with proved bounds of its derivatives, along which contact is followed."""
         return self.motion
 
     @cached_property

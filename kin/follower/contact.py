@@ -89,7 +89,7 @@ class Search:
 
     @staticmethod
     def of(obstacle: Arcs, guide: Guide, share: float = 1.0) -> Search:
-        """Prepare an obstacle: the cost grows with its pieces."""
+        """Prepare the search for first contacts on an obstacle; the cost grows with its pieces."""
         slack = share * guide.slack(extent(obstacle))
         pieces, owner = shortened(obstacle, guide)
         within = within_reach(pieces, guide, slack)

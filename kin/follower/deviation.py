@@ -39,7 +39,7 @@ JOINED = 1e-12  # ends closer than this share of the contour's extent are one po
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far a contour lies from the exact one.
+    """Two-sided distance of a contour from the exact one.
 
     outside, inside     greatest excess, and greatest want, of metal, mm; one is below 0 if the contour lies wholly on
                         the other side

@@ -59,7 +59,7 @@ class Envelope(Protocol):
         """Points (n, 2) of the contour, mm, at parameters (n,); of an undercut one also of what is cut off."""
 
     def frames(self, parameter: Array) -> Frames:
-        """Points, outward normals and their rates at parameters (n,)."""
+        """Points, outward normals and their rates by the parameter, at parameters (n,)."""
 
     def radii(self) -> tuple[Array, Array]:
         """Parameters (m,) closely round the turn, and radii of curvature there (m,), mm, negative where hollow."""
@@ -79,7 +79,7 @@ class Envelope(Protocol):
 
 
 class Outwards(Protocol):
-    """A smooth distance over a parameter of period 2 pi, mm."""
+    """Smooth distance, mm, by which a contour is displaced, over its parameter of period 2 pi."""
 
     def rows(self, t: Array, order: int = 0) -> Array:
         """The distance and its derivatives at parameters t (n,), up to `order`: (order + 1, n)."""
@@ -143,7 +143,7 @@ class ArmPitch:
         return self.law.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Give r and t; the order is at most 2."""
+        """Give distance r, mm, and direction t, rad, of the line, with derivatives up to an order of at most 2."""
         psi, rate, bend = self.law.derivatives(tau, 2, side)
         sine, cosine = np.sin(psi), np.cos(psi)
         r = self.pivot * np.stack([sine, cosine * rate, cosine * bend - sine * rate**2])
@@ -222,7 +222,7 @@ class FlatEnvelope:
         return tau, rho, p, t[0]
 
     def radii(self) -> tuple[Array, Array]:
-        """Parameters (m,) closely round the turn, and rho (m,), mm."""
+        """Parameters (m,) closely round the turn, and radii of curvature rho (m,) there, mm."""
         tau, rho, _, _ = self._table
         return tau, rho
 

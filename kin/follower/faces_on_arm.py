@@ -174,7 +174,7 @@ class _OnArm(Moved):
     @property
     @abstractmethod
     def pitch(self) -> FacePitch:
-        """The line through the pivot along the first face, as intended."""
+        """Intended line through the pivot along the first face."""
 
     @property
     @abstractmethod
@@ -184,12 +184,12 @@ class _OnArm(Moved):
     @property
     @abstractmethod
     def resolution(self) -> float:
-        """To what extremes of the error are found, radians."""
+        """Resolution, rad, to which extremes of the error are found."""
 
     @property
     @abstractmethod
     def cells(self) -> Array:
-        """Shaft angles between which the intended motion has nothing narrow."""
+        """Shaft angles, rad, that divide the turn into cells in which the intended motion has nothing narrow."""
 
     @cached_property
     def envelope(self) -> FlatEnvelope:

@@ -61,11 +61,11 @@ class DwellFound:
 
 @dataclass(frozen=True)
 class LinkageVerdict:
-    """How a contour drives the mechanism; output in degrees or mm as the mechanism has it.
+    """Motion of the mechanism as a contour drives it; output in degrees or mm as the mechanism has it.
 
     error         of the output, measured less intended at the same shaft angle: the worst of the ways the frame can
                   rest and of the centred frame, rms over all; dwell_flatness over the longest intended dwell
-    centred       the same of the frame that floats midway between its contacts
+    centred       error of the output with the frame midway between its contacts
     limit         greatest error that a contour within the tolerance can give; None where the mechanism binds within it
     play_across   between faces 1 and 3, mm; the places are shaft angles
     play_along    between faces 2 and 4
@@ -147,7 +147,7 @@ class _Prescribed(_Intended):
         return chain.solve(s, s.constant(0.5 * chain.breadth), self.mechanism.about).outputs[-1].derivatives()
 
     def rows(self, theta: Array) -> Array:
-        """Nothing: the law is taken at the measured shaft angle itself."""
+        """Rows of zeros: the law is evaluated at the measured shaft angle itself."""
         return np.broadcast_to(np.zeros(()), (2, 4, len(theta)))
 
     def error(self, theta: Array, measured: Array, near: Array) -> Array:  # noqa: ARG002 - one call for both

@@ -105,7 +105,7 @@ class Resting:
 
     @cached_property
     def turned(self) -> Quintics:
-        """Shaft angle over the relative one, any, to whole turns."""
+        """Shaft angle over the relative angle as quintics; it rises by whole turns."""
         return Quintics(self.nodes, self.low[0], self.high[0])
 
     @cached_property

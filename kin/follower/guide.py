@@ -82,7 +82,10 @@ class Arm:
         return angle
 
     def lead(self, r: Array) -> Array:
-        """Polar angle of the roller's centre less the shaft angle, at its distance r (n,); beyond the reach its end."""
+        """Polar angle, rad (n,), of the roller's centre less the shaft angle, at its distance r (n,), mm.
+
+        A distance beyond the arm's reach counts as the end of it.
+        """
         with np.errstate(invalid="ignore", divide="ignore"):
             w = (r * r + (self.pivot**2 - self.length**2)) / (2.0 * r * self.pivot)
         lead: Array = -self.side * np.arccos(np.clip(w, -1.0, 1.0))
@@ -173,7 +176,7 @@ class Arm:
         return y
 
     def on_side(self, phi: Array, points: Array, slack: float) -> NDArray[np.bool_]:
-        """Whether points (n, 2) are on the roller's side of the line from shaft to pivot."""
+        """Mask (n,) of the points (n, 2) on the roller's side of the line from shaft to pivot."""
         on_side: NDArray[np.bool_] = -self.side * cross(self.pivot * unit(phi), points) >= -slack * self.pivot
         return on_side
 
@@ -248,7 +251,7 @@ class Line:
         return angle
 
     def lead(self, r: Array) -> Array:
-        """Polar angle of the centre less the shaft angle, at its distance r (n,)."""
+        """Polar angle, rad (n,), of the roller's centre less the shaft angle, at a distance r (n,), mm."""
         lead: Array = np.arctan2(self.offset, self.away * self.position(r))
         return lead
 
@@ -265,7 +268,7 @@ class Line:
         return 0.0
 
     def position(self, r: Array) -> Array:
-        """Distance along the line of travel, from the centre's distance r (n,) from the shaft."""
+        """Position (n,), mm, along the line of travel, from the centre's distance r (n,), mm, from the shaft."""
         along: Array = np.sqrt(np.maximum((r - self.offset) * (r + self.offset), 0.0))
         return self.away * along
 
@@ -318,7 +321,7 @@ class Line:
         return q + x[:, :, None] * d
 
     def on_side(self, phi: Array, points: Array, slack: float) -> NDArray[np.bool_]:
-        """Whether points (n, 2) lie outwards of the shaft's foot."""
+        """Mask (n,) of the points (n, 2) that lie outwards, along the travel, of the foot of the shaft."""
         on_side: NDArray[np.bool_] = dot(unit(phi), points) >= -slack
         return on_side
 

@@ -82,12 +82,12 @@ def leeway(slope: Array, sag: Array, tolerance: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class ByLaw:
-    """`kin.follower.tracking.Law`: a position that is a law over the shaft angle."""
+    """A position that is a law over the shaft angle, as a `kin.follower.tracking.Law`."""
 
     law: Piecewise
 
     def rows(self, phi: Array) -> Array:
-        """Position and two derivatives at shaft angles phi (n,): (3, n)."""
+        """Position, mm or rad, and two derivatives by the shaft angle, (3, n), at shaft angles phi (n,)."""
         return self.law.derivatives(phi, 2)
 
     @cached_property

@@ -77,7 +77,7 @@ class Play:
     extremes: Extreme = "true"
 
     def less_sure(self, by: float) -> Play:
-        """Count in that it may be off by as much."""
+        """Give the play with its least and greatest value moved apart by a possible error."""
         return replace(self, least=self.least - by, most=self.most + by)
 
 

@@ -234,7 +234,7 @@ class OnSpline:
         return self.path.resolution
 
     def meant(self, rows: Array) -> Array:
-        """Intended position and its derivatives (m, n) from the law's."""
+        """Intended own position and its derivatives (m, n), mm or rad, from the law's rows (m, n)."""
         meant = self.contact.sense * rows
         meant[0] += self.contact.zero
         return meant

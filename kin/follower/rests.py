@@ -20,7 +20,7 @@ INSIDE = np.array([0.07, 0.25, 0.43, 0.6, 0.78, 0.94])  # of a stretch: places a
 
 
 def dwells(lift: Lift) -> Iterator[tuple[float, float]]:
-    """Stretches of constant p: from, to, in radians, to > from."""
+    """Dwells of a lift, over which p is constant: (from, to), rad, to > from."""
     ends = lift.breaks if len(lift.breaks) else np.zeros(1)
     widths = np.diff(ends, append=ends[0] + TURN)
     for begin, width, steady in zip(ends, widths, lift.steady, strict=True):

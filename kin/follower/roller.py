@@ -303,7 +303,7 @@ class RollerYoke(_Guided):
         return Closure(self.play_limit, lever=2.0, radius=self.radius)
 
     def play_limit(self, tolerance: float) -> float:
-        """Greatest play or interference, mm: what either roller may be off."""
+        """Greatest play or interference, mm, of a contour within `tolerance`, mm: the sum of both rollers' errors."""
         near, far = (leeway(*rates, tolerance) for rates in self._opposite_rates)
         return float((near + far).max())
 
@@ -457,6 +457,6 @@ def passing_angles(obstacle: Arcs, guide: Guide) -> Array:
 
 
 def sampled_play(gap: Array, phi: Array) -> Play:
-    """Least and greatest of the gaps, mm, at shaft angles phi (n,)."""
+    """Play between the least and the greatest of sampled gaps (n,), mm, at shaft angles phi (n,)."""
     least, most = int(np.argmin(gap)), int(np.argmax(gap))
     return Play(float(gap[least]), degrees(phi[least]), float(gap[most]), degrees(phi[most]), "mm", "sampled")

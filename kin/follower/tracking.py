@@ -151,7 +151,7 @@ class Held:
         return self.guide.position(self.r)
 
     def meant(self, rows: Array) -> Array:
-        """Intended position and its derivatives (m, n) from the law's."""
+        """Intended own position and its derivatives (m, n), mm or rad, from the law's rows (m, n)."""
         meant = self.sense * rows
         meant[0] += self.offset
         return meant

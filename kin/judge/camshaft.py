@@ -67,7 +67,7 @@ class BarIntent:
 
 @dataclass(frozen=True)
 class CamshaftIntent:
-    """What a camshaft is meant to be.
+    """Intended camshaft.
 
     lobes     apart from one another and from the journals
     bars      the shaft itself, the first, and its journals, which are thicker

@@ -59,12 +59,15 @@ def at_most(
 
 
 def failed(name: str, detail: str, *, unit: str = "", limit: float | None = None) -> Check:
-    """Build a check that fails for a reason, with no figure of its own."""
+    """Build a check that fails for a reason, `detail`, without a measured value."""
     return Check(name, ok=False, value=None, limit=limit, unit=unit, detail=detail)
 
 
 def less_sure(check: Check, by: float) -> Check:
-    """Count into an `at_most` what the measured thing itself may be off by; a check without a figure stays."""
+    """Give an `at_most` check with `by` added to its value, for an error of the measured thing itself.
+
+    A check without a figure is returned as it is.
+    """
     if not by or check.value is None or check.limit is None:
         return check
     value = check.value + by

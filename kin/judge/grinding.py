@@ -62,7 +62,7 @@ class Grinding:
 
 
 class Ground(NamedTuple):
-    """What a table leaves, and what else it states.
+    """Contour that a grinder's table leaves, and what its head states.
 
     chain    the contour
     units    of the table's lengths, mm

@@ -80,7 +80,7 @@ class LinkageIntent:
 
 @dataclass(frozen=True)
 class Milling:
-    """How a part is meant to be milled, mm.
+    """Intended milling of a part, mm.
 
     radius        of the cutter
     thickness     of the stock, which is cut through
@@ -104,7 +104,7 @@ class Milling:
 
 @dataclass(frozen=True)
 class PartIntent:
-    """What a disc in a file is meant to be.
+    """Intended disc in a file.
 
     surfaces    those that followers run on, in any order; two of them differ in name
     mirrored    the file is drawn mirrored about the x axis (the shaft turns counter-clockwise)
@@ -118,7 +118,7 @@ class PartIntent:
     milling     how a program mills it
     grinding    how a grinder's table is meant
     linkage     that it drives; None for a plain follower
-    closures    what is left between its surfaces
+    closures    followers between two of its surfaces
     name        by which checks tell it from other discs on its shaft; empty where there is no other
     """
 

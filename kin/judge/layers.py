@@ -65,10 +65,10 @@ class CrossHole:
 
 
 class Lean(NamedTuple):
-    """Where walls are meant to lean, mm, and the check that reports them.
+    """Walls that are meant to lean, and the check that reports them.
 
-    They do so evenly from `low` to `high`, `inward` mm a mm of height, or anyhow between these and within `reach` from
-    the axis.
+    They lean evenly from `low` to `high`, mm, by `inward` mm a mm of height; or anyhow between these heights and within
+    `reach`, mm, from the axis.
     """
 
     kind: str
@@ -154,10 +154,10 @@ def leans(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[Lea
 
 
 def settled(solid: AnySolid, leaning: Sequence[Lean], tolerance: float) -> AnySolid:
-    """Take the faces of a solid that only the rounding of its numbers keeps from being level for level.
+    """Give the solid with faces level that only the rounding of its numbers keeps from being level.
 
-    Corners of such a face differ in height by no more than that rounding in all; by how much is counted in `slivers`.
-    What is meant to lean does.
+    Corners of such a face differ in height by no more than that rounding in all; by how much is noted in `slivers`.
+    Walls that are meant to lean stay as they are.
     """
     rows = solid.leaning
     level = rows[:, 1] - rows[:, 0] <= solid.rounding

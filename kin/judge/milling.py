@@ -36,13 +36,19 @@ _CUTTER = re.compile(r"^cutter: diameter ([0-9.]+)")
 
 @dataclass(frozen=True, eq=False)
 class Milled(Nest):
-    """What a program leaves, mm, by falling area, the outline first if it is milled; and checks."""
+    """Contours that a milling program leaves, mm, by falling area, a milled outline first.
+
+    And `checks` of the program.
+    """
 
     checks: tuple[Check, ...]
 
 
 def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
-    """Simulate a program; raises ReadError where no closed contour comes of it."""
+    """Contours that a milling program leaves, by simulating it, and checks of the program itself.
+
+    Raises ReadError where no closed contour comes of it.
+    """
     cuts = list(cuts_of(program))
     if not cuts:
         raise ReadError("empty", "the program cuts nothing below the top of the stock", program.path)

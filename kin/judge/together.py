@@ -36,7 +36,7 @@ class DiscsRead(NamedTuple):
 
 
 def verify_set(files: Sequence[DiscFile], shaft: ShaftIntent, angles: int, limits: Limits) -> list[Verdict]:
-    """Judge files that go together, at least one; what is left between discs stands in the verdict on the last file.
+    """Judge files that go together, at least one; closures between discs stand in the verdict on the last file.
 
     A closure whose surfaces are not all there, as a disc is not given or cannot be read, is left out. Raises as
     `verify` does.
@@ -60,7 +60,7 @@ def verify_set(files: Sequence[DiscFile], shaft: ShaftIntent, angles: int, limit
 def left_between(
     files: Sequence[DiscsRead], shaft: ShaftIntent, limits: Limits
 ) -> tuple[tuple[ClosureVerdict, ...], tuple[Check, ...]]:
-    """Judge what is left between surfaces of discs that were read from files: closures, and checks on the last file."""
+    """Judge the play between surfaces of discs that were read from files: closures, and checks on the last file."""
     intents = {surface.name: surface for part in shaft.parts for surface in part.surfaces}
     verdicts = [verdict for file in files for verdict in file.surfaces]
     surfaces = [(intents[verdict.name], verdict.contour) for verdict in verdicts if verdict.contour is not None]

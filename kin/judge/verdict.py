@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SurfaceVerdict:
-    """What was found of one surface of a part; all is None where nothing could be read.
+    """Results for one surface of a part; all is None where nothing could be read.
 
     name            as the intent has it
     contour         as read, in mm and as if not mirrored
     motion, play    as the contour gives them by contact; None without contact, play also for one-sided followers
     measured_error  two-sided distance from the exact contour, mm
     pieces          of the contour, as the file counts them
-    linkage         what the contour makes of the mechanism; None without one, or where it does not drive it all round
+    linkage         motion of the mechanism; None without one, or where the contour does not drive it all round
     """
 
     name: str = ""
@@ -105,12 +105,12 @@ class OfSurfaces:
 
 @dataclass(frozen=True)
 class Verdict(OfSurfaces):
-    """What was found of a file.
+    """Results for a file.
 
     kind      of the file: drawing, solid or program
     checks    units, closed, contour, motion, bore, ... ; or the one that says why the file cannot be read
-    surfaces  what was found of each, in the intent's order; none where the file cannot be read
-    closures  what is left between them
+    surfaces  results for each surface, in the intent's order; none where the file cannot be read
+    closures  play between pairs of surfaces
     units     mm in a unit of the file as it was read: as the file states, or else as it was given or meant
     bodies    of each disc in the file every closed contour of the drawing, section or program that holds its first
               surface, outermost first

@@ -109,7 +109,7 @@ class _Round:
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """Where points or intervals (n,) lie among the stretches of a piecewise function.
+    """Places of points or intervals (n,) among the stretches of a piecewise function.
 
     Each begins at `low` in the stretch `first` and ends at `high`, `steps` stretches further on; the ends are folded.
     """

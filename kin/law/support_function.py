@@ -69,7 +69,7 @@ class Circle(Round):
         return total + sin(t) * self.y if self.y else total
 
     def matches(self, other: Circle) -> bool:
-        """Tell whether the circles are the same but for rounding."""
+        """Whether two circles are the same but for rounding."""
         size = max(abs(self.radius), abs(self.x), abs(self.y))
         apart = max(abs(self.radius - other.radius), abs(self.x - other.x), abs(self.y - other.y))
         return apart <= _SAME_CIRCLE * size

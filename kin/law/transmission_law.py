@@ -57,7 +57,7 @@ class Transmission:
     arc: tuple[float, float, float] | None = None
 
     def scaled(self, scale: float) -> Transmission:
-        """The motion of a mechanism `scale` times as large."""
+        """Give the law of a mechanism `scale` times as large."""
         functions = tuple(f.scaled(scale) if isinstance(f, FromDelta) else f for f in self.psi.functions)
         arc = None if self.arc is None else (scale * self.arc[0], scale * self.arc[1], scale * self.arc[2])
         return replace(self, arm=scale * self.arm, psi=replace(self.psi, functions=functions), arc=arc)

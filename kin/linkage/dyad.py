@@ -67,7 +67,7 @@ class _Pivoted:
         return float(directions.min() + directions.max()) / 2
 
     def turned(self, x: Array, y: Array) -> float:
-        """Angle by which GP turns round a closed path, rad."""
+        """Angle, rad, by which GP turns as P runs once round a closed path: 0, or whole turns."""
         x, y = x - self.ground[0], y - self.ground[1]
         steps = np.diff(np.arctan2(y, x), append=math.atan2(y[0], x[0]))
         return float(np.sum(steps - 2 * np.pi * np.round(steps / (2 * np.pi))))

@@ -241,7 +241,7 @@ class InvertedSliderCrank:
         return _rocker(self.ground, positions)
 
     def joints(self, positions: Positions) -> dict[str, Joint]:
-        """B, and D in a slot of the frame along u."""
+        """Joints by their letters: B, and D in a slot of the frame along u."""
         return {"B": pivot((self.ground, 0.0), positions.output), "D": Joint("slot", positions.coupler)}
 
     def deviation(

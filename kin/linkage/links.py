@@ -20,7 +20,7 @@ class Link:
     direction: Jet | None
 
     def point(self, x: float | Jet, y: float | Jet) -> Place:
-        """Position of the point (x, y) of the link, mm."""
+        """Position, mm, in the fixed axes, of the point (x, y) of the link."""
         a, b = self.origin
         if self.direction is None:
             return a + x, b + y
@@ -44,7 +44,7 @@ def bar(p: Place, q: Place) -> Link:
 
 
 def rocker(ground: tuple[float, float], direction: Jet) -> Link:
-    """Return the link that turns about a fixed point, its origin."""
+    """Return the link that turns about a fixed point, which is its origin."""
     return Link((direction.constant(ground[0]), direction.constant(ground[1])), direction)
 
 

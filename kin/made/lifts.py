@@ -108,7 +108,7 @@ class Lifts(NamedTuple):
 
 
 def probe_of(follower: Follower, side: Side, touch: Touch | None) -> Follower:
-    """The follower with another touch on its guide; itself for None."""
+    """Follower with another touch on its guide; the follower itself for None."""
     if touch is None:
         return follower
     (contact,) = follower.contacts

@@ -104,7 +104,7 @@ class Metal:
         return Metal(follower, skin, places_of(finest), gauge or follower)
 
     def raised(self, height: float) -> Metal:
-        """The metal with as much more all round, mm."""
+        """Give the metal with `height`, mm, more of it all round along the normals."""
         return replace(self, height=self.height + height)
 
     def surface(self, parameter: Array) -> tuple[Array, Array]:

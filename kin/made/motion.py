@@ -86,7 +86,7 @@ class Errors:
 
     @property
     def offset(self) -> float:
-        """Mean error over the turn: it is set on assembly."""
+        """Mean error over the turn, mm or rad: assembly sets it to 0."""
         return float(self.rows[0].mean())
 
     @property
@@ -154,7 +154,7 @@ class Errors:
 
     @property
     def peak_acceleration(self) -> tuple[float, float]:
-        """Greatest acceleration that the part gives, and that intended, by rad^2."""
+        """Greatest |acceleration|, mm or rad by rad^2 of shaft, that the part gives, and the greatest intended one."""
         acceleration = self.intended[2] + self.rows[2]
         intended = self.intended[2][np.isfinite(acceleration)]
         return float(np.nanmax(np.abs(acceleration))), float(np.abs(intended).max())

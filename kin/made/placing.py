@@ -104,7 +104,7 @@ def minimax(columns: Array, e: Array) -> Minimax:
 
 
 def least_squares(columns: Array, e: Array) -> Array:
-    """Unknowns x (k,) of least sum (e - A x)^2."""
+    """Unknowns x (k,) at which the sum of (e - A x)^2 is least."""
     return np.asarray(np.linalg.lstsq(columns, e, rcond=None)[0], dtype=np.float64)
 
 

@@ -43,7 +43,7 @@ CORRELATED = 2.0  # standard deviations 1/sqrt(n) of the lag-1 correlation of wh
 
 
 class GapError(CamgeoError, ValueError):
-    """Points leave a gap that no curve may bridge."""
+    """Points with a gap so wide that no curve may bridge it."""
 
 
 def _basis() -> Array:

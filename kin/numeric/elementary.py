@@ -233,7 +233,7 @@ def maximum(x: Number, y: Number) -> Number:
 
 
 def minimum(x: Number, y: Number) -> Number:
-    """Return the lesser of the two; else as `maximum`."""
+    """Return the lesser of two numbers, jets or ball jets, as `maximum` does the greater."""
     return -maximum(-x, -y)
 
 

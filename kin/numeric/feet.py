@@ -147,7 +147,7 @@ def two_best(score: Callable[[Array], Array], points: Array, count: int) -> tupl
 
 
 class Tight(Protocol):
-    """A contour that knows where it is tight; see `kin.follower.envelope.Envelope`."""
+    """Protocol of a contour with the places where its curvature is tight; see `kin.follower.envelope.Envelope`."""
 
     def points(self, parameter: Array) -> Array:
         """Points (n, 2) of the contour."""

@@ -45,7 +45,7 @@ class DomainError(CamgeoError, ArithmeticError):
 
 
 def demand(sound: NDArray[np.bool_] | np.bool_, operation: str) -> None:
-    """Raise DomainError for the points (n,) that are not sound."""
+    """Raise DomainError unless all points (n,) are sound."""
     if not sound.all():
         raise DomainError(operation, np.flatnonzero(~sound))
 

@@ -26,17 +26,17 @@ def length_words(mm: float, form: str = ".6g", power: int = 1) -> str:
 
 
 def amount_words(value: float, unit: str, form: str = ".6g") -> str:
-    """Give a figure with its unit, marked where that is mm."""
+    """Text of a figure with its unit, marked as a length where that is mm."""
     return f"{length_words(value, form)} {UNIT}" if unit == "mm" else f"{value:{form}} {unit}"
 
 
 def span_words(low: float, high: float, form: str = ".9g") -> str:
-    """Mark two lengths, mm, as a span with its unit."""
+    """Text "low to high" of two lengths, mm, marked as lengths."""
     return f"{length_words(low, form)} to {length_words(high, form)} {UNIT}"
 
 
 def place_words(*coordinates: float, digits: int = 6) -> str:
-    """Mark coordinates, mm, in brackets; one below `ROUNDING` is 0."""
+    """Text of coordinates, mm, in brackets, marked as lengths; a size below `ROUNDING` is 0."""
     return f"({', '.join(length_words(0.0 if abs(c) < ROUNDING else float(c), f'.{digits}g') for c in coordinates)})"
 
 
@@ -58,7 +58,7 @@ class Words(str):
 
 
 def marked(words: str) -> str:
-    """Give words with their marks, to stand among others."""
+    """Text with the marks of its lengths, to be put among other words."""
     return words.marked if isinstance(words, Words) else words
 
 

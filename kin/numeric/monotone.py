@@ -242,7 +242,7 @@ def pieces(cells: Cells, row: int = 0) -> Pieces:
 
 
 def extremes(cells: Cells, row: int = 0) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Least and greatest value of one of the functions, each with its place: those of its `pieces`, without these.
+    """Least and greatest value of one of the functions, each with the x where it is; costs less than its `pieces`.
 
     A polynomial lies within the hull of its coefficients, so that only cells are cut whose halves reach beyond a value
     that some cell has; of many cells those are few.

@@ -87,7 +87,10 @@ def compose(outer: Array, inner: Array) -> Array:
 
 
 def compose_balls(outer: Ball, inner: Ball) -> Ball:
-    """Compose balls; outer (m, n) encloses the coefficients of f over the balls g[0]."""
+    """Enclose the Taylor coefficients of f(g) (m, n).
+
+    `outer` encloses those of f over the balls g[0], `inner` those of g.
+    """
     size = len(inner.mid)
     if not inner.mid[2:].any() and not inner.rad[2:].any():
         return outer * inner[1].powers(size) if size > 1 else outer
@@ -121,7 +124,7 @@ def binomials(numerator: float, order: int, denominator: int = 1) -> tuple[float
 
 
 def power_rows(x: Row, exponent: float, order: int) -> Row:
-    """x**exponent; a whole exponent from 0 up leaves exact zeros above itself."""
+    """Taylor coefficients (order + 1, n) of x**exponent; a whole exponent from 0 up leaves exact zeros above itself."""
     if isinstance(x, Ball):
         left, off, factors = _power_columns(exponent, order)
         mid, rad = np.zeros((2, order + 1, *x.mid.shape))
@@ -160,7 +163,7 @@ def _exact(exponent: float, k: int) -> bool:
 
 
 def led(rows: Row, value: Row) -> Row:
-    """Return rows with another value in the first one."""
+    """Return rows whose first one, the value, is replaced by another."""
     if isinstance(rows, Ball) and isinstance(value, Ball):
         rows.mid[0], rows.rad[0] = value.mid, value.rad
     else:

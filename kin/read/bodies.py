@@ -21,7 +21,7 @@ RIGID = 1e-9  # a place turns and shifts only if its axes are square and of leng
 
 
 def no_rows(columns: int) -> Array:
-    """Where no wall of a solid leans."""
+    """Empty array (0, columns): a solid without leaning walls."""
     return np.empty((0, columns))
 
 
@@ -36,7 +36,7 @@ class Slivered:
 
     @property
     def uneven(self) -> float:
-        """By how much at most a point of the mesh is off a prism, or walls that stand upright, mm; 0 to the bit."""
+        """Greatest distance, mm, of a point of the mesh from upright walls; exactly 0 where all stand upright."""
         return self.uneven_between(-np.inf, np.inf)
 
     def uneven_between(self, low: float, high: float, beyond: float = 0.0) -> float:
@@ -66,7 +66,10 @@ class Placed(NamedTuple):
 
 
 class Sought(NamedTuple):
-    """What is sought of one body: its sections at heights, mm, and how many others a closed chain may lie inside."""
+    """Sections sought of one body, at heights, mm.
+
+    `deepest` is the number of others that a closed chain may lie inside.
+    """
 
     heights: Sequence[float] = ()
     deepest: int = 1

@@ -23,7 +23,7 @@ _SWITCHES = ("abs", "sign", "min", "max", "atan2")
 
 @dataclass(frozen=True)
 class Branches:
-    """What an expression is on each stretch of an interval, the innermost switches gone.
+    """Expressions that replace one with switches, on each stretch of an interval; the innermost switches are gone.
 
     `inside` are the parameters between the stretches; `at_start` and `at_end` say that a switch also lies on the
     interval's ends.

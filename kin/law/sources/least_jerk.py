@@ -62,7 +62,7 @@ class Space(NamedTuple):
 
     @property
     def period(self) -> float:
-        """Angle after which the functions repeat, 0 where they do not."""
+        """Angle, rad, after which the functions repeat; 0 where they do not."""
         return 0.0 if self.rest else self.end - self.begin
 
 
@@ -416,7 +416,7 @@ class Least(NamedTuple):
 
     @property
     def touch(self) -> Touch:
-        """Rows that are touched, for a search nearby to begin with."""
+        """Bounds that are touched, from which a search nearby may begin."""
         real = self.row >= 0
         return Touch(self.row[real], self.upper[real])
 

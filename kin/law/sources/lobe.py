@@ -216,5 +216,5 @@ def _demand_left(half: float, ramp: Ramp, total: float, field: str) -> None:
 
 
 def coefficients(powers: Sequence[int]) -> tuple[float, ...]:
-    """C2, Cp, Cq, Cr and Cs of a lobe polynomial."""
+    """Coefficients C2, Cp, Cq, Cr and Cs of a lobe polynomial."""
     return Flank.of(powers)[1]

@@ -56,7 +56,7 @@ class Tabled:
 
     @property
     def period(self) -> float:
-        """Angle after which the motion repeats, 0 where it does not."""
+        """Angle, rad, after which the motion repeats; 0 where it does not."""
         return self.space.period
 
     @property

@@ -27,7 +27,7 @@ class Affine(NamedTuple):
     f: float = 0.0
 
     def after(self, first: Affine) -> Affine:
-        """Return the map that does `first` and then this."""
+        """Return the map that applies `first`, then this one."""
         a, b, c, d, e, f = self
         return Affine(
             a * first.a + c * first.b,
@@ -52,7 +52,7 @@ class Affine(NamedTuple):
 
     @staticmethod
     def rotation(degrees: float) -> Affine:
-        """Return the turn by an angle, counter-clockwise where y runs up."""
+        """Return the rotation by an angle, counter-clockwise where y points up."""
         c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
         return Affine(c, s, -s, c)
 

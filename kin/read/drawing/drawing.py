@@ -73,7 +73,7 @@ class Aside(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Drawing(Nest):
-    """What a DXF or SVG file gives to cut, in mm (in drawing units if it states none), and what else is worth knowing.
+    """Contours that a DXF or SVG file gives to cut, mm (drawing units if it states none), and facts about the file.
 
     chains          every closed chain to cut
     units_mm        mm in a drawing unit, by $INSUNITS or a comment on top, or by an SVG's width and viewBox; None if

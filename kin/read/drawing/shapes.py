@@ -54,7 +54,7 @@ def shape(*, chords: Any = (), arcs: Any = (), beziers: Beziers | None = None, h
 
 
 def check(*numbers: Array, limit: float = LARGEST) -> None:
-    """Refuse numbers that are not finite or too large."""
+    """Raise UnfitError for numbers that are not finite or too large."""
     for array in numbers:
         bad = array[~(np.abs(array) <= limit)]
         if bad.size:

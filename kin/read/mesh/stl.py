@@ -100,7 +100,7 @@ class Solid(Nest, Slivered):
     units_mm: float | None = None
 
     def section(self, z: float) -> Section:
-        """One of the sections, by its height as asked for."""
+        """Section at a height, mm, that was passed to the reader."""
         return next(cut for cut in self.sections if cut.height == z)
 
     @property

@@ -144,7 +144,7 @@ class Spline(NamedTuple):
 
     @property
     def ends(self) -> tuple[Array, Array]:
-        """Where the edge begins and ends, (3,) each."""
+        """Start and end point (3,) of the edge, mm."""
         first = np.append(self.plan.control[0, 0], self.rise.control[0, 0, 0])
         last = np.append(self.plan.control[-1, -1], self.rise.control[-1, -1, 0])
         return (last, first) if self.back else (first, last)
@@ -188,7 +188,7 @@ class Edge:
         return float(max(np.linalg.norm(first - self.start), np.linalg.norm(last - self.end)))
 
     def crossings(self, z: float) -> list[tuple[Array, bool]]:
-        """Where the edge passes the height z, mm, in its own sense: places (3,), and whether it rises there."""
+        """Points (3,) where the edge passes the height z, mm, in its own sense, each with whether it rises there."""
         curve = self.curve
         if isinstance(curve, Straight):
             low, high = float(self.start[2]), float(self.end[2])

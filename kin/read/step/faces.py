@@ -166,12 +166,12 @@ class Face:
 
     @property
     def reach(self) -> float:
-        """Greatest distance of its edges from the axis z, mm."""
+        """Greatest distance of the face's edges from the axis z, mm."""
         return max(float(np.hypot(*edge.samples[:, :2].T).max()) for edge, _ in self.uses)
 
     @property
     def misfit(self) -> float:
-        """Farthest that its edges lie off its surface, mm."""
+        """Greatest distance of the face's edges from its surface, mm."""
         return float(self.surface.off(np.concatenate([edge.samples for edge, _ in self.uses])).max())
 
     @property

@@ -87,7 +87,7 @@ class StepSolid(Nest, Slivered):
         return self.z_max - self.z_min
 
     def section(self, z: float) -> Section:
-        """One of the sections, by its height as asked for."""
+        """Section at a height, mm, that was passed to the reader."""
         return next(cut for cut in self.sections if cut.height == z)
 
 
@@ -275,7 +275,7 @@ class _Body:
 
     @property
     def faults(self) -> list[str]:
-        """What a closed solid whose faces look outward does not have."""
+        """Faults in words, with their numbers: a closed solid whose faces look outward has none."""
         faults = []
         count = Counter(use for face in self.faces for loop in face.loops for use in loop)
         number = Counter(use.edge for use in count.elements())
