@@ -1,8 +1,9 @@
-"""What each dimension of a budget does to the follower, or to a linkage's output, over the shaft angle.
+"""Influences of the dimensions of a budget on the follower, or on a linkage's output, over the shaft angle.
 
-The metal of the cam stays as it is: no dimension makes a new design. A contribution is what one made size does alone:
-two rollers made to one drawing are two of them. Where the machine is set at one angle, errors count from there. The
-profile's error is another one at each angle, so that both that angle's and the one at the setting contribute.
+The metal of the cam stays as it is: no dimension makes a new design. A contribution is the effect of one made size
+alone: two rollers made to one drawing are two contributions. Where the machine is set at one angle, errors count from
+there. The profile's error is independent at each angle, so that the error at an angle and the one at the setting both
+contribute.
 """
 
 from __future__ import annotations

@@ -1,17 +1,18 @@
 """The widest tolerances that stay within a permitted error at every angle.
 
-Of one free dimension what the others leave: (T - rest)/w in the worst case, sqrt(T^2 - rest^2)/w as root of the sum of
-squares. Of several those of least cost, sum c_i/t_i^k. With t_i = exp(x_i) cost and constraints are sums of
-exponentials of linear functions, so that the problem is convex (a geometric programme) and its optimum the only one:
+A single free dimension gets what the others leave: (T - rest)/w in the worst case, sqrt(T^2 - rest^2)/w as root of the
+sum of squares. Several free dimensions get the tolerances of least cost, sum c_i/t_i^k. With t_i = exp(x_i) the cost
+and the constraints are sums of exponentials of linear functions. So the problem is convex (a geometric programme), and
+it has one optimum:
 
     least sum c_i/t_i^k   with   sum_i w_ij^q t_i^q <= T_j^q  at every angle j,  q = 1 worst case, 2 squares.
 
-Its dual has a multiplier of each angle, and of each angle that does not bind it is 0 (Boyd, Vandenberghe, Convex
+Its dual has a multiplier for each angle, which is 0 where the angle does not bind (Boyd, Vandenberghe, Convex
 Optimization, 2004, 4.5 and 5.5). With multipliers m_j the tolerances are
 
-    t_i = (k c_i/(q sum_j m_j w_ij^q))^(1/(k + q)),
+    t_i = (k c_i/(q sum_j m_j w_ij^q))^(1/(k + q)).
 
-one angle alone has a closed form: t_i = T sqrt(c_i/w_i)/sum sqrt(c_j w_j) for k = q = 1.
+A single angle has a closed form: t_i = T sqrt(c_i/w_i)/sum sqrt(c_j w_j) for k = q = 1.
 """
 
 from __future__ import annotations

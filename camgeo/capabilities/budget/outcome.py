@@ -26,11 +26,11 @@ SUMS: tuple[Sum, ...] = ("worst", "rss")
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """A budget at even angles: what each dimension does, the greatest sums, and what was found for free ones.
+    """Budget of a design at even shaft angles: influences of its dimensions, greatest sums, and free tolerances.
 
     `budget` has tolerances for all its dimensions, those found among them. `left` (n,) is what is left at each angle
-    for the only free one, None where several or none are free; `splits` are the widest sets by cost. `play` is the
-    least and the greatest play, mm or rad, of a follower held from both sides.
+    for the only free dimension, mm or rad, None where several or none are free; `splits` are the widest sets by cost.
+    `play` is the least and the greatest play, mm or rad, of a follower held from both sides.
     """
 
     budget: Budget

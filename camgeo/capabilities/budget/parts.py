@@ -40,9 +40,9 @@ ERRORS = 4.0  # standard errors by which a deviation may differ from the one for
 
 
 class Spread(NamedTuple):
-    """Errors of the parts at an angle, rad, by one contact, mm or rad: mean, deviation, the one foreseen, the greatest.
+    """Errors of the parts by one contact at a shaft angle, rad: mean, standard deviation, and greatest, mm or rad.
 
-    `error` is the standard error of the deviation.
+    `foreseen` is the standard deviation by the influences, `error` the standard error of the simulated one.
     """
 
     contact: str

@@ -1,8 +1,8 @@
-"""The contour of a file under a touch: corners and points so close along every piece that those between bound no more.
+"""Contact of a touch with the contour of a file, by points so close together that the curve between them adds nothing.
 
-Each point bounds the touch alone. Coming from outside it is stopped by the one that holds it farthest out; in the
-opening of a ring, from within, by the one that holds it nearest the shaft. A knife edge would fall between points: it
-is held by the chords.
+All corners are among the points, and each point bounds the position of the touch by itself. A touch that comes from
+outside is stopped by the point that holds it farthest out; in the opening of a ring, where it comes from within, by the
+point that holds it nearest the shaft. A knife edge would fall between points: the chords hold it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ MOST_POINTS = 2_000_000  # of a contour
 
 
 def points_of(contour: Contour, radius: float) -> Complexes:
-    """Points along a contour (k,), complex, mm, every corner among them, for a touch of a radius, infinite of a face.
+    """Points (k,) along a contour, complex, mm, with every corner, for a touch of a radius, infinite for a flat face.
 
     Raises LostError where that takes more than two million points.
     """
@@ -125,15 +125,15 @@ class ReadMetal:
         return turn
 
     def _swung(self, bound: Callable[..., Array], pivot: Complexes, *sizes: Array) -> Complexes:
-        """Direction from a pivot, turned from that to the place of contact by what the bounds of its turn hold."""
+        """Unit direction from a pivot to the touch, (parts, angles): the intended one, turned until points stop it."""
         start = (self.intended - pivot) / np.abs(self.intended - pivot)
         swung: Complexes = start * np.exp(1j * self.hand * self._held(bound, (pivot, *sizes, start)))
         return swung
 
     def _held(self, bound: Callable[..., Array], rows: Sequence[NDArray[Any]]) -> Array:
-        """Position (parts, angles) in which the follower touches: the greatest bound of a point, the least inside.
+        """Position (parts, angles) at which the follower touches: the greatest bound by a point, in a ring the least.
 
-        `bound` gives bounds (parts, k) by the points of k indices, of parts whose rows are (parts, 1).
+        `bound` gives the bounds (parts, k) by the points of k indices, for parts whose rows are (parts, 1).
         """
         shape = np.broadcast_shapes(*(row.shape for row in rows), self.intended.shape)
         whole = [np.broadcast_to(row, shape) for row in rows]

@@ -1,8 +1,8 @@
-"""A contour corrected for what a machine makes of it: the exact one less a share of all that was measured too much.
+"""A contour corrected for what a machine makes of it: the exact contour less a share of the metal measured too much.
 
-Each run of parts was made of the contour before it and is measured against the exact one. The sum of their smoothed
-deviations is what the machine adds, as far as the runs before have not taken it off already: a correction by the last
-run alone would take back what those did.
+Each run of parts was made from the contour that the runs before it had corrected, and is measured against the exact
+one. Its deviation is what those corrections leave, so the fault of the machine is the sum over all runs. A correction
+by the last run alone would undo the corrections before it.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Events of a made cam as engines have them: lift, velocity and durations at stated lifts, made against intended.
 
-The lifts are those of the recipe's limits that have one, of the follower or of what it moves, such as a valve; where
-something is moved, those at which its own figures are usually taken; on a shaft that of its events. Limits of a figure
-that a capability has are of what that capability moves.
+The lifts are those of the recipe's limits that state one, for the follower or for what it moves, such as a valve. Where
+something is moved, the lifts at which its own figures are usually taken are added, and on a shaft the lift of the
+shaft's events. A limit on a figure of a capability applies to what that capability moves.
 """
 
 from __future__ import annotations

@@ -67,12 +67,12 @@ class CamPoints:
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """The files."""
+        """Paths of the files."""
         return tuple(path for path, _ in self.files)
 
     @property
     def tables(self) -> tuple[PointTable, ...]:
-        """Their rows."""
+        """Rows of each file that are on this cam."""
         return tuple(table for _, table in self.files)
 
     def heights(self, scale: float) -> Array:
@@ -82,7 +82,7 @@ class CamPoints:
         return scale * np.concatenate(list(tables))
 
     def moved(self, axis: Axis, scale: float) -> CamPoints:
-        """The points, turned back by the cam's angle, without the shift of an axis in the shaft's axes."""
+        """Copy with the points shifted back by an axis's shift at each height, turned into the cam's own axes."""
         sign, files, first = np.array([1.0, -1.0 if self.cam.recipe.rotation == "ccw" else 1.0]), [], 0
         shifts = turned(axis.shifts(self.heights(scale)), np.array(-self.cam.at)) * sign / scale
         for path, table in self.files:
@@ -93,7 +93,7 @@ class CamPoints:
         return replace(self, files=tuple(files))
 
     def halved(self) -> CamPoints:
-        """The lifts with angles half as great."""
+        """Copy of lifts with half the angles, for angles of the crank."""
         files = (
             (path, replace(table, columns={**table.columns, "angle": table.columns["angle"] / CRANK}))
             for path, table in self.files
@@ -101,7 +101,7 @@ class CamPoints:
         return replace(self, files=tuple(files))
 
     def turned(self, angle: float) -> CamPoints:
-        """The points with the metal turned by an angle, rad, counter-clockwise as drawn for `cw`."""
+        """Copy with the metal turned by an angle, rad, counter-clockwise as drawn for `cw`."""
         drawn = -angle if self.cam.recipe.rotation == "ccw" else angle
         return replace(self, files=tuple((path, _turn_table(table, drawn, angle)) for path, table in self.files))
 
@@ -120,7 +120,7 @@ class Phase:
 
 
 class CamMade(NamedTuple):
-    """One measured cam of a shaft: its points, its part as made, and its phase."""
+    """Result for one cam of a shaft: its points, its part as made, and its phase."""
 
     points: CamPoints
     result: PartMade

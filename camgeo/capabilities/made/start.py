@@ -1,8 +1,8 @@
 """A recipe of a cam that was measured: its base radius and its motion, as its points have them.
 
-The recipe that is given says follower, guide, units and part; what it says of base radius and motion gives way. Strokes
-have the law that fits them best; where none does, or the turn begins within one, the motion is a table. A support
-function is a Fourier series. The keys of size and motion are those of the cam's family (`ByMotion`).
+The given recipe states follower, guide, units and part; its base radius and motion, if any, are replaced. Strokes have
+the law that fits them best; where none does, or the turn begins within one, the motion is a table. A support function
+is a Fourier series. The keys of size and motion are those of the cam's family (`ByMotion`).
 """
 
 from __future__ import annotations

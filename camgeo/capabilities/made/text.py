@@ -27,7 +27,7 @@ def shown(report: dict[str, Any], *, everything: bool) -> str:
 
 
 def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
-    """Give what was found, row by row: what it is, and its figures."""
+    """Rows of text (label, value) on what was measured; with `everything` all of them."""
     unit, rows = section["unit"], []
     for one in section["surfaces"]:
         on = f" on {one['name']}" if one["name"] else ""

@@ -79,7 +79,7 @@ def _told_apart(job: Job, manufacture: Manufacture) -> list[float]:
 
 
 def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
-    """Path of the cutter as arcs within `tolerance` mm, widened by the fits' bound on rounding in the formula."""
+    """Path of the cutter as arcs within `tolerance` mm; the bound includes the rounding of the part's formulas."""
     unsure = max(fit.unsure for fit in job.fits)
 
     def fit_curve(curve: Curve, within: float) -> ArcSpline:

@@ -62,11 +62,11 @@ class FigureTable(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """What decides the figures of a sweep's designs: plain data that travels to any worker, and is part of the key.
+    """All data that decide the figures of a sweep's designs, as plain data for any worker; they are part of the key.
 
-    `recipe` has its sweep, without what has no bearing on a figure; `figures` are the names of those computed, by
-    estimates where it is `screened`. `variants` are its cams with each word that varies, whose tables are part of the
-    key.
+    `recipe` has its sweep, without what has no bearing on a figure. `figures` are the names of those computed, by
+    estimates where `screened` is true. `variants` are the recipe's cams with each word that varies, whose tables are
+    part of the key.
     """
 
     recipe: Recipe
@@ -75,7 +75,7 @@ class Scene:
     variants: tuple[Cam, ...] = ()
 
     def __repr__(self) -> str:
-        """All of it, as the key is made of this; a recipe's own `repr` is its name."""
+        """All fields of the scene as text, from which the key is made; a recipe's own `repr` is only its name."""
         rest = f"figures={self.figures!r}, screened={self.screened!r}, variants={self.variants!r}"
         return f"Scene(recipe={full_text(self.recipe)}, {rest})"
 

@@ -118,7 +118,7 @@ class LoopArrays:
 
     @cached_property
     def output(self) -> Array:
-        """theta_4, rad, or D_x, mm."""
+        """Output of the loop: the angle theta_4, rad, or the slide's position D_x, mm, (m, n)."""
         angle: Array = np.arctan(self.near / self.root)
         angle += angle
         return angle
@@ -142,28 +142,28 @@ class InvertedLoop(LoopArrays):
 
     @cached_property
     def rate(self) -> Array:
-        """theta_4'."""
+        """First derivative of the output angle by the relative angle, theta_4', (m, n)."""
         return self.cams.dp / self.root
 
     @cached_property
     def second(self) -> Array:
-        """theta_4''."""
+        """Second derivative of the output angle by the relative angle, theta_4'', 1/rad, (m, n)."""
         rate = self.rate
         return (self.cams.ddp - (self.lengths.rocker - self.y) * rate * rate) / self.root
 
     @cached_property
     def frame(self) -> Array:
-        """theta_3, but for a constant."""
+        """Angle of the frame, theta_3, rad (m, n), but for a constant."""
         return -self.output
 
     @cached_property
     def frame_rate(self) -> Array:
-        """theta_3'."""
+        """First derivative of the frame's angle by the relative angle, theta_3', (m, n)."""
         return -self.rate
 
     @cached_property
     def frame_second(self) -> Array:
-        """theta_3''."""
+        """Second derivative of the frame's angle by the relative angle, theta_3'', 1/rad, (m, n)."""
         return -self.second
 
     @cached_property
@@ -197,12 +197,12 @@ class CouplerLoop(LoopArrays):
 
     @cached_property
     def half_rate(self) -> Array:
-        """Half the derivative of AD^2."""
+        """Half the derivative of AD^2 by the relative angle, mm^2/rad (m, n)."""
         return self.y * self.cams.dp - self.x * self.cams.dp1
 
     @property
     def half_second(self) -> Array:
-        """Half the second derivative of AD^2."""
+        """Half the second derivative of AD^2 by the relative angle, mm^2/rad^2 (m, n)."""
         cams = self.cams
         return cams.dp * cams.dp + cams.dp1 * cams.dp1 + self.y * cams.ddp - self.x * cams.ddp1
 
@@ -252,14 +252,14 @@ class FourBarLoop(CouplerLoop):
 
     @cached_property
     def rate(self) -> Array:
-        """theta_4'."""
+        """First derivative of the output angle by the relative angle, theta_4', (m, n)."""
         rate = self.half_rate / self.root
         rate += rate
         return rate
 
     @cached_property
     def second(self) -> Array:
-        """theta_4''."""
+        """Second derivative of the output angle by the relative angle, theta_4'', 1/rad, (m, n)."""
         r1, r4 = self.lengths.ground, self.lengths.rocker
         rate, half = self.rate, self.half_second
         return (half + half - ((r1 * r1 + r4 * r4) - self.q) * rate * rate) / self.root
@@ -272,20 +272,20 @@ class FourBarLoop(CouplerLoop):
 
     @cached_property
     def frame(self) -> Array:
-        """theta_3, but for a constant."""
+        """Angle of the frame, theta_3, rad (m, n), but for a constant."""
         r1, r4 = self.lengths.ground, self.lengths.rocker
         cosine, sine = self.turned(self.q + (r1 * r1 - r4 * r4), self.root)
         return np.arctan2(-cosine, sine) if self.side > 0 else np.arctan2(cosine, -sine)
 
     @cached_property
     def frame_rate(self) -> Array:
-        """theta_3'."""
+        """First derivative of the frame's angle by the relative angle, theta_3', (m, n)."""
         # (arg D)' Q = theta_4' (r1 D_x - Q)
         return (-0.5 * self.rate * self._lean - self.spin) / self.q
 
     @cached_property
     def frame_second(self) -> Array:
-        """theta_3''."""
+        """Second derivative of the frame's angle by the relative angle, theta_3'', 1/rad, (m, n)."""
         turning = -0.5 * self.second * self._lean - self.rate * self.half_rate - self.spin_rate
         return (turning - 2.0 * self.frame_rate * self.half_rate) / self.q
 
@@ -325,34 +325,34 @@ class SliderLoop(CouplerLoop):
 
     @property
     def output(self) -> Array:
-        """D_x."""
+        """Position of the slide, D_x, mm (m, n)."""
         return self.root
 
     @cached_property
     def rate(self) -> Array:
-        """D_x'."""
+        """First derivative of the slide's position by the relative angle, D_x', mm/rad (m, n)."""
         return self.half_rate / self.root
 
     @cached_property
     def second(self) -> Array:
-        """D_x''."""
+        """Second derivative of the slide's position by the relative angle, D_x'', mm/rad^2 (m, n)."""
         rate = self.rate
         return (self.half_second - rate * rate) / self.root
 
     @cached_property
     def frame(self) -> Array:
-        """theta_3, but for a constant."""
+        """Angle of the frame, theta_3, rad (m, n), but for a constant."""
         cosine, sine = self.turned(self.root, self.lengths.offset)
         return np.arctan2(sine, cosine) if self.side > 0 else np.arctan2(-sine, -cosine)
 
     @cached_property
     def frame_rate(self) -> Array:
-        """theta_3'."""
+        """First derivative of the frame's angle by the relative angle, theta_3', (m, n)."""
         return (-(self.lengths.offset * self.rate) - self.spin) / self.q
 
     @cached_property
     def frame_second(self) -> Array:
-        """Second derivative of the frame's angle, theta_3'', by the cam's relative angle."""
+        """Second derivative of the frame's angle by the relative angle, theta_3'', 1/rad, (m, n)."""
         turning = -(self.lengths.offset * self.second) - self.spin_rate
         return (turning - 2.0 * self.frame_rate * self.half_rate) / self.q
 

@@ -31,7 +31,7 @@ _WORDS = 4  # random words that one step of Philox's counter gives
 
 @dataclass(frozen=True)
 class Axis:
-    """One varied field, in the recipe's units: it takes `values`, or where there are none any in low..high.
+    """Varied field of a sweep, in the recipe's units: it takes the listed `values`, or without a list any in low..high.
 
     The values of a field that takes `words` are their indices.
     """

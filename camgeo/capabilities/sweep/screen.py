@@ -86,7 +86,10 @@ class ScreenedCams:
 
     @cached_property
     def bend(self) -> tuple[Array, Array]:
-        """Greatest curvature of a centre's path, 1/mm (m,), where the metal lies inside its bend, and outside; or 0."""
+        """Greatest curvature of the pitch curve, 1/mm (m,), where the metal lies inside its bend, and outside.
+
+        Both are at least 0. Raises TypeError for a flat face, which has no centre.
+        """
         rows = self.contours.bend
         if rows is None:
             raise TypeError("no contact has a centre")
@@ -95,7 +98,7 @@ class ScreenedCams:
 
     @cached_property
     def pitch(self) -> Array:
-        """Least radius where the cam may undercut, mm (m,): of the centre's path, or of a face's contour."""
+        """Least radius of curvature that decides undercut, mm (m,): of the pitch curve, or of a flat face's contour."""
         if self.contours.radius is not None:
             return self.least(self.contours.radius)
         with np.errstate(divide="ignore"):

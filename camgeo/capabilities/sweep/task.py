@@ -125,7 +125,7 @@ class Task:
         return {axis.path: axis.written(float(value)) for axis, value in zip(self.plan.axes, values, strict=True)}
 
     def scene(self, figures: tuple[str, ...]) -> Scene:
-        """All that these figures of a design depend on, and no more.
+        """Scene of the given figures of a design: all that they depend on, and no more.
 
         So a change of limits, ranking or files to export leaves what was computed as it is.
         """

@@ -1,10 +1,11 @@
-"""The longest stretch of samples whose values stay within a band: which samples.
+"""The longest run of samples whose values stay within a band, as first sample and number of cells.
 
-A function of period n samples is known by its nodes and by its greatest and least value over each cell, cell i lying
-between nodes i and i + 1. A window (start i, c cells) is a run of whole cells within the band that no further cell on
-either side fits into. Of all windows the one is taken that reaches farthest along the abscissa, its ends drawn out
-into the cells beside it as if the function ran straight there. A straight line and a bent one that begins level leave
-a cell at most a fourth of it apart: of windows whose lengths differ by less than half a cell either may be taken.
+A function of period n samples is known by its nodes and by its greatest and least value over each cell; cell i lies
+between nodes i and i + 1. A window (start i, c cells) is a run of whole cells within the band that cannot be extended
+by a whole cell on either side. The window taken is the one that reaches farthest along the abscissa, when its ends are
+extended into the cells beside it as if the function were straight there. A straight line and a curve that begins level
+differ by at most a fourth of a cell where they leave it: of windows whose lengths differ by less than half a cell
+either may be taken.
 """
 
 from __future__ import annotations
