@@ -22,7 +22,10 @@ __all__ = ["camshaft_section"]
 
 
 def camshaft_section(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dict[str, Any]:
-    """Lobes, an engine's valve events, and the unbalance; lengths in the recipe's unit, angles in degrees."""
+    """Section `camshaft` of the report: lobes, valve events of an engine, and unbalance.
+
+    Lengths are in the recipe's unit, angles in degrees.
+    """
     section: dict[str, Any] = {"lobes": [_lobe(recipe, lobe) for lobe in lobes]}
     if recipe.engine is not None:
         section["cylinders"] = [

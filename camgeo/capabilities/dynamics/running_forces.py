@@ -216,7 +216,10 @@ class FollowerRunning(Running):
         return piece.crossings(0.0)
 
     def mean_force(self, index: int) -> tuple[float, float] | None:
-        """Mean force that the roller of a contact bears over its own turns, N, and its turns per turn of the shaft."""
+        """Equivalent force on the roller of a contact, N, and its turns per turn of the shaft; None without a roller.
+
+        It is the mean over the roller's own turns with the exponent LIFE of bearing life.
+        """
         places = np.unique(np.concatenate([self.turn.places, self.changes]))
         x, weight = np.polynomial.legendre.leggauss(NODES)
         edges = np.concatenate([np.linspace(a, b, PANELS + 1)[:-1] for a, b in pairwise(places)])

@@ -139,7 +139,7 @@ def _disc(recipe: Recipe, points: DiscPoints, call: Call, datum: Datum) -> DiscM
 
 
 def _uncertain(surfaces: Sequence[SurfaceMade], call: Call) -> Array:
-    """Expanded uncertainty of every point, mm: as given, or the scatter alone; and that of the axes."""
+    """Expanded uncertainty (n,) of every point, mm: as stated, else of the scatter alone; with that of the axes."""
     rows = []
     for one in surfaces:
         deviations = one.on.points.deviations

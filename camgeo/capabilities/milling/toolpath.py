@@ -128,7 +128,7 @@ def side_by_side(near: float, far: float, radius: float, allowance: float) -> li
 
 
 def depths(thickness: float, depth_of_cut: float) -> list[float]:
-    """Heights z of equal passes down to the thickness, none deeper than allowed."""
+    """Heights z of equal passes, mm, from the first, below 0, down to minus the thickness; none deeper than allowed."""
     count = max(math.ceil(thickness / depth_of_cut * (1.0 - 1e-12)), 1)
     return [-thickness * (k + 1) / count for k in range(count)]
 

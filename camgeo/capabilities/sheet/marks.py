@@ -62,7 +62,7 @@ class Text:
 
     @property
     def box(self) -> tuple[float, float, float, float]:
-        """Least x and y, greatest x and y of the text, mm."""
+        """Least x and y, then greatest x and y of the text, mm of paper."""
         long = width(self.text, self.height)
         start = {"left": 0.0, "middle": -0.5 * long, "right": -long}[self.anchor]
         low, high = -BELOW * self.height, LETTERS * self.height

@@ -76,7 +76,7 @@ def number(value: float) -> str:
 
 
 def chords(outline: ArcSpline) -> Array:
-    """Points (n, 2) along arcs and lines, near enough to look like them."""
+    """Points (n, 2) along arcs and lines, mm, for drawing: chords off an arc by less than SAGITTA of its radius."""
     starts, bulges = outline.points, outline.bulges
     ends = np.roll(starts, -1, axis=0)
     sweep = 4.0 * np.arctan(bulges)

@@ -70,7 +70,7 @@ def _read_ratio(reader: Reader, field: Field, node: Node, path: str) -> tuple[tu
 
 
 def _rows(origin: Origin, reader: Reader) -> list[tuple[float, float]]:
-    """Rows of lifts, mm, and ratios; raises Complaint for what are none."""
+    """Rows of lifts, mm, and ratios; raises Complaint for a table that cannot be read, or with values out of range."""
     from kin.read.rows import RowError, read_rows
     from kin.read.tables import UNITS, unit_of
 

@@ -97,7 +97,10 @@ def panel(report: dict[str, Any]) -> str:
 
 
 def plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
-    """Lift, velocity and acceleration of the valve over the turn, in the recipe's unit."""
+    """Plots of lift, velocity and acceleration of the valve over the turn, in the recipe's unit.
+
+    None without a valve.
+    """
     valve = valve_of(recipe, design)
     if valve is None:
         return ()
