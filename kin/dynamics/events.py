@@ -114,9 +114,9 @@ class Pressed:
 
 
 def windows(begin: float, end: float, fine: float, step: float) -> Iterator[Array]:
-    """Times from `begin` to `end` in growing runs, each from the last place but one of that before.
+    """Times from `begin` to `end`, rad, in growing arrays; each begins with the last but one time of the array before.
 
-    `step` apart until `fine`, and then by a part of what is left.
+    They are `step` apart until `fine`, and then by a part of what is left.
     """
     count, now, before = _FIRST, begin, np.empty(0)
     coarse = (end - begin) / _COARSE

@@ -151,9 +151,9 @@ class Oscillator:
         return math.hypot(left, 2.0 * math.exp(-0.5 * self.decay * TURN) * _sine_of_half_turns(self.split))
 
     def periodic(self, gained: Array) -> Array:
-        """State (2,) that a turn brings back to itself: (1 - Phi) y = `gained` (2,), what a turn adds from rest.
+        """State y (2,) that returns after a turn: (1 - Phi) y = `gained` (2,), the state that a turn from rest ends in.
 
-        ValueError where `detuning` is 0.
+        Raises ValueError where `detuning` is 0.
         """
         a, b = self.decay, self.split
         zz, zv, vz, vv = (float(part[0]) for part in self.propagator(np.array([TURN])))

@@ -46,7 +46,7 @@ _SILENT = 1e-11  # a free motion below this share of all else is not sampled for
 
 
 class StiffnessError(CamgeoError, ValueError):
-    """More parts than can be held: the damping is so strong that one rate of decay lies far below the other."""
+    """A response that needs more parts than can be held: so strong a damping that one root lies far below the other."""
 
 
 class Samples(NamedTuple):
@@ -64,7 +64,7 @@ class Forcing:
     constant: float = 0.0
 
     def series(self, drive: Drive) -> Array:
-        """Chebyshev coefficients of g (m, DEGREE + 1)."""
+        """Chebyshev series (m, DEGREE + 1) of g over the drive's stretches, by radian of shaft squared."""
         series: Array = -drive.acceleration
         if self.kappa:
             series = series - self.kappa * drive.position
@@ -140,7 +140,7 @@ class Response:
         return value(self.p[stretch].tolist(), x), value(self.v[stretch].tolist(), x)
 
     def moved(self, stretch: int, free: Free, time: float) -> Array:
-        """State (2,) at a time since the start of a stretch, of the free motion there and what is driven."""
+        """State (z, z') (2,) at a time since the start of a stretch: free motion plus p."""
         p, v = self._driven(stretch, time)
         z, rate = free.after(time)
         return np.array([p + z, v + rate])
@@ -182,7 +182,7 @@ class Response:
 
     @property
     def step(self) -> float:
-        """Time between samples that show every swing of the free motion; infinite where there is none."""
+        """Time, rad of shaft, between samples that show every swing of the free motion; infinite for no free motion."""
         return _STEP / self.oscillator.fast if self.oscillator.fast > 0.0 else np.inf
 
     def swings(self, starts: Array, stretches: Indices) -> tuple[Array, Indices]:

@@ -47,7 +47,7 @@ _CURVED = ORDERS**2 * (ORDERS**2 - 1.0) / 3.0  # greatest second derivative of e
 
 
 class Look:
-    """The steady state at one speed: bounds of its contact force, and the least of that."""
+    """Steady state of a train at one shaft speed, with proved lower bounds of its contact force."""
 
     def __init__(self, train: Train, drive: Drive, rpm: float, work: Work) -> None:
         self.train, self.rpm, self.work = train, rpm, work
@@ -248,7 +248,7 @@ class Range:
 
     @property
     def holds(self) -> bool:
-        """Whether contact holds at all speeds between, by what is known at both ends."""
+        """Whether contact is proved to hold at all speeds of the range, by the looks at both ends."""
         if self.by_size > 0.0 or min(self.low.least, self.high.least) > self.between:
             return True
         return min(self.low.reached, self.high.reached) > self.between

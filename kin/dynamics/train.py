@@ -225,7 +225,7 @@ def _demand_countable(running: Running, response: Response, starts: Array) -> No
 
 
 def periodic(running: Running, response: Response) -> Array:
-    """State (2,) at shaft angle 0 that a turn brings back to itself; DynamicsError where there is none."""
+    """State (z, z') (2,) at shaft angle 0 that returns after a turn. Raises DynamicsError where there is none."""
     oscillator = response.oscillator
     if oscillator.detuning < _LEAST_DETUNING * max(1.0, 1e-6 * oscillator.natural):
         raise DynamicsError(_no_steady_state(running, oscillator.natural, oscillator.split))

@@ -34,9 +34,9 @@ PAIRS_AT_ONCE = 1_000_000  # bounds the memory that a hostile contour can ask fo
 
 
 def dilated(chain: Arcs, radius: float) -> Arcs:
-    """Return the pieces, in no order, that bound what a disc's centre cannot enter, from a closed chain.
+    """Pieces, in no order, that bound the region a disc's centre cannot enter; the metal lies left of the chain.
 
-    Its metal lies to the left. A disc of radius 0, the point of a knife edge, is bounded by the chain itself.
+    A disc of radius 0, the point of a knife edge, is bounded by the chain itself.
     """
     if radius == 0.0:
         return chain
@@ -143,7 +143,7 @@ def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indi
 
 
 def within_reach(pieces: Arcs, guide: Guide, slack: float) -> NDArray[np.bool_]:
-    """Whether some point of each short piece may lie as far from the shaft as the roller's centre can."""
+    """Mask (n,) of the short pieces of which some point may lie as far from the shaft as the roller's centre can."""
     nearest, farthest = _distances(pieces, slack)
     least, most = guide.reach()
     within: NDArray[np.bool_] = (farthest >= least) & (nearest <= most)

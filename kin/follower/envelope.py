@@ -56,7 +56,10 @@ class Envelope(Protocol):
         """Feet of points (n, 2), mm. Raises UnsettledError where one is not found."""
 
     def points(self, parameter: Array) -> Array:
-        """Points (n, 2) of the contour, mm, at parameters (n,); of an undercut one also of what is cut off."""
+        """Points (n, 2) of the contour, mm, at parameters (n,).
+
+        With undercut also points of the parts that are cut off.
+        """
 
     def frames(self, parameter: Array) -> Frames:
         """Points, outward normals and their rates by the parameter, at parameters (n,)."""

@@ -66,7 +66,7 @@ class Greatest(NamedTuple):
 
 
 class Stretches(Protocol):
-    """Stretches of what a roller runs on, about their middles; (n,) each."""
+    """Stretches of the curves that a roller runs on, each about its middle; (n,) each."""
 
     @property
     def piece(self) -> Indices:
@@ -157,7 +157,7 @@ class Held:
         return meant
 
     def reached(self, phi: Array) -> Array:
-        """Position, mm or radians, at shaft angles phi (n,)."""
+        """Own position (n,), mm or rad, of the roller in contact at shaft angles phi (n,), rad."""
         return self.guide.position(first_contact(self.pieces, self.guide, phi)[0])
 
     @cached_property
@@ -206,7 +206,7 @@ class Held:
         )
 
     def touched(self) -> Spans:
-        """Spans of the pieces that are touched, over the whole turn."""
+        """Spans of the pieces that are touched over the whole turn."""
         phi, r, piece = self.phi, self.r, self.piece
         for spare in reversed(range(TRIES)):
             change, after, a, b, one, other = changes = _changes(phi, piece)

@@ -45,7 +45,7 @@ NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})
 
 @dataclass(frozen=True)
 class LobeIntent:
-    """A lobe of a shaft: its surface, turned by `at`, rad, from z = low to high, mm, and what is permitted of it."""
+    """Intended lobe of a camshaft: its surface, turned by `at`, rad, from z = low to high, mm, and its limits."""
 
     name: str
     surface: SurfaceIntent

@@ -165,7 +165,10 @@ def _motion_checks(
 
 
 def beside_interference(check: Check, play: Play, own: Play) -> Check:
-    """A check on what a gauge has left, said of its follower: a limit that lets all of an interference go is none."""
+    """Rewrite a check on a gauge's play in terms of its follower, which runs with an interference.
+
+    It fails where the limit permits as much as the whole interference: such a limit says nothing.
+    """
     least, most = length_words(-own.most), f"{length_words(-own.least)} {UNIT}"
     if own.unit != "mm":
         least, most = f"{-own.most:.6g}", f"{-own.least:.6g} {own.unit}"

@@ -160,12 +160,12 @@ class ShaftIntent:
 
 @dataclass(frozen=True)
 class Limits:
-    """What is permitted: `tolerance` of the contour, mm; greatest motion error, and greatest play or interference.
+    """Permitted errors: `tolerance` of the contour, mm; greatest motion error, and greatest play or interference.
 
     Motion and play are in mm or degrees as the follower has them, `output`, the greatest error of a mechanism's output,
-    as the mechanism has it; None is what the tolerance implies, see `motion_limit` and `closure` of the followers
-    and `kin.follower.frame.implied_limit`. Ends in drawings within `gap`, mm, are joined by lines, which is counted
-    into contour and motion; None for the readers' own.
+    as the mechanism has it; None is what the tolerance implies, see `motion_limit` and `closure` of the followers and
+    `kin.follower.frame.implied_limit`. Ends in drawings within `gap`, mm, are joined by lines, which is counted into
+    contour and motion; None for the readers' own.
     """
 
     tolerance: float

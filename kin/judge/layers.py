@@ -191,7 +191,7 @@ def settled(solid: AnySolid, leaning: Sequence[Lean], tolerance: float) -> AnySo
 def between_sections(
     solid: AnySolid, levels: Sequence[float], leaning: Sequence[Lean], tolerance: float
 ) -> list[tuple[str, str]]:
-    """Tell, by the check that reports it, what makes sections differ of which one is seen between two faces `meant`.
+    """Faults, each with the name of the check that reports it, that make a solid differ between the sections looked at.
 
     All sections between two heights are the same if there is no face between them, and no wall leans. Where one face is
     meant two that are nearer to each other than the tolerance would have a fin or a gap between them. What leans evenly
@@ -248,7 +248,7 @@ def volume(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], area: floa
 
 
 def wall_area(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], perimeter: float) -> float:
-    """Area of all walls, mm^2, and of the horizontal faces' rims: what a volume gains by 1 mm all over, or more."""
+    """Area, mm^2, of all walls and of the horizontal faces' rims: at least the volume gained by 1 mm more all over."""
     total = 0.0
     for layer in layers:
         length = perimeter if layer.outline is None else layer.outline.contour.length

@@ -30,7 +30,7 @@ SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's siz
 
 
 class Parted(NamedTuple):
-    """The chain of each surface, the holes besides, and what is checked of a round outline."""
+    """Chains of a part told apart: one for each surface, the holes besides, and the checks of a round outline."""
 
     surfaces: tuple[Chain, ...]
     holes: tuple[Contour, ...]

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def exact_area(contours: Sequence[Contour], part: PartIntent) -> tuple[float, float, str]:
-    """Area and length of the edges, mm^2 and mm, and whose they are: the intent's, or the file's contours'.
+    """Area, mm^2, and length of edges, mm, of the part's section, and their source: "intent" or "contour".
 
-    The contours, one of each surface, give those of a trimmed cam, for which there is no closed form.
+    A trimmed cam has no closed form: the file's contours, one of each surface, give its area and length.
     """
     area, length, regular = 0.0, 0.0, True
     for contour, surface in zip(contours, part.surfaces, strict=True):

@@ -25,7 +25,7 @@ _SLOPE_JOIN = 1e-9  # a jump in psi'(phi), likewise
 
 
 def demand_ratio(lam: int, mu: int, arm: float) -> None:
-    """Refuse a ratio that W's conditions exclude (W 2.2, section 3), or an arm that is none."""
+    """Raise IntentError for a ratio that W's conditions exclude (W 2.2, section 3), or an arm not above 0."""
     if not (math.isfinite(arm) and arm > 0):
         raise IntentError(f"the arm must be above 0, not {arm:.6g} mm", "arm")
     if mu < 1 or lam <= mu:

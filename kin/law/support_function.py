@@ -156,7 +156,7 @@ class Lift:
 
     @property
     def rounding(self) -> float:
-        """By how much p or p' may be off through the rounding of a recipe's own formula, mm; 0 where there is none."""
+        """Greatest error, mm, of p or p' by the rounding of a recipe's own formula; 0 without one."""
         return self.law.rounding
 
     @cached_property

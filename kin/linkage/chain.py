@@ -20,7 +20,7 @@ __all__ = ["Carrier", "Chain", "Solved"]
 
 
 class Solved(NamedTuple):
-    """The linkage's positions, and what each dyad reaches, for the lifts S and S1: all as jets."""
+    """Solved positions of the linkage and of each dyad for the lifts S and S1, all as jets."""
 
     lifts: tuple[Jet, Jet]
     linkage: Positions
@@ -102,7 +102,7 @@ class Chain:
         return self.output(0 if on == "output" else 1 + int(on.removeprefix("dyads[").removesuffix("]")))
 
     def hung(self, solved: Solved, k: int) -> Place:
-        """Return the point on which dyad k hangs, mm, from what is solved before it."""
+        """Return the point to which dyad k is attached, mm, from the links solved before it."""
         return self.carrier(k).pose(solved).point(*self.dyads[k].point)
 
     def rod(self, solved: Solved, k: int) -> Link:

@@ -42,9 +42,13 @@ class FrameBearing:
         joint: Complexes | complex = 0.0,
         link: float = 0.0,
     ) -> Array:
-        """Change for dX `along` and dY `across`, `pivot` of B, `joint` of D in the ground, the `link` of `deviation`.
+        """Change (n,) of the output, rad or mm, for small displacements, mm, (n,) or one for all angles.
 
-        All are mm, (n,) or one for all angles.
+        The shaft is held.
+
+        along, across  of the frame on the cam, dX and dY
+        pivot, joint   of B, and of D in the ground, as complex numbers
+        link           by which the output link is longer, see `deviation`
         """
         positions = self.motion.solved.linkage
         (s, slope), (_, slope1) = self.motion.faces

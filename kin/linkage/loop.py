@@ -151,7 +151,7 @@ class Triangle:
 
     @cached_property
     def root(self) -> Jet:
-        """2 a b sin(angle between a and b)."""
+        """Product 2 a b sin(angle between a and b), mm^2."""
         return sqrt(self.near * self.far)
 
     @cached_property

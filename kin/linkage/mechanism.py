@@ -162,7 +162,10 @@ class Mechanism:
 
     @cached_property
     def start(self) -> float:
-        """theta_3 at theta = 0, where the shaft angle begins. PlaceError if the linkage binds there."""
+        """Angle theta_3, rad, of the frame at relative angle 0, where the shaft angle begins.
+
+        Raises PlaceError if the linkage binds there.
+        """
         frame, _ = self._driven(np.zeros(1), 0)
         return float(frame.c[0, 0])
 

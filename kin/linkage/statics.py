@@ -57,9 +57,9 @@ class FrameForces(NamedTuple):
 def frame_forces(
     mechanism: Mechanism, motion: LinkageMotion, demand: Array, coupler: Coupler | None = None
 ) -> FrameForces:
-    """Forces for what the last output is to be given the way it grows, N mm or N (n,), at a motion of order 2.
+    """Forces of the cam on the frame for a demand on the last output, N mm or N (n,), in its growing sense.
 
-    The `joint` is that of a linkage without dyads.
+    `motion` is of order 2. `joint` is the force on the output link of a linkage without dyads.
     """
     still = np.zeros_like(motion.theta)
     inertia, spin = np.zeros((2, len(still))), still

@@ -197,9 +197,9 @@ def derivatives_of(errors: Array, step: float) -> Array:
 
 
 def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array, turned_by: float = 0.0) -> list[Errors]:
-    """Errors of a follower with each of its contacts on metal that is turned by an angle, rad, counter-clockwise.
+    """Motion errors of a follower, one for each contact, on metal turned by `turned_by`, rad, counter-clockwise.
 
-    Raises ContactError where one finds none.
+    Raises ContactError where a contact finds no metal.
     """
     step, metal, angle = step_of(curve), metal_of(follower, side, curve), shaft - turned_by
     errors, places = positions_about(metal, angle, step)
@@ -270,9 +270,9 @@ class OutputErrors:
 def output_errors(
     mechanism: Mechanism, follower: Follower, curve: Smooth, relative: Array, overlap: float = 0.0
 ) -> OutputErrors:
-    """Errors of the output that a linkage makes of a square frame on the metal, at relative angles (n,).
+    """Errors of a linkage's output, rad or mm, with its square frame on the metal, at relative angles (n,).
 
-    `overlap`, mm, is what the metal is meant to overlap each face by. Raises FrameError where the frame binds.
+    `overlap`, mm, is the interference that is meant at each face. Raises FrameError where the frame binds.
     """
     metal = metal_of(follower, 1, curve)
     ring = np.stack([metal.positions(relative + k * QUARTER)[0][0] - overlap for k in range(4)])

@@ -90,7 +90,10 @@ class PointMotion:
         return shaft
 
     def alike(self, most: int) -> tuple[int, ...]:
-        """Waves a turn, up to `most` or the least that there is, that a motion may have as well as a form."""
+        """Numbers of waves a turn, up to `most` or the least that there is, that a motion and a form error share.
+
+        Points alone cannot tell such a wave of the motion from one of the form.
+        """
         if self.closed:
             return tuple(range(1, most + 1))
         first = round(0.5 * TURN / self.span)

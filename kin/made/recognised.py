@@ -40,7 +40,7 @@ LEAST_STROKE = 4.0  # readings: less is no stroke
 class Stroke(NamedTuple):
     """A stroke between boundaries `first` and `last` and between their levels, as indices; its law.
 
-    `others` are laws that fit nearly as well, `residual` the root mean square of what the law leaves, mm or rad.
+    `others` are laws that fit nearly as well, `residual` the root mean square of measured less law, mm or rad.
     """
 
     first: int
@@ -72,11 +72,11 @@ class Programme:
     """A motion as strokes with dwells between; mm or rad, angles rad.
 
     boundaries (m,)   shaft angles at which strokes begin and end, in the order of the turn
-    levels (k,)       positions at which they do
+    levels (k,)       positions at which strokes begin and end
     strokes           in order
-    uncertainty       expanded (k = 2), of boundaries and of levels, by what is left over
-    hidden            what a form deviation adds to that, which is not left over
-    residual (n,)     what the motion is off
+    uncertainty       expanded (k = 2), of boundaries and of levels, from the residual
+    hidden            further uncertainty by a form deviation that the residual does not show
+    residual (n,)     measured position less the programme's
     """
 
     boundaries: Array

@@ -110,7 +110,7 @@ class Smooth:
         return rows
 
     def deviations(self, t: Array, order: int = 0) -> Array:
-        """Standard deviation of the derivative of that order at parameters t (n,), mm by rad to the order."""
+        """Standard deviation (n,) of the curve's derivative of an order at parameters t (n,), mm/rad^order."""
         place, span = _place(t, self.spans)
         index = (span + np.arange(WIDTH)[:, None]) % self.spans
         values = _values(place, order, self.spans)

@@ -101,7 +101,7 @@ def beside(
 
 
 def told(name: str, box: tuple[Array, Array] | None) -> str:
-    """A body's name, size and place in words."""
+    """Text of a body's name, size and place."""
     if box is None:
         return name
     low, high = box

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def kind_of(path: Path | str) -> str:
-    """Tell a file's format by its suffix; raises ValueError for one that is none."""
+    """Name of a file's format, by its suffix; raises ValueError for an unknown suffix."""
     return format_of(Path(path)).name
 
 
@@ -31,7 +31,7 @@ def read_drawing(
     bridged: float = 0.0,
     unstated: float = 1.0,
 ) -> Drawing:
-    """Read a drawing; raises as `read_dxf` does, ValueError for a file that is none."""
+    """Read a drawing; raises as `read_dxf` does, ValueError for a suffix that is no drawing's."""
     path = Path(path)
     read = format_of(path).drawing
     if read is None:
@@ -42,9 +42,9 @@ def read_drawing(
 def read_solid(
     path: Path | str, heights: Sequence[float] = (), units: float | None = None, deepest: int = 1
 ) -> AnySolid:
-    """Read a solid; raises as `read_stl`, `read_3mf` and `read_step` do, ValueError for a file that is none.
+    """Read a solid; raises as `read_stl`, `read_3mf` and `read_step` do, ValueError for a suffix that is no solid's.
 
-    `units`, mm, is that of a file that states none, which is read in mm without.
+    `units`, mm, is the unit of a file that states none; without it such a file is read in mm.
     """
     path = Path(path)
     record = format_of(path)

@@ -75,7 +75,10 @@ class Program:
 
 
 def read_gcode(path: Path | str) -> Program:
-    """Read a program; raises OSError as the file system does, ReadError for what is not read, with its line."""
+    """Read a milling program.
+
+    Raises OSError as the file system does, ReadError, with the line, for a program that is not read.
+    """
     path = Path(path)
     try:
         text = contents(path, "gcode").decode("ascii")

@@ -52,10 +52,10 @@ def _is_number(cell: str) -> bool:
 
 
 def spline_of_points(path: Path, mm: float = 1.0) -> tuple[Contour, int]:
-    """Read lines of x, y and perhaps z, `mm` to a unit; give the closed spline through them, mm, and their number.
+    """Closed spline through the points of a file, mm, and their number.
 
-    Numbers stand apart by commas, semicolons, blanks or tabs. Raises ReadError for what is no closed curve in a plane
-    z = constant, OSError as the file system does.
+    Lines of the file hold x, y and perhaps z, `mm` to a unit. Numbers stand apart by commas, semicolons, blanks or
+    tabs. Raises ReadError for what is no closed curve in a plane z = constant, OSError as the file system does.
     """
     points = mm * _points(path)
     size = float(np.abs(points).max())

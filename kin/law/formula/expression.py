@@ -212,7 +212,7 @@ class Builder:
         return self._reduce(Instruction(step.op, args, step.value, step.error, step.column))
 
     def expression(self, result: int) -> Expression:
-        """Return the expression that ends in a place, with what it needs and no more."""
+        """Return the expression that ends in a step, with the steps that it needs and no more."""
         needed = {result}
         for i in range(result, -1, -1):
             if i in needed:

@@ -169,7 +169,7 @@ def through_points(points: Sequence[tuple[float, float]], field: str = "law") ->
 def from_rows(samples: Samples, reading: float, field: str = "law") -> Law:
     """Make the law of least jerk within a reading of each row (u, s) from (0, 0) to (1, 1), at rest at both ends.
 
-    Raises IntentError, and kin.law.sources.tabled.TableError, for rows that are none.
+    Raises IntentError, and kin.law.sources.tabled.TableError, for rows that give no law.
     """
     from kin.law.sources.table import from_table
 
@@ -315,7 +315,10 @@ def formula(name: str) -> str:
 
 @cache
 def named(name: str, field: str = "motion") -> Law:
-    """Look up a law of the catalogue, made when first asked for; IntentError lists the names if there is none such."""
+    """Law of the catalogue by its name, made at first use.
+
+    Raises IntentError, which lists the names, for another one.
+    """
     if name not in _ENTRIES:
         from difflib import get_close_matches  # for the message alone
 

@@ -92,7 +92,10 @@ def lobe(
 def side_of(
     lift: float, half: float, powers: Sequence[float], ramp: Ramp | None, *, total: float, field: str
 ) -> LobeSide:
-    """Make the side of a lobe by its powers; IntentError, with a field below `field`, for what is none."""
+    """Make the side of a lobe by its powers.
+
+    Raises IntentError, with a field below `field`, for powers that give none.
+    """
     demand_lift(lift, field)
     if not (math.isfinite(half) and 0 < half < total / 2):
         raise IntentError(
@@ -192,7 +195,7 @@ def demand_lift(lift: float, field: str) -> None:
 
 
 def demand_ramp(lift: float, ramp: Ramp, field: str) -> None:
-    """Raise IntentError for a ramp that is none, or as high as the lobe."""
+    """Raise IntentError for a ramp without height or velocity, as high as the lobe, or too short."""
     if not (math.isfinite(ramp.height) and 0 < ramp.height < lift):
         raise IntentError("the ramp's height must lie between 0 and the lift", f"{field}.ramp.height")
     if not (math.isfinite(ramp.velocity) and ramp.velocity > 0):

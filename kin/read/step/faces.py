@@ -273,7 +273,10 @@ def _arc(centre: Array, radius: float, first: float, sweep: float) -> Shape:
 
 
 def face_of(space: Space, number: int, edges: dict[int, Edge]) -> Face:
-    """Read an ADVANCED_FACE, and the edges of its bounds into `edges`. Raises ReadError for what is not read."""
+    """Read an ADVANCED_FACE, and the edges of its bounds into `edges`.
+
+    Raises ReadError for an unsupported surface or edge.
+    """
     file = space.file
     kind = file.kind(number, ("ADVANCED_FACE", "FACE_SURFACE"), number)
     _, bounds, surface, sense, *_ = file.values(number, kind, 4)
