@@ -78,7 +78,7 @@ def meetings(contour: Contour, other: Contour) -> Crossings:
 
 
 def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
-    """A place that two of the contours have in common, mm; None if all keep apart."""
+    """A point (x, y), mm, that two of the contours have in common; None if all keep apart."""
     boxes = np.array([contour.box for contour in contours]).reshape(-1, 4)
     for k, outline in enumerate(contours[:-1]):
         x_min, y_min, x_max, y_max = boxes[k]

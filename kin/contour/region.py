@@ -35,11 +35,11 @@ GRID = 24  # points along each side of the grid on which a point inside is looke
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """The inside of an outer contour without that of its holes. Features: n pieces, then corners, then a point inside.
+    """The inside of an outer contour less that of its holes. Features: n pieces, then corners, then a point inside.
 
     arcs        the pieces, material on their left; corners and the point are pieces without length
     boundary    number of features that lie on the boundary: all but the last
-    pieces      number of those that are pieces
+    pieces      number of features that are pieces
     middle      (n, 2), and `reach` (n,) half the length: the feature lies within that of its middle
     normal      (n, 2) outward unit normal at the middle, and `fan` (n,) by how far, rad, other normals differ from it
     centre      (n, 2), and `off` (n,): every line along a normal passes within `off` mm of it; inf without a centre

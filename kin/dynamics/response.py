@@ -96,7 +96,7 @@ class Response:
 
     @cached_property
     def _steps(self) -> tuple[Array, Array, Array]:
-        """Of each stretch: p, p' at its start (m, 2) and end (m, 2), and the matrix of the free motion (m, 4)."""
+        """Per stretch: p, p' at its start (m, 2) and at its end (m, 2), and the matrix of the free motion (m, 4)."""
         at_start = np.stack([self.p @ AT_START, self.v @ AT_START], axis=1)
         at_end = np.stack([self.p.sum(axis=1), self.v.sum(axis=1)], axis=1)
         matrix = np.stack(self.oscillator.propagator(np.diff(self.drive.knots)), axis=1)
@@ -157,7 +157,7 @@ class Response:
         return state
 
     def states(self, starts: Array, samples: Samples) -> Array:
-        """Values z and z' (2, n), from the states (2, m) at all starts."""
+        """Values z and z' (2, n) at the samples, from the states (2, m) at the starts of all stretches."""
         x = samples.time / self.half[samples.stretch] - 1.0
         driven = np.stack([evaluated(self.p, samples.stretch, x), evaluated(self.v, samples.stretch, x)])
         states: Array = driven + self.rung(starts, samples)

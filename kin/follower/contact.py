@@ -151,7 +151,7 @@ def within_reach(pieces: Arcs, guide: Guide, slack: float) -> NDArray[np.bool_]:
 
 
 def angles_of(pieces: Arcs, guide: Guide, slack: float) -> tuple[Array, Array]:
-    """Middle and half-width of an interval of shaft angles that holds all from which each short piece is reached."""
+    """Middle and half-width, rad, of an interval that holds all shaft angles from which each short piece is reached."""
     middle = pieces.points(0.5 * pieces.length)
     r = np.hypot(middle[:, 0], middle[:, 1])
     half = 0.5 * pieces.length + slack

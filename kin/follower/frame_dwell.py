@@ -145,7 +145,7 @@ def _spans(output: Output, band: float) -> list[_Span]:
 
 
 def _runs(low: Array, high: Array, band: float) -> list[int]:
-    """Of each block in a ring (m,) the number of blocks from it on, at most all, whose values stay within the band."""
+    """Per block of a ring (m,): number of blocks from it on, at most all, whose values stay within the band."""
     count, begin = len(low), np.arange(len(low))
     lows, highs = doubled(np.tile(low, 2), np.minimum), doubled(np.tile(high, 2), np.maximum)
     runs, least, most = np.zeros(count, dtype=np.intp), np.full(count, np.inf), np.full(count, -np.inf)

@@ -140,7 +140,7 @@ class SplinePath:
 
     @cached_property
     def ends(self) -> Array:
-        """Shaft angles at which the roller touches the ends and the middles of pieces."""
+        """Shaft angles, rad, at which the roller touches the ends and the middles of the pieces."""
         return self._table.edges[:-1][:: CELLS // 2]
 
     def gap(self, centres: Array, phi: Array) -> Array:

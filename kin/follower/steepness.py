@@ -98,7 +98,7 @@ def steepness_of_transmission(transmission: Transmission) -> Steepness:
 
 @dataclass(frozen=True, eq=False)
 class ParameterTable:
-    """A transmission's parameter over the shaft angle, by cubics between ends of cells: for a start, not for an end.
+    """A transmission's parameter over the shaft angle, by cubics between ends of cells: a first guess alone.
 
     phi, tau (m + 1,)       shaft angle and parameter at the ends of cells, rising over one period
     after, before (m,)      derivative of tau by phi at the lower and at the upper end of each cell, from within

@@ -32,10 +32,11 @@ FLATTEST = 1e9  # mm; larger radii of curvature are all alike
 
 @dataclass(frozen=True, eq=False)
 class Bearing:
-    """m stretches: stretch k from breaks[k] to breaks[k+1], the last over 2 pi to the first; breaks rise in [0, 2 pi).
+    """Contacts of a contour with flat faces in all directions, on m stretches of the normal's angle.
 
-    `point` (m, 2) is the corner that bears, `piece` (m,) the arc or Bezier piece that does instead, -1 for a corner.
-    `back` is by how much less than the contour reaches q is reported, mm.
+    Stretch k runs from breaks[k] to breaks[k+1], the last over 2 pi to the first; breaks rise in [0, 2 pi). `point` (m,
+    2) is the corner that bears, `piece` (m,) the arc or Bezier piece that does instead, -1 for a corner. `back` is the
+    length, mm, that is subtracted from the support function in the reported q.
     """
 
     contour: Contour

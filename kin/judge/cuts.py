@@ -132,7 +132,7 @@ def _cut(program: Program, down: list[Move]) -> Cut:
 
 
 def features_of(program: Program, cuts: list[Cut], milling: Milling, tolerance: float) -> Iterator[Feature]:
-    """Cuts together by what they mill; raises ReadError for a path that leaves nothing."""
+    """Features that the cuts mill, each with its cuts in order. Raises ReadError for a path that leaves nothing."""
 
     def edge(cut: Cut, side: Side) -> Edge:
         inward = side if cut.area > 0.0 else -side

@@ -94,7 +94,7 @@ def deepest(part: PartIntent) -> int:
 
 
 def missing(surface: SurfaceIntent, part: PartIntent) -> str:
-    """Say that a surface is not there: several of one part are the flanks of a groove."""
+    """Words for a surface that is missing in a file: several surfaces of one part are the flanks of a groove."""
     if surface.name:
         flank = " flank" if len(part.surfaces) > 1 else ""
         return f"the {surface.name}{flank} is missing, on which its follower runs"

@@ -28,7 +28,7 @@ class DiscFile(NamedTuple):
 
 
 class DiscsRead(NamedTuple):
-    """The surfaces that were read from a file, by its name, and by how much its sections differ, mm."""
+    """Surfaces that were read from a file: its name, and the greatest difference of its sections, mm."""
 
     file: str
     surfaces: Sequence[SurfaceVerdict]

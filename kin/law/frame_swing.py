@@ -81,7 +81,7 @@ class FrameSwing:
         return math.asin(0.5 * self.lean / math.cos(0.5 * self.rise)) - 0.5 * self.rise
 
     def output(self, phi: Array, order: int) -> Jet:
-        """theta_4 as jets over shaft angles phi (n,), any real numbers."""
+        """Output theta_4, rad, as a jet of an order, over shaft angles phi (n,), any real numbers."""
         turns = np.floor(phi / TURN) * TURN
         phi, span = phi - turns, self.motion.total
         swing = np.empty((order + 1, len(phi)))

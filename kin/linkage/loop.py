@@ -143,7 +143,10 @@ class Triangle:
 
     @staticmethod
     def of(a: float, b: float, third: Vector) -> Triangle:
-        """Make the triangle on the third side; BindingError if there is none."""
+        """Make the triangle with the sides a, b and the vector `third`.
+
+        Raises BindingError if the sides cannot close.
+        """
         q = third.q
         near, far = excesses(third.x_terms, third.y_terms, a, b)
         demand_mobile(np.minimum(*triangle_margins(a, b, q.c[0], near, far)), order=q.order, fixed=q.c[0] == 0)

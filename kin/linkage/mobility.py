@@ -71,9 +71,9 @@ def mobility(
 ) -> Mobility:
     """Find the margins of the loops, and the rate of the shaft, all round.
 
-    `margins` give how far a loop is from each limit, mm (k, n), at relative angles (n,), each called only where those
-    before it do not bind; `rate` gives 1 - theta_3', asked for only where the linkage does not bind anywhere; `sense` a
-    bounded function of its sign, asked for where the linkage can be closed.
+    `margins` give the distances of a loop from its limits, mm (k, n), at relative angles (n,), each called only where
+    those before it do not bind; `rate` gives 1 - theta_3', called only where the linkage does not bind anywhere;
+    `sense` is a bounded function of its sign, called where the linkage can be closed.
     """
     found: tuple[float, float, int] = (math.inf, math.nan, 0)
     binds: tuple[Span, ...] = ()

@@ -209,7 +209,7 @@ class Corrected(Follower):
         return breaks
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
-        """Motion beyond that on the metal, and play beyond it; see `Follower`."""
+        """Motion error and play of a contour in excess of those on the corrected metal; see `Follower`."""
         rests, meant = self.resting(contour), _Meant(self.exact)
         size = self.si * float(np.abs(contour.vertices).max()) if self.unit == "mm" else 1.0
         each = [extremes_between(meant, rest, size).worst for rest in rests]

@@ -79,9 +79,10 @@ class MadeMotion:
         return position, velocity
 
     def above(self, opening: float, closing: float) -> Above | None:
-        """The made motion above the lift that the intended one passes at two shaft angles, rad; None where it does not.
+        """Opening, closing, duration and centre of the made motion above a lift; None where it does not pass that lift.
 
-        `closing` is greater than `opening`.
+        The lift is that of the intended motion at the shaft angles `opening` and `closing`, rad; `closing` is the
+        greater.
         """
         places, sums = [], []
         for angle in (opening, closing):

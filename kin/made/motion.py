@@ -192,7 +192,7 @@ def positions_about(metal: Metal, shaft: Array, step: float) -> tuple[Array, Arr
 
 
 def derivatives_of(errors: Array, step: float) -> Array:
-    """Value and two derivatives in the middle (c, 3, n) of five values in steps (c, 5, n)."""
+    """Value and two derivatives (c, 3, n) at the third of five equally spaced values (c, 5, n)."""
     return np.stack([errors[:, 2], FIRST @ errors / step, SECOND @ errors / step**2], axis=1)
 
 

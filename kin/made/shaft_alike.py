@@ -100,9 +100,11 @@ def radii(places: Array) -> Array:
 
 
 def lone_turns(rows: Rows, *, aligned: bool) -> dict[int, float]:
-    """Turn, rad, of each cam that alone is turned, by its place among those measured; of one that a turn explains.
+    """Turns, rad, of cams that are turned on their own against the shaft, by their index.
 
-    `aligned` says that the shaft as one is turned back already. Raises UnlikePointsError for rows that look like
+    Of those that a turn explains.
+
+    `aligned` says that the shaft as a whole is turned back already. Raises UnlikePointsError for rows that look like
     those of a shaft that is turned, mirrored, in another unit, or has cams for one another.
     """
     nominal = rows.nominal[rows.owner]
@@ -119,7 +121,10 @@ def lone_turns(rows: Rows, *, aligned: bool) -> dict[int, float]:
 
 
 def standing_together(rows: Rows) -> Mask:
-    """Cams (m,) that stand in the same turn of the shaft, where these are more than half of them; else all."""
+    """Mask (m,) of the cams that stand in the same turn of the shaft, if these are more than half of them.
+
+    Else of all.
+    """
     return _together(rows, rows.measured, rows.nominal[rows.owner])[1]
 
 

@@ -112,7 +112,10 @@ def _demand_continuous(pieces: Pieces, band: float) -> None:
 
 
 def doubled(value: Array, extreme: np.ufunc) -> list[Array]:
-    """Extremes over the runs of 1, 2, 4, ... values (n,), as many as fit: that from the k-th on is the k-th."""
+    """Extremes over runs of 1, 2, 4, ...
+
+    Of the values (n,), as many as fit; entry k of each is that of the run from k on.
+    """
     runs = [value]
     while 2 ** len(runs) <= len(value):
         half = 2 ** (len(runs) - 1)

@@ -39,7 +39,7 @@ class RowError(CamgeoError, ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Lines that have numbers (n) and where they stand in the text, the mark between their columns, and headings.
+    """A table as text: its lines of numbers (n), their line numbers, the separator of columns, and headings.
 
     A heading of two lines has the second one's cells in brackets, as units are. `heading` is empty where there is none.
     """

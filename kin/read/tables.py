@@ -67,7 +67,7 @@ class Sheet(NamedTuple):
 
 
 LENGTHS = Sheet("length")
-"""Of cam degrees and mm, where the heading says nothing else."""
+"""Sheet of lengths over cam degrees, in mm where the heading says nothing else."""
 
 
 def read_table(text: str, sheet: Sheet = LENGTHS, field: str = "motion.table") -> tuple[Samples, float]:

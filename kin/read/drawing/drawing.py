@@ -188,7 +188,7 @@ def drawing_of(
 
 
 def gathered(shapes: list[Shape]) -> tuple[Pieces, Indices]:
-    """All pieces of the shapes, in order, and the number of the shape that each belongs to (n,), rising."""
+    """Pieces of all the shapes, in order, and the index of the shape that each belongs to (n,), rising."""
     numbers = np.arange(len(shapes))
     chords, arcs = np.concatenate([s.chords for s in shapes]), np.concatenate([s.arcs for s in shapes])
     unrolled = Beziers.joined([s.beziers for s in shapes]).unrolled()

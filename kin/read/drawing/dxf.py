@@ -139,7 +139,7 @@ def damage_reported(path: Path) -> Iterator[None]:
 
 
 def parsed(raw: bytes, path: Path) -> Document:
-    """Parse a file by ezdxf; one without its end mark is refused before."""
+    """Parse the bytes of a DXF file by ezdxf. Raises ReadError for a file that is empty, binary or cut short."""
     if not raw.strip():
         raise ReadError("empty", "the file is empty", path)
     if raw.startswith(BINARY_MARK):

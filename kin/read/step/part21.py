@@ -105,7 +105,7 @@ class Exchange(NamedTuple):
         return int(value)
 
     def several(self, value: Value, by: int) -> tuple[Value, ...]:
-        """Return a value that is a list; raises ReadError for one that is none."""
+        """Return a value that must be a list; raises ReadError otherwise."""
         if not isinstance(value, tuple) or isinstance(value, Typed):
             raise self.error(by, f"{shown(value)} is not a list", "syntax")
         return value
