@@ -114,13 +114,13 @@ class FrameSwing:
     @cached_property
     def _before_image(self) -> Inverse:
         """Shaft angle of the given law over that of its image."""
-
-        def over(phi: Array) -> tuple[Array, Array]:
-            _, shaft = self._image_over(Jet.variable(phi, 1))
-            return shaft.c[0], shaft.c[1]
-
         steps = np.linspace(0.0, self.motion.total, _TABLE + 1)
-        return Inverse(over, distinct(np.concatenate([steps, self.motion.motion.breaks])))
+        return Inverse(self._image_shaft, distinct(np.concatenate([steps, self.motion.motion.breaks])))
+
+    def _image_shaft(self, phi: Array) -> tuple[Array, Array]:
+        """Shaft angle of the image of shaft angles phi (n,) of the given law, and its derivative, (n,) each."""
+        _, shaft = self._image_over(Jet.variable(phi, 1))
+        return shaft.c[0], shaft.c[1]
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
@@ -179,13 +179,13 @@ class _Lifted:
     @cached_property
     def _shaft(self) -> Inverse:
         """Shaft angle over the relative one, within this stretch."""
+        return Inverse(self._relative, np.linspace(self.begin, self.end, _TABLE + 1))
 
-        def over(phi: Array) -> tuple[Array, Array]:
-            at = Jet.variable(phi, 1)
-            relative = at - self.function(at)
-            return relative.c[0], relative.c[1]
-
-        return Inverse(over, np.linspace(self.begin, self.end, _TABLE + 1))
+    def _relative(self, phi: Array) -> tuple[Array, Array]:
+        """Relative angle at shaft angles phi (n,), and its derivative, (n,) each; other processes take it as it is."""
+        at = Jet.variable(phi, 1)
+        relative = at - self.function(at)
+        return relative.c[0], relative.c[1]
 
     def _shafts_beyond(self, lower: Array, upper: Array) -> tuple[Array, Array]:
         """Shaft angles (n,) for certain not above those at relative angles `lower` (n,), nor below those at `upper`."""

@@ -40,6 +40,7 @@ from camgeo.registry.formats import MODULES
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
 from camgeo.schema.scalars import Complaint, read_number
+from camgeo.synthesis.design import designed
 from kin.law.contacts import Flat, Oscillating, Roller, Shoe, Translating
 from kin.law.programme import IntentError
 from kin.law.sources.laws import named as named_law
@@ -289,6 +290,14 @@ def test_a_recipe_travels_between_processes() -> None:
         recipe = load(path)
         assert pickle.loads(pickle.dumps(recipe)) == recipe
         hash(recipe.cam)
+
+
+def test_a_recipe_whose_swing_was_evaluated_travels_between_processes() -> None:
+    """Tables of the law's inverse go with it."""
+    recipe = load(next(path for path in SHIPPED if path.stem == "yoke-swing"))
+    swing = designed(recipe).exact
+    again = pickle.loads(pickle.dumps((recipe, swing)))
+    assert again[0] == recipe
 
 
 # --- names and places -------------------------------------------------------------------------------------------------
