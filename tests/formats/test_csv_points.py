@@ -81,9 +81,7 @@ def test_the_error_is_that_of_another_spline(tmp_path: Path) -> None:
     curve = interpolate.CubicSpline(along, few, bc_type="periodic")(np.linspace(0.0, along[-1], 20_001))
     exact = shapely.LinearRing(many)
     off = shapely.distance(exact, shapely.points(curve))
-    assert measured - 1e-3 * 0.05 == pytest.approx(
-        off.max(), abs=2e-5
-    )  # arcs within a thousandth of the tolerance count
+    assert measured == pytest.approx(off.max(), abs=2e-5)
 
 
 def test_a_closed_spline_is_the_periodic_cubic_over_its_chords() -> None:
