@@ -37,6 +37,7 @@ class _Interrupts:
         self.first: float | None = None
         self.over = False  # at the end, where there is nothing left to interrupt
         self._again = False  # the first was swallowed
+        self._reported = False
 
     def listen(self) -> None:
         """Take over from Python, unless interrupts are ignored (`nohup`, a shell's background)."""
@@ -50,10 +51,18 @@ class _Interrupts:
             self.first, self._again = now, False
             if not self.over:
                 raise KeyboardInterrupt
-            _say(_INTERRUPTED)
+            if self._reported:
+                return  # the run is ending with it
+            self.report()
             os._exit(130)  # what is raised in the interpreter's own way out is printed and lost
         elif now - self.first > _IMPATIENT:
             os._exit(130)
+
+    def report(self) -> None:
+        """Print once that the run was interrupted: one that was swallowed may come again meanwhile."""
+        if not self._reported:
+            self._reported = True
+            _say(_INTERRUPTED)
 
     def _swallowed(self, unraisable: sys.UnraisableHookArgs) -> None:
         """Raise an interrupt again that fell into a callback from which nothing can be raised."""
@@ -85,10 +94,10 @@ def main() -> NoReturn:
             raise
         interrupts.over = True
         status = 130
-        _say(_INTERRUPTED)
+        interrupts.report()
     if interrupts.first is not None and status != 130:  # a library kept it to itself
         status = 130
-        _say(_INTERRUPTED)
+        interrupts.report()
     try:
         sys.stdout.flush()
     except (OSError, ValueError):
