@@ -73,7 +73,7 @@ class _Interrupts:
             from _thread import interrupt_main
 
             self._again = True
-            again = threading.Timer(0.01, interrupt_main)  # not here: it would fall into this same callback
+            again = threading.Timer(0.1, interrupt_main)  # not here, nor soon: it would fall into this same callback
             again.daemon = True
             again.start()
 
