@@ -218,7 +218,7 @@ def assert_motion(
     rows = _judge(recipe, path, names, options, limit=limit, tolerance=tolerance, gap=gap, angles=angles)
     if any(row["motion"] is None for row in rows):
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
-    motion = max((row["motion"] for row in rows), key=lambda found: float(found["max"]))
+    motion = max((row["motion"] for row in rows), key=lambda error: float(error["max"]))
     return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
 
 

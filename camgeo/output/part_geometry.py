@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 def contours_of(design: Design, fitted: Iterable[Outline]) -> list[LayerOutline]:
     """The contours of a design's surfaces as they are fitted, each on its layer."""
-    return [LayerOutline(made.surface.layer, one) for made, one in zip(design.surfaces, fitted, strict=True)]
+    return [LayerOutline(made.surface.layer, outline) for made, outline in zip(design.surfaces, fitted, strict=True)]
 
 
 def rim_of(body: Body) -> list[LayerOutline]:
@@ -37,14 +37,14 @@ def openings_of(body: Body) -> list[LayerOutline]:
 
 def remarks(body: Body, mm: float) -> list[str]:
     """Comments for a drawing on features that it does not show, such as depths; lengths in units of `mm` mm."""
-    given = with_records(body.features)
-    found = [f"camgeo {feature.remark(value, mm)}" for feature, value in given if feature.remark is not None]
-    found += [
+    features = with_records(body.features)
+    lines = [f"camgeo {feature.remark(value, mm)}" for feature, value in features if feature.remark is not None]
+    lines += [
         f"camgeo {opening.name}: {opening.depth / mm:.9g} deep"
         for opening in body.openings
         if opening.depth is not None
     ]
-    return found
+    return lines
 
 
 def needs_booleans(body: Body) -> bool:

@@ -31,12 +31,12 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
     if write is None:
         raise ValueError(f"{kind} holds no mesh")
     meshed = cam_meshes(job, request)
-    items = [Item(one.name, one.mesh, one.place) for one in meshed]
+    items = [Item(body.name, body.mesh, body.place) for body in meshed]
     with job.clock.stage(f"write {kind}"):
         write(path, items, job.recipe.name, job.recipe.in_units_of(request).mm, job.recipe.about)
-    bound = reduce(Bound.wider, (one.facts.bound for one in meshed))
+    bound = reduce(Bound.wider, (body.facts.bound for body in meshed))
     judged = job.judge if len(meshed) == 1 else job.judge_together
-    return judged(request, path, bound, sum(one.facts.vertices for one in meshed))
+    return judged(request, path, bound, sum(body.facts.vertices for body in meshed))
 
 
 def foresee(job: Job, request: FileRequest) -> None:
@@ -92,11 +92,11 @@ def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
     discs = job.design.discs
     if len(discs) == 1:
         return [DiscMesh("cam", *cam_mesh(job, request))]
-    found = []
+    meshes = []
     for disc, single in zip(discs, job.single, strict=True):
         place = np.vstack([np.eye(3), [0.0, 0.0, disc.z]]) if disc.z else None
-        found.append(DiscMesh(disc.name, *cam_mesh(single, request), place))
-    return found
+        meshes.append(DiscMesh(disc.name, *cam_mesh(single, request), place))
+    return meshes
 
 
 def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:

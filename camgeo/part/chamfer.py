@@ -46,9 +46,9 @@ def chamfer_check(chamfer: float, contour: Curve, shaft_deg: Callable[[float], f
     from kin.judge.check import Check
 
     if not contour.closed:
-        of = "sharp" if is_sharp(contour) else "trimmed"
-        detail = f"a {of} contour has corners, along which no chamfer runs; leave it out"
-        if of == "sharp":
+        kind = "sharp" if is_sharp(contour) else "trimmed"
+        detail = f"a {kind} contour has corners, along which no chamfer runs; leave it out"
+        if kind == "sharp":
             detail += f", or give a reuleaux.rounding above {chamfer:.6g} mm"
         return Check(FEATURE.name, ok=False, value=0.0, limit=chamfer, unit="mm", sense="at_least", detail=detail)
     radius, at = least_radius(contour)

@@ -47,8 +47,8 @@ def bore_check(
     """Check the wall round a bore of this diameter in a part that has nothing else; arguments as of `part_checks`."""
     wall, at = max(least_wall(looks, bore) for looks in surfaces)
     ok = wall > 0.0 if least is None else wall >= least
-    told = "" if ok else "bore and contour" if wall > -0.5 * bore else "the shaft lies outside the contour"
-    return Check(WALL, ok, wall, least or 0.0, "mm", shaft_deg(at), "at_least", detail=told)
+    detail = "" if ok else "bore and contour" if wall > -0.5 * bore else "the shaft lies outside the contour"
+    return Check(WALL, ok, wall, least or 0.0, "mm", shaft_deg(at), "at_least", detail=detail)
 
 
 def part_checks(
@@ -63,13 +63,13 @@ def part_checks(
     pairs = thinnest(walls(body, surfaces), limit)
     if pairs:
         thin = [pair for pair in pairs if not _holds(pair.gap.wall, least)]
-        told = "; ".join(map(str, thin[:MOST_NAMED] or pairs[:1]))
+        detail = "; ".join(map(str, thin[:MOST_NAMED] or pairs[:1]))
         left = len(thin) - MOST_NAMED
         more = f"; and {left} more {'pair' if left == 1 else 'pairs'}" if left > 0 else ""
         worst = pairs[0].gap
         at_deg = None if worst.parameter is None else shaft_deg(worst.parameter)
-        told += more + _free_of_thin_walls(thin, body, limit)
-        checks.append(Check(WALL, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told))
+        detail += more + _free_of_thin_walls(thin, body, limit)
+        checks.append(Check(WALL, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=detail))
     if body.chamfer is not None:
         chamfers = ((looks.name, chamfer_check(body.chamfer, looks.contour, shaft_deg)) for looks in surfaces)
         checks += [replace(check, surface=name) for name, check in chamfers]
@@ -90,7 +90,7 @@ def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
         if pair.other == OUTLINE and pair.one.endswith(OPENING):
             outer = max(outer, lack)
             continue
-        if pair.gap.wall < 0.0 and any(one.circle is None and one.name in pair[:2] for one in body.openings):
+        if pair.gap.wall < 0.0 and any(cut.circle is None and cut.name in pair[:2] for cut in body.openings):
             return ""  # how far a hole and a shape with corners overlap is no diameter
         keys = {name: key for name in (pair.one, pair.other) for word, key in ROUND.items() if name.startswith(word)}
         own = sorted((list(ROUND.values()).index(key), key, name) for name, key in keys.items() if name in across)
@@ -101,10 +101,10 @@ def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
         most[key] = min(most.get(key, math.inf), across[name] - (0.5 * lack if shared else lack))
     if not most or min(most.values()) <= 0.0:
         return ""
-    told = [f"a {key} below {downward(size)} mm" for key, size in most.items()]
+    remedies = [f"a {key} below {downward(size)} mm" for key, size in most.items()]
     if outer:
-        told.append(f"a part.outer larger by more than {upward(outer)} mm")
-    return f"; {' and '.join(told)} would do"
+        remedies.append(f"a part.outer larger by more than {upward(outer)} mm")
+    return f"; {' and '.join(remedies)} would do"
 
 
 def _holds(wall: float, least: float | None) -> bool:
@@ -116,16 +116,16 @@ def thinnest(possible: Iterable[Possible], limit: float) -> list[Pair]:
 
     Walls whose lower bound is above both are not computed.
     """
-    found: list[tuple[float, int, Pair]] = []
+    nearest: list[tuple[float, int, Pair]] = []
     least = math.inf
-    for number, (at_least, pair) in sorted(enumerate(possible), key=lambda one: one[1].at_least):
+    for number, (at_least, pair) in sorted(enumerate(possible), key=lambda item: item[1].at_least):
         if at_least - ROUNDING > max(least, limit):
             break
         made = pair()
-        found.append((made.gap.wall, number, made))
+        nearest.append((made.gap.wall, number, made))
         least = min(least, made.gap.wall)
-    found.sort()
-    return [pair for wall, _, pair in found if wall <= max(least, limit)]
+    nearest.sort()
+    return [pair for wall, _, pair in nearest if wall <= max(least, limit)]
 
 
 def walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
@@ -133,11 +133,11 @@ def walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     yield from _outline_walls(body, surfaces)
     for opening in body.openings:
         yield to_surface(opening, body, surfaces)
-    for i, one in enumerate(body.openings):
+    for i, first in enumerate(body.openings):
         for two in body.openings[:i]:
-            apart = math.dist(one.middle, two.middle)
-            if apart <= 2.0 * (one.reach + two.reach):
-                yield Possible(apart - one.radius - two.radius, partial(_outside, two, one))
+            apart = math.dist(first.middle, two.middle)
+            if apart <= 2.0 * (first.reach + two.reach):
+                yield Possible(apart - first.radius - two.radius, partial(_outside, two, first))
     for feature, value in with_records(body.features):
         if feature.walls is not None:
             yield from feature.walls(value, body, surfaces)

@@ -94,7 +94,7 @@ def largest(space: Space, count: int, least: float) -> Circles:
 
     None has a diameter below `least`, mm; fewer come back where no such hole fits.
     """
-    found: Circles = []
+    circles: Circles = []
     low, high = space.ring.min(axis=0), space.ring.max(axis=0)
     x, y = (np.linspace(a, b, GRID) for a, b in zip(low.tolist(), high.tolist(), strict=True))
     grid = np.column_stack([part.ravel() for part in np.meshgrid(x, y)])
@@ -112,9 +112,9 @@ def largest(space: Space, count: int, least: float) -> Circles:
         diameter = _down(2.0 * space.exactly(centre), DIAMETER)
         if diameter < least or diameter <= 0.0:
             break
-        found.append((centre, diameter))
+        circles.append((centre, diameter))
         space.fill(centre, diameter)
-    return found
+    return circles
 
 
 def _climbed(space: Space, points: Array, step: float) -> tuple[float, float]:

@@ -74,8 +74,8 @@ class Part:
     @property
     def openings(self) -> list[Opening]:
         """Openings at the places that the recipe states: not the bore, nor openings that seek their place."""
-        given = with_records(self.features)
-        return [each for feature, value in given if feature.openings is not None for each in feature.openings(value)]
+        features = with_records(self.features)
+        return [each for feature, value in features if feature.openings is not None for each in feature.openings(value)]
 
 
 PART = mapping(

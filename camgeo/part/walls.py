@@ -145,9 +145,9 @@ def contour_gap(looks: Looks, chain: Arcs) -> Gap:
         at = contour.sample(t)
         return _from_chain(chain, at.point, at.tangent)
 
-    found = roots(product, low[turning], high[turning], (falls[turning], rises[turning]), SETTLED)
-    between = contour.sample(found).point
-    nodes, point = np.concatenate([low, found]), np.concatenate([first.point, between])
+    zeros = roots(product, low[turning], high[turning], (falls[turning], rises[turning]), SETTLED)
+    between = contour.sample(zeros).point
+    nodes, point = np.concatenate([low, zeros]), np.concatenate([first.point, between])
     distance = np.concatenate([distance[:-1], signed_distance(chain, between)])
     least = int(np.argmin(distance))
     wall = float(distance[least])
@@ -199,8 +199,8 @@ def _chain_gap(chain: Arcs, other: Arcs, side: float) -> Gap:
         return side * _from_chain(other, here.points(s), here.tangents(s))
 
     zero = np.zeros(turning.size)
-    found = roots(product, zero, parts.length[turning], (falls[turning], rises[turning]), SETTLED)
-    point = np.concatenate([parts.start, parts.take(turning).points(found)])
+    feet = roots(product, zero, parts.length[turning], (falls[turning], rises[turning]), SETTLED)
+    point = np.concatenate([parts.start, parts.take(turning).points(feet)])
     distance = side * signed_distance(other, point)
     least = int(np.argmin(distance))
     return Gap(float(distance[least]), _place(point[least]))

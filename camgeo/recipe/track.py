@@ -87,6 +87,6 @@ def _check_cutter(values: Values, clearance: float, reader: Reader) -> None:
         return
     width = 2.0 * radius + clearance
     if cutter > width * (1.0 + SAME):
-        given = f"{cutter / reader.mm:.9g} {reader.units}"
+        diameter = f"{cutter / reader.mm:.9g} {reader.units}"
         remedy = f"give {width / reader.mm:.9g} {reader.units} or less"
-        reader.fault_at("manufacture.cutter", "wider than the groove", given, remedy)
+        reader.fault_at("manufacture.cutter", "wider than the groove", diameter, remedy)

@@ -30,13 +30,13 @@ SAME = 1e-12  # of the greatest value: others within it are equal to it
 
 def motion_checks(exact: ExactCam) -> list[Check]:
     """Checks of the intended motion that the follower names, in that order: one for each surface, or one of the law."""
-    proofs, found = exact.proofs, []
+    proofs, checks = exact.proofs, []
     for name in exact.follower.checks:
         if name in proofs:
-            found.append(_proved(name, proofs[name]()))
+            checks.append(_proved(name, proofs[name]()))
         else:
-            found += [replace(MADE[name](exact, surface), surface=surface.name) for surface in exact.surfaces]
-    return found
+            checks += [replace(MADE[name](exact, surface), surface=surface.name) for surface in exact.surfaces]
+    return checks
 
 
 def _proved(name: str, proof: Proof) -> Check:
@@ -47,7 +47,7 @@ def _face_length(exact: ExactCam, surface: Surface) -> Check:
     """Check of the travel of contact along a flat face, mm; it reports the length and sets no limit."""
     if (proved := surface.extremes("contact")) is not None:
         least, most = proved
-        further = max(proved, key=lambda one: abs(one.value))
+        further = max(proved, key=lambda bound: abs(bound.value))
         return Check(TRAVEL.name, True, most.value - least.value, None, "mm", degrees(further.at), "at_least")
     place = surface.place
     if place is None:
@@ -63,7 +63,7 @@ def _pressure_angle(exact: ExactCam, surface: Surface) -> Check:
     At 90 degrees the cam cannot drive.
     """
     if (proved := surface.extremes("slope")) is not None:
-        worst = max(proved, key=lambda one: abs(one.value))
+        worst = max(proved, key=lambda bound: abs(bound.value))
         value, at = math.degrees(math.atan(abs(worst.value) + worst.slack)), worst.at
         return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(at))
     ((value, at),) = greatest(
@@ -95,7 +95,7 @@ def needed_width(surface: Surface) -> tuple[float, float]:
     proved = surface.extremes("contact")
     if proved is None:
         raise TypeError("no contact travels along a face")
-    worst = max(proved, key=lambda one: abs(one.value))
+    worst = max(proved, key=lambda bound: abs(bound.value))
     return 2.0 * (abs(worst.value) + worst.slack), degrees(worst.at)
 
 
@@ -104,17 +104,17 @@ def wheel_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surfa
 
     Empty where the recipe has no wheel.
     """
-    found: list[Check] = []
+    checks: list[Check] = []
     wheel = recipe.wheel
     if wheel is None:
-        return found
+        return checks
     for surface, contour in contours:
         radius, place = hollow_radius(surface.side, contour)
         at_deg = None if math.isinf(radius) else exact.motion.shaft_deg(place)
-        told, name = "the contour has no hollow" if math.isinf(radius) else "", surface.name
-        check = Check(WHEEL.name, radius >= wheel, radius, wheel, "mm", at_deg, "at_least", detail=told, surface=name)
-        found.append(check)
-    return found
+        detail, name = "the contour has no hollow" if math.isinf(radius) else "", surface.name
+        check = Check(WHEEL.name, radius >= wheel, radius, wheel, "mm", at_deg, "at_least", detail=detail, surface=name)
+        checks.append(check)
+    return checks
 
 
 def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:

@@ -87,8 +87,8 @@ class Disc:
 
         A disc is made whole or not at all.
         """
-        found = tuple((made.surface, made.contour) for made in self.surfaces if made.contour is not None)
-        return found if len(found) == len(self.surfaces) else ()
+        contours = tuple((made.surface, made.contour) for made in self.surfaces if made.contour is not None)
+        return contours if len(contours) == len(self.surfaces) else ()
 
 
 @dataclass(frozen=True)
@@ -254,29 +254,29 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
         lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.excess) / recipe.mm:.12g}"
         bent = replace(bent, detail=lower)
     try:
-        found = undercuts(surface.curve)
+        undercut = undercuts(surface.curve)
     except UndercutError as error:
         kind = "global" if roomy else "local"
         free = "" if error.free_at is None else f"; {advice.free_of_undercut(error.free_at, recipe.mm)}"
         return [bent, Check(of_kind[kind].name, False, None, 0.0, "mm", None, detail=f"{error}{free}")], None
-    outcome, contour = "", None if found else surface.curve
-    if trim and found:
+    outcome, contour = "", None if undercut else surface.curve
+    if trim and undercut:
         try:
             outcome, contour = "; trimmed", _trimmed(surface.curve)
         except UndercutError as error:
             outcome = f"; trimming is not possible: {error}"
-    if not (roomy or found):
+    if not (roomy or undercut):
         contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
     if not surface.curve.closed:
         bent = _sharp(surface, shaft_deg)
     # of a trimmed contour the radius that was asked for is reported, and held against nothing
-    cut_off = bool(found and contour)
+    cut_off = bool(undercut and contour)
     checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
-    free_at = (min if surface.radius else max)((cut.free_at for cut in found), default=0.0)
+    free_at = (min if surface.radius else max)((cut.free_at for cut in undercut), default=0.0)
     free = advice.free_of_undercut(free_at, recipe.mm)
     for kind in ("local", "global"):
-        cuts = [cut for cut in found if cut.kind == kind]
+        cuts = [cut for cut in undercut if cut.kind == kind]
         if kind == "global" and surface.radius == 0.0 and not cuts:
             continue
         if not cuts:

@@ -31,16 +31,16 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     """Tell the checks of a recipe, those of each file last; raises kin.law.programme.IntentError."""
     scene = Scene(recipe, _follower(recipe))
     every = declarations(recipe)
-    found = [Foreseen(one.name) for one in every if one.exact is not None and one.exact(scene)]
+    expected = [Foreseen(check.name) for check in every if check.exact is not None and check.exact(scene)]
     # of a file, what its contour is in itself comes before what is left between it and the follower
-    in_turn = sorted(every, key=lambda one: one.backlash or one.exact is not None)
+    in_turn = sorted(every, key=lambda check: check.backlash or check.exact is not None)
     for request in recipe.export.files:
         names = recipe.filenames(request)
         for file in names:
-            made = (one for one in in_turn if one.of_file is not None and one.of_file(scene, request))
+            made = (check for check in in_turn if check.of_file is not None and check.of_file(scene, request))
             # what is left between discs is told of the last file
-            found += [Foreseen(one.name, file) for one in made if file == names[-1] or not one.between]
-    return tuple(found)
+            expected += [Foreseen(check.name, file) for check in made if file == names[-1] or not check.between]
+    return tuple(expected)
 
 
 def _follower(recipe: Recipe) -> Follower:

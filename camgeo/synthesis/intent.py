@@ -28,22 +28,22 @@ def intents(recipe: Recipe, design: Design) -> tuple[PartIntent, ...]:
 def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
     from kin.judge.intent import DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
 
-    driven, asked, linkage = design.driven, recipe.dwell, None
+    driven, limits, linkage = design.driven, recipe.dwell, None
     exact = design.exact
     if driven is not None and driven.turns:
-        dwell = None if asked is None else DwellAsked(asked.band, asked.at_least, asked.over)
+        dwell = None if limits is None else DwellAsked(limits.band, limits.at_least, limits.over)
         overlap = 0.0 if exact.preload is None else exact.preload.overlaps[0]
         linkage = LinkageIntent(driven.mechanism, recipe.cam.frame_swing, dwell, overlap)
     surfaces = tuple(
         SurfaceIntent(
-            exact.gauges[one.surface.name],
-            one.surface.name,
-            one.surface.layer if one.surface.name else "",
-            side=one.surface.side,
-            trimmed=one.trimmed,
-            follower=exact.running.get(one.surface.name),
+            exact.gauges[surface.surface.name],
+            surface.surface.name,
+            surface.surface.layer if surface.surface.name else "",
+            side=surface.surface.side,
+            trimmed=surface.trimmed,
+            follower=exact.running.get(surface.surface.name),
         )
-        for one in disc.surfaces
+        for surface in disc.surfaces
     )
     intent = PartIntent(
         surfaces=surfaces,

@@ -48,11 +48,11 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
     from kin.law.programme import IntentError
     from kin.linkage.mechanism import Mechanism, OutsideError
 
-    asked = recipe.linkage
-    if asked is None:
+    linkage = recipe.linkage
+    if linkage is None:
         raise ValueError(f"{recipe.name}: there is no linkage")
     try:
-        return Mechanism(asked.loop, lift, breadth, asked.dyads)
+        return Mechanism(linkage.loop, lift, breadth, linkage.dyads)
     except OutsideError as error:
         raise _outside(recipe, error) from error
     except IntentError as error:
@@ -80,21 +80,23 @@ def mobility_checks(mechanism: Mechanism, turning: str = "") -> list[Check]:
     Where the mechanism does not make a full turn there is no shaft angle: the places are then told by the detail alone,
     with `turning`, what would let it turn.
     """
-    found = mechanism.mobility()
-    loop = "the linkage" if found.loop == 0 else f"dyad {found.loop}"
-    where = f"{loop} binds {_spans(found.binds)} of the relative angle" if found.binds else f"{loop} is the nearest"
-    back = f"the shaft would turn back {_spans(found.reverses)} of the relative angle" if found.reverses else ""
+    mobility = mechanism.mobility()
+    loop = "the linkage" if mobility.loop == 0 else f"dyad {mobility.loop}"
+    where = (
+        f"{loop} binds {_spans(mobility.binds)} of the relative angle" if mobility.binds else f"{loop} is the nearest"
+    )
+    back = f"the shaft would turn back {_spans(mobility.reverses)} of the relative angle" if mobility.reverses else ""
 
     def above_zero(name: str, value: float | None, unit: str, angle: float, detail: str) -> Check:
         held = value is not None and value > 0.0
-        place = degrees(float(mechanism.at(angle, 0).shaft[0, 0])) if found.turns else None
+        place = degrees(float(mechanism.at(angle, 0).shaft[0, 0])) if mobility.turns else None
         more = "" if held or not turning else f"; {turning}" if detail else turning
         return Check(name, held, value, 0.0, unit, place, "at_least", detail=detail + more)
 
-    rate = None if math.isnan(found.least_rate) else found.least_rate
+    rate = None if math.isnan(mobility.least_rate) else mobility.least_rate
     return [
-        above_zero(MOBILITY.name, found.margin, "mm", found.margin_at, where),
-        above_zero(REVERSAL.name, rate, "", found.rate_at, back or (where if rate is None else "")),
+        above_zero(MOBILITY.name, mobility.margin, "mm", mobility.margin_at, where),
+        above_zero(REVERSAL.name, rate, "", mobility.rate_at, back or (where if rate is None else "")),
     ]
 
 
@@ -103,11 +105,11 @@ def _length_that_turns(recipe: Recipe, mechanism: Mechanism) -> str:
 
     Empty where none does, or where the links shape the cam, which would be another one.
     """
-    asked = recipe.linkage
-    if asked is None or asked.shaped(recipe.cam) is not recipe.cam:
+    linkage = recipe.linkage
+    if linkage is None or linkage.shaped(recipe.cam) is not recipe.cam:
         return ""
     for factor in CHANGES:
-        for path, length, changed in with_other_lengths(asked, mechanism.mobility().loop, factor):
+        for path, length, changed in with_other_lengths(linkage, mechanism.mobility().loop, factor):
             if _turns(changed, mechanism):
                 unit = "in" if recipe.units == "inch" else "mm"
                 return f"with linkage.{path} {length / recipe.mm:.6g} {unit} it would turn"
@@ -193,19 +195,21 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
 def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:
     mobile = mechanism.mobility()
     checks = mobility_checks(mechanism, "" if mobile.turns else _length_that_turns(recipe, mechanism))
-    found: dict[Over, tuple[Dwell, ...]] = {}
-    asked = recipe.dwell
-    if asked is not None and mechanism.mobility().turns:
+    dwells: dict[Over, tuple[Dwell, ...]] = {}
+    limits = recipe.dwell
+    if limits is not None and mechanism.mobility().turns:
         try:
-            found = {over: mechanism.dwells(asked.band, over) for over in OVER}
+            dwells = {over: mechanism.dwells(limits.band, over) for over in OVER}
         except ValueError as error:
             unit = "rad" if mechanism.unit == "deg" else "mm"
             raise recipe.error("dwell.band", f"{error} {unit}", None, "give a wider band") from error
-        checks += _dwell_check(asked, found[asked.over][0])
-    elif asked is not None and asked.at_least is not None:
-        checks.append(failed(DWELL.name, "the mechanism does not turn", unit="deg", limit=math.degrees(asked.at_least)))
+        checks += _dwell_check(limits, dwells[limits.over][0])
+    elif limits is not None and limits.at_least is not None:
+        checks.append(
+            failed(DWELL.name, "the mechanism does not turn", unit="deg", limit=math.degrees(limits.at_least))
+        )
     figures = mechanism.figures() if mechanism.mobility().turns else None
-    return Driven(mechanism, tuple(checks), found, figures)
+    return Driven(mechanism, tuple(checks), dwells, figures)
 
 
 def motion_table(recipe: Recipe, mechanism: Mechanism) -> tuple[tuple[str, ...], Array]:

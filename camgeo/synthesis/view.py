@@ -89,20 +89,30 @@ class View(Generic[G_co, T_co]):
 
     def touched(self, shaft: Array) -> list[Array]:
         """Point of contact of each contact in the fixed frame, mm, as complex numbers (n,)."""
-        found = []
+        places = []
         parameters = self.design.motion.parameters(shaft, shaft).values()
         for contact, t in zip(self.contacts, parameters, strict=False):  # opposite contacts on a line have one
             point = self.surface(contact).curve.sample(np.mod(t, TURN)).point
-            found.append((point[:, 0] + 1j * point[:, 1]) * np.exp(-1j * shaft))
-        return found
+            places.append((point[:, 0] + 1j * point[:, 1]) * np.exp(-1j * shaft))
+        return places
 
     def of(self, guide: type[G], touch: type[T]) -> View[G, T]:
         """View of this recipe and design, typed for contacts of that guide and touch; raises TypeError for others."""
         contacts = []
-        for one in self.contacts:
-            if not (isinstance(one.guide, guide) and isinstance(one.touch, touch)):
-                raise TypeError(f"no {touch.__name__} on a guide {guide.__name__}: {one}")
-            contacts.append(Contact(one.guide, one.touch, one.datum, one.sense, one.apart, one.turned, one.surface))
+        for contact in self.contacts:
+            if not (isinstance(contact.guide, guide) and isinstance(contact.touch, touch)):
+                raise TypeError(f"no {touch.__name__} on a guide {guide.__name__}: {contact}")
+            contacts.append(
+                Contact(
+                    contact.guide,
+                    contact.touch,
+                    contact.datum,
+                    contact.sense,
+                    contact.apart,
+                    contact.turned,
+                    contact.surface,
+                )
+            )
         return View(self.recipe, self.design, tuple(contacts))
 
 

@@ -55,10 +55,10 @@ def crossings(contour: Contour) -> Crossings:
     levels = boxes(chain)
     for i, j in overlapping(levels, levels, mirrored=True):
         shared = common_points(chain, chain, i, j)
-        one, other = i[shared.pair], j[shared.pair]
-        apart = before[other] + shared.second - before[one] - shared.first
+        first, other = i[shared.pair], j[shared.pair]
+        apart = before[other] + shared.second - before[first] - shared.first
         loop = np.minimum(apart, before[-1] - apart) > SHORTEST_LOOP
-        crossings.append((shared.point[loop], np.stack([owner[one[loop]], owner[other[loop]]], axis=1)))
+        crossings.append((shared.point[loop], np.stack([owner[first[loop]], owner[other[loop]]], axis=1)))
         if sum(len(p) for p, _ in crossings) > ENOUGH:
             break
     return distinct(crossings)

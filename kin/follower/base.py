@@ -169,7 +169,9 @@ class Follower(ABC):
     def resting(self, contour: Contour) -> list[Shifted]:
         """Drives of the follower's position, m or rad, one for each of its contacts as it rests on a contour alone."""
         each = zip(self.contacts, self.drives(contour), strict=True)
-        return [Shifted(drive, float(one.sense), -one.sense * self.si * one.zero) for one, drive in each]
+        return [
+            Shifted(drive, float(contact.sense), -contact.sense * self.si * contact.zero) for contact, drive in each
+        ]
 
     @abstractmethod
     def judge(self, contour: Contour, phi: Array) -> Judged:

@@ -113,11 +113,11 @@ class _Intended:
             near = near.copy()
             near[:, :, far] = self.rows(self.mechanism.relative(phi[far]))
             step[far] = _step(phi[far], near[0][:, far])
-        shaft, meant = (_taylor(rows, step) for rows in near)
+        shaft, wanted = (_taylor(rows, step) for rows in near)
         rate = phi_slope / shaft[1]
         bend = (phi_bend - shaft[2] * rate**2) / shaft[1]
-        error = self.alike(output[0] - meant[0])
-        return np.stack([error, output[1] - meant[1] * rate, output[2] - meant[2] * rate**2 - meant[1] * bend])
+        error = self.alike(output[0] - wanted[0])
+        return np.stack([error, output[1] - wanted[1] * rate, output[2] - wanted[2] * rate**2 - wanted[1] * bend])
 
     def _break_between(self, a: Array, b: Array) -> NDArray[np.bool_]:
         breaks = self.mechanism.breaks
@@ -135,8 +135,8 @@ class _Prescribed(_Intended):
 
     def output(self, shaft: Array) -> Array:
         """Output at shaft angles (n,)."""
-        found: Array = self._over_shaft(shaft, 0)[0]
-        return found
+        angles: Array = self._over_shaft(shaft, 0)[0]
+        return angles
 
     def _over_shaft(self, shaft: Array, order: int) -> Array:
         """Output and its derivatives by the shaft angle (order + 1, n); of dyads from r1 cos theta_4 = r4 - Y."""
@@ -153,8 +153,8 @@ class _Prescribed(_Intended):
     def error(self, theta: Array, measured: Array, near: Array) -> Array:  # noqa: ARG002 - one call for both
         """Error of the measured output and two derivatives (3, n) against the law at the measured shaft angle."""
         (phi, phi_slope, phi_bend), output = measured
-        meant, rate, bend = self._over_shaft(phi, 2)
-        error = self.alike(output[0] - meant)
+        wanted, rate, bend = self._over_shaft(phi, 2)
+        error = self.alike(output[0] - wanted)
         return np.stack([error, output[1] - rate * phi_slope, output[2] - bend * phi_slope**2 - rate * phi_bend])
 
 
@@ -212,8 +212,8 @@ def _judged(
     rows = intended.rows(nodes)
     worst = [_worst(way, intended, rows[:, :, np.searchsorted(nodes, way.nodes)]) for way in every]
     angles = with_steps(shaft)
-    meant = intended.output(angles)
-    errors = [intended.alike(way.over_shaft(angles, 0)[0] - meant) for way in every]
+    intended_output = intended.output(angles)
+    errors = [intended.alike(way.over_shaft(angles, 0)[0] - intended_output) for way in every]
     window = None if band is None else _intended_dwell(mechanism, band)
     flat = [] if window is None else [_extremes(way, mechanism, "shaft", *window).span for way in every]
     across, along = _plays(bearing, mechanism.breadth, centred)
@@ -311,11 +311,11 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
 
 def _plays(bearing: Bearing, breadth: float, centred: Resting) -> tuple[Play, Play]:
     """Play across and along the frame: one figure of the contour, a quarter turn on."""
-    found = bearing.breadth_extremes(RESOLUTION * breadth)
-    least, most = breadth - 2.0 * bearing.back - found.greatest, breadth - 2.0 * bearing.back - found.least
+    breadths = bearing.breadth_extremes(RESOLUTION * breadth)
+    least, most = breadth - 2.0 * bearing.back - breadths.greatest, breadth - 2.0 * bearing.back - breadths.least
 
     def play(turned: float) -> Play:
-        at = centred.turned(np.array([found.greatest_at, found.least_at]) - turned, 0)[0]
+        at = centred.turned(np.array([breadths.greatest_at, breadths.least_at]) - turned, 0)[0]
         return Play(least, degrees(at[0]), most, degrees(at[1]), "mm")
 
     return play(0.0), play(0.5 * np.pi)
@@ -323,8 +323,8 @@ def _plays(bearing: Bearing, breadth: float, centred: Resting) -> tuple[Play, Pl
 
 def _extremes(way: Resting, mechanism: Mechanism, over: Over, begin: float, end: float) -> Extremes:
     """Extremes of the output from one angle to another, less than a turn on."""
-    of = way.over_shaft if over == "shaft" else way.over_relative
-    return of.extremes(begin, end, resolution(mechanism, of.low[0]))
+    output = way.over_shaft if over == "shaft" else way.over_relative
+    return output.extremes(begin, end, resolution(mechanism, output.low[0]))
 
 
 def _intended_dwell(mechanism: Mechanism, band: float) -> Array:
@@ -335,24 +335,28 @@ def _intended_dwell(mechanism: Mechanism, band: float) -> Array:
 
 def _dwells(ways: list[Resting], mechanism: Mechanism, band: float, over: Over) -> tuple[DwellFound, ...]:
     """Return the longest dwell of each way, the shortest of them first; of those as short the first way's."""
-    found = []
+    dwells = []
     for way in ways:
         dwell = longest_dwell(_output(way, mechanism, over), band)
-        told = float(np.degrees(band)) if mechanism.unit == "deg" else band
-        found.append(DwellFound(over, told, degrees(dwell.start), float(np.degrees(dwell.length)), way.rest.name))
-    return tuple(sorted(found, key=lambda dwell: round(dwell.length_deg, ALIKE)))
+        band_width = float(np.degrees(band)) if mechanism.unit == "deg" else band
+        dwells.append(
+            DwellFound(over, band_width, degrees(dwell.start), float(np.degrees(dwell.length)), way.rest.name)
+        )
+    return tuple(sorted(dwells, key=lambda dwell: round(dwell.length_deg, ALIKE)))
 
 
 def _output(way: Resting, mechanism: Mechanism, over: Over) -> Output:
     """Output of a way over the shaft angle or over the relative one."""
-    of = way.over_shaft if over == "shaft" else way.over_relative
+    function = way.over_shaft if over == "shaft" else way.over_relative
 
     def between(a: float, b: float) -> tuple[float, float]:
-        found = of.extremes(a, b, resolution(mechanism, of.low[0]))
-        return found.least, found.greatest
+        ends = function.extremes(a, b, resolution(mechanism, function.low[0]))
+        return ends.least, ends.greatest
 
-    value = np.append(of.low[0], of.high[0, -1])
-    return Output(lambda x: of(x, 0)[0], between, of.x, value, _slack(of.x, of.low[2], of.high[2]))
+    value = np.append(function.low[0], function.high[0, -1])
+    return Output(
+        lambda x: function(x, 0)[0], between, function.x, value, _slack(function.x, function.low[2], function.high[2])
+    )
 
 
 def _slack(x: Array, low: Array, high: Array) -> float:

@@ -134,7 +134,7 @@ class _Rollers(Moved):
     @cached_property
     def guides(self) -> tuple[Guide, ...]:
         """Formulas of each contact's guide."""
-        return tuple(led(one.guide, self.side) for one in self.contacts)
+        return tuple(led(contact.guide, self.side) for contact in self.contacts)
 
     @property
     def lever(self) -> float:
@@ -145,7 +145,7 @@ class _Rollers(Moved):
         """Position of each roller on its guide; arcs within SPLINE_ERROR, or as fine as asked for, are its splines."""
         obstacle = self._obstacle(contour, contour.arcs_within or SPLINE_ERROR)
         each = zip(self.contacts, self.guides, strict=True)
-        return [OfRoller(obstacle, guide, one.turned) for one, guide in each]
+        return [OfRoller(obstacle, guide, contact.turned) for contact, guide in each]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
         """See `Follower`."""
@@ -157,8 +157,8 @@ class _Rollers(Moved):
         centres = points + self.side * self.radius * normals
         distance = np.hypot(centres[:, 0], centres[:, 1])
         return [
-            (guide.shaft_angle(centres) - one.turned, one.position(guide.position(distance)))
-            for one, guide in zip(self.contacts, self.guides, strict=True)
+            (guide.shaft_angle(centres) - contact.turned, contact.position(guide.position(distance)))
+            for contact, guide in zip(self.contacts, self.guides, strict=True)
         ]
 
     def _obstacle(self, contour: Contour, *spline: float) -> Arcs:
@@ -168,13 +168,15 @@ class _Rollers(Moved):
     def _positions(self, obstacle: Arcs, phi: Array, count: int = 2) -> Array:
         """Position with each of the first `count` rollers held: (1 or 2, n)."""
         each = list(zip(self.contacts, self.guides, strict=True))[:count]
-        return np.stack([one.position(held_position(obstacle, guide, phi + one.turned)) for one, guide in each])
+        return np.stack(
+            [contact.position(held_position(obstacle, guide, phi + contact.turned)) for contact, guide in each]
+        )
 
     @cached_property
     def pitches(self) -> tuple[GuidedPitch, ...]:
         """Intended path of each roller's centre."""
         each = zip(self.contacts, self.guides, strict=True)
-        return tuple(GuidedPitch(one, guide, self.breaks, self.over) for one, guide in each)
+        return tuple(GuidedPitch(contact, guide, self.breaks, self.over) for contact, guide in each)
 
     @cached_property
     def _rates(self) -> tuple[tuple[Array, Array], ...]:
@@ -203,8 +205,10 @@ class _Rollers(Moved):
         few = len(obstacle) <= (MOST_ARCS if contour.beziers.count else MOST_PIECES)
         each = list(zip(self.contacts, self.guides, self._looked(obstacle, steps), strict=False))
         # a roller that stands turned meets the contour as one that does not meets it turned back
-        held = [hold_roller(obstacle.turned(-one.turned), guide, at, one, few) for one, guide, at in each]
-        place = [one.position(there.position[: len(steps)]) for (one, _, _), there in zip(each, held, strict=True)]
+        held = [hold_roller(obstacle.turned(-contact.turned), guide, at, contact, few) for contact, guide, at in each]
+        place = [
+            contact.position(there.position[: len(steps)]) for (contact, _, _), there in zip(each, held, strict=True)
+        ]
         errors = np.stack(place) - self.course.rows(steps)[0]
         worst, remainder = settled(held, self.course, errors, few=few)
         dwells = list(dwell_angles(self.rests, phi))
@@ -219,13 +223,13 @@ class _Rollers(Moved):
     def _judged_on_spline(self, contour: Contour, phi: Array) -> Judged:
         """Judge on the contour's own Bezier pieces, if these are smooth. UnsettledError where they are not."""
         each = list(zip(self.contacts, self.guides, strict=True))
-        paths = [SplinePath.of(contour, self.side * self.radius, guide, one.turned) for one, guide in each]
-        steps, held = with_steps(phi), [OnSpline(path, one) for path, (one, _) in zip(paths, each, strict=True)]
+        paths = [SplinePath.of(contour, self.side * self.radius, guide, contact.turned) for contact, guide in each]
+        steps, held = with_steps(phi), [OnSpline(path, contact) for path, (contact, _) in zip(paths, each, strict=True)]
         counted = held[: self.judged]
         angles = np.concatenate(
             [steps, *(path.ends for path in paths), *(rests := list(dwell_angles(self.rests, phi)))]
         )
-        place = np.stack([one.contact.position(one.reached(angles)) for one in held])
+        place = np.stack([contact.contact.position(contact.reached(angles)) for contact in held])
         errors = place[: self.judged, : len(steps)] - self.course.rows(steps)[0]
         floor = Greatest(*greatest(np.abs(errors).max(axis=0), steps), 0.0)
         proved = greatest_error(counted, self.course, floor)
@@ -378,16 +382,16 @@ def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tup
     `sampled` are the errors (k, n) at the first n angles of each. That is all that is known where pieces are not few;
     where they are and no proof is found, all angles are looked at: None then.
     """
-    found = Greatest(*greatest(np.abs(sampled).max(axis=0), rollers[0].phi[: sampled.shape[1]]), 0.0)
+    worst_sampled = Greatest(*greatest(np.abs(sampled).max(axis=0), rollers[0].phi[: sampled.shape[1]]), 0.0)
     passing: list[Array] = []
     if few:
         try:
-            proved = greatest_error(rollers, law, found)
+            proved = greatest_error(rollers, law, worst_sampled)
         except UnsettledError:
-            passing = [passing_angles(one.pieces, one.guide) for one in rollers]
+            passing = [passing_angles(roller.pieces, roller.guide) for roller in rollers]
         else:
             return (proved.error, proved.at), proved.remainder
-    return _closely(rollers, law, np.concatenate([*(one.phi for one in rollers), *passing])), None
+    return _closely(rollers, law, np.concatenate([*(roller.phi for roller in rollers), *passing])), None
 
 
 def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, float]:
@@ -396,18 +400,18 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
     Among these is where a piece by itself, touched or not, would put the roller out the most: so much is sure. And
     about the corners that turn the most: beside a dent in a fine polygon they stand out.
     """
-    for one in rollers:
-        error, phi = outward(one, law)
-        sharp = one.pieces.take(np.argsort(np.abs(one.pieces.curvature * one.pieces.length))[-2 * CLOSER :])
-        ends = one.guide.shaft_angle(np.concatenate([sharp.start, sharp.ends]))
+    for roller in rollers:
+        error, phi = outward(roller, law)
+        sharp = roller.pieces.take(np.argsort(np.abs(roller.pieces.curvature * roller.pieces.length))[-2 * CLOSER :])
+        ends = roller.guide.shaft_angle(np.concatenate([sharp.start, sharp.ends]))
         looked = np.concatenate([looked, phi[np.argsort(error)[-CLOSER:]], ends[np.isfinite(ends)]])
     worst = 0.0, 0.0
-    searches = [Search.of(one.pieces, one.guide) for one in rollers]
+    searches = [Search.of(roller.pieces, roller.guide) for roller in rollers]
     for _ in range(ROUNDS):
-        meant = law.rows(looked)
+        intended = law.rows(looked)
         errors = [
-            np.abs(one.guide.position(touched(search, looked)[0]) - one.meant(meant.copy())[0])
-            for one, search in zip(rollers, searches, strict=True)
+            np.abs(roller.guide.position(touched(search, looked)[0]) - roller.meant(intended.copy())[0])
+            for roller, search in zip(rollers, searches, strict=True)
         ]
         error = np.max(errors, axis=0)
         worst = max(worst, greatest(error, looked))
@@ -443,8 +447,8 @@ def end_angles(pieces: Arcs, guide: Guide, angles: Array) -> Array:
     first = np.flatnonzero(new)
     # the known ones stand first in the original order, and so does the least number of each group
     least = np.minimum.reduceat(order, first) if len(first) else order
-    found: Array = angle[least[least >= len(angles)]]
-    return found
+    ends: Array = angle[least[least >= len(angles)]]
+    return ends
 
 
 def passing_angles(obstacle: Arcs, guide: Guide) -> Array:

@@ -345,26 +345,26 @@ def greatest(error: Array, phi: Array) -> tuple[float, float]:
     return float(abs(error[i])), float(phi[i])
 
 
-def greatest_error(rollers: Sequence[Tracked], law: Law, floor: Greatest, tries: int = MORE) -> Greatest:
+def greatest_error(rollers: Sequence[Tracked], law: Law, sampled: Greatest, tries: int = MORE) -> Greatest:
     """Greatest absolute error of rollers, which is at least that `floor`. UnsettledError where it is not proved.
 
     Where pieces hide one another after all `tries`, what a hidden one could do is in the remainder.
     """
-    groups = [one.spans() for one in rollers]
+    groups = [roller.spans() for roller in rollers]
     resolution = rollers[0].resolution
     most = 4 * sum(len(group.piece) for group in groups) + MOST_OPEN
-    error, best, ceiling = floor.error, None, floor.error
+    error, best, ceiling = sampled.error, None, sampled.error
     for cut in range(MOST_CUTS + 1):
         states = [group.state() for group in groups]
         limits = [group.limits(state) for state, group in zip(states, groups, strict=True)]
         phi = np.concatenate([state.phi for state in states])
-        reach = np.concatenate([one.angle[0] * group.half for one, group in zip(limits, groups, strict=True)])
+        reach = np.concatenate([roller.angle[0] * group.half for roller, group in zip(limits, groups, strict=True)])
         cuts = np.cumsum([len(group.piece) for group in groups])[:-1]
         rows, steepest = law.rows(phi), law.steepest(phi - reach, phi + reach)
-        given = zip(groups, states, limits, np.split(rows, cuts, axis=1), np.split(steepest, cuts, axis=1), strict=True)
+        tasks = zip(groups, states, limits, np.split(rows, cuts, axis=1), np.split(steepest, cuts, axis=1), strict=True)
         upper = []
-        for number, (group, state, limit, meant, steep) in enumerate(given):
-            bound, reached, where = group.bounds(state, limit.of_error(steep), meant)
+        for number, (group, state, limit, intended, steep) in enumerate(tasks):
+            bound, reached, where = group.bounds(state, limit.of_error(steep), intended)
             upper.append(bound)
             i = int(np.argmax(reached)) if len(reached) else -1
             if i >= 0 and reached[i] > error:
@@ -373,7 +373,7 @@ def greatest_error(rollers: Sequence[Tracked], law: Law, floor: Greatest, tries:
         enough = error + max(SHARE * error, resolution)
         open_ = [~(bound <= enough) for bound in upper]
         ceiling = max(ceiling, *(float(b[~o].max(initial=ceiling)) for b, o in zip(upper, open_, strict=True)))
-        count = sum(int(np.count_nonzero(one)) for one in open_)
+        count = sum(int(np.count_nonzero(roller)) for roller in open_)
         if not count:
             break
         if cut == MOST_CUTS or 4 * count > most:  # rougher than rounding, or too many that stay undecided
@@ -387,13 +387,13 @@ def greatest_error(rollers: Sequence[Tracked], law: Law, floor: Greatest, tries:
         errors = np.abs(on.reached(phi) - on.meant(law.rows(phi))[0])
         claimed, (error, at) = error, greatest(errors, phi)
         if tries and not claimed <= error + SHARE * claimed + resolution:
-            seen = [one.looked_at_about(np.array([at])) if one is on else one for one in rollers]
-            return greatest_error(seen, law, floor, tries - 1)
-        if error > floor.error:
-            floor = Greatest(error, at, 0.0)
+            looked = [roller.looked_at_about(np.array([at])) if roller is on else roller for roller in rollers]
+            return greatest_error(looked, law, sampled, tries - 1)
+        if error > sampled.error:
+            sampled = Greatest(error, at, 0.0)
     if not np.isfinite(ceiling):
         raise UnsettledError("the motion error is not proved: it has no bound")
-    return floor._replace(remainder=max(ceiling - floor.error, 0.0))
+    return sampled._replace(remainder=max(ceiling - sampled.error, 0.0))
 
 
 def outward(roller: Held, law: Law) -> tuple[Array, Array]:

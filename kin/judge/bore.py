@@ -61,5 +61,5 @@ def _distance_range(contour: Contour) -> tuple[float, float]:
 
     every = np.arange(len(pieces))
     low, high = np.zeros(len(pieces)), pieces.length
-    found = extremes(low, high, distance(low, every), distance(high, every), distance, resolution=fine)
-    return found.least, found.greatest
+    ends = extremes(low, high, distance(low, every), distance(high, every), distance, resolution=fine)
+    return ends.least, ends.greatest

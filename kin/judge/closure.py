@@ -60,7 +60,7 @@ def _judge_closure(
 ) -> tuple[ClosureVerdict, list[Check]]:
     gauges = tuple(surface.gauge for surface, _ in pair)
     finer = [fine(contour, limits.tolerance) for _, contour in pair]
-    rests = [_rests(gauge, one.contour) for gauge, one in zip(gauges, finer, strict=True)]
+    rests = [_rests(gauge, side.contour) for gauge, side in zip(gauges, finer, strict=True)]
     size = max(float(np.abs(contour.vertices).max()) for _, contour in pair)
 
     def limit(tolerance: float) -> float:
@@ -71,12 +71,12 @@ def _judge_closure(
     play = between
     if any(surface.follower is not None for surface, _ in pair):
         first, second = (
-            _rests(surface.follower or surface.gauge, one.contour)
-            for (surface, _), one in zip(pair, finer, strict=True)
+            _rests(surface.follower or surface.gauge, side.contour)
+            for (surface, _), side in zip(pair, finer, strict=True)
         )
         play = _play(first, second, gauges[0], size).less_sure(off)
     judged_as = Closure(limit, closure.name, lever=2.0)
-    slack = max(one.slack for one in finer)
+    slack = max(side.slack for side in finer)
     checks = play_checks(between, judged_as, gauges[0], limits, slack, detail=judged_as.detail(play))
     if play.least < between.least:  # the follower has less room than its gauges: a preload
         checks = [beside_interference(check, between, play) for check in checks]

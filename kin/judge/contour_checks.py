@@ -64,7 +64,7 @@ def judge_contour(
         checks = _motion_checks(judged, play, surface, limits, slack)
     except (ContactError, UnsettledError) as error:
         checks = [failed("motion", str(error), unit=gauge.unit)]
-    found = SurfaceVerdict(surface.name, chain.contour, judged and judged.motion, play, pieces=chain.pieces)
+    verdict = SurfaceVerdict(surface.name, chain.contour, judged and judged.motion, play, pieces=chain.pieces)
     envelope = gauge.envelope
     if judged and judged.reach and contour.is_convex and envelope.regular:
         strayed = convex_deviation(judged.reach)
@@ -73,17 +73,17 @@ def judge_contour(
             strayed = deviation(contour, envelope, spline or SPLINE_ERROR)
         except UnsettledError as error:
             unsettled = failed("contour", str(error), unit="mm", limit=limits.tolerance)
-            return found, [_placed(unsettled, contour, envelope, limits.tolerance), *checks]
+            return verdict, [_placed(unsettled, contour, envelope, limits.tolerance), *checks]
     if uneven:
         strayed = strayed.less_sure(uneven)
-    found = replace(found, measured_error=strayed.worst[0])
+    verdict = replace(verdict, measured_error=strayed.worst[0])
     if linkage is not None:
         from kin.judge.linkage_checks import judge_linkage  # a plain follower does without
 
         driven, more = judge_linkage(contour, linkage, phi, limits, trimmed=surface.trimmed, slack=slack, uneven=uneven)
-        found, checks = replace(found, linkage=driven), [*checks, *more]
+        verdict, checks = replace(verdict, linkage=driven), [*checks, *more]
     checked = _contour_check(strayed, surface, limits.tolerance, slack, standing)
-    return found, [_placed(checked, contour, envelope, limits.tolerance), *checks]
+    return verdict, [_placed(checked, contour, envelope, limits.tolerance), *checks]
 
 
 def _placed(check: Check, contour: Contour, envelope: Envelope, tolerance: float) -> Check:
@@ -188,16 +188,16 @@ def play_checks(
     A closure with a name `tight` has a second check, of the interference alone. The limit is given, or implied by the
     tolerance; an implied limit that is too large fails the check.
     """
-    given = limits.play
-    if given is None and limits.motion is not None and closure.lever is not None:
-        given = closure.lever * limits.motion
-    limit, room = limit_of(closure.limit, given, limits.tolerance, slack)
+    permitted = limits.play
+    if permitted is None and limits.motion is not None and closure.lever is not None:
+        permitted = closure.lever * limits.motion
+    limit, room = limit_of(closure.limit, permitted, limits.tolerance, slack)
     tight, loose = (-play.least, np.radians(play.least_at_deg)), (play.most, np.radians(play.most_at_deg))
     worst, at = max(tight, loose)
-    if play.extremes == "sampled" and given is not None:
+    if play.extremes == "sampled" and permitted is not None:
         worst += ALLOWANCE * abs(worst)
     direct = direct_play(closure, follower, limits.tolerance)
-    vacuous = given is None and is_loose(limit, direct, lambda: closure.radius or stroke_of(follower))
+    vacuous = permitted is None and is_loose(limit, direct, lambda: closure.radius or stroke_of(follower))
     checked = at_most(closure.name, worst, limit, play.unit, angle=at, detail=detail, slack=room)
     checks = [unlimited(checked) if vacuous else checked]
     if closure.tight is not None:

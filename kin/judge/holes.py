@@ -104,19 +104,19 @@ def tally(
     """
     pairs, left_over = _matched(openings, intended)
     for hole, contour in pairs:
-        told = tallies.setdefault(hole.kind, Tally())
+        hole_tally = tallies.setdefault(hole.kind, Tally())
         if contour is None:
             x, y = _middle(hole.contour)
-            told.faults.append(f"{hole.name} at {place_words(x, y)} is missing{where}")
+            hole_tally.faults.append(f"{hole.name} at {place_words(x, y)} is missing{where}")
             continue
         off = apart(contour, hole.contour, FINE * tolerance)
         x, y = _middle(contour)
-        told.measured(
+        hole_tally.measured(
             off, f"{hole.name}, about {place_words(x, y)}{where}, is off by {length_words(off, '.3g')} {UNIT}"
         )
     for contour in left_over if closed else ():
         x, y = _middle(contour)
-        alike = [hole for hole, one in _matched([contour], settled)[0] if one is not None]
+        alike = [hole for hole, match in _matched([contour], settled)[0] if match is not None]
         if alike:
             kind = alike[0].kind
         else:
@@ -143,13 +143,13 @@ def _matched(
             if gap <= 0.5 * size[j]:
                 ranked.append((gap + abs(large - size[j]), j, k))
     partner: dict[int, int] = {}
-    taken: set[int] = set()
+    used: set[int] = set()
     for _, j, k in sorted(ranked):
-        if j not in partner and k not in taken:
+        if j not in partner and k not in used:
             partner[j] = k
-            taken.add(k)
+            used.add(k)
     pairs = [(hole, openings[partner[j]] if j in partner else None) for j, hole in enumerate(intended)]
-    return pairs, [contour for k, contour in enumerate(openings) if k not in taken]
+    return pairs, [contour for k, contour in enumerate(openings) if k not in used]
 
 
 def _middle(contour: Contour) -> tuple[float, float]:

@@ -54,7 +54,7 @@ def judge_linkage(
                 centred=verdict.centred.less_sure(off),
                 play_across=verdict.play_across.less_sure(2.0 * uneven),
                 play_along=verdict.play_along.less_sure(2.0 * uneven),
-                dwells=tuple(replace(one, band=one.band + 2.0 * off) for one in verdict.dwells),
+                dwells=tuple(replace(row, band=row.band + 2.0 * off) for row in verdict.dwells),
             )
     except (FrameError, BindingError) as problem:
         what = str(problem) if isinstance(problem, FrameError) else f"the intended mechanism: {problem}"

@@ -53,8 +53,8 @@ def solid_checks(solid: AnySolid, sections: Sequence[Parted], part: PartIntent, 
     kinds += ["chamfer" for layer in layers if layer.inset != (0.0, 0.0)] + ["set-screw" for _ in cross_holes]
     tallies: Tallies = {kind: Tally() for kind in kinds}
     _faces(tallies, solid, layers, tolerance)
-    meant = [z for _, z in faces(layers)]
-    for kind, fault in between_sections(solid, meant, leans(layers, cross_holes), tolerance):
+    levels = [z for _, z in faces(layers)]
+    for kind, fault in between_sections(solid, levels, leans(layers, cross_holes), tolerance):
         tallies[kind].faults.append(fault)
     for (z, layer), section in zip(heights(layers, cross_holes), sections, strict=True):
         _section(tallies, (z, layer), section, part, tolerance)
@@ -68,23 +68,23 @@ def _told(tallies: Tallies, tolerance: float) -> list[Check]:
 
 def _faces(tallies: Tallies, solid: AnySolid, layers: Sequence[Layer], tolerance: float) -> None:
     """Hold the horizontal faces against those that are meant."""
-    meant = faces(layers)
-    found = np.array(solid.faces)
-    for kind, z in meant:
-        told = tallies.setdefault(kind, Tally())
-        if not found.size:
-            told.faults.append(f"no horizontal face at z = {length_words(z, '.9g')} {UNIT}")
+    expected = faces(layers)
+    levels = np.array(solid.faces)
+    for kind, z in expected:
+        tally = tallies.setdefault(kind, Tally())
+        if not levels.size:
+            tally.faults.append(f"no horizontal face at z = {length_words(z, '.9g')} {UNIT}")
             continue
-        nearest = float(found[np.abs(found - z).argmin()])
-        told.measured(
+        nearest = float(levels[np.abs(levels - z).argmin()])
+        tally.measured(
             abs(nearest - z),
             f"a face at z = {length_words(nearest, '.9g')} {UNIT}, where {length_words(z, '.9g')} {UNIT} is expected",
         )
-    places = np.array([z for _, z in meant])
+    places = np.array([z for _, z in expected])
     for z in solid.faces:
         k = int(np.abs(places - z).argmin())
         if abs(float(places[k]) - z) > tolerance + SAME:
-            kind = meant[k][0]
+            kind = expected[k][0]
             tallies[kind].faults.append(
                 f"a horizontal face at z = {length_words(z, '.9g')} {UNIT}, where none is expected"
             )
@@ -111,7 +111,7 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Parted, part
             tallies[kind].measured(max(off, 0.0), f"the section{where} is off by {length_words(off, '.3g')} {UNIT}")
         return
     (chain,) = section.surfaces
-    bored = next((one for one in part.cross_holes if one.half_width(z) > 0.0), None)
+    bored = next((hole for hole in part.cross_holes if hole.half_width(z) > 0.0), None)
     if bored is None:
         tally(tallies, section.holes, layer.holes, tolerance, where=where, settled=part.holes)
         off = apart(chain.contour, layer.outline.contour, FINE * tolerance)
@@ -121,11 +121,11 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Parted, part
         return
     # the ring is cut open: its outline runs in along one side of the slot, round the bore and out along the other
     bore, *others = layer.holes
-    told = tallies["set-screw"]
+    screw_tally = tallies["set-screw"]
     if len(section.holes) != len(others):
         fault = f"the section has {len(section.holes)} holes, {len(others)} are expected"
-        told.faults.append(f"{bored.name}{where}: {fault}")
+        screw_tally.faults.append(f"{bored.name}{where}: {fault}")
         return
-    meant = slotted(layer.outline, bore, bored.at, bored.half_width(z))
-    off = apart(chain.contour, meant, FINE * tolerance)
-    told.measured(off, f"{bored.name}{where} is off by {length_words(off, '.3g')} {UNIT}")
+    outline = slotted(layer.outline, bore, bored.at, bored.half_width(z))
+    off = apart(chain.contour, outline, FINE * tolerance)
+    screw_tally.measured(off, f"{bored.name}{where} is off by {length_words(off, '.3g')} {UNIT}")

@@ -69,7 +69,7 @@ def parted(
         if len(there) > 1:
             raise ReadError("several", f"{len(there)} closed contours on the layer {surface.layer}", path)
         (chosen[surface.name],) = there
-    holes = tuple(chain.contour for chain in others if not any(chain is one for one in chosen.values()))
+    holes = tuple(chain.contour for chain in others if not any(chain is used for used in chosen.values()))
     return Parted(tuple(chosen[surface.name] for surface in surfaces), holes, checks)
 
 

@@ -126,15 +126,15 @@ def _verdict(
         checks += file.checks
         standing = part.milling.standing if part.milling is not None else 0.0
         for chain, surface in zip(file.surfaces, part.surfaces, strict=True):
-            found, more = judge_contour(
+            verdict, more = judge_contour(
                 chain, surface, phi, limits, file.uneven, standing=standing, linkage=part.linkage
             )
             checks += [replace(check, surface=surface.name) for check in more]
-            surfaces.append(found)
-            if file.stated_error is not None and found.measured_error is not None:
+            surfaces.append(verdict)
+            if file.stated_error is not None and verdict.measured_error is not None:
                 from kin.judge.grinding import stated_check  # tables alone state it
 
-                checks.append(stated_check(found.measured_error - file.uneven, file.stated_error, limits.tolerance))
+                checks.append(stated_check(verdict.measured_error - file.uneven, file.stated_error, limits.tolerance))
         if part.closures:
             from kin.judge.closure import judge_closures  # most cams have one surface
 
@@ -167,8 +167,8 @@ class _Read(NamedTuple):
 def _demand_same(stated: float | None, units: float | None, path: Path) -> None:
     """Refuse a unit that is given beside another one that the file states."""
     if stated is not None and units is not None and not abs(stated / units - 1.0) <= UNITS_SHARE:
-        told = f"{path}: the file states its unit, {stated:.9g} mm; {units:.9g} mm is given for it"
-        raise UnitsError(f"{told}, which is for files that state none")
+        message = f"{path}: the file states its unit, {stated:.9g} mm; {units:.9g} mm is given for it"
+        raise UnitsError(f"{message}, which is for files that state none")
 
 
 def _of_drawing(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
@@ -181,13 +181,13 @@ def _of_drawing(path: Path, part: PartIntent, limits: Limits, units: float | Non
     _demand_same(drawing.units_mm, units, path)
     scale = unstated if drawing.units_mm is None else 1.0
     chains = scaled(drawing.chains, scale, mirrored=part.mirrored)
-    found = parted(chains[0], chains[1:], part, limits.tolerance, path)
-    joined = max(chain.gap for chain in found.surfaces) if drawing.openings else 0.0
+    parts = parted(chains[0], chains[1:], part, limits.tolerance, path)
+    joined = max(chain.gap for chain in parts.surfaces) if drawing.openings else 0.0
     uneven = joined if limits.gap is None else max(joined, limits.gap)
-    checks = [_units_check(drawing.units_mm, units, part, found), _closed_check(drawing, found, limits, uneven)]
+    checks = [_units_check(drawing.units_mm, units, part, parts), _closed_check(drawing, parts, limits, uneven)]
     marks = scaled([Chain(contour) for contour in drawing.engraved], scale, mirrored=part.mirrored)
-    checks += [*found.checks, *_opening_checks(found.holes, [mark.contour for mark in marks], part, limits)]
-    return _Read(checks, found.surfaces, chains, scale if drawing.units_mm is None else drawing.units_mm, uneven)
+    checks += [*parts.checks, *_opening_checks(parts.holes, [mark.contour for mark in marks], part, limits)]
+    return _Read(checks, parts.surfaces, chains, scale if drawing.units_mm is None else drawing.units_mm, uneven)
 
 
 def _of_program(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
@@ -202,10 +202,10 @@ def _of_program(path: Path, part: PartIntent, limits: Limits, units: float | Non
     done = milled(program, part.milling, limits.tolerance)
     chains = scaled(done.chains, 1.0, mirrored=part.mirrored)
     outline, others = (chains[0], chains[1:]) if part.milling.outline else (None, chains)
-    found = parted(outline, others, part, limits.tolerance, path)
-    checks = [_units_check(program.units_mm, units, part, found), _count_check("closed", _crossing_places(found))]
-    checks += [*done.checks, *_opening_checks(found.holes, [], part, limits)]
-    return _Read(checks, found.surfaces, chains, program.units_mm)
+    parts = parted(outline, others, part, limits.tolerance, path)
+    checks = [_units_check(program.units_mm, units, part, parts), _count_check("closed", _crossing_places(parts))]
+    checks += [*done.checks, *_opening_checks(parts.holes, [], part, limits)]
+    return _Read(checks, parts.surfaces, chains, program.units_mm)
 
 
 def _of_table(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
@@ -237,21 +237,21 @@ def _opening_checks(
 
 def _units_check(stated: float | None, units: float | None, part: PartIntent, parts: Parted) -> Check:
     """Check the unit of a drawing or a program: what it states counts, unless its size tells that it is misstated."""
-    meant = part.mm
+    unit = part.mm
     if stated is None and units is None:
-        told = f"the drawing states no unit and is judged in that of the recipe, {meant:.9g} mm"
+        why = f"the drawing states no unit and is judged in that of the recipe, {unit:.9g} mm"
         large = _size(part, parts)
-        by_size = (one for one in OTHERS if abs(large * one[1] / meant - 1.0) <= SIZE_SHARE)
-        name, mm, word = next(by_size, ("", meant, "mm"))
-        told += f"; by its size it is drawn in {name}" if mm != meant else ""
-        return failed("units", f"{told}; give it by --units, such as --units {word}", limit=UNITS_SHARE)
+        by_size = (other for other in OTHERS if abs(large * other[1] / unit - 1.0) <= SIZE_SHARE)
+        name, mm, word = next(by_size, ("", unit, "mm"))
+        why += f"; by its size it is drawn in {name}" if mm != unit else ""
+        return failed("units", f"{why}; give it by --units, such as --units {word}", limit=UNITS_SHARE)
     if stated is None:
         return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"the file states no unit; {units:.9g} mm is given")
-    off = abs(stated / meant - 1.0)
-    detail = f"a drawing unit is {stated:.9g} mm, {meant:.9g} mm is expected"
+    off = abs(stated / unit - 1.0)
+    detail = f"a drawing unit is {stated:.9g} mm, {unit:.9g} mm is expected"
     if off > UNITS_SHARE:
         large = _size(part, parts)
-        if abs(large * meant / stated - 1.0) > SIZE_SHARE or abs(large - 1.0) <= SIZE_SHARE:
+        if abs(large * unit / stated - 1.0) > SIZE_SHARE or abs(large - 1.0) <= SIZE_SHARE:
             return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"a drawing unit is {stated:.9g} mm, as stated")
     return Check("units", off <= UNITS_SHARE, off, UNITS_SHARE, "", detail=detail)
 
@@ -270,12 +270,12 @@ def _closed_check(drawing: Drawing, parts: Parted, limits: Limits, joined: float
     check = _count_check("closed", faults)
     if drawing.openings:
         remedy = f"--gap {float(f'{WIDE * joined:.1e}'):g}mm joins what lies so near"
-        told = f"the rest is judged with {joined:.3g} mm counted; {remedy}" if joined else "the rest is judged"
-        return replace(check, detail=f"{marked(check.detail)}; {told}")
+        detail = f"the rest is judged with {joined:.3g} mm counted; {remedy}" if joined else "the rest is judged"
+        return replace(check, detail=f"{marked(check.detail)}; {detail}")
     if limits.gap is not None:
-        short = [f"{one.entity} at {place_words(one.x, one.y)}" for one in drawing.short]
-        told = f"ends up to {limits.gap:.6g} mm apart are joined, which is counted; {len(short)} pieces are no longer"
-        named = f"{told}: {_listed(short)}" if short else told
+        short = [f"{piece.entity} at {place_words(piece.x, piece.y)}" for piece in drawing.short]
+        detail = f"ends up to {limits.gap:.6g} mm apart are joined, which is counted; {len(short)} pieces are no longer"
+        named = f"{detail}: {_listed(short)}" if short else detail
         return replace(check, detail=f"{marked(check.detail)}; {named}".removeprefix("; "))
     return check
 
@@ -313,7 +313,7 @@ def _of_solid(path: Path, part: PartIntent, limits: Limits, units: float | None)
 def _of_solids(path: Path, shaft: ShaftIntent, limits: Limits) -> list[tuple[PartIntent, _Read]]:
     """Read the solids of all parts of a shaft from one file; each one's checks are told by its name."""
     solids = read_bodies(path, [_sought(part) for part in shaft.parts], shaft.levels)
-    found = []
+    parts = []
     for solid, part, level in zip(solids, shaft.parts, shaft.levels, strict=True):
         way = f"{length_words(abs(solid.z_min))} {UNIT} {'lower' if solid.z_min < 0.0 else 'higher'}"
         moved = f"{part.name} lies {way} than it should" if abs(solid.z_min) > limits.tolerance else ""
@@ -330,8 +330,8 @@ def _of_solids(path: Path, shaft: ShaftIntent, limits: Limits) -> list[tuple[Par
         checks = [
             replace(check, surface=part.name, detail=_joined(marked(check.detail), above)) for check in file.checks
         ]
-        found.append((part, file._replace(checks=checks)))
-    return found
+        parts.append((part, file._replace(checks=checks)))
+    return parts
 
 
 def _joined(detail: str, more: str) -> str:
@@ -350,17 +350,17 @@ def _sought(part: PartIntent) -> Sought:
 
 def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, units: float | None) -> _Read:
     if len(solid.sections) < len(_sought(part).heights):
-        told = "the solid has no section where the part has its layers"
+        detail = "the solid has no section where the part has its layers"
         if solid.units_mm is None:
-            told += f"; it states no unit and is read in one of {units or 1.0:.9g} mm, another is given by --units"
-        raise ReadError("empty", told, path)
+            detail += f"; it states no unit and is read in one of {units or 1.0:.9g} mm, another is given by --units"
+        raise ReadError("empty", detail, path)
     if part.layers:
         from kin.judge.layers import leans, settled
 
         solid = settled(solid, leans(part.layers, part.cross_holes), limits.tolerance)
-    found = _found(solid, part, limits.tolerance, path)
-    checks = [_watertight_check(solid, found), *(less_sure(one, solid.uneven) for one in found.checks)]
-    contours = [chain.contour for chain in found.surfaces]
+    parts = _found(solid, part, limits.tolerance, path)
+    checks = [_watertight_check(solid, parts), *(less_sure(check, solid.uneven) for check in parts.checks)]
+    contours = [chain.contour for chain in parts.surfaces]
     if part.layers:
         from kin.judge.part_checks import solid_checks
         from kin.judge.volume import layers_volume_check
@@ -368,7 +368,7 @@ def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, u
         checks += solid_checks(solid, _layered(solid, part, limits, path), part, limits.tolerance)
         checks.append(layers_volume_check(solid.volume, contours, part, limits.tolerance))
     else:
-        bore = bore_check(found.holes, part.bore, limits.tolerance, closed=part.closed)
+        bore = bore_check(parts.holes, part.bore, limits.tolerance, closed=part.closed)
         checks += [] if bore is None else [less_sure(bore, solid.uneven)]
         if part.thickness is not None:
             from kin.judge.volume import volume_check
@@ -376,7 +376,7 @@ def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, u
             checks.append(_thickness_check(solid, part.thickness, limits.tolerance))
             checks.append(volume_check(solid.volume, solid.thickness, contours, part, limits.tolerance))
     chains = scaled(solid.chains, 1.0, mirrored=part.mirrored)
-    return _Read(checks, found.surfaces, chains, solid.units_mm or units or 1.0, _uneven(solid, part, contours))
+    return _Read(checks, parts.surfaces, chains, solid.units_mm or units or 1.0, _uneven(solid, part, contours))
 
 
 def _uneven(solid: AnySolid, part: PartIntent, contours: Sequence[Contour]) -> float:
@@ -397,8 +397,8 @@ def _found(solid: AnySolid, part: PartIntent, tolerance: float, path: Path) -> P
         chains = solid.chains if z is None else solid.section(z).chains
         outline, *others = scaled(chains, 1.0, mirrored=part.mirrored)
         by_height[z] = parted(outline, others, part, tolerance, path, z=z)
-    found = {z: iter(one.surfaces) for z, one in by_height.items()}
-    surfaces = tuple(next(found[surface.z]) for surface in part.surfaces)
+    remaining = {z: iter(section.surfaces) for z, section in by_height.items()}
+    surfaces = tuple(next(remaining[surface.z]) for surface in part.surfaces)
     return by_height[part.surfaces[0].z]._replace(surfaces=surfaces)
 
 
@@ -406,14 +406,14 @@ def _layered(solid: AnySolid, part: PartIntent, limits: Limits, path: Path) -> l
     """Tell apart the sections of a solid in layers; of a layer with an outline of its own that is the outline."""
     from kin.judge.layers import heights
 
-    found = []
+    parts = []
     for (_, layer), section in zip(heights(part.layers, part.cross_holes), solid.sections, strict=False):
         outline, *others = scaled(section.chains, 1.0, mirrored=part.mirrored)
         if layer.outline is None:
-            found.append(parted(outline, others, part, limits.tolerance, path))
+            parts.append(parted(outline, others, part, limits.tolerance, path))
         else:
-            found.append(Parted((outline,), tuple(chain.contour for chain in others), ()))
-    return found
+            parts.append(Parted((outline,), tuple(chain.contour for chain in others), ()))
+    return parts
 
 
 def _watertight_check(solid: AnySolid, parts: Parted) -> Check:

@@ -193,16 +193,16 @@ class _Lifted:
         phi, end = self._shaft(theta), np.where(way < 0.0, self.begin, self.end)
         step = _ULPS * np.spacing(np.maximum(np.abs(phi), 1.0))
         for _ in range(_DOUBLINGS):
-            found = np.clip(phi + way * step, self.begin, self.end)
-            at = BallJet.variable(found, found, 0)
+            beyond = np.clip(phi + way * step, self.begin, self.end)
+            at = BallJet.variable(beyond, beyond, 0)
             low, high = (at - self.function(at)).rows[0].bounds()
-            open_ = (found != end) & ~np.where(way < 0.0, high <= theta, low >= theta)
+            open_ = (beyond != end) & ~np.where(way < 0.0, high <= theta, low >= theta)
             if not open_.any():
                 break
             step = np.where(open_, 2.0 * step, step)
         else:
-            found = np.where(open_, end, found)
-        return found[: len(lower)], found[len(lower) :]
+            beyond = np.where(open_, end, beyond)
+        return beyond[: len(lower)], beyond[len(lower) :]
 
 
 def _by(f: Jet, parameter: Jet) -> Array:
@@ -263,8 +263,8 @@ def _too_far(law: FrameSwing) -> str:
         remedies.append(f"give a ground above {longer:.9g} mm or a rocker within {nearer:.9g} mm of the joint's offset")
     if not remedies:
         remedies = [f"swing by less than 180 with a ground above {aside:.9g} mm"]
-    told = f"by {math.degrees(law.rise):.9g} degrees " if most or not room else ""
-    return f"the frame cannot swing {told}on links of these lengths: {', or '.join(remedies)}"
+    amount = f"by {math.degrees(law.rise):.9g} degrees " if most or not room else ""
+    return f"the frame cannot swing {amount}on links of these lengths: {', or '.join(remedies)}"
 
 
 def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: float, field: str) -> None:
@@ -282,9 +282,9 @@ def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: floa
 
     quarter = 0.5 * math.pi
     for what, limits in ((swing, {0: (-quarter, quarter)}), (sine, {0: (-1.0, 1.0)})):
-        found = undecided(what, begin, end, limits)
-        if found is not None:
-            at = math.degrees(found[1])
+        doubts = undecided(what, begin, end, limits)
+        if doubts is not None:
+            at = math.degrees(doubts[1])
             raise IntentError(
                 f"the frame swings so far that its loop does not close, near a shaft angle of {at:.6g} degrees or half "
                 "a turn of the cam on: swing less, or give a longer ground or a rocker nearer to the joint's offset",
@@ -292,8 +292,8 @@ def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: floa
                 at,
             )
     for what, limits in ((swing, {1: (-math.inf, 1.0)}), (later, {1: (0.0, math.inf)})):
-        found = undecided(what, begin, end, limits)
-        if found is None:
+        doubts = undecided(what, begin, end, limits)
+        if doubts is None:
             continue
         phi = np.linspace(begin, end, 2049)
         jet = swing(Jet.variable(phi, 1))

@@ -99,19 +99,19 @@ def figures(rows: Callable[[Array], Rows], shaft: Callable[[Array], Array], brea
     places = between(0.0, TURN, breaks.tolist())
     size = max(1.0, float(np.abs(rows(0.5 * (places[:-1] + places[1:])).output).max()))
     rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Rows._fields])
-    of = cells(lambda theta: np.stack(rows(theta)), places, rounded, share=_SHARE)
+    curves = cells(lambda theta: np.stack(rows(theta)), places, rounded, share=_SHARE)
     row = {name: k for k, name in enumerate(Rows._fields)}
 
     def peak(name: str) -> tuple[float, float]:
-        least, greatest = extremes(of, row[name])
-        return max(greatest, least, key=lambda found: abs(found[0]))
+        least, greatest = extremes(curves, row[name])
+        return max(greatest, least, key=lambda extreme: abs(extreme[0]))
 
     def nearest_zero(name: str) -> float:
         """Where the absolute value is least."""
-        least, greatest = extremes(of, row[name])
+        least, greatest = extremes(curves, row[name])
         if least[0] >= 0:
             return least[1]
-        return greatest[1] if greatest[0] <= 0 else float(pieces(of, row[name]).crossings(0.0)[0])
+        return greatest[1] if greatest[0] <= 0 else float(pieces(curves, row[name]).crossings(0.0)[0])
 
     acute = {
         "transmission_least": nearest_zero("transmission_sine"),
@@ -122,18 +122,18 @@ def figures(rows: Callable[[Array], Rows], shaft: Callable[[Array], Array], brea
     transmission = np.arctan2(np.abs(at.transmission_sine), np.abs(at.transmission_cosine)).tolist()
     force = np.arctan2(np.abs(at.force_sine), np.abs(at.force_cosine)).tolist()
     extreme = {
-        **dict(zip(("least", "greatest"), extremes(of, row["output"]), strict=True)),
-        **dict(zip(("frame_least", "frame_greatest"), extremes(of, row["frame"]), strict=True)),
+        **dict(zip(("least", "greatest"), extremes(curves, row["output"]), strict=True)),
+        **dict(zip(("frame_least", "frame_greatest"), extremes(curves, row["frame"]), strict=True)),
         **dict(zip(acute, zip([*transmission[:2], force[2]], acute.values(), strict=True), strict=True)),
         **{name: peak(name) for name in ("velocity", "acceleration", "velocity_relative", "acceleration_relative")},
     }
-    still = [(0.0, angle) for angle in pieces(of, row["offset"]).crossings(0.0).tolist()]
+    still = [(0.0, angle) for angle in pieces(curves, row["offset"]).crossings(0.0).tolist()]
     values, angles = np.transpose([*extreme.values(), *still])
     angles = np.mod(angles, TURN)
     turned = np.mod(shaft(angles), TURN)
     turned[turned >= TURN] = 0.0
-    found = [Place(*numbers) for numbers in zip(values.tolist(), angles.tolist(), turned.tolist(), strict=True)]
-    return Figures(**dict(zip(extreme, found, strict=False)), dead_centres=_once(found[len(extreme) :]))
+    marks = [Place(*numbers) for numbers in zip(values.tolist(), angles.tolist(), turned.tolist(), strict=True)]
+    return Figures(**dict(zip(extreme, marks, strict=False)), dead_centres=_once(marks[len(extreme) :]))
 
 
 def _once(places: list[Place]) -> tuple[Place, ...]:

@@ -303,23 +303,23 @@ class Mechanism:
 
         Raises IntentError for a dyad whose point circles its ground pivot: its output would rotate.
         """
-        found: tuple[float, ...] = ()
+        angles: tuple[float, ...] = ()
         theta: Array = np.linspace(0.0, TURN, _LOOKS, endpoint=False)
         for loop, dyad in enumerate(self.dyads):
             s, s1 = (lift.c[0] for lift in self._lifts(theta, 0))
-            theta = theta[(self.chain.margins(loop, s, s1, found) > 0).all(axis=0)]
+            theta = theta[(self.chain.margins(loop, s, s1, angles) > 0).all(axis=0)]
             if not len(theta):
-                return (*found, *(0.0,) * (len(self.dyads) - loop))
+                return (*angles, *(0.0,) * (len(self.dyads) - loop))
             s0, s01 = self._lifts(theta, 0)
-            x, y = self.chain.hung(self.chain.solve(s0, s01, found), loop)
+            x, y = self.chain.hung(self.chain.solve(s0, s01, angles), loop)
             if len(theta) == _LOOKS and abs(dyad.turned(x.c[0], y.c[0])) > math.pi:
                 raise IntentError(
                     f"the point that dyad {loop + 1} is attached to circles the dyad's ground pivot: its "
                     "output would rotate, not oscillate",
                     "dyads",
                 )
-            found = (*found, dyad.middle(x.c[0], y.c[0]))
-        return found
+            angles = (*angles, dyad.middle(x.c[0], y.c[0]))
+        return angles
 
     @cached_property
     def _relation(self) -> Cells:
@@ -351,7 +351,7 @@ class Mechanism:
                 0.01 * _ROUNDED * self.breadth,
             )
         )
-        miss, at = max(off.greatest(), off.least(), key=lambda found: abs(found[0]))
+        miss, at = max(off.greatest(), off.least(), key=lambda extreme: abs(extreme[0]))
         if not abs(miss) <= _ROUNDED * self.breadth:
             degrees = math.degrees(at) % 360
             raise IntentError(
@@ -363,8 +363,8 @@ class Mechanism:
 
     def _demand_shaft_within(self) -> None:
         places = between(0.0, TURN, self.lift.breaks)
-        of = pieces(cells(lambda x: self.lift.derivatives(x, 0), places, 1e-3 * _EDGE * self.breadth))
-        least, at = of.least()
+        curve = pieces(cells(lambda x: self.lift.derivatives(x, 0), places, 1e-3 * _EDGE * self.breadth))
+        least, at = curve.least()
         if least < -_EDGE * self.breadth:
             raise OutsideError(-least, math.degrees(at) % 360)
 

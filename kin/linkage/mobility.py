@@ -75,32 +75,34 @@ def mobility(
     those before it do not bind; `rate` gives 1 - theta_3', called only where the linkage does not bind anywhere;
     `sense` is a bounded function of its sign, called where the linkage can be closed.
     """
-    found: tuple[float, float, int] = (math.inf, math.nan, 0)
+    nearest_binding: tuple[float, float, int] = (math.inf, math.nan, 0)
     binds: tuple[Span, ...] = ()
     nearest: tuple[tuple[float, ...], ...] = ()
     for loop, margin in enumerate(margins):
-        of = _all_round(margin, breaks, _RESOLUTION * breadth)
-        places = [extremes(of, limit)[0] for limit in range(len(of.noise))]
+        curve = _all_round(margin, breaks, _RESOLUTION * breadth)
+        places = [extremes(curve, limit)[0] for limit in range(len(curve.noise))]
         nearest += (tuple(at for _, at in places),)
-        for limit, (noise, (least, at)) in enumerate(zip(of.noise, places, strict=True)):
-            if least < found[0]:
-                found = (least, at % TURN, loop)
+        for limit, (noise, (least, at)) in enumerate(zip(curve.noise, places, strict=True)):
+            if least < nearest_binding[0]:
+                nearest_binding = (least, at % TURN, loop)
             rounding = float(noise.min())
             if least <= rounding:
-                binds += _below(pieces(of, limit), 0.0 if least < -2 * rounding else 4 * rounding)
+                binds += _below(pieces(curve, limit), 0.0 if least < -2 * rounding else 4 * rounding)
         if binds:
             binds = _merged(sorted(binds))
             break
-    if binds and found[2] == 0:
+    if binds and nearest_binding[2] == 0:
         free = _others(binds)
         reverses = tuple(_reduced(span) for begin, end in free for span in _reversing(sense, begin, end, breaks))
-        return Mobility(*found, binds, math.nan, math.nan, reverses, nearest)
+        return Mobility(*nearest_binding, binds, math.nan, math.nan, reverses, nearest)
     try:
-        of = _all_round(lambda theta: rate(theta)[None], breaks, _RESOLUTION)
+        curve = _all_round(lambda theta: rate(theta)[None], breaks, _RESOLUTION)
     except RoughError as error:
-        return Mobility(*found, binds, math.nan, error.at % TURN, (), nearest)
-    (least, at), _ = extremes(of)
-    return Mobility(*found, binds, least, at % TURN, _below(pieces(of), 0.0) if least <= 0.0 else (), nearest)
+        return Mobility(*nearest_binding, binds, math.nan, error.at % TURN, (), nearest)
+    (least, at), _ = extremes(curve)
+    return Mobility(
+        *nearest_binding, binds, least, at % TURN, _below(pieces(curve), 0.0) if least <= 0.0 else (), nearest
+    )
 
 
 def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) -> Cells:
@@ -150,9 +152,9 @@ def _others(spans: tuple[Span, ...]) -> list[Span]:
 
 def _reversing(sense: Callable[[Array], Array], begin: float, end: float, breaks: Array) -> list[Span]:
     places = between(begin, end, [*breaks.tolist(), *(breaks + TURN).tolist()])
-    of = pieces(cells(lambda x: sense(np.mod(x, TURN))[None], places, 1e-9))
-    ends = np.array([begin, *of.crossings(0.0).tolist(), end])
+    curve = pieces(cells(lambda x: sense(np.mod(x, TURN))[None], places, 1e-9))
+    ends = np.array([begin, *curve.crossings(0.0).tolist(), end])
     middle = 0.5 * (ends[:-1] + ends[1:])
-    piece = np.clip(np.searchsorted(of.x, middle, side="right") - 1, 0, len(of.coefficients) - 1)
-    back = of.at(piece, middle) <= 0
+    piece = np.clip(np.searchsorted(curve.x, middle, side="right") - 1, 0, len(curve.coefficients) - 1)
+    back = curve.at(piece, middle) <= 0
     return [(float(a), float(b)) for a, b, turned in zip(ends[:-1], ends[1:], back, strict=True) if turned and b > a]

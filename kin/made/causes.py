@@ -52,32 +52,32 @@ def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth], turned: f
     deviations. `turned` is the angle, rad, by which the metal is turned and that was taken out of the deviations.
     """
     names = ["turned", "shifted along x", "shifted along y", "size"]
-    told, chosen, x, covariance, left = _explained(deviations, curves)
-    if 0 in told:
-        x[told.index(0)] += turned
+    free, chosen, x, covariance, left = _explained(deviations, curves)
+    if 0 in free:
+        x[free.index(0)] += turned
     sds = np.sqrt(np.diag(covariance))
-    found = []
+    named = []
     for group in _together(covariance / np.outer(sds, sds)):
         part = chosen[:, group] @ x[group]
         effect = float(np.abs(part).max())
         if len(group) == 1:
             (k,) = group
-            found.append(Cause((names[told[k]],), float(x[k]), COVERAGE * float(sds[k]), effect))
+            named.append(Cause((names[free[k]],), float(x[k]), COVERAGE * float(sds[k]), effect))
         else:
             own = chosen[:, group]
             spread = np.sqrt(np.einsum("ij,jk,ik->i", own, covariance[np.ix_(group, group)], own))
-            joint = tuple(names[told[k]] for k in group)
-            found.append(Cause(joint, effect, COVERAGE * float(spread[int(np.argmax(np.abs(part)))]), effect))
-    for one, curve, rest in zip(deviations, curves, _split(left, deviations), strict=True):
-        found += _regular_and_local(one, curve, rest)
-    certain = [cause for cause in found if abs(cause.value) > cause.uncertainty]
+            joint = tuple(names[free[k]] for k in group)
+            named.append(Cause(joint, effect, COVERAGE * float(spread[int(np.argmax(np.abs(part)))]), effect))
+    for deviation, curve, rest in zip(deviations, curves, _split(left, deviations), strict=True):
+        named += _regular_and_local(deviation, curve, rest)
+    certain = [cause for cause in named if abs(cause.value) > cause.uncertainty]
     return sorted(certain, key=lambda cause: -cause.effect)
 
 
 def shift_of(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> tuple[Array, Array]:
     """Shift (2,) of one part's metal, mm, beside a turn and a size, and its covariance (2, 2), mm^2."""
-    told, _, x, covariance, _ = _explained(deviations, curves)
-    first = told.index(1)
+    free, _, x, covariance, _ = _explained(deviations, curves)
+    first = free.index(1)
     return x[first : first + 2], covariance[first : first + 2, first : first + 2]
 
 
@@ -92,18 +92,20 @@ class _Explained(NamedTuple):
 
 
 def _explained(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> _Explained:
-    columns = np.concatenate([np.column_stack([one.columns("gxy"), np.ones(len(one.e))]) for one in deviations])
-    e = np.concatenate([one.e for one in deviations])
+    columns = np.concatenate(
+        [np.column_stack([deviation.columns("gxy"), np.ones(len(deviation.e))]) for deviation in deviations]
+    )
+    e = np.concatenate([deviation.e for deviation in deviations])
     spans = sum(curve.spans for curve in curves)
     size = np.sqrt(np.mean(columns**2, axis=0))
-    told = [0, 1, 2, 3] if size[0] > 1e-6 else [1, 2, 3]
-    while conditions(columns[:, told] / size[told]).min() < ILL and 0 in told:
-        told.remove(0)  # nearly round: a turn is a shift
-    chosen = columns[:, told]
+    free = [0, 1, 2, 3] if size[0] > 1e-6 else [1, 2, 3]
+    while conditions(columns[:, free] / size[free]).min() < ILL and 0 in free:
+        free.remove(0)  # nearly round: a turn is a shift
+    chosen = columns[:, free]
     x = least_squares(chosen, e)
     left = e - chosen @ x
-    variance = float(left @ left) / max(spans - len(told), 1)  # of a mean over a span, times the points in it
-    return _Explained(told, chosen, x, variance * np.linalg.inv(chosen.T @ chosen), left)
+    variance = float(left @ left) / max(spans - len(free), 1)  # of a mean over a span, times the points in it
+    return _Explained(free, chosen, x, variance * np.linalg.inv(chosen.T @ chosen), left)
 
 
 def _together(correlation: Array) -> list[list[int]]:
@@ -119,27 +121,27 @@ def _together(correlation: Array) -> list[list[int]]:
 
 
 def _split(rows: Array, deviations: Sequence[Deviations]) -> list[Array]:
-    parts: list[Array] = np.split(rows, np.cumsum([len(one.e) for one in deviations])[:-1])
+    parts: list[Array] = np.split(rows, np.cumsum([len(deviation.e) for deviation in deviations])[:-1])
     return parts
 
 
-def _regular_and_local(one: Deviations, curve: Smooth, rest: Array) -> list[Cause]:
+def _regular_and_local(deviations: Deviations, curve: Smooth, rest: Array) -> list[Cause]:
     """A wave in what is left on a surface, and the place where the rest stands out the most."""
-    smooth = fit(one.parameter, rest, curve.spans).curve
+    smooth = fit(deviations.parameter, rest, curve.spans).curve
     t = equal_steps(LOOKS)
     form = smooth.rows(t)[0]
     sd = smooth.deviations(t)
     waves = np.fft.rfft(form - form.mean()) * (2.0 / LOOKS)
-    found = []
+    named = []
     k = int(np.argmax(np.abs(waves[2:])) + 2)
     height = float(np.abs(waves[k]))
-    error = curve.sigma * curve.widened * float(np.sqrt(2.0 / len(one.e)))
-    told = height > STANDS_OUT * error and 2 * k <= curve.spans  # the highest of many waves of noise is no wave
-    if told and 0.5 * height**2 > SHARE * float(np.var(form)):
-        found.append(Cause(("waves",), height, COVERAGE * error, height, waves=k))
+    error = curve.sigma * curve.widened * float(np.sqrt(2.0 / len(deviations.e)))
+    stands_out = height > STANDS_OUT * error and 2 * k <= curve.spans  # the highest of many waves of noise is no wave
+    if stands_out and 0.5 * height**2 > SHARE * float(np.var(form)):
+        named.append(Cause(("waves",), height, COVERAGE * error, height, waves=k))
         form = form - np.real(waves[k] * np.exp(1j * k * t))
     worst = int(np.argmax(np.abs(form) - STANDS_OUT * sd))
     if abs(form[worst]) > STANDS_OUT * sd[worst]:
         value = float(form[worst])
-        found.append(Cause(("local",), value, COVERAGE * float(sd[worst]), abs(value), at=float(t[worst])))
-    return found
+        named.append(Cause(("local",), value, COVERAGE * float(sd[worst]), abs(value), at=float(t[worst])))
+    return named

@@ -113,7 +113,7 @@ class Corrected(Follower):
         the share is infinite where any would do.
         """
         places = self.metal.places
-        exact, speed = (one.frames(places).speed for one in (self.metal.follower.envelope, self.contour))
+        exact, speed = (curve.frames(places).speed for curve in (self.metal.follower.envelope, self.contour))
         lost = exact - speed
         shares = np.where(lost > 0.0, exact / np.where(lost > 0.0, lost, 1.0), np.inf)
         worst = int(np.argmin(shares))
@@ -210,12 +210,12 @@ class Corrected(Follower):
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
         """Motion error and play of a contour in excess of those on the corrected metal; see `Follower`."""
-        rests, meant = self.resting(contour), _Meant(self.exact)
+        rests, law = self.resting(contour), _Meant(self.exact)
         size = self.si * float(np.abs(contour.vertices).max()) if self.unit == "mm" else 1.0
-        each = [extremes_between(meant, rest, size).worst for rest in rests]
+        each = [extremes_between(law, rest, size).worst for rest in rests]
         worst, at = max(each)
         every = with_steps(phi)
-        errors = np.stack([rest.rows(every)[0] - meant.rows(every)[0] for rest in rests]) / self.si
+        errors = np.stack([rest.rows(every)[0] - law.rows(every)[0] for rest in rests]) / self.si
         motion = motion_error((worst / self.si, at), errors, None, self.unit)
         if len(rests) == 1:
             return Judged(motion, None)

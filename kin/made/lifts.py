@@ -158,14 +158,14 @@ def _demand_on_face(probe: Follower, points: Array, shaft: Array) -> None:
 def lateness(readings: Sequence[Readings]) -> float:
     """Angle, rad, by which all readings are late, from -pi to pi, by least squares; each one's zero of lift is free."""
     every = equal_steps(COARSE_TURNS)
-    few = [one.few() for one in readings]
-    tables = [one.exact(every)[0] for one in few]
+    few = [cam.few() for cam in readings]
+    tables = [cam.exact(every)[0] for cam in few]
     variances = [max(float(np.var(table)), np.finfo(float).tiny) for table in tables]
 
     def scatter(late: float) -> float:
         return sum(
-            float(np.var(one.lift - np.interp(np.mod(one.shaft - late, TURN), every, table, period=TURN))) / variance
-            for one, table, variance in zip(few, tables, variances, strict=True)
+            float(np.var(cam.lift - np.interp(np.mod(cam.shaft - late, TURN), every, table, period=TURN))) / variance
+            for cam, table, variance in zip(few, tables, variances, strict=True)
         )
 
     late = min(every.tolist(), key=scatter)
@@ -185,11 +185,11 @@ def _least_squares_lateness(
     every = equal_steps(COARSE_TURNS)
     for _ in range(STEPS):
         square, product = 0.0, 0.0
-        for one, variance, table in zip(readings, variances, slopes, strict=True):
-            slope = np.interp(np.mod(one.shaft - late, TURN), every, table, period=TURN)
+        for cam, variance, table in zip(readings, variances, slopes, strict=True):
+            slope = np.interp(np.mod(cam.shaft - late, TURN), every, table, period=TURN)
             slope -= slope.mean()
             square += float(slope @ slope) / variance
-            product -= float(slope @ (one.lift - one.exact(one.shaft - late)[0])) / variance
+            product -= float(slope @ (cam.lift - cam.exact(cam.shaft - late)[0])) / variance
         step = product / square if square > 0.0 else 0.0
         late += step
         if abs(step) < STILL:
@@ -203,16 +203,16 @@ def rows_of_lifts(readings: Sequence[Readings], zeros: Sequence[float]) -> tuple
     Readings are at angles from the `zeros`, rad, at which each one's motion begins.
     """
     every = equal_steps(LOOKS)
-    rows = [row(one.shaft + zero, one.lift) for one, zero in zip(readings, zeros, strict=True)]
-    meant = [one.exact(every - zero)[0] for one, zero in zip(readings, zeros, strict=True)]
-    measured, nominal = np.stack(rows), np.stack(meant)
+    rows = [row(cam.shaft + zero, cam.lift) for cam, zero in zip(readings, zeros, strict=True)]
+    exact = [cam.exact(every - zero)[0] for cam, zero in zip(readings, zeros, strict=True)]
+    measured, nominal = np.stack(rows), np.stack(exact)
     return measured - measured.mean(axis=1, keepdims=True), nominal - nominal.mean(axis=1, keepdims=True)
 
 
 def of_other_shaft(readings: Sequence[Readings]) -> _Factor | None:
     """Factor that turns crank angles into cam angles, or back, if only then the readings fit their cams; else None."""
-    few = [one.few() for one in readings]
-    longest = max(few, key=lambda one: float(np.ptp(one.shaft)))
+    few = [cam.few() for cam in readings]
+    longest = max(few, key=lambda cam: float(np.ptp(cam.shaft)))
     for other in _factors(longest):
         if other.factor in {CRANK, 1.0 / CRANK} and _fit(few, other.factor) and not _fit(few, 1.0):
             return other
@@ -221,8 +221,8 @@ def of_other_shaft(readings: Sequence[Readings]) -> _Factor | None:
 
 def _fit(readings: Sequence[Readings], factor: float) -> bool:
     """Whether readings are those of their cams with angles multiplied, however each is turned."""
-    each = [one._replace(shaft=factor * one.shaft) for one in readings]
-    return all(float(np.std(one.off(lateness([one])))) <= UNLIKE * one.stroke for one in each)
+    each = [cam._replace(shaft=factor * cam.shaft) for cam in readings]
+    return all(float(np.std(cam.off(lateness([cam])))) <= UNLIKE * cam.stroke for cam in each)
 
 
 def _demand_alike(readings: Readings, late: float, *, aligned: bool) -> None:
@@ -287,8 +287,8 @@ def _factors(readings: Readings) -> list[_Factor]:
 def _turned_looks(readings: Readings, other: _Factor, *, aligned: bool) -> Iterator[_Look]:
     """Readings with their angles multiplied and turned in either sense."""
     for sense in (1.0, -1.0):
-        seen = readings._replace(shaft=sense * other.factor * readings.shaft, lift=other.lift * readings.lift)
-        late = lateness([seen])
+        other_readings = readings._replace(shaft=sense * other.factor * readings.shaft, lift=other.lift * readings.lift)
+        late = lateness([other_readings])
         words, remedies = [*other.words], [*other.remedies]
         if sense < 0.0:
             words.append("run in the other sense")
@@ -296,6 +296,6 @@ def _turned_looks(readings: Readings, other: _Factor, *, aligned: bool) -> Itera
         if abs(late) > SMALL:
             words.append(f"turned by {math.degrees(late):.3g} degrees")
             remedies += [] if aligned else ["`--align rotation`"]
-        left = float(np.std(seen.off(late))) * (MIRRORED if min(sense, other.lift) < 0.0 else 1.0)
+        left = float(np.std(other_readings.off(late))) * (MIRRORED if min(sense, other.lift) < 0.0 else 1.0)
         alone = sense > 0.0 and not other.words
         yield _Look(left, f"{', '.join(words)}: {', then '.join(remedies)}", turned_alone=alone)

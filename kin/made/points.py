@@ -122,7 +122,7 @@ class SurfacePoints:
     def deviations(self) -> Deviations:
         """Deviations of the points as they are placed. UnsettledError where a foot is not found."""
         parts = [self._deviations(slice(i, i + AT_ONCE)) for i in range(0, len(self), AT_ONCE)]
-        rows = zip(*((one.parameter, one.e, one.normals, one.moment) for one in parts), strict=True)
+        rows = zip(*((part.parameter, part.e, part.normals, part.moment) for part in parts), strict=True)
         return Deviations(*(np.concatenate(row) for row in rows))
 
     def _deviations(self, part: slice) -> Deviations:
@@ -169,7 +169,7 @@ class Profile:
     @property
     def e(self) -> Array:
         """Deviations of all points (n,), mm."""
-        return np.concatenate([one.e for one in self.deviations])
+        return np.concatenate([part.e for part in self.deviations])
 
     @property
     def greatest(self) -> float:
@@ -186,13 +186,13 @@ def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:
         return Profile(datum, free, surfaces[0].placing, standing, None, None, (surfaces[0].placing, _most(standing)))
     least = settled(surfaces, free)
     rough = _stacked(surfaces, least)
-    best, found, turns = least, None, None
+    best, placing, turns = least, None, None
     for _ in range(STEPS):
-        columns, e = _columns(rough, free), np.concatenate([one.e for one in rough])
-        found = minimax(columns, e)
-        step = found.x
+        columns, e = _columns(rough, free), np.concatenate([deviation.e for deviation in rough])
+        placing = minimax(columns, e)
+        step = placing.x
         if free == "g":
-            turns = interval(columns[:, 0], e, found.value)
+            turns = interval(columns[:, 0], e, placing.value)
             step = np.array([min(max(float(least_squares(columns, e)[0]), turns[0]), turns[1])])
             turns = (best.turn + turns[0], best.turn + turns[1])
         best = best.on(step, free)
@@ -201,7 +201,7 @@ def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:
             break
     else:
         raise UnsettledError("the placing of the points does not come to rest")
-    return Profile(datum, free, best, rough, found, turns, (least, _most(_stacked(surfaces, least))))
+    return Profile(datum, free, best, rough, placing, turns, (least, _most(_stacked(surfaces, least))))
 
 
 def settled(surfaces: Sequence[SurfacePoints], free: str) -> Placing:
@@ -209,7 +209,7 @@ def settled(surfaces: Sequence[SurfacePoints], free: str) -> Placing:
     placing = surfaces[0].placing
     for _ in range(STEPS):
         now = _stacked(surfaces, placing)
-        step = least_squares(_columns(now, free), np.concatenate([one.e for one in now]))
+        step = least_squares(_columns(now, free), np.concatenate([deviation.e for deviation in now]))
         placing = placing.on(step, free)
         if _still(step, free, surfaces):
             break
@@ -226,7 +226,7 @@ def told_apart(deviations: Sequence[Deviations], wanted: str) -> str:
     columns = _columns(deviations, wanted)
     size = float(np.abs(columns[:, 1:]).max(initial=1.0))
     turning = float(np.sqrt(np.mean(columns[:, 0] ** 2)))
-    reach = max(float(np.abs(np.concatenate([one.moment for one in deviations])).max()), 1e-300)
+    reach = max(float(np.abs(np.concatenate([deviation.moment for deviation in deviations])).max()), 1e-300)
     scaled = columns / np.array([max(turning, 1e-12), *[1.0] * (len(wanted) - 1)])
     if turning < 1e-6 * size or reach < 1e-6 or conditions(scaled).min() < ILL:
         return wanted.replace("g", "")
@@ -238,23 +238,25 @@ def turned_at(surfaces: Sequence[SurfacePoints], free: str = "g") -> Placing:
 
     `free` names the unknowns of the fit: g, x, y.
     """
-    few = [one.part(np.linspace(0, len(one) - 1, min(FEW, len(one))).astype(np.intp)) for one in surfaces]
+    few = [
+        surface.part(np.linspace(0, len(surface) - 1, min(FEW, len(surface))).astype(np.intp)) for surface in surfaces
+    ]
     turns = np.arange(COARSE_TURNS) * (TURN / COARSE_TURNS)
     turn = min(turns.tolist(), key=lambda angle: _off(few, Placing(angle)))
     turn = math.remainder(turn, TURN)
-    return settled([one.placed(Placing(turn)) for one in surfaces], free)
+    return settled([surface.placed(Placing(turn)) for surface in surfaces], free)
 
 
 def demand_round(surfaces: Sequence[SurfacePoints]) -> None:
     """Raise UnlikePointsError for points that do not go round the shaft."""
-    for one in surfaces:
-        angle = np.sort(np.arctan2(one.places[:, 1], one.places[:, 0]))
+    for surface in surfaces:
+        angle = np.sort(np.arctan2(surface.places[:, 1], surface.places[:, 0]))
         gaps = np.diff(angle, append=angle[:1] + TURN)
         widest = int(np.argmax(gaps))
         if gaps[widest] > WIDEST:
             begin, end = degrees(float(angle[widest])), degrees(float(angle[(widest + 1) % len(angle)]))
-            seen = f"seen from the shaft, no point lies from {begin:.4g} to {end:.4g} degrees"
-            raise UnlikePointsError(f"{seen}: measure all round the cam, from its axis")
+            sight = f"seen from the shaft, no point lies from {begin:.4g} to {end:.4g} degrees"
+            raise UnlikePointsError(f"{sight}: measure all round the cam, from its axis")
 
 
 def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool, shiftable: bool = True) -> None:
@@ -265,25 +267,27 @@ def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool, shiftable:
     far, size = _off(surfaces, surfaces[0].placing), _size(surfaces)
     if far <= FAR * size:
         return
-    told = f"the points lie {far:.3g} mm off its contour on average"
-    e = np.concatenate([one.deviations.e for one in surfaces])
+    how_far = f"the points lie {far:.3g} mm off its contour on average"
+    e = np.concatenate([surface.deviations.e for surface in surfaces])
     middle = float(np.median(e))
     if FAR * size < abs(middle) < SHIFT * size and float(np.median(np.abs(e - middle))) < BETTER * abs(middle):
         ball = f"{abs(middle):.4g} mm too {'large' if middle > 0.0 else 'small'} all round"
         remedy = "leave `--probe-radius` out, or give its own" if surfaces[0].ball else "`--probe-radius` of the ball?"
-        raise UnlikePointsError(f"{told}: they look {ball}: {remedy}")
-    few = [one.part(np.linspace(0, len(one) - 1, min(MANY, len(one))).astype(np.intp)) for one in surfaces]
-    radius = float(np.mean([np.hypot(*one.places.T).mean() for one in few]))
+        raise UnlikePointsError(f"{how_far}: they look {ball}: {remedy}")
+    few = [
+        surface.part(np.linspace(0, len(surface) - 1, min(MANY, len(surface))).astype(np.intp)) for surface in surfaces
+    ]
+    radius = float(np.mean([np.hypot(*surface.places.T).mean() for surface in few]))
     looks: list[tuple[float, str]] = []
     for factor in (1.0, *FACTORS):
         if not 1.0 / LIKE < factor * radius / size < LIKE:
             continue
         for mirrored in (False, True):
-            scaled = [_altered(one, factor, mirrored=mirrored) for one in few]
+            scaled = [_altered(surface, factor, mirrored=mirrored) for surface in few]
             try:
                 placing = turned_at(scaled, "g")
                 if _off(scaled, placing) > FAR * size:
-                    placing = settled([one.placed(placing) for one in scaled], "gxy")
+                    placing = settled([surface.placed(placing) for surface in scaled], "gxy")
             except (UnsettledError, np.linalg.LinAlgError):
                 continue
             left = _off(scaled, placing)
@@ -291,8 +295,8 @@ def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool, shiftable:
                 words = _likeness(placing, factor, size, (mirrored, aligned, shiftable))
                 looks.append((left * (MIRRORED if mirrored else 1.0), words))
     if looks:
-        raise UnlikePointsError(f"{told}: {min(looks)[1]}")
-    raise UnlikePointsError(f"{told}, however they are turned or mirrored: they look like those of another cam")
+        raise UnlikePointsError(f"{how_far}: {min(looks)[1]}")
+    raise UnlikePointsError(f"{how_far}, however they are turned or mirrored: they look like those of another cam")
 
 
 def _likeness(placing: Placing, factor: float, size: float, about: tuple[bool, bool, bool]) -> str:
@@ -318,34 +322,34 @@ def _likeness(placing: Placing, factor: float, size: float, about: tuple[bool, b
     return f"they look {', '.join(words)}: {', then '.join(remedies)}"
 
 
-def _altered(one: SurfacePoints, factor: float, *, mirrored: bool) -> SurfacePoints:
+def _altered(surface: SurfacePoints, factor: float, *, mirrored: bool) -> SurfacePoints:
     by = np.array([factor, -factor if mirrored else factor])
-    directions = None if one.directions is None else one.directions * np.sign(by)
-    return replace(one, places=one.places * by, directions=directions, placing=Placing())
+    directions = None if surface.directions is None else surface.directions * np.sign(by)
+    return replace(surface, places=surface.places * by, directions=directions, placing=Placing())
 
 
 def _off(surfaces: Sequence[SurfacePoints], placing: Placing) -> float:
     """Root mean square of the deviations, mm."""
-    e = np.concatenate([one.e for one in _stacked(surfaces, placing)])
+    e = np.concatenate([deviation.e for deviation in _stacked(surfaces, placing)])
     return float(np.sqrt(np.mean(e * e)))
 
 
 def _size(surfaces: Sequence[SurfacePoints]) -> float:
     """Mean radius of the exact contours, mm."""
-    points = [one.follower.envelope.points(np.linspace(0.0, TURN, 64)) for one in surfaces]
+    points = [surface.follower.envelope.points(np.linspace(0.0, TURN, 64)) for surface in surfaces]
     return float(np.mean([np.hypot(each[:, 0], each[:, 1]).mean() for each in points]))
 
 
 def _stacked(surfaces: Sequence[SurfacePoints], placing: Placing) -> tuple[Deviations, ...]:
-    return tuple(one.placed(placing).deviations for one in surfaces)
+    return tuple(surface.placed(placing).deviations for surface in surfaces)
 
 
 def _columns(deviations: Sequence[Deviations], free: str) -> Array:
-    return np.concatenate([one.columns(free) for one in deviations])
+    return np.concatenate([deviation.columns(free) for deviation in deviations])
 
 
 def _most(deviations: Sequence[Deviations]) -> float:
-    return max(float(np.abs(one.e).max()) for one in deviations)
+    return max(float(np.abs(deviation.e).max()) for deviation in deviations)
 
 
 def _still(step: Array, free: str, surfaces: Sequence[SurfacePoints]) -> bool:

@@ -98,8 +98,8 @@ class Smooth:
     @staticmethod
     def total(curves: Sequence[Smooth]) -> Smooth:
         """Sum of curves on the same spans, fitted to independent sets of points; their variances add."""
-        factor = sum((one.widened * one.sigma) ** 2 * one.factor for one in curves)
-        return Smooth(np.sum([one.coefficients for one in curves], axis=0), 1.0, 1.0, np.asarray(factor))
+        factor = sum((curve.widened * curve.sigma) ** 2 * curve.factor for curve in curves)
+        return Smooth(np.sum([curve.coefficients for curve in curves], axis=0), 1.0, 1.0, np.asarray(factor))
 
     def rows(self, t: Array, order: int = 0) -> Array:
         """Value, mm, and its derivatives by the parameter at parameters t (n,), up to `order`: (order + 1, n)."""

@@ -93,8 +93,8 @@ def cross_product(f: Array, g: Array) -> Array:
 
 def derivative(coefficients: Array) -> Array:
     """Bernstein coefficients (n, k, ...) of derivatives, from (n, k+1, ...)."""
-    found: Array = (coefficients.shape[1] - 1) * np.diff(coefficients, axis=1)
-    return found
+    differences: Array = (coefficients.shape[1] - 1) * np.diff(coefficients, axis=1)
+    return differences
 
 
 def halves(coefficients: Array) -> tuple[Array, Array]:

@@ -62,8 +62,8 @@ AT_START: Array = np.where(np.arange(_COUNT) % 2, -1.0, 1.0)
 
 def fitted(values: Array) -> Array:
     """Coefficients (..., DEGREE + 1) of the series through values at NODES (..., DEGREE + 1)."""
-    found: Array = values @ _TO_COEFFICIENTS.T
-    return found
+    coefficients: Array = values @ _TO_COEFFICIENTS.T
+    return coefficients
 
 
 def evaluated(coefficients: Array, row: Indices, x: Array) -> Array:
@@ -72,19 +72,19 @@ def evaluated(coefficients: Array, row: Indices, x: Array) -> Array:
     A few as sums of cosines, many by Clenshaw's recurrence: the one saves calls, the other work. Where all rows are
     asked at the same x, `together` is quicker.
     """
-    found: Array
+    value: Array
     if len(x) <= _FEW:
         angle = np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))
-        found = np.einsum("nk,nk->n", coefficients[row], np.cos(angle[:, None] * ORDERS))
-        return found
+        value = np.einsum("nk,nk->n", coefficients[row], np.cos(angle[:, None] * ORDERS))
+        return value
     used = np.flatnonzero(coefficients.any(axis=0))
     columns = np.ascontiguousarray(coefficients.T)
     ahead, further = np.zeros_like(x), np.zeros_like(x)
     twice = 2.0 * x
     for k in range(int(used[-1]) if len(used) else 0, 0, -1):
         ahead, further = columns[k][row] + twice * ahead - further, ahead
-    found = columns[0][row] + x * ahead - further
-    return found
+    value = columns[0][row] + x * ahead - further
+    return value
 
 
 def together(coefficients: Array, x: Array) -> Array:
@@ -117,5 +117,5 @@ def value(coefficients: list[float], x: float) -> float:
 def degrees(coefficients: Array, floor: float) -> Indices:
     """Highest degree (m,) at which a coefficient of each row exceeds `floor`; 0 where none does."""
     above = np.abs(coefficients) > floor
-    found: Indices = np.where(above.any(axis=1), DEGREE - np.argmax(above[:, ::-1], axis=1), 0)
-    return found
+    highest: Indices = np.where(above.any(axis=1), DEGREE - np.argmax(above[:, ::-1], axis=1), 0)
+    return highest

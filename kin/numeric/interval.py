@@ -133,10 +133,10 @@ class Ball:
         low, high = _only(exists, np.power(lower, n)), _only(exists, np.power(upper, n))
         least = np.where(one_side | ~even, np.minimum(low, high), 0.0)
         floor = np.where((lower >= 0) | even, 0.0, -math.inf)
-        found = _outward(least, np.maximum(low, high), _LIBRARY, np.minimum(self.magnitude, _TINY), floor)
+        power = _outward(least, np.maximum(low, high), _LIBRARY, np.minimum(self.magnitude, _TINY), floor)
         if (n == 0).any():
-            return Ball(np.where(n == 0, 1.0, found.mid), np.where(n == 0, 0.0, found.rad))
-        return found
+            return Ball(np.where(n == 0, 1.0, power.mid), np.where(n == 0, 0.0, power.rad))
+        return power
 
     def powers(self, count: int) -> Ball:
         """x**0, x**1, ..., x**(count - 1), one a row: shape (count, *shape of x)."""

@@ -88,14 +88,14 @@ def dwells(
     if not (math.isfinite(band) and band > 0):
         raise ValueError(f"the band of a dwell must be above 0, not {band!r}")
     places = between(0.0, period, np.mod(np.asarray(breaks, dtype=float), period).tolist())
-    of = pieces(cells(lambda x: f(x, 0)[:1], places, _RESOLUTION * band))
-    if band <= 4.0 * of.noise:
-        raise ValueError(f"a band of {band:.3g} is lost in the rounding of the output, {of.noise:.3g}")
-    _demand_continuous(of, band)
-    (least, _), (greatest, _) = of.least(), of.greatest()
-    if greatest - least <= band + 2.0 * of.noise:  # a run that begins a little above the least takes in all of it
+    function = pieces(cells(lambda x: f(x, 0)[:1], places, _RESOLUTION * band))
+    if band <= 4.0 * function.noise:
+        raise ValueError(f"a band of {band:.3g} is lost in the rounding of the output, {function.noise:.3g}")
+    _demand_continuous(function, band)
+    (least, _), (greatest, _) = function.least(), function.greatest()
+    if greatest - least <= band + 2.0 * function.noise:  # a run that begins a little above the least takes in all of it
         return (Dwell(0.0, period, least, greatest),)
-    search = _Search.through(of, band, period)
+    search = _Search.through(function, band, period)
     at_nodes = search.node_windows()
     least = float((at_nodes.b - at_nodes.a).max(initial=0.0)) - _EQUAL * period if most == 1 else 0.0
     longest = at_nodes.take(search.is_longest(at_nodes)).joined(search.balanced_windows(at_nodes.a, least))
@@ -212,8 +212,8 @@ class _Search:
         rises, leaves_up = self.value[first] < low, self.value[last + 1] > low + self.band
         a = self.crossing(first, np.where(rises, low, low + self.band))
         b = self.crossing(last, np.where(leaves_up, low + self.band, low))
-        found = _Windows(a, b, first, last, rises, leaves_up, node, upper)
-        return found.take(b - a > _SAME * self.period)
+        windows = _Windows(a, b, first, last, rises, leaves_up, node, upper)
+        return windows.take(b - a > _SAME * self.period)
 
     def is_longest(self, w: _Windows) -> Flags:
         """Whether the windows can not be lengthened by moving their bands a little up or down."""
@@ -221,13 +221,13 @@ class _Search:
         low = self.value[w.anchor] - self.band * w.upper
         at_low, at_high = self._touched(w, low)
         lengthened = np.zeros(len(w.a), dtype=np.bool_)
-        for up, held in ((True, at_low), (False, at_high)):
+        for up, level in ((True, at_low), (False, at_high)):
             # moving up, an end through which f rises goes right, one through which f falls left
             at_a = np.where(w.rises, rates_at_a[up], rates_at_a[not up])
             at_b = np.where(w.leaves_up, rates_at_b[up], rates_at_b[not up])
             gain = np.where(w.leaves_up, 1.0, -1.0) / at_b - np.where(w.rises, 1.0, -1.0) / at_a
             gain *= 1.0 if up else -1.0
-            lengthened |= ~held & (gain > _BALANCED * (1.0 / at_a + 1.0 / at_b))
+            lengthened |= ~level & (gain > _BALANCED * (1.0 / at_a + 1.0 / at_b))
         return ~lengthened
 
     def _rates(self, piece: Indices, x: Array, node: Indices) -> tuple[Array, Array]:
@@ -310,7 +310,7 @@ class _Family:
         of = np.arange(len(left))
         _, at_a, at_b = self.ends(left)
         end, to_a, to_b = self.ends(right)
-        found = []
+        places = []
         while len(of):
             least_a, most_a = np.minimum(at_a, to_a), np.maximum(at_a, to_a)
             least_b, most_b = np.minimum(at_b, to_b), np.maximum(at_b, to_b)
@@ -319,7 +319,7 @@ class _Family:
             small = (right - left) * (most_a - least_b) <= _EQUAL * period * least_b
             settled = apart | one_way | small | (len(of) > _MOST_CELLS)
             peak = settled & ~apart & (at_a >= at_b) & (to_a <= to_b)
-            found.append((of[peak], left[peak], right[peak], (at_a - at_b)[peak], (to_a - to_b)[peak]))
+            places.append((of[peak], left[peak], right[peak], (at_a - at_b)[peak], (to_a - to_b)[peak]))
             rest = ~settled
             of, left, right, end = of[rest], left[rest], right[rest], end[rest]
             at_a, at_b, to_a, to_b = at_a[rest], at_b[rest], to_a[rest], to_b[rest]
@@ -329,7 +329,7 @@ class _Family:
             left, right, end = (np.concatenate(p) for p in ((left, middle), (middle, right), (mid, end)))
             at_a, to_a = np.concatenate([at_a, mid_a]), np.concatenate([mid_a, to_a])
             at_b, to_b = np.concatenate([at_b, mid_b]), np.concatenate([mid_b, to_b])
-        which, left, right, before, after = (np.concatenate(list(part)) for part in zip(*found, strict=True))
+        which, left, right, before, after = (np.concatenate(list(part)) for part in zip(*places, strict=True))
         return which, self.take(which).refined(left, right, before, after)
 
     def refined(self, left: Array, right: Array, before: Array, after: Array) -> Array:
@@ -385,8 +385,8 @@ def _polished(w: _Windows, f: Callable[[Array], Array], search: _Search) -> tupl
     )
     start = np.mod(a, search.period)
     start[start >= search.period] = 0.0
-    found = zip(start.tolist(), (b - a).tolist(), low.tolist(), strict=True)
-    return tuple(Dwell(at, length, least, least + search.band) for at, length, least in found)
+    windows = zip(start.tolist(), (b - a).tolist(), low.tolist(), strict=True)
+    return tuple(Dwell(at, length, least, least + search.band) for at, length, least in windows)
 
 
 def _moved(x: Array, piece: Indices, level: Array, f: Callable[[Array], Array], search: _Search) -> Array:

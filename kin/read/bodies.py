@@ -93,7 +93,7 @@ def beside(
         return ReadError("several", f"it holds {count} bodies, where {expected} are expected: {named}", path)
     sizes = [-1.0 if box is None else float(np.prod(box[1] - box[0])) for _, box in bodies]
     part = int(np.argmax(sizes))
-    others = [told(*one) for k, one in enumerate(bodies) if k != part]
+    others = [told(*item) for k, item in enumerate(bodies) if k != part]
     more = f", and {count - len(bodies)} more" if count > len(bodies) else ""
     name = bodies[part][0]
     message = f"it holds {count} bodies, where one is expected; beside {name} there is {'; '.join(others)}{more}"

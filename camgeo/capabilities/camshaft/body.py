@@ -106,15 +106,15 @@ def camshaft_outlines(
     for (below, _, z), (above, _, _) in pairwise(stretches):
         least, most = zip(*(_reach(outline) for outline in (below, above)), strict=True)
         if max(least) < min(most):
-            told = f"the outlines that meet at z = {z:.9g} mm cross one another, which a STEP of it does not hold"
-            raise RegionError(f"{told}; leave a gap between them, or give stl or 3mf")
+            message = f"the outlines that meet at z = {z:.9g} mm cross one another, which a STEP of it does not hold"
+            raise RegionError(f"{message}; leave a gap between them, or give stl or 3mf")
     return stretches, bound, count
 
 
-def _same(one: ArcSpline, other: ArcSpline) -> bool:
+def _same(first: ArcSpline, other: ArcSpline) -> bool:
     """Whether two outlines are one, but for the rounding of the angles that they are turned by."""
-    return one.points.shape == other.points.shape and bool(
-        np.abs(one.points - other.points).max() <= SAME and np.abs(one.bulges - other.bulges).max() <= SAME
+    return first.points.shape == other.points.shape and bool(
+        np.abs(first.points - other.points).max() <= SAME and np.abs(first.bulges - other.bulges).max() <= SAME
     )
 
 

@@ -65,7 +65,11 @@ class CamshaftDesign:
     def figures(self) -> Figures:
         """The figures of each lobe, such as `radius-of-curvature, intake`."""
         return Figures(
-            {f"{name}, {lobe}": one for lobe, design in self.lobes.items() for name, one in design.figures.items()}
+            {
+                f"{name}, {lobe}": figure
+                for lobe, design in self.lobes.items()
+                for name, figure in design.figures.items()
+            }
         )
 
     def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array:

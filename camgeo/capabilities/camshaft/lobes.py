@@ -57,8 +57,8 @@ class PlacedLobe:
         Its event lift is None without an engine, or where it swings.
         """
         lobe = self.lobe
-        told = engine is not None and lobe.recipe.cam.arrangement.unit == "mm"
-        events = self.event_lift(engine) if told and engine is not None else None
+        has_events = engine is not None and lobe.recipe.cam.arrangement.unit == "mm"
+        events = self.event_lift(engine) if has_events and engine is not None else None
         return ShaftCam(lobe.name, lobe.recipe, self.design, self.at, self.zero, lobe.low, lobe.high, events)
 
     @property
@@ -153,8 +153,8 @@ def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> fl
     unturned = event(design.exact, 0.0, lift)
     if unturned is None:
         remedy = "give a camshaft.engine.lift that each lobe crosses once on its rise and once on its return"
-        told = f"{lobe.name} does not cross the lift of {recipe.engine.lift / recipe.mm:.9g} twice"
-        raise recipe.error(f"camshaft.lobes[{index}].recipe", told, None, remedy)
+        message = f"{lobe.name} does not cross the lift of {recipe.engine.lift / recipe.mm:.9g} twice"
+        raise recipe.error(f"camshaft.lobes[{index}].recipe", message, None, remedy)
     zero = recipe.engine.centre(lobe.cylinder, lobe.valve) - math.radians(unturned.centre)
     return float(np.mod(zero + lobe.direction, TURN))
 
@@ -165,9 +165,9 @@ def _tappet_lift(recipe: CamshaftRecipe, engine: Engine, lobe: Lobe, design: Des
         return engine.lift
     moved = moved_by(lobe.recipe, design)
     if moved is None:
-        told = f"{lobe.recipe.path.name} tells of no valve"
+        message = f"{lobe.recipe.path.name} tells of no valve"
         remedy = "give `valve: {ratio: ..., lash: ...}` there, or camshaft.engine.lift in place of valve_lift"
-        raise recipe.error(f"camshaft.lobes[{index}].recipe", told, None, remedy)
+        raise recipe.error(f"camshaft.lobes[{index}].recipe", message, None, remedy)
     return moved.follower_lift(engine.lift)
 
 
@@ -209,24 +209,26 @@ def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
     from camgeo.recipe.figures import FIGURES
     from camgeo.synthesis.expected_checks import Foreseen, foreseen
 
-    found: dict[Foreseen, None] = {}
+    expected: dict[Foreseen, None] = {}
     for lobe in recipe.lobes:
         made = replace(lobe.made, export=replace(lobe.made.export, files=()))
-        for one in foreseen(made):
-            figure = one.name.startswith(LIMIT) and FIGURES[one.name.removeprefix(LIMIT)]
-            if figure.of == "design" if figure else not CHECKS.owner(one.name):  # a lobe's train does not run
-                found[one] = None
-    found[Foreseen("shaft")] = None
+        for foreseen_check in foreseen(made):
+            figure = foreseen_check.name.startswith(LIMIT) and FIGURES[foreseen_check.name.removeprefix(LIMIT)]
+            if (
+                figure.of == "design" if figure else not CHECKS.owner(foreseen_check.name)
+            ):  # a lobe's train does not run
+                expected[foreseen_check] = None
+    expected[Foreseen("shaft")] = None
     shaft, *journals = recipe.bars
-    taken = math.fsum(lobe.high - lobe.low for lobe in recipe.lobes)
-    rounds = ["journal"] if journals or shaft.high - shaft.low > taken + ROUNDING else []
+    length = math.fsum(lobe.high - lobe.low for lobe in recipe.lobes)
+    rounds = ["journal"] if journals or shaft.high - shaft.low > length + ROUNDING else []
     rounds += ["bore"] if recipe.bore is not None else []
     of_solid = (WATERTIGHT.name, THICKNESS.name, "phase", CONTOUR.name, MOTION.name, "position", *rounds, "volume")
     for request in recipe.export.files:
         if request.format.solid and request.format.contour:
             (name,) = recipe.filenames(request)
-            found |= dict.fromkeys(Foreseen(check, name) for check in of_solid)
-    return tuple(found)
+            expected |= dict.fromkeys(Foreseen(check, name) for check in of_solid)
+    return tuple(expected)
 
 
 def _outside_shaft(recipe: CamshaftRecipe, lobe: PlacedLobe) -> list[Check]:

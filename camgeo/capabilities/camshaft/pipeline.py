@@ -158,15 +158,15 @@ def _produced(recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder:
             files.append(file)
             checks += more
     names = {request: request.filename(recipe.name, recipe.export.files) for request in missing}
-    found = _findings(recipe, lobes, checks, files, clock)
-    found = replace(found, missing=tuple((names[request], why) for request, why in missing.items()))
+    findings = _findings(recipe, lobes, checks, files, clock)
+    findings = replace(findings, missing=tuple((names[request], why) for request, why in missing.items()))
     for request in pages:
         from camgeo.capabilities.camshaft.page import page
 
         path = folder / request.filename(recipe.name, recipe.export.files)
-        path.write_text(page(recipe, lobes, _report(recipe, found, lobes)), encoding="utf-8", newline="\n")
-        found = replace(found, files=(*found.files, FileResult(path, request)))
-    return _Produced(found, lobes)
+        path.write_text(page(recipe, lobes, _report(recipe, findings, lobes)), encoding="utf-8", newline="\n")
+        findings = replace(findings, files=(*findings.files, FileResult(path, request)))
+    return _Produced(findings, lobes)
 
 
 def _foresee(request: FileRequest) -> None:

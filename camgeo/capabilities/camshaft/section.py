@@ -29,9 +29,9 @@ def camshaft_section(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dic
     section: dict[str, Any] = {"lobes": [_lobe(recipe, lobe) for lobe in lobes]}
     if recipe.engine is not None:
         section["cylinders"] = [
-            {"cylinder": cylinder, **found._asdict()}
+            {"cylinder": cylinder, **events._asdict()}
             for cylinder in recipe.engine.firing
-            if (found := valves(lobes, recipe.engine, cylinder)) is not None
+            if (events := valves(lobes, recipe.engine, cylinder)) is not None
         ]
     balance = _balance(recipe, lobes)
     return section if balance is None else {**section, "balance": balance}
@@ -49,14 +49,14 @@ def _lobe(recipe: CamshaftRecipe, lobe: PlacedLobe) -> dict[str, Any]:
         "to": lobe.lobe.high / recipe.mm,
         "lift": math.degrees(lift) if swings else lift / recipe.mm,
     }
-    found = lobe.event(lift)
-    if found is None:
+    event = lobe.event(lift)
+    if event is None:
         return {**entry, "opens_deg": None, "closes_deg": None, "centre_deg": None, "duration_deg": None}
-    told = {"opens_deg": found.opens, "closes_deg": found.closes, "centre_deg": found.centre}
-    entry = {**entry, **told, "duration_deg": found.duration}
+    angles = {"opens_deg": event.opens, "closes_deg": event.closes, "centre_deg": event.centre}
+    entry = {**entry, **angles, "duration_deg": event.duration}
     if recipe.engine is not None:
-        entry["opens_crank_deg"] = 2.0 * found.opens % CRANK
-        entry["closes_crank_deg"] = 2.0 * found.closes % CRANK
+        entry["opens_crank_deg"] = 2.0 * event.opens % CRANK
+        entry["closes_crank_deg"] = 2.0 * event.closes % CRANK
     return entry
 
 
@@ -75,9 +75,9 @@ def _balance(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dict[str, A
     for lobe in lobes:
         if lobe.contour is None or lobe.lobe.recipe.part.density is None:
             continue
-        found = moments(lobe.contour)
+        area = moments(lobe.contour)
         length = lobe.lobe.high - lobe.lobe.low
-        unbalance = lobe.lobe.recipe.part.density * KG * length * complex(found.x, found.y) * np.exp(1j * lobe.at)
+        unbalance = lobe.lobe.recipe.part.density * KG * length * complex(area.x, area.y) * np.exp(1j * lobe.at)
         total += unbalance
         couple += unbalance * (0.5 * (lobe.lobe.high + lobe.lobe.low) - middle)
     turned = -1.0 if recipe.rotation == "ccw" else 1.0

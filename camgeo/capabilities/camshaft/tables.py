@@ -73,15 +73,15 @@ def write_events(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
         heads += ["ivo_btdc", "ivc_abdc", "evo_bbdc", "evc_atdc", "overlap_crank_deg", "separation_cam_deg"]
     for number, lobe in enumerate(lobes, 1):
         lift = event_lift(recipe, lobe)
-        found = lobe.event(lift)
-        told = [math.nan] * 4 if found is None else list(found)
+        event = lobe.event(lift)
+        columns = [math.nan] * 4 if event is None else list(event)
         scale = math.degrees(1.0) if lobe.lobe.recipe.cam.arrangement.unit == "deg" else 1.0 / recipe.mm
-        row = [number, math.degrees(lobe.at), *told, lift * scale]
+        row = [number, math.degrees(lobe.at), *columns, lift * scale]
         if engine is not None:
             cylinder = lobe.lobe.cylinder
             crank = [math.nan] * 3
-            if found is not None:
-                crank = [2.0 * found.opens % CRANK, 2.0 * found.closes % CRANK, 2.0 * found.duration]
+            if event is not None:
+                crank = [2.0 * event.opens % CRANK, 2.0 * event.closes % CRANK, 2.0 * event.duration]
             own = None if cylinder is None else valves(lobes, engine, cylinder)
             row += [math.nan if cylinder is None else cylinder, *crank, *([math.nan] * 6 if own is None else own)]
         rows.append(row)

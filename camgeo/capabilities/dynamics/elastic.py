@@ -84,13 +84,13 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
     from kin.dynamics.train import DynamicsError
     from kin.follower.motion_error import ContactError
 
-    asked = recipe.of(Dynamics)
-    if asked is None:
+    train_keys = recipe.of(Dynamics)
+    if train_keys is None:
         raise ValueError("the recipe has no elastic train")
     sources: list[FileResult | None] = [None]
     if recipe.linkage is None:
         sources += [file for file in files if file.contour is not None]
-    scene = _scene(recipe, asked, design, len(sources))
+    scene = _scene(recipe, train_keys, design, len(sources))
     entries: list[dict[str, Any]] = []
     checks: list[Check] = []
     for file in sources:
@@ -102,13 +102,15 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
             if file is None:
                 raise recipe.error("dynamics", str(error)) from error
             entry = {"from": file.path.name}
-            check = failed((FLOAT if asked.backlash is None else LEAST_BACKLASH).name, str(error), unit="N", limit=0.0)
+            check = failed(
+                (FLOAT if train_keys.backlash is None else LEAST_BACKLASH).name, str(error), unit="N", limit=0.0
+            )
         entries.append(entry)
         checks.append(check if file is None else about(check, file.path.name))
     train = scene.train
     section = {
-        "rpm": asked.rpm,
-        "natural_ratio": train.ratio(asked.rpm),
+        "rpm": train_keys.rpm,
+        "natural_ratio": train.ratio(train_keys.rpm),
         "natural_rpm": train.natural * 30.0 / math.pi,
         "damping_ratio": train.damping_ratio,
         "unit": scene.name,
@@ -128,11 +130,11 @@ def steady_force(recipe: Recipe, design: Design, dynamics: Dynamics, shaft: Arra
 
     scene = _scene(recipe, dynamics, design, 1)
     try:
-        found = steady(scene.train, _drives(scene, design, None)[0], dynamics.rpm)
+        state = steady(scene.train, _drives(scene, design, None)[0], dynamics.rpm)
     except (DynamicsError, DriveError) as error:
         raise recipe.error("dynamics", str(error)) from error
     running = scene.train.at(dynamics.rpm)
-    return running, found.force_at(running, shaft)
+    return running, state.force_at(running, shaft)
 
 
 def _scene(recipe: Recipe, dynamics: Dynamics, design: Design, runs: int) -> _Scene:
@@ -148,15 +150,15 @@ def _scene(recipe: Recipe, dynamics: Dynamics, design: Design, runs: int) -> _Sc
         if dynamics.backlash is not None and len(follower.contacts) == 1:
             why = f"a single {design.follower.name} has no backlash"
             raise recipe.error("dynamics.backlash", why, None, "give preload")
-        swings, found = follower.unit == "deg", follower.rests
+        swings, dwells = follower.unit == "deg", follower.rests
     else:
         if not design.driven.turns:
             raise recipe.error("dynamics", STANDS)
         swings = design.driven.mechanism.unit == "deg"
-        found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
+        dwells = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
-    return _Scene(recipe, dynamics, train, _Purse(runs), _Purse(runs), found, unit, name)
+    return _Scene(recipe, dynamics, train, _Purse(runs), _Purse(runs), dwells, unit, name)
 
 
 def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
@@ -176,11 +178,11 @@ def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
 
 def _one(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[str, Any], Check]:
     """One run of the train, as intended or with a file's cam: entry of the report, and its check."""
-    found = _drives(scene, design, file)
+    drives = _drives(scene, design, file)
     entry: dict[str, Any] = {"from": "intended" if file is None else file.path.name}
-    if len(found) > 1:
-        return _with_backlash(scene, entry, found[0], found[1])
-    return _with_spring(scene, entry, found[0])
+    if len(drives) > 1:
+        return _with_backlash(scene, entry, drives[0], drives[1])
+    return _with_spring(scene, entry, drives[0])
 
 
 def _drives(scene: _Scene, design: Design, file: FileResult | None) -> list[Drive]:
@@ -212,15 +214,15 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
     from kin.dynamics.train import steady
 
     train, rpm = scene.train, scene.asked.rpm
-    found = steady(train, drive, rpm, scene.rests)
-    entry["steady"] = _steady(scene, found)
+    state = steady(train, drive, rpm, scene.rests)
+    entry["steady"] = _steady(scene, state)
     if scene.asked.transient:
         entry |= _followed(_course(scene, drive, None), rpm, train)
     entry |= _float_speed(scene, drive)
-    least = found.force.least
-    detail = f"greatest {found.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
+    least = state.force.least
+    detail = f"greatest {state.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
     unit = "N m" if scene.name == "deg" else "N"
-    at_deg = degrees(found.force.least_at)
+    at_deg = degrees(state.force.least_at)
     return entry, Check(FLOAT.name, least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)
 
 
@@ -285,7 +287,7 @@ def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
     turns = followed.turns
     peak = max(range(len(turns)), key=lambda i: turns[i].greatest)
     low = min(range(len(turns)), key=lambda i: turns[i].least)
-    found = {
+    entry_of_start = {
         "turns": len(turns),
         "turns_most": TURNS,
         "settled": followed.settled,
@@ -297,8 +299,8 @@ def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
     fading = train.at(rpm).bound.fading
     # of a free motion in contact: where contact is lost it says nothing of the course
     if fading > 0.0 and not turns[-1].free:
-        found["turns_to_one_percent"] = math.log(100.0) / (2.0 * math.pi * fading)
-    return found
+        entry_of_start["turns_to_one_percent"] = math.log(100.0) / (2.0 * math.pi * fading)
+    return entry_of_start
 
 
 def _impacts(followed: Course) -> dict[str, Any]:
@@ -308,7 +310,7 @@ def _impacts(followed: Course) -> dict[str, Any]:
     later half of the turns: no two of them are alike, and rounding decides which is the last.
     """
     last: Turn = followed.turns[-1]
-    found: dict[str, Any] = {
+    impacts: dict[str, Any] = {
         "settled": followed.settled,
         "count": last.impacts,
         "greatest_velocity": last.velocity,
@@ -319,13 +321,13 @@ def _impacts(followed: Course) -> dict[str, Any]:
     }
     if not followed.settled:
         half = followed.turns[len(followed.turns) // 2 :]
-        found["of_turns"] = {
+        impacts["of_turns"] = {
             "turns": len(half),
             "count": [min(turn.impacts for turn in half), max(turn.impacts for turn in half)],
             "greatest_velocity": [min(turn.velocity for turn in half), max(turn.velocity for turn in half)],
             "peak_force": [min(turn.greatest for turn in half), max(turn.greatest for turn in half)],
         }
-    return found
+    return impacts
 
 
 def _float_speed(scene: _Scene, drive: Drive) -> dict[str, Any]:
@@ -336,19 +338,19 @@ def _float_speed(scene: _Scene, drive: Drive) -> dict[str, Any]:
     if len(drive) > MOST_FOR_FLOAT:
         return {"float_rpm": None, "float_why": f"not searched: the motion has more than {MOST_FOR_FLOAT} stretches"}
     try:
-        found = float_speed(train, drive, most=scene.floats.share())
+        speed = float_speed(train, drive, most=scene.floats.share())
     except DynamicsError as error:
         return {"float_rpm": None, "float_why": str(error)}
-    scene.floats.spend(found.places)
-    entry: dict[str, Any] = {"float_rpm": found.rpm, "float_rigid_rpm": found.rigid_rpm}
-    if found.between is not None:
-        holds, floats = found.between
+    scene.floats.spend(speed.places)
+    entry: dict[str, Any] = {"float_rpm": speed.rpm, "float_rigid_rpm": speed.rigid_rpm}
+    if speed.between is not None:
+        holds, floats = speed.between
         above = f"above {holds:.6g} rpm" if floats is None else f"between {holds:.6g} and {floats:.6g} rpm"
-        entry["float_between_rpm"] = list(found.between)
+        entry["float_between_rpm"] = list(speed.between)
         entry["float_why"] = (
             f"not settled: it begins {above}; with {train.damping_ratio:.3g} times the critical damping there are too "
             "many resonances to look at; more damping or less stiffness has fewer, fewer files leave more room"
         )
-    elif found.rpm is None:
+    elif speed.rpm is None:
         entry["float_why"] = "contact holds up to a shaft at twice the natural frequency"
     return entry

@@ -30,9 +30,9 @@ def examine(recipe: Recipe, design: Design, files: Sequence[FileResult], clock: 
         from camgeo.capabilities.dynamics.measure import of_runs
 
         with clock.stage("dynamics"):
-            found = dynamics_of(recipe, design, files)
-        sections["dynamics"], checks = found.section, found.checks
-        runs = of_runs(found.section, checks)
+            results = dynamics_of(recipe, design, files)
+        sections["dynamics"], checks = results.section, results.checks
+        runs = of_runs(results.section, checks)
     from camgeo.capabilities.dynamics.force_figures import found_forces
 
     with clock.stage("forces"):

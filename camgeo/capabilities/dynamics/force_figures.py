@@ -53,14 +53,14 @@ def extremes_of(running: Running) -> Extremes:
         more = [] if state.pressure is None else [*state.pressure]
         return np.stack([*state.normal, state.torque, state.force, *state.reactions.values(), *more])
 
-    found = running.turn.extremes(values)
+    extremes = running.turn.extremes(values)
     names = tuple(running.at(running.turn.places[:1]).reactions)
-    rest = found[count + 2 :]
-    contacts = tuple((Extreme(max(least.value, 0.0), least.at_deg), most) for least, most in found[:count])
+    rest = extremes[count + 2 :]
+    contacts = tuple((Extreme(max(least.value, 0.0), least.at_deg), most) for least, most in extremes[:count])
     if count == 1:  # a spring that does not hold it pulls
-        contacts = (found[0],)
+        contacts = (extremes[0],)
     return Extremes(
-        contacts, found[count], found[count + 1], dict(zip(names, rest, strict=False)), tuple(rest[len(names) :])
+        contacts, extremes[count], extremes[count + 1], dict(zip(names, rest, strict=False)), tuple(rest[len(names) :])
     )
 
 
@@ -79,16 +79,20 @@ def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
     names, turn = running.turn.names, running.turn
     section: dict[str, object] = {
         "rpm": running.train.rpm,
-        "contacts": [{"contact": name, **_range(one, "N")} for name, one in zip(names, extremes.contacts, strict=True)],
+        "contacts": [
+            {"contact": name, **_range(entry, "N")} for name, entry in zip(names, extremes.contacts, strict=True)
+        ],
         "torque": _range(extremes.torque, "N m"),
     }
     if running.train.least_force is not None:
         section |= {"preload": running.preload, "preload_unit": turn.unit}
     ends = {"guide_a": "near", "guide_b": "far"}
-    if guide := [{"end": ends[name], **_range(one, "N")} for name, one in extremes.reactions.items() if name in ends]:
+    if guide := [
+        {"end": ends[name], **_range(entry, "N")} for name, entry in extremes.reactions.items() if name in ends
+    ]:
         section["guide"] = guide
     elif extremes.reactions:
-        section["reactions"] = [{"reaction": name, **_range(one, "N")} for name, one in extremes.reactions.items()]
+        section["reactions"] = [{"reaction": name, **_range(entry, "N")} for name, entry in extremes.reactions.items()]
     if extremes.pressure and running.width is not None:
         recipe, (length, bound) = running.recipe, running.width
         unit = "in" if recipe.units == "inch" else "mm"
@@ -101,7 +105,7 @@ def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
         ]
     section |= running.own_section()
     if lost := running.lost_rpm():
-        section["lost"] = [one._asdict() for one in lost]
+        section["lost"] = [entry._asdict() for entry in lost]
     return section
 
 
@@ -120,11 +124,11 @@ def found_forces(recipe: Recipe, design: Design) -> Forces | None:
     try:
         if running.jam_deg is not None:  # which a check tells
             return Forces({"rpm": running.train.rpm, "jams_at_deg": running.jam_deg}, ())
-        found = extremes_of(running)
+        extremes = extremes_of(running)
     except RoughError as error:
         raise recipe.error("dynamics", f"{ABRUPT}: {error}") from error
-    check = float_check(running, found)
-    return Forces(forces_section(running, found), () if check is None else (check,))
+    check = float_check(running, extremes)
+    return Forces(forces_section(running, extremes), () if check is None else (check,))
 
 
 def forces_table(running: Running, count: int, units: str = "mm") -> tuple[tuple[str, ...], Array]:
@@ -160,27 +164,27 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
         if running.jam_deg is not None:
             jam = "the stem jams in its guide"
             return {name: Measured(None, unit, running.jam_deg, detail=jam) for name, unit in FORCES.items()}
-        found = extremes_of(running)
+        forces = extremes_of(running)
     except RoughError:
         return {name: Measured(None, unit, detail=ABRUPT) for name, unit in FORCES.items()}
     names = running.turn.names
 
-    def worst(of: Sequence[tuple[Extreme, Extreme]], unit: str) -> Measured:
-        value, name = max((one[1], name) for name, one in zip(names, of, strict=True))
+    def worst(pairs: Sequence[tuple[Extreme, Extreme]], unit: str) -> Measured:
+        value, name = max((extreme[1], name) for name, extreme in zip(names, pairs, strict=True))
         return Measured(value.value, unit, value.at_deg, surface=name if len(names) > 1 else "")
 
-    least, name = min((one[0], name) for name, one in zip(names, found.contacts, strict=True))
-    torque = max(found.torque, key=lambda one: abs(one.value))
+    least, name = min((extreme[0], name) for name, extreme in zip(names, forces.contacts, strict=True))
+    torque = max(forces.torque, key=lambda extreme: abs(extreme.value))
     figures = {
         FORCE_LEAST: Measured(least.value, "N", least.at_deg, surface=name if len(names) > 1 else ""),
-        FORCE_GREATEST: worst(found.contacts, "N"),
+        FORCE_GREATEST: worst(forces.contacts, "N"),
         TORQUE: Measured(abs(torque.value), "N m", torque.at_deg),
     }
-    if found.pressure:
-        figures[PRESSURE] = worst(found.pressure, "N/mm^2")
-    guides = [one for name, pair in found.reactions.items() if name.startswith("guide") for one in pair]
+    if forces.pressure:
+        figures[PRESSURE] = worst(forces.pressure, "N/mm^2")
+    guides = [extreme for name, pair in forces.reactions.items() if name.startswith("guide") for extreme in pair]
     if guides:
-        end = max(guides, key=lambda one: abs(one.value))
+        end = max(guides, key=lambda extreme: abs(extreme.value))
         figures[GUIDE_FORCE] = Measured(abs(end.value), "N", end.at_deg)
     means = [mean[0] for k in range(len(names)) if (mean := running.mean_force(k)) is not None]
     if means:

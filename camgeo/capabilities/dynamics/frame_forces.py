@@ -100,11 +100,11 @@ class FrameRunning(Running):
         rows = motion.over_shaft(motion.output)
         y = self.position(rows)
         force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
-        given = self._given(motion, force, self.speed)
-        (one, three), (two, four) = map(self._faces, given.pairs)
-        normal = np.array([one, two, three, four])
-        reactions = {"across": given.across, "along": given.along} | self._joints(motion, given.joint)
-        return State(force, y, normal, PER_MM * given.torque, self._pressure(t, normal), reactions)
+        forces = self._given(motion, force, self.speed)
+        (first, three), (two, four) = map(self._faces, forces.pairs)
+        normal = np.array([first, two, three, four])
+        reactions = {"across": forces.across, "along": forces.along} | self._joints(motion, forces.joint)
+        return State(force, y, normal, PER_MM * forces.torque, self._pressure(t, normal), reactions)
 
     def _given(self, motion: LinkageMotion, force: Array, speed: float) -> FrameForces:
         """Forces of the cam on the frame for the load `force`, SI, and for the coupler's inertia at a speed, rad/s."""
@@ -121,11 +121,11 @@ class FrameRunning(Running):
         """The faces of either pair under a preload, N and mm, None where there is play."""
         from kin.dynamics.contact_forces import preloaded
 
-        given = self.design.exact.preload
-        if given is None or given.stiffness is None:
+        preload = self.design.exact.preload
+        if preload is None or preload.stiffness is None:
             return None
-        first, second = (PER_MM * stiffness for stiffness in given.stiffness)
-        return preloaded((np.ones(1), np.ones(1)), given.overlaps, (first, second))
+        first, second = (PER_MM * stiffness for stiffness in preload.stiffness)
+        return preloaded((np.ones(1), np.ones(1)), preload.overlaps, (first, second))
 
     def _faces(self, pair: Array) -> Array:
         """Forces on the two faces of a pair, (2, n), N, each at least 0.

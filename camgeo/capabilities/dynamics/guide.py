@@ -68,5 +68,5 @@ def _aside(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float] | No
         return max(farthest, 0.0), guide.reach, exact.motion.shaft_deg(at)
     if not proved:
         return None
-    most = max(proved, key=lambda one: one.value + one.slack)
+    most = max(proved, key=lambda bound: bound.value + bound.slack)
     return max(most.value + most.slack, abs(exact.follower.offset)), guide.reach, degrees(most.at)

@@ -188,7 +188,7 @@ def _read_loads(reader: Reader, field: Field, node: Node, path: str) -> tuple[tu
             reader.fault(item.mark, join(path, i), "not a length with its force", describe(item), "give [40, 250]")
             return None
         pairs = enumerate(zip(parts, item.items, strict=True))
-        rows.append(tuple(reader.field(part, one, f"{join(path, i)}[{k}]") for k, (part, one) in pairs))
+        rows.append(tuple(reader.field(part, cell, f"{join(path, i)}[{k}]") for k, (part, cell) in pairs))
     if len(rows) != _PAIR or any(None in row for row in rows):
         if len(rows) == 1:
             reader.fault(node.mark, path, "one load tells no rate", None, reader.wanted(field))
@@ -358,10 +358,10 @@ def check(values: Values, reader: Reader) -> None:
 
 def _take_spring(train: Values, reader: Reader) -> None:
     """Put a coil spring's force and rate in the place of preload and rate."""
-    given = train.get("spring")
-    if given is None:
+    spring = train.get("spring")
+    if spring is None:
         return
-    path, seat = "dynamics.spring", given.get("seat_length")
+    path, seat = "dynamics.spring", spring.get("seat_length")
     if Kind.STROKE in reader.angular or "linkage" in reader.marks:
         remedy = "give preload and rate in its place"
         reader.fault_at(path, "a coil spring on a stem, and there is none", None, remedy)
@@ -369,20 +369,20 @@ def _take_spring(train: Values, reader: Reader) -> None:
     if "dynamics.rate" in reader.marks:
         reader.fault_at("dynamics.rate", "cannot be combined with spring", None, "leave one of the two out")
         return
-    free, rate = given.get("free_length"), given.get("rate")
-    if "loads" in given:
-        (long, low), (short, high) = sorted(given["loads"], reverse=True)
+    free, rate = spring.get("free_length"), spring.get("rate")
+    if "loads" in spring:
+        (long, low), (short, high) = sorted(spring["loads"], reverse=True)
         rate = (high - low) / (PER_MM * (long - short))
         free = long + low / (PER_MM * rate)
     if seat is None or free is None or rate is None:
         return
-    coil = Coil(free, seat, rate, given.get("solid_length"))
+    coil = Coil(free, seat, rate, spring.get("solid_length"))
     if not seat < free:
-        told = f"{free / reader.mm:.6g} {reader.units}"
-        reader.fault_at(f"{path}.seat_length", "the spring is slack there", None, f"give less than {told}")
+        length = f"{free / reader.mm:.6g} {reader.units}"
+        reader.fault_at(f"{path}.seat_length", "the spring is slack there", None, f"give less than {length}")
     elif coil.solid is not None and not coil.solid < seat:
-        told = f"{seat / reader.mm:.6g} {reader.units}"
-        reader.fault_at(f"{path}.solid_length", "its coils touch before it moves", None, f"give less than {told}")
+        length = f"{seat / reader.mm:.6g} {reader.units}"
+        reader.fault_at(f"{path}.solid_length", "its coils touch before it moves", None, f"give less than {length}")
     else:
         train.update(spring=coil, preload=coil.preload, rate=rate)
         reader.marks["dynamics.preload"] = reader.marks[path]
@@ -447,14 +447,14 @@ def _check_coupler(train: Values, reader: Reader) -> None:
 
 def _check_spring(train: Values, reader: Reader) -> None:
     """Note what holds the follower on the cam twice or not at all, and what a rigid train, or another, cannot have."""
-    given = [name for name in ("preload", "backlash") if f"dynamics.{name}" in reader.marks]
-    if given and "dynamics.least_force" in reader.marks:
+    keys = [name for name in ("preload", "backlash") if f"dynamics.{name}" in reader.marks]
+    if keys and "dynamics.least_force" in reader.marks:
         remedy = "give exactly one of preload, backlash or least_force"
-        reader.fault_at("dynamics.least_force", f"cannot be combined with {given[0]}", None, remedy)
+        reader.fault_at("dynamics.least_force", f"cannot be combined with {keys[0]}", None, remedy)
     if "dynamics" not in reader.marks or not train:
         return
     if "dynamics.stiffness" in reader.marks:
-        if not given and "cam.preload" not in reader.marks:
+        if not keys and "cam.preload" not in reader.marks:
             reader.fault(
                 reader.marks["dynamics"], "dynamics", "needs preload or backlash", None, "give exactly one of them"
             )

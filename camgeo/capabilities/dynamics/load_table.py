@@ -38,16 +38,16 @@ class LoadTable:
         """The load at shaft angles (n,)."""
         import numpy as np
 
-        found: Array = np.interp(phi, self.theta, self.load, period=TURN)
-        return found
+        load: Array = np.interp(phi, self.theta, self.load, period=TURN)
+        return load
 
     @property
     def corners(self) -> Array:
         """Shaft angles, rad from 0 on, at which it has a corner (n,)."""
         import numpy as np
 
-        found: Array = np.mod(self.theta, TURN)
-        return found
+        angles: Array = np.mod(self.theta, TURN)
+        return angles
 
 
 LOADS = Table(
@@ -72,8 +72,8 @@ def _read(reader: Reader, field: Field, node: Node, path: str) -> str | LoadTabl
         value: float | None = reader.readers[Kind.NUMBER](reader, number, node, path)
         return None if value is None else repr(value)
     if not isinstance(node, Mapping):
-        found: str | None = reader.readers[Kind.FORMULA](reader, field, node, path)
-        return found
+        formula: str | None = reader.readers[Kind.FORMULA](reader, field, node, path)
+        return formula
     values = reader.table(LOADS, node, path)
     return _table(reader, values, join(path, "table")) if "table" in values else None
 
@@ -84,16 +84,16 @@ def _table(reader: Reader, values: Values, path: str) -> LoadTable | None:
 
     file, own = values["table"].name, reader.unit(Kind.THRUST)
     quantity: Quantity = "force" if own == "N" else "moment"
-    found = read_rows(reader, values, path, quantity=quantity, instead="N" if own == "N" else "Nm")
-    if found is None:
+    table = read_rows(reader, values, path, quantity=quantity, instead="N" if own == "N" else "Nm")
+    if table is None:
         return None
     try:
-        rows = periodic(found[0].samples(), TURN, path, reader.unit(Kind.THRUST))
+        rows = periodic(table[0].samples(), TURN, path, reader.unit(Kind.THRUST))
     except IntentError as error:
         reader.fault_at(path, f"{file}, {error.message}")
         return None
     if len(rows.s) > _MANY:
-        rows = straightened(rows, 0.5 * found[1])
+        rows = straightened(rows, 0.5 * table[1])
     largest, line = max(zip(map(abs, rows.s), rows.lines, strict=True))
     if largest > MOST_LOAD:
         reader.fault_at(

@@ -26,26 +26,26 @@ ORDERS = {name: order for order, name in enumerate(AT_SPEED, 1)}
 
 def measure(recipe: Recipe, design: Design, names: Sequence[str], speeds: Mapping[str, float]) -> dict[str, Measured]:
     """Measure figures of the exact cam and its follower; `speeds`, turns a minute, stand in for the train's own."""
-    train, found = recipe.of(Dynamics), dict[str, Measured]()
+    train, figures = recipe.of(Dynamics), dict[str, Measured]()
     timed = [name for name in names if name in ORDERS]
     if timed and design.driven is None:
         peaks = motion_figures(design, max(ORDERS[name] for name in timed))
         for name in timed:
             rpm = speeds.get(name) or (0.0 if train is None else train.rpm)
-            found[name] = _in_time(peaks[PEAKS[ORDERS[name] - 1]], name, rpm)
+            figures[name] = _in_time(peaks[PEAKS[ORDERS[name] - 1]], name, rpm)
     if JAM_MARGIN in names and train is not None and train.guide is not None:
         value, limit, at = jam_angle(design.exact, train.guide)
-        found[JAM_MARGIN] = Measured(limit - value, "deg", at)
+        figures[JAM_MARGIN] = Measured(limit - value, "deg", at)
     coils = [name for name in names if name in _OF_COIL]
     if coils and train is not None and train.spring is not None:
         lift = motion_figures(design, 0)["swing"].value or 0.0
         for name in coils:
-            found[name] = _OF_COIL[name](train.spring, lift)
+            figures[name] = _OF_COIL[name](train.spring, lift)
     if not {*names} <= {*ORDERS, JAM_MARGIN, *_OF_COIL}:
         from camgeo.capabilities.dynamics.force_figures import figures_of
 
-        found |= figures_of(recipe, design)
-    return found
+        figures |= figures_of(recipe, design)
+    return figures
 
 
 _OF_COIL: dict[str, Callable[[Coil, float], Measured]] = {
@@ -65,9 +65,9 @@ def _in_time(figure: Measured, name: str, rpm: float) -> Measured:
 def of_runs(section: Mapping[str, Any], checks: Sequence[Check]) -> dict[str, dict[str | None, Measured]]:
     """Measure each figure of the runs of an elastic train, by the file that drives it, None for the intended motion."""
     names = [name for name, figure in FIGURES.items() if figure.of == "run" and name != LEAST_BACKLASH.name]
-    found = {name: {_file(run): _of_run(name, run, section) for run in section["runs"]} for name in names}
+    figures = {name: {_file(run): _of_run(name, run, section) for run in section["runs"]} for name in names}
     left = {check.file: figure_of_check(check) for check in checks if check.name == LEAST_BACKLASH.name}
-    return {**found, LEAST_BACKLASH.name: left}
+    return {**figures, LEAST_BACKLASH.name: left}
 
 
 def _file(run: Mapping[str, Any]) -> str | None:

@@ -70,8 +70,10 @@ def _elastic(recipe: Recipe, design: Design, train: Dynamics, motion: MadeMotion
     for name, pick in (("contact force, elastic", np.argmax), ("least contact force, elastic", np.argmin)):
         at = int(pick(made))
         unsure = COVERAGE * motion.deviation(np.roll(row, at))
-        meant = float(intended[pick(intended)])
-        figures.append(MadeFigure(name, unit, meant, float(made[at]), unsure, degrees(float(motion.shaft[at]))))
+        intended_value = float(intended[pick(intended)])
+        figures.append(
+            MadeFigure(name, unit, intended_value, float(made[at]), unsure, degrees(float(motion.shaft[at])))
+        )
     return figures
 
 
@@ -94,9 +96,9 @@ def _figures(running: FollowerRunning, motion: MadeMotion) -> list[MadeFigure]:
             continue
         least = figure[0] in {LEAST_FORCE, FLOAT_SPEED, LEAST_PRELOAD}
         at = int(np.nanargmin(row) if least else np.nanargmax(row))
-        meant = float(np.nanmin(first[figure]) if least else np.nanmax(first[figure]))
+        intended_figure = float(np.nanmin(first[figure]) if least else np.nanmax(first[figure]))
         unsure = COVERAGE * math.sqrt(float(square[figure][at]))
-        figures.append(MadeFigure(*figure, meant, float(row[at]), unsure, degrees(float(motion.shaft[at]))))
+        figures.append(MadeFigure(*figure, intended_figure, float(row[at]), unsure, degrees(float(motion.shaft[at]))))
     return figures
 
 
@@ -106,18 +108,18 @@ def _rows(running: FollowerRunning, shaft: Array, rows: Array) -> dict[tuple[str
     `rows` (4, n) are position, velocity and acceleration of the follower, and the gap at its second contact.
     """
     state, names = running.in_motion(shaft, rows[:3], rows[3]), running.turn.names
-    of = [f", {name}" if len(names) > 1 else "" for name in names]
-    found = {(f"contact force{ending}", "N"): row for ending, row in zip(of, state.normal, strict=True)}
+    endings = [f", {name}" if len(names) > 1 else "" for name in names]
+    by_name = {(f"contact force{ending}", "N"): row for ending, row in zip(endings, state.normal, strict=True)}
     if state.pressure is not None:
-        each = zip(of, state.pressure, strict=True)
-        found |= {(f"pressure{ending}", "N/mm^2"): row for ending, row in each}
+        each = zip(endings, state.pressure, strict=True)
+        by_name |= {(f"pressure{ending}", "N/mm^2"): row for ending, row in each}
     if len(names) == 1:
-        found[LEAST_FORCE, "N"] = state.normal[0]
-        found[FLOAT_SPEED, "rpm"] = _float_speed(running, shaft, state.rows)
+        by_name[LEAST_FORCE, "N"] = state.normal[0]
+        by_name[FLOAT_SPEED, "rpm"] = _float_speed(running, shaft, state.rows)
     preload = running.preload_force(rows[:3], rows[3])
     if preload is not None:
-        found[LEAST_PRELOAD, running.turn.unit] = preload
-    return found
+        by_name[LEAST_PRELOAD, running.turn.unit] = preload
+    return by_name
 
 
 def _float_speed(running: FollowerRunning, shaft: Array, y: Array) -> Array:

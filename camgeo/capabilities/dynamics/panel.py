@@ -23,41 +23,44 @@ def forces(report: dict[str, Any]) -> str:
     section = report.get("forces")
     if section is None:
         return ""
-    told = f"At {number(section['rpm'])} rpm, of a rigid follower."
+    caption = f"At {number(section['rpm'])} rpm, of a rigid follower."
     head = '<section aria-labelledby="forces-head"><h2 id="forces-head">Forces</h2>'
     if "jams_at_deg" in section:
-        return f"{head}<p>{told} The stem jams in its guide at {number(section['jams_at_deg'])}°.</p></section>"
+        return f"{head}<p>{caption} The stem jams in its guide at {number(section['jams_at_deg'])}°.</p></section>"
     rows: list[Row] = []
-    ranges = [(f"force at {one['contact']}", one) for one in section["contacts"]]
+    ranges = [(f"force at {entry['contact']}", entry) for entry in section["contacts"]]
     ranges += [("torque of the shaft", section["torque"])]
-    ranges += [(f"reaction at the {one['end']} end of the guide", one) for one in section.get("guide", ())]
-    ranges += [(REACTIONS[one["reaction"]], one) for one in section.get("reactions", ())]
-    for name, one in ranges:
+    ranges += [(f"reaction at the {entry['end']} end of the guide", entry) for entry in section.get("guide", ())]
+    ranges += [(REACTIONS[entry["reaction"]], entry) for entry in section.get("reactions", ())]
+    for name, entry in ranges:
         for word, key in (("least", "min"), ("greatest", "max")):
-            rows.append((f"{word} {name}", one[key], one["unit"], one[f"{key}_at_deg"]))
+            rows.append((f"{word} {name}", entry[key], entry["unit"], entry[f"{key}_at_deg"]))
     if (width := section.get("width")) is not None:
         rows.append((f"width of the contacts: {width['bound_by']}", width["value"], width["unit"], None))
     rows += [
-        (f"greatest pressure at {one['contact']}", one["max"], one["unit"], one["max_at_deg"])
-        for one in section.get("pressure", ())
+        (f"greatest pressure at {entry['contact']}", entry["max"], entry["unit"], entry["max_at_deg"])
+        for entry in section.get("pressure", ())
     ]
     rows += [
         (
             "that pressure over the {:.6g} {} that the material bears".format(
-                *in_pounds(report["units"], one["limit"], "N/mm^2")
+                *in_pounds(report["units"], entry["limit"], "N/mm^2")
             ),
-            one["share_of_limit"],
+            entry["share_of_limit"],
             "",
             None,
         )
-        for one in section.get("pressure", ())
-        if "limit" in one
+        for entry in section.get("pressure", ())
+        if "limit" in entry
     ]
-    rows += [(f"mean force of {one['roller']}", one["mean_force"], "N", None) for one in section.get("rollers", ())]
     rows += [
-        (f"speed that lifts {one['contact']} off", one["rpm"], "rpm", one["at_deg"]) for one in section.get("lost", ())
+        (f"mean force of {entry['roller']}", entry["mean_force"], "N", None) for entry in section.get("rollers", ())
     ]
-    return f"{head}<p>{told}</p>{figure_table('Forces', rows, report['units'])}</section>"
+    rows += [
+        (f"speed that lifts {entry['contact']} off", entry["rpm"], "rpm", entry["at_deg"])
+        for entry in section.get("lost", ())
+    ]
+    return f"{head}<p>{caption}</p>{figure_table('Forces', rows, report['units'])}</section>"
 
 
 def dynamics(report: dict[str, Any]) -> str:
@@ -85,12 +88,12 @@ def dynamics(report: dict[str, Any]) -> str:
         "impacts a turn",
         "fastest",
     )
-    told = (
+    caption = (
         f"At {number(section['rpm'])} rpm; the train's own frequency is {number(section['natural_ratio'])} times the "
         f"shaft's, its damping ratio {number(section['damping_ratio'])}."
     )
     table = html_table("Dynamics", head, rows)
-    return f'<section aria-labelledby="train-head"><h2 id="train-head">Dynamics</h2><p>{told}</p>{table}</section>'
+    return f'<section aria-labelledby="train-head"><h2 id="train-head">Dynamics</h2><p>{caption}</p>{table}</section>'
 
 
 def _force(steady: dict[str, Any], name: str, si: str, units: str) -> str:

@@ -43,17 +43,17 @@ def plots(recipe: Recipe, design: Design) -> list[Plot]:
         return [plot(name, axis, si, group, sides) for name, group in zip(titles, groups, strict=True)]
 
     load = running.load(SHAFT)
-    found = [plot("Load", "load", running.turn.unit, {"load against the follower": load}, {})] if load.any() else []
-    found += opposite("Contact force", "force", "N", state.normal, {FORCE_GREATEST: (1.0,), FORCE_LEAST: (1.0,)})
-    found.append(plot("Torque of the shaft", "torque", "N m", {"torque": state.torque}, {TORQUE: (1.0, -1.0)}))
+    drawn = [plot("Load", "load", running.turn.unit, {"load against the follower": load}, {})] if load.any() else []
+    drawn += opposite("Contact force", "force", "N", state.normal, {FORCE_GREATEST: (1.0,), FORCE_LEAST: (1.0,)})
+    drawn.append(plot("Torque of the shaft", "torque", "N m", {"torque": state.torque}, {TORQUE: (1.0, -1.0)}))
     if recipe.linkage is not None:
         across, along, *joints = state.reactions.items()
-        found.append(plot("Forces of the frame", "force", "N", dict([across, along]), {}))
+        drawn.append(plot("Forces of the frame", "force", "N", dict([across, along]), {}))
         if joints:
-            found.append(plot("Forces at joint D", "force", "N", dict(joints), {}))
+            drawn.append(plot("Forces at joint D", "force", "N", dict(joints), {}))
     if state.pressure is not None:
         pressed = opposite("Contact pressure", "pressure", "N/mm^2", state.pressure, {PRESSURE: (1.0,)})
         most, (factor, _) = running.most_pressure, shown_unit(recipe, "N/mm^2")
         borne = () if most is None else ((factor * most, f"material {short(factor * most)}"),)
-        found += [replace(each, limits=(*each.limits, *borne)) for each in pressed]
-    return found
+        drawn += [replace(each, limits=(*each.limits, *borne)) for each in pressed]
+    return drawn

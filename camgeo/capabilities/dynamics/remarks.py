@@ -19,10 +19,10 @@ def lost_contact(recipe: Recipe, design: Design) -> list[Remark]:
     running = running_of(recipe, design)
     if running is None or running.jam_deg is not None:
         return []
-    lost = [(one.rpm, one) for one in running.lost_rpm() if one.rpm is not None]
+    lost = [(loss.rpm, loss) for loss in running.lost_rpm() if loss.rpm is not None]
     if not lost or min(lost)[0] > running.train.rpm:
         return []
-    rpm, one = min(lost)
+    rpm, loss = min(lost)
     begins = f"from {rpm:.6g} rpm" if rpm > 0.0 else "by its load alone"
-    told = f"the preload does not hold {one.contact} at {running.train.rpm:.6g} rpm: it is lost {begins}"
-    return [Remark("lost-contact", rpm, running.train.rpm, "rpm", told, one.at_deg)]
+    remark = f"the preload does not hold {loss.contact} at {running.train.rpm:.6g} rpm: it is lost {begins}"
+    return [Remark("lost-contact", rpm, running.train.rpm, "rpm", remark, loss.at_deg)]

@@ -133,10 +133,10 @@ class Running(ABC):
         """
         from kin.law.formula.formula import Formula, FormulaDomainError
 
-        given = self.train.load
-        if not isinstance(given, str):
-            return given
-        formula = Formula(given)
+        load = self.train.load
+        if not isinstance(load, str):
+            return load
+        formula = Formula(load)
         try:
             at, beyond = unbounded(formula), place_beyond(formula, MOST_LOAD)
             formula(self.turn.shaft(self.turn.places))
@@ -144,11 +144,11 @@ class Running(ABC):
             raise self.recipe.error("dynamics.load", str(error)) from error
         if at is not None:
             why = f"it has no bound near {degrees(at):.6g} degrees"
-            raise self.recipe.error("dynamics.load", why, f"'{given}'", "give a load that is finite")
+            raise self.recipe.error("dynamics.load", why, f"'{load}'", "give a load that is finite")
         if beyond is not None:
             value = abs(float(formula(np.array([beyond]))[0]))
             why = f"it reaches {value:.4g} {self.turn.unit} at {degrees(beyond):.6g} degrees, above {MOST_LOAD:.0f}"
-            raise self.recipe.error("dynamics.load", why, f"'{given}'", "give a smaller load")
+            raise self.recipe.error("dynamics.load", why, f"'{load}'", "give a smaller load")
         return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
 
     def rest(self, t: Array, y: Array) -> Array:
@@ -189,7 +189,9 @@ class Running(ABC):
     def width(self) -> Width | None:
         """Width of the contacts, and what bounds it; None where neither the recipe nor the metal has one."""
         part, chamfer = self.recipe.part, self.recipe.part.of(Chamfer)
-        depth = min((one.depth for one in self.design.exact.surfaces if one.depth is not None), default=None)
+        depth = min(
+            (surface.depth for surface in self.design.exact.surfaces if surface.depth is not None), default=None
+        )
         return contact_width(self.train.width, part.thickness, None if chamfer is None else chamfer.height, depth)
 
     def hertz(self, normal: Array, curvature: Array) -> Array | None:
@@ -222,20 +224,20 @@ def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> lis
     """
 
     def shares(t: Array) -> Array:
-        one = pull(t)
-        upper, lower = one.loses_second - one.rest, one.rest - one.loses_first
-        return np.array([-one.inertia / lower, one.inertia / upper, upper, lower])
+        pull_at = pull(t)
+        upper, lower = pull_at.loses_second - pull_at.rest, pull_at.rest - pull_at.loses_first
+        return np.array([-pull_at.inertia / lower, pull_at.inertia / upper, upper, lower])
 
     (_, first), (_, second), (upper, _), (lower, _) = turn.extremes(shares)
-    found = []
+    losses = []
     for name, share, left in zip(names, (first, second), (lower, upper), strict=True):
         if left.value <= 0.0:  # at rest already
-            found.append(Lost(name, 0.0, left.at_deg))
+            losses.append(Lost(name, 0.0, left.at_deg))
         elif share.value > 0.0:
-            found.append(Lost(name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
+            losses.append(Lost(name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
         else:
-            found.append(Lost(name, None, None))
-    return found
+            losses.append(Lost(name, None, None))
+    return losses
 
 
 def unbounded(formula: Formula) -> float | None:
@@ -247,8 +249,8 @@ def unbounded(formula: Formula) -> float | None:
     high: Array = low + TURN / STRETCHES
     usual = float(np.median(np.abs(formula(0.5 * (low + high))))) + 1.0
     while True:
-        found = formula.ball(low, high, 0)
-        open_ = ~np.isfinite(found.rad[0])
+        value = formula.ball(low, high, 0)
+        open_ = ~np.isfinite(value.rad[0])
         low, high = low[open_][:MOST_OPEN], high[open_][:MOST_OPEN]
         if not len(low) or float((high - low).max()) < NARROW:
             break

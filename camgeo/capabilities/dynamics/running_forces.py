@@ -50,12 +50,14 @@ class FollowerRunning(Running):
     def sides(self) -> tuple[Side, ...]:
         """Side of its contour on which the metal lies, by contact: 1 inside, -1 outside."""
         sides = {surface.name: surface.side for surface in self.design.exact.surfaces}
-        return tuple(sides[one.surface] for one in self.design.follower.contacts)
+        return tuple(sides[contact.surface] for contact in self.design.follower.contacts)
 
     @cached_property
     def senses(self) -> tuple[int, ...]:
         """Sign of the push of each contact on the follower: 1 towards greater positions, -1 towards smaller ones."""
-        return tuple(side * one.sense for side, one in zip(self.sides, self.design.follower.contacts, strict=True))
+        return tuple(
+            side * contact.sense for side, contact in zip(self.sides, self.design.follower.contacts, strict=True)
+        )
 
     @property
     def unit(self) -> float:
@@ -64,8 +66,8 @@ class FollowerRunning(Running):
 
     def position(self, rows: Array) -> Array:
         """Position y and two derivatives, SI (3, n), counted the way in which the first contact pushes."""
-        found: Array = self.senses[0] * self.unit * rows
-        return found
+        position: Array = self.senses[0] * self.unit * rows
+        return position
 
     def at(self, t: Array) -> State:
         """State of motion and forces at shaft angles (n,), rad."""
@@ -135,8 +137,8 @@ class FollowerRunning(Running):
         friction = 0.0 if self.train.guide is None else self.train.guide.friction
         rubbing = np.abs(self._at_ends(lines, y)).sum(axis=1)
         pushes = np.array(self.senses)[:, None] * self.senses[0]
-        found: Array = np.array([line.lever for line in lines]) - pushes * np.sign(y[1]) * friction * rubbing
-        return found
+        lever: Array = np.array([line.lever for line in lines]) - pushes * np.sign(y[1]) * friction * rubbing
+        return lever
 
     def _at_ends(self, lines: Sequence[ContactLine], y: Array) -> Array:
         """Forces across the stem on the guide's near and far end by a unit normal force of each contact, (m, 2, n).
@@ -148,13 +150,13 @@ class FollowerRunning(Running):
         if guide is None:
             return np.zeros((len(lines), 2, y.shape[1]))
         offset, risen = self.design.follower.offset, (y[0] - self.lowest) / self.unit
-        found = []
+        forces = []
         for line, contact in zip(lines, contacts, strict=True):
             beyond = contacts[0].zero + contact.zero if contact.turned else 0.0
             ahead, way = guide.overhang + beyond - risen, math.cos(contact.turned)
             across, couple = way * line.normal[:, 1], line.normal[:, 0] * (line.centre[:, 1] - way * offset)
-            found.append([across * (ahead + guide.length) + couple, across * ahead + couple])
-        return np.array(found) / guide.length
+            forces.append([across * (ahead + guide.length) + couple, across * ahead + couple])
+        return np.array(forces) / guide.length
 
     @cached_property
     def jam_deg(self) -> float | None:
@@ -174,13 +176,13 @@ class FollowerRunning(Running):
             return np.stack([*left, self._pressed(self.held_by, rows, lines).together])
 
         count = len(self.turn.names)
-        lowest = [one for one, _ in self.turn.extremes(free)]
-        least = min(lowest[:count], key=lambda one: one.value)
+        lowest = [place for place, _ in self.turn.extremes(free)]
+        least = min(lowest[:count], key=lambda place: place.value)
         if least.value <= 0.0:
             return least.at_deg
-        for one in lowest[count:]:
-            if one.value <= 0.0:
-                why = f"the preloaded contacts wedge the stem in it at {one.at_deg:.6g} degrees"
+        for place in lowest[count:]:
+            if place.value <= 0.0:
+                why = f"the preloaded contacts wedge the stem in it at {place.at_deg:.6g} degrees"
                 raise self.recipe.error("dynamics.guide", why, None, "give less friction, or a longer guide")
         return None
 
@@ -193,21 +195,21 @@ class FollowerRunning(Running):
         return {"guide_a": near, "guide_b": far}
 
     def _pressure(self, normal: Array, lines: Sequence[ContactLine]) -> Array | None:
-        found = []
+        pressures = []
         follower = self.design.follower
-        for line, side, one in zip(lines, self.sides, follower.contacts, strict=True):
-            radius = follower.running(one).radius
-            found.append(side / (line.bent - side * one.touch.radius) + (1.0 / radius if radius else 0.0))
-        return self.hertz(normal, np.array(found))
+        for line, side, contact in zip(lines, self.sides, follower.contacts, strict=True):
+            radius = follower.running(contact).radius
+            pressures.append(side / (line.bent - side * contact.touch.radius) + (1.0 / radius if radius else 0.0))
+        return self.hertz(normal, np.array(pressures))
 
     def _roller_rpm(self, lines: Sequence[ContactLine]) -> Array | None:
         from kin.follower.contact_lines import roller_turns
 
         follower, sides = self.design.follower, self.sides
         each = zip(lines, sides, follower.contacts, strict=True)
-        found = [roller_turns(line, follower.running(one), side) for line, side, one in each]
-        turns = [one for one in found if one is not None]
-        return self.train.rpm * np.array(turns) if len(turns) == len(found) else None
+        speeds = [roller_turns(line, follower.running(contact), side) for line, side, contact in each]
+        turns = [contact for contact in speeds if contact is not None]
+        return self.train.rpm * np.array(turns) if len(turns) == len(speeds) else None
 
     @cached_property
     def changes(self) -> Array:

@@ -130,8 +130,8 @@ def _files(recipe: Recipe, design: Design, run: Run, place: str) -> list[_FilePo
     files, missing = [], None
     for rank, (below, file) in enumerate(places_of_run(run, place)):
         points = _points(recipe, design, file, below, rank)
-        surfaces = [one for disc in points.discs for one in disc.surfaces]
-        deviations = {one.surface.name: one.points.deviations for one in surfaces}
+        surfaces = [surface for disc in points.discs for surface in disc.surfaces]
+        deviations = {surface.surface.name: surface.points.deviations for surface in surfaces}
         files.append(_FilePoints(recipe, below, file.file, deviations))
         lacking = {name_of(disc.part) for disc in points.missing}
         missing = [disc for disc in (points.missing if missing is None else missing) if name_of(disc.part) in lacking]

@@ -116,13 +116,13 @@ def _program(recipe: Order, discs: Iterable[_Disc], step: float | None, units: L
 
 def _places(recipe: Order, disc: _Disc, shaft: Array) -> Iterator[tuple[list[float], list[float]]]:
     """Places, mm, and outward normals of what is touched on a disc over a turn, as the part is drawn; each once."""
-    seen: set[tuple[float, ...]] = set()
+    known: set[tuple[float, ...]] = set()
     for points in contact_points(disc.design, shaft, disc.contours):
         drawn = points.as_drawn(disc.turned, recipe.rotation)
         for place, normal in zip(drawn.places, drawn.normals, strict=True):
             key = tuple(np.round(place / SAME).tolist())
-            if key not in seen:
-                seen.add(key)
+            if key not in known:
+                known.add(key)
                 yield place.tolist(), normal.tolist()
 
 

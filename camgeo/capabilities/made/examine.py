@@ -78,9 +78,9 @@ def _corrected_files(recipe: Recipe) -> dict[float, list[str]]:
     """Names of the corrected files, by the share of the deviations that is taken off."""
     files: dict[float, list[str]] = {}
     for request in recipe.export.files:
-        for one in request.compensation.altered if request.compensation else ():
-            if one.key == CORRECT.name:
-                files.setdefault(one.value, []).extend(recipe.filenames(request))
+        for file in request.compensation.altered if request.compensation else ():
+            if file.key == CORRECT.name:
+                files.setdefault(file.value, []).extend(recipe.filenames(request))
     return files
 
 

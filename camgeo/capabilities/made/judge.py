@@ -107,7 +107,7 @@ def part_of_points(recipe: Recipe, design: Design, points: Points, call: Call, d
     """Judge a part by its points, with the profile's datum given; raises as `made_part`."""
     demand_discs(points.missing)
     discs = [_disc(recipe, disc, call, datum) for disc in points.discs]
-    each = {one.on.surface.name: (one.errors, one.play) for disc in discs for one in disc.surfaces}
+    each = {surface.on.surface.name: (surface.errors, surface.play) for disc in discs for surface in disc.surfaces}
     motion, play = follower_motion(design, each)
     remarks = [*points.remarks, *_remarks(recipe, discs, call, points.lifts)]
     late = (
@@ -121,18 +121,20 @@ def part_of_points(recipe: Recipe, design: Design, points: Points, call: Call, d
 
 def _disc(recipe: Recipe, points: DiscPoints, call: Call, datum: Datum) -> DiscMade:
     """Smooth the points of a disc, and let the followers run on each surface."""
-    standing = [one.points.placed(points.placing) if datum == "part" else one.points for one in points.surfaces]
+    standing = [
+        surface.points.placed(points.placing) if datum == "part" else surface.points for surface in points.surfaces
+    ]
     profiled = profile(standing, datum)
     shaft = equal_steps(recipe.verify.angles) + math.pi / recipe.verify.angles
     surfaces = []
-    for one in points.surfaces:
-        deviations = one.points.deviations
+    for surface in points.surfaces:
+        deviations = surface.points.deviations
         smooth = fit(deviations.parameter, deviations.e, call.spans)
-        errors = contact_errors(one.surface.gauge, one.surface.side, smooth.curve, shaft, points.turned)
-        surfaces.append(SurfaceMade(one, smooth, *paired(one.surface.gauge, errors)))
+        errors = contact_errors(surface.surface.gauge, surface.surface.side, smooth.curve, shaft, points.turned)
+        surfaces.append(SurfaceMade(surface, smooth, *paired(surface.surface.gauge, errors)))
     smoothed = [
-        float(np.abs(fit(one.parameter, one.e, own.fit.curve.spans).curve.rows(one.parameter)[0]).max())
-        for one, own in zip(profiled.deviations, surfaces, strict=True)
+        float(np.abs(fit(surface.parameter, surface.e, own.fit.curve.spans).curve.rows(surface.parameter)[0]).max())
+        for surface, own in zip(profiled.deviations, surfaces, strict=True)
     ]
     uncertain = _uncertain(surfaces, call)
     return DiscMade(points.part, tuple(surfaces), profiled, points.placing, points.turned, uncertain, max(smoothed))
@@ -141,9 +143,9 @@ def _disc(recipe: Recipe, points: DiscPoints, call: Call, datum: Datum) -> DiscM
 def _uncertain(surfaces: Sequence[SurfaceMade], call: Call) -> Array:
     """Expanded uncertainty (n,) of every point, mm: as stated, else of the scatter alone; with that of the axes."""
     rows = []
-    for one in surfaces:
-        deviations = one.on.points.deviations
-        point = COVERAGE * one.fit.curve.sigma if call.error is None else call.error
+    for surface in surfaces:
+        deviations = surface.on.points.deviations
+        point = COVERAGE * surface.fit.curve.sigma if call.error is None else call.error
         square = np.full(len(deviations.e), point**2)
         if call.axes is not None:
             square += call.axes[0] ** 2 + (call.axes[1] * deviations.moment) ** 2
@@ -164,9 +166,9 @@ def _output(parts: Sequence[PartIntent], discs: Sequence[DiscMade]) -> OutputErr
     linkage = parts[0].linkage
     if linkage is None:
         return None
-    (one,) = discs[0].surfaces
-    relative = one.errors.shaft
-    return output_errors(linkage.mechanism, one.on.surface.gauge, one.fit.curve, relative, linkage.overlap)
+    (surface,) = discs[0].surfaces
+    relative = surface.errors.shaft
+    return output_errors(linkage.mechanism, surface.on.surface.gauge, surface.fit.curve, relative, linkage.overlap)
 
 
 def systematic(call: Call) -> float:
@@ -200,7 +202,7 @@ def checks_of(recipe: Recipe, result: PartMade, call: Call) -> tuple[list[Check]
             e = np.abs(disc.profile.e)
             worst = int(np.argmax(e + disc.uncertain))
             judged = _held(PROFILE.name, 2.0 * e, 2.0 * disc.uncertain, zone.profile, "mm")
-            parameter = np.concatenate([one.parameter for one in disc.profile.deviations])
+            parameter = np.concatenate([deviation.parameter for deviation in disc.profile.deviations])
             at = disc.surfaces[0].on.surface.gauge.shaft_angle(parameter[worst : worst + 1])[0]
             name = name_of(disc.part)
             checks.append(replace(judged[0], at_deg=degrees(float(at)), surface=name))
@@ -233,8 +235,8 @@ def _held(name: str, value: Array, uncertain: Array, limit: float, unit: str) ->
     sure, above = bool((value + uncertain <= limit).all()), bool((value - uncertain > limit).any())
     verdict = "ok" if sure else "failed" if above else "not proved"
     worst = int(np.argmax(value))
-    told = f"{value[worst]:.4g} +- {uncertain[worst]:.2g} {unit}"
-    detail = "" if sure else f"{told}: {'more than is permitted' if above else 'not proved either way'}"
+    value_words = f"{value[worst]:.4g} +- {uncertain[worst]:.2g} {unit}"
+    detail = "" if sure else f"{value_words}: {'more than is permitted' if above else 'not proved either way'}"
     return Check(name, sure, float(value[worst]), limit, unit, detail=detail), verdict
 
 
@@ -249,7 +251,7 @@ def _remarks(recipe: Recipe, discs: Sequence[DiscMade], call: Call, lifts: tuple
         remarks.append("without --probe-error the scatter of the points alone is known, and no common error")
     if call.axes is None:
         remarks.append("without --axes-error the part's axes are taken as exact")
-    every = [one for disc in discs for one in disc.surfaces]
+    every = [surface for disc in discs for surface in disc.surfaces]
     if lifts is not None:
         remarks.append("of lifts the size and a constant offset are unseen")
     if call.probing.align == "gxy":
@@ -258,34 +260,34 @@ def _remarks(recipe: Recipe, discs: Sequence[DiscMade], call: Call, lifts: tuple
         turn = math.degrees(discs[0].placing.turn if lifts is None else lifts[1])
         remarks.append(f"turned back by {turn:.6g} degrees by --align rotation, the motion shows no phase")
     for disc in discs:
-        held = disc.profile
-        if held.datum == "none":
+        profile = disc.profile
+        if profile.datum == "none":
             remarks.append("by datum none the profile shows neither eccentricity nor phase; the motion does")
-        wanted = {"part": "", "bore": "g", "none": "gxy"}[held.datum]
-        if held.free != wanted:
+        wanted = {"part": "", "bore": "g", "none": "gxy"}[profile.datum]
+        if profile.free != wanted:
             remarks.append("its contour is so nearly round that a turn cannot be told from a shift")
-        if held.datum == "part" and not call.probing.align:
-            turned = settled([one.on.points for one in disc.surfaces], "g")
+        if profile.datum == "part" and not call.probing.align:
+            turned = settled([surface.on.points for surface in disc.surfaces], "g")
             rest = disc.surfaces[0].on.points.placed(turned).deviations.e
             gain = float(np.abs(disc.surfaces[0].on.points.deviations.e).max() - np.abs(rest).max())
             if gain > 0.25 * disc.profile.greatest and abs(turned.turn) > 0.0:
                 remarks.append(f"the points look turned by {math.degrees(turned.turn):.3g} degrees: `--align rotation`")
-    for one in every:
-        if one.fit.outliers.any():
-            count = int(one.fit.outliers.sum())
-            lines = ", ".join(str(line) for line in one.on.lines[one.fit.outliers][:5].tolist())
+    for surface in every:
+        if surface.fit.outliers.any():
+            count = int(surface.fit.outliers.sum())
+            lines = ", ".join(str(line) for line in surface.on.lines[surface.fit.outliers][:5].tolist())
             remarks.append(
                 f"{count} outlier{'s' * (count > 1)} (line {lines}{', ...' if count > 5 else ''}) "
                 "counted in the profile, left out of smoothing and motion"
             )
-        if one.fit.curve.widened > 1.0:
+        if surface.fit.curve.widened > 1.0:
             remarks.append(
-                f"residuals beside one another agree (correlation {one.fit.correlation:.2f}): "
-                f"uncertainties are widened {one.fit.curve.widened:.2f} times"
+                f"residuals beside one another agree (correlation {surface.fit.correlation:.2f}): "
+                f"uncertainties are widened {surface.fit.curve.widened:.2f} times"
             )
-        if one.on.spread is not None:
-            spread = one.on.spread / recipe.mm
+        if surface.on.spread is not None:
+            spread = surface.on.spread / recipe.mm
             remarks.append(
-                f"{one.on.repeats} points are {len(one.on.points)} places, measured again within {spread:.2g}"
+                f"{surface.on.repeats} points are {len(surface.on.points)} places, measured again within {spread:.2g}"
             )
     return remarks

@@ -72,14 +72,14 @@ def _write_points(recipe: Recipe, result: PartMade, path: Path) -> None:
     names = ["surface", "file", "line", f"x_{unit}", f"y_{unit}", "shaft_deg", f"foot_x_{unit}", f"foot_y_{unit}"]
     names += [f"deviation_{unit}", f"residual_{unit}", "outlier"]
     blocks = []
-    for rank, one in enumerate(result.surfaces):
-        points, deviations = one.on.points, one.on.points.deviations
+    for rank, surface in enumerate(result.surfaces):
+        points, deviations = surface.on.points, surface.on.points.deviations
         feet = points.follower.envelope.points(deviations.parameter)
         shaft = np.mod(np.degrees(points.follower.shaft_angle(deviations.parameter)), 360.0)
-        columns = [np.full(len(points), rank + 1.0), one.on.files + 1.0, one.on.lines.astype(float)]
+        columns = [np.full(len(points), rank + 1.0), surface.on.files + 1.0, surface.on.lines.astype(float)]
         columns += [points.places[:, 0] / recipe.mm, sign * points.places[:, 1] / recipe.mm, shaft]
         columns += [feet[:, 0] / recipe.mm, sign * feet[:, 1] / recipe.mm]
-        columns += [deviations.e / recipe.mm, one.fit.residuals / recipe.mm, one.fit.outliers.astype(float)]
+        columns += [deviations.e / recipe.mm, surface.fit.residuals / recipe.mm, surface.fit.outliers.astype(float)]
         blocks.append(np.column_stack(columns))
     write_table(path, names, np.concatenate(blocks))
 
@@ -93,11 +93,11 @@ def _drawing(recipe: Recipe, result: PartMade) -> str:
     t = equal_steps(LOOKS)
     size, most = 0.0, 0.0
     curves = []
-    for one in result.surfaces:
-        frame = one.on.points.follower.envelope.frames(t)
-        e = one.fit.curve.rows(t)[0]
+    for surface in result.surfaces:
+        frame = surface.on.points.follower.envelope.frames(t)
+        e = surface.fit.curve.rows(t)[0]
         size, most = max(size, float(np.abs(frame.points).max())), max(most, float(np.abs(e).max()))
-        curves.append((frame.points * sign, one.on.points.side * frame.normals * sign, e))
+        curves.append((frame.points * sign, surface.on.points.side * frame.normals * sign, e))
     magnified = float(f"{SHARE * size / max(most, 1e-9):.1g}")
     reach = size * (1.0 + 1.3 * SHARE)
     thin = reach / 400.0
@@ -116,11 +116,11 @@ def _drawing(recipe: Recipe, result: PartMade) -> str:
     arm = 0.03 * reach
     cross = f"M{-arm:.5g},0h{2.0 * arm:.5g}M0,{-arm:.5g}v{2.0 * arm:.5g}"
     parts.append(f'<path d="{cross}" stroke="{INK}" stroke-width="{thin:.5g}"/>')
-    told = f"{one_line(recipe.name)}: deviation magnified {magnified:.6g} times; outwards of the metal is too much"
+    caption = f"{one_line(recipe.name)}: deviation magnified {magnified:.6g} times; outwards of the metal is too much"
     box = f"{-reach:.6g} {-reach:.6g} {2 * reach:.6g} {2 * reach:.6g}"
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" width="640" height="640">'
-        f"<title>{told}</title>{''.join(parts)}</svg>\n"
+        f"<title>{caption}</title>{''.join(parts)}</svg>\n"
     )
 
 
@@ -149,9 +149,9 @@ def _page(recipe: Recipe, result: PartMade, section: dict[str, Any], call: Call,
     remarks = "".join(f"<li>{one_line(text)}</li>" for text in section["remarks"])
     parts.append(f"{verdicts}<table>{rows}</table><ul>{remarks}</ul>")
     parts.append(f"<h2>Deviation round the contour, magnified</h2>{drawing}")
-    for one in result.surfaces:
-        name = f" of {one_line(one.on.surface.name)}" if one.on.surface.name else ""
-        parts.append(f"<h2>Deviation{name} over the shaft angle, {unit}</h2>{_over_shaft(recipe, one)}")
+    for surface in result.surfaces:
+        name = f" of {one_line(surface.on.surface.name)}" if surface.on.surface.name else ""
+        parts.append(f"<h2>Deviation{name} over the shaft angle, {unit}</h2>{_over_shaft(recipe, surface)}")
     errors, uncertain = result.motion, motion_uncertainty(result, call)
     shaft = np.degrees(errors.shaft)
     limit = _limit(recipe, moved)
@@ -177,16 +177,16 @@ def _limit(recipe: Recipe, unit: str) -> float | None:
     return math.degrees(limit) if unit == "deg" else limit / recipe.mm
 
 
-def _over_shaft(recipe: Recipe, one: SurfaceMade) -> str:
+def _over_shaft(recipe: Recipe, surface: SurfaceMade) -> str:
     t = equal_steps(LOOKS)
-    follower, mm, deviations = one.on.points.follower, recipe.mm, one.on.points.deviations
+    follower, mm, deviations = surface.on.points.follower, recipe.mm, surface.on.points.deviations
     shaft = np.mod(np.degrees(follower.shaft_angle(t)), 360.0)
     order = np.argsort(shaft, kind="stable")
     chosen = np.linspace(0, len(deviations.e) - 1, min(MOST_DOTS, len(deviations.e))).astype(np.intp)
     dots = np.mod(np.degrees(follower.shaft_angle(deviations.parameter[chosen])), 360.0), deviations.e[chosen] / mm
     zone = recipe.of(Made)
     half = None if zone is None or zone.profile is None else 0.5 * zone.profile / mm
-    e, band = one.fit.curve.rows(t)[0] / mm, COVERAGE * one.fit.curve.deviations(t) / mm
+    e, band = surface.fit.curve.rows(t)[0] / mm, COVERAGE * surface.fit.curve.deviations(t) / mm
     return _plot(shaft[order], e[order], band[order], dots=dots, zone=half)
 
 
@@ -236,20 +236,20 @@ def _plot(
     return f'<svg viewBox="0 0 {WIDE} {HIGH}" role="img" font-family="system-ui,sans-serif">{"".join(parts)}</svg>'
 
 
-def stretches(one: SurfaceMade) -> list[tuple[float, float, float, float]]:
+def stretches(surface: SurfaceMade) -> list[tuple[float, float, float, float]]:
     """Stretches of a surface with certainly too much metal, as (begin, end, greatest excess, its angle).
 
     Angles are degrees of the shaft, the excess is in mm; it exceeds twice its standard deviation all along.
     """
     t = equal_steps(LOOKS)
-    e, band = one.fit.curve.rows(t)[0], COVERAGE * one.fit.curve.deviations(t)
+    e, band = surface.fit.curve.rows(t)[0], COVERAGE * surface.fit.curve.deviations(t)
     over = e > np.maximum(band, 1e-6)
     if not over.any():
         return []
     turn = 0 if over.all() else int(np.flatnonzero(~over)[0])
     over, e, t = np.roll(over, -turn), np.roll(e, -turn), np.roll(t, -turn)
     edges = np.flatnonzero(np.diff(over.astype(np.intp), prepend=0, append=0))
-    shaft = np.mod(np.degrees(one.on.points.follower.shaft_angle(t)), 360.0)
+    shaft = np.mod(np.degrees(surface.on.points.follower.shaft_angle(t)), 360.0)
     stretches = []
     for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         worst = a + int(np.argmax(e[a:b]))
@@ -259,9 +259,9 @@ def stretches(one: SurfaceMade) -> list[tuple[float, float, float, float]]:
 
 def _take_off(result: PartMade, mm: float, unit: str) -> str:
     rows: list[Sequence[str]] = []
-    for one in result.surfaces:
-        for begin, end, most, at in stretches(one):
-            rows.append((one.on.surface.name, f"{begin:.1f}", f"{end:.1f}", f"{most / mm:.4g}", f"{at:.1f}"))
+    for surface in result.surfaces:
+        for begin, end, most, at in stretches(surface):
+            rows.append((surface.on.surface.name, f"{begin:.1f}", f"{end:.1f}", f"{most / mm:.4g}", f"{at:.1f}"))
     if not rows:
         return "<p>Nowhere is metal too much beyond its uncertainty.</p>"
     head = "".join(f"<th>{text}</th>" for text in ("surface", "from, deg", "to, deg", f"most, {unit}", "at, deg"))

@@ -137,15 +137,15 @@ def _disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[OnSurface], probi
     _demand_outside(recipe, surfaces)
     align = probing.align
     placing, turned = Placing(), probing.alone or 0.0
-    points = [one.points.placed(Placing(turned)) for one in surfaces]
+    points = [surface.points.placed(Placing(turned)) for surface in surfaces]
     demand_round(points)
     if align:
         placing = turned_at(points, "g")
         if align != "g":
-            placing = settled([one.placed(placing) for one in points], align)
-        points = [one.placed(placing) for one in points]
+            placing = settled([surface.placed(placing) for surface in points], align)
+        points = [surface.placed(placing) for surface in points]
     demand_alike(points, aligned=bool(align), shiftable=probing.alone is None)
-    placed = [averaged(replace(one, points=own)) for one, own in zip(surfaces, points, strict=True)]
+    placed = [averaged(replace(surface, points=own)) for surface, own in zip(surfaces, points, strict=True)]
     return DiscPoints(part, tuple(placed), placing, turned)
 
 
@@ -206,7 +206,7 @@ def readings_of(parts: Sequence[PartIntent], tables: Sequence[PointTable], scale
 def _demand_outside(recipe: Recipe, points: Sequence[OnSurface]) -> None:
     """Raise UnlikePointsError for points of the bore."""
     bore = recipe.part.bore
-    radius = np.concatenate([np.hypot(one.points.places[:, 0], one.points.places[:, 1]) for one in points])
+    radius = np.concatenate([np.hypot(surface.points.places[:, 0], surface.points.places[:, 1]) for surface in points])
     if bore is not None and abs(2.0 * float(np.median(radius)) / bore - 1.0) <= BORE:
         across = f"{bore / recipe.mm:.6g} {UNIT_NAMES[recipe.units]} across"
         raise UnlikePointsError(f"the points lie on the bore, {across}: measure the contour")

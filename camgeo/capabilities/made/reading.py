@@ -212,9 +212,7 @@ def sorted_out(part: PartIntent, pieces: Sequence[tuple[int, PointTable, float]]
         if not rows:
             raise CallError(f"no point is on the {surface.name or 'contour'}: measure it too")
         normals = [row[1] for row in rows]
-        directions = (
-            None if any(one is None for one in normals) else np.concatenate([one for one in normals if one is not None])
-        )
+        directions = None if any(n is None for n in normals) else np.concatenate([n for n in normals if n is not None])
         places, files, lines = (np.concatenate([row[k] for row in rows]) for k in (0, 2, 3))
         points = SurfacePoints(surface.gauge, surface.side, places, probing.ball or 0.0, directions)
         surfaces.append(OnSurface(surface, points, files, lines, len(points)))
@@ -246,9 +244,9 @@ def _owners(part: PartIntent, table: PointTable, places: Array) -> Indices:
     return owner
 
 
-def averaged(one: OnSurface) -> OnSurface:
+def averaged(surface: OnSurface) -> OnSurface:
     """Points with those that were measured again at one place taken together."""
-    deviations = one.points.deviations
+    deviations = surface.points.deviations
     turn = np.mod(deviations.parameter, 2.0 * np.pi)
     order = np.argsort(turn, kind="stable")
     new = np.diff(turn[order], prepend=-1.0) > REPEATED * 2.0 * np.pi / len(order)
@@ -258,16 +256,18 @@ def averaged(one: OnSurface) -> OnSurface:
         group[group == group.max()] = 0
     count = np.bincount(group)
     if len(count) > FEWER * len(order):
-        return one
-    means = np.column_stack([np.bincount(group, column) / count for column in one.points.places.T])
+        return surface
+    means = np.column_stack([np.bincount(group, column) / count for column in surface.points.places.T])
     directions = None
-    if one.points.directions is not None:
-        sums = np.column_stack([np.bincount(group, column) for column in one.points.directions.T])
+    if surface.points.directions is not None:
+        sums = np.column_stack([np.bincount(group, column) for column in surface.points.directions.T])
         directions = sums / np.hypot(sums[:, 0], sums[:, 1])[:, None]
     mean = np.bincount(group, deviations.e) / count
     free = len(order) - len(count)
     spread = math.sqrt(float(((deviations.e - mean[group]) ** 2).sum()) / free)
     first = np.full(len(count), len(order), dtype=np.intp)
     np.minimum.at(first, group, np.arange(len(order)))
-    points = SurfacePoints(one.points.follower, one.points.side, means, one.points.ball, directions, one.points.placing)
-    return OnSurface(one.surface, points, one.files[first], one.lines[first], len(order), spread)
+    points = SurfacePoints(
+        surface.points.follower, surface.points.side, means, surface.points.ball, directions, surface.points.placing
+    )
+    return OnSurface(surface.surface, points, surface.files[first], surface.lines[first], len(order), spread)

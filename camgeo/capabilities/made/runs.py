@@ -74,9 +74,9 @@ def _read(reader: Reader, field: Field, node: Node, path: str) -> tuple[Run, ...
         below = join(path, i)
         nodes = [(item, below)]
         if isinstance(item, Sequence):
-            nodes = [(one, join(below, k)) for k, one in enumerate(reader.items(field, item, below, MOST_FILES))]
-        files = [_point_file(reader, field, one, place) for one, place in nodes]
-        runs.append(tuple(one for one in files if one is not None))
+            nodes = [(entry, join(below, k)) for k, entry in enumerate(reader.items(field, item, below, MOST_FILES))]
+        files = [_point_file(reader, field, entry, place) for entry, place in nodes]
+        runs.append(tuple(entry for entry in files if entry is not None))
     return tuple(runs) or None
 
 
@@ -98,9 +98,9 @@ def _point_file(reader: Reader, field: Field, node: Node, path: str) -> PointFil
 def _schema(_: Field) -> Schema:
     from camgeo.schema.json_schema import table_schema
 
-    one = {"anyOf": [{"type": "string", "minLength": 1, "maxLength": MOST_TEXT}, table_schema(POINT_FILE)]}
-    some = {"type": "array", "items": one, "minItems": 1, "maxItems": MOST_FILES}
-    return {"type": "array", "items": {"anyOf": [one, some]}, "minItems": 1, "maxItems": MOST_FILES}
+    file = {"anyOf": [{"type": "string", "minLength": 1, "maxLength": MOST_TEXT}, table_schema(POINT_FILE)]}
+    some = {"type": "array", "items": file, "minItems": 1, "maxItems": MOST_FILES}
+    return {"type": "array", "items": {"anyOf": [file, some]}, "minItems": 1, "maxItems": MOST_FILES}
 
 
 POINTS = Field(

@@ -42,7 +42,7 @@ def section(
         "unit": UNIT_NAMES[recipe.units],
         "verdicts": dict(verdicts),
         "discs": [_disc(recipe, disc) for disc in result.discs],
-        "surfaces": [_surface(recipe, paths, one) for one in result.surfaces],
+        "surfaces": [_surface(recipe, paths, surface) for surface in result.surfaces],
         "motion": motion_section(recipe, result, call),
     }
     if result.play is not None:
@@ -79,9 +79,9 @@ def add_figures(entry: dict[str, Any], recipe: Recipe, design: Design, result: P
     gap = None if result.play is None else np.stack([result.play.gap, result.play.sds])
     motion = MadeMotion(errors.shaft, rows, errors.sds, lambda weights: errors.influence(weights).sd, gap)
     made = [capability.on_metal(recipe, design, motion) for capability in registry.in_order(recipe.uses)]
-    if figures := [figure._asdict() for one in made for figure in one.figures]:
+    if figures := [figure._asdict() for metal in made for figure in metal.figures]:
         entry["figures"] = figures
-    entry["remarks"] += [remark for one in made for remark in one.remarks]
+    entry["remarks"] += [remark for metal in made for remark in metal.remarks]
 
 
 def scale_of(recipe: Recipe, result: PartMade) -> tuple[float, str]:
@@ -91,31 +91,31 @@ def scale_of(recipe: Recipe, result: PartMade) -> tuple[float, str]:
 
 
 def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
-    mm, held = recipe.mm, disc.profile
-    worst = int(np.argmax(np.abs(held.e)))
+    mm, profile = recipe.mm, disc.profile
+    worst = int(np.argmax(np.abs(profile.e)))
     surface, index = _of_all(disc, worst)
-    parameter = held.deviations[surface].parameter[index : index + 1]
+    parameter = profile.deviations[surface].parameter[index : index + 1]
     gauge = disc.surfaces[surface].on.surface.gauge
     entry: dict[str, Any] = {
         "name": name_of(disc.part),
-        "datum": held.datum,
-        "profile": 2.0 * held.greatest / mm,
-        "greatest": float(held.e[worst]) / mm,
+        "datum": profile.datum,
+        "profile": 2.0 * profile.greatest / mm,
+        "greatest": float(profile.e[worst]) / mm,
         "at_deg": degrees(float(gauge.shaft_angle(parameter)[0])),
         "line": int(disc.surfaces[surface].on.lines[index]),
         "uncertainty": 2.0 * float(disc.uncertain[worst]) / mm,
         "smoothed": 2.0 * disc.smoothed / mm,
-        "least_squares": {"profile": 2.0 * held.least[1] / mm, **_placing(recipe, held.least[0])},
-        **_placing(recipe, held.placing),
+        "least_squares": {"profile": 2.0 * profile.least[1] / mm, **_placing(recipe, profile.least[0])},
+        **_placing(recipe, profile.placing),
     }
-    if held.turns is not None and held.turns[1] - held.turns[0] > 1e-9:
-        entry["turned_from_deg"], entry["turned_to_deg"] = (math.degrees(turn) for turn in held.turns)
-    if held.certified is not None:
-        entry["certificate"] = 2.0 * held.certified.certificate / mm
-        entry["multipliers"] = held.certified.multipliers.tolist()
+    if profile.turns is not None and profile.turns[1] - profile.turns[0] > 1e-9:
+        entry["turned_from_deg"], entry["turned_to_deg"] = (math.degrees(turn) for turn in profile.turns)
+    if profile.certified is not None:
+        entry["certificate"] = 2.0 * profile.certified.certificate / mm
+        entry["multipliers"] = profile.certified.multipliers.tolist()
     entry["causes"] = _causes(recipe, disc)
     zone = recipe.of(Made)
-    lack = 0.0 if zone is None or zone.profile is None else -float(held.e.min()) - 0.5 * zone.profile
+    lack = 0.0 if zone is None or zone.profile is None else -float(profile.e.min()) - 0.5 * zone.profile
     if lack > 0.0:
         entry["reduction"] = _reduction(recipe, disc, lack)
     if disc.placing.turn or any(disc.placing.shift):
@@ -144,7 +144,10 @@ def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
     """
     sign = -1.0 if recipe.rotation == "ccw" else 1.0
     rows = []
-    deviations, curves = [one.on.points.deviations for one in disc.surfaces], [one.fit.curve for one in disc.surfaces]
+    deviations, curves = (
+        [surface.on.points.deviations for surface in disc.surfaces],
+        [surface.fit.curve for surface in disc.surfaces],
+    )
     for cause in causes(deviations, curves, disc.turned):
         turned, mirrored = cause.names == ("turned",), cause.names in {("turned",), ("shifted along y",)}
         scale = (math.degrees(1.0) if turned else 1.0 / recipe.mm) * (sign if mirrored else 1.0)
@@ -166,10 +169,10 @@ def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
 
 def _of_all(disc: DiscMade, index: int) -> tuple[int, int]:
     """Surface, and index among its points, of a point among all of a disc."""
-    for rank, one in enumerate(disc.surfaces):
-        if index < len(one.on.points):
+    for rank, surface in enumerate(disc.surfaces):
+        if index < len(surface.on.points):
             return rank, index
-        index -= len(one.on.points)
+        index -= len(surface.on.points)
     raise IndexError(index)
 
 
@@ -180,31 +183,31 @@ def _placing(recipe: Recipe, placing: Placing) -> dict[str, Any]:
     return {"turned_deg": sign * math.degrees(placing.turn), "shifted": [x / recipe.mm, sign * y / recipe.mm]}
 
 
-def _surface(recipe: Recipe, paths: Sequence[Path], one: SurfaceMade) -> dict[str, Any]:
-    mm, curve, count = recipe.mm, one.fit.curve, len(one.on.points)
+def _surface(recipe: Recipe, paths: Sequence[Path], surface: SurfaceMade) -> dict[str, Any]:
+    mm, curve, count = recipe.mm, surface.fit.curve, len(surface.on.points)
     wide = count / curve.spans * math.sqrt(math.pi)
     outliers = [
         {
-            "file": paths[int(one.on.files[i])].name,
-            "line": int(one.on.lines[i]),
-            "residual": float(one.fit.residuals[i]) / mm,
+            "file": paths[int(surface.on.files[i])].name,
+            "line": int(surface.on.lines[i]),
+            "residual": float(surface.fit.residuals[i]) / mm,
         }
-        for i in np.flatnonzero(one.fit.outliers)[:MOST_OUTLIERS].tolist()
+        for i in np.flatnonzero(surface.fit.outliers)[:MOST_OUTLIERS].tolist()
     ]
     return {
-        "name": one.on.surface.name,
-        "points": one.on.repeats,
+        "name": surface.on.surface.name,
+        "points": surface.on.repeats,
         "places": count,
         "spans": curve.spans,
         "noise": curve.sigma / mm,
         "smoothing": COVERAGE * float(curve.deviations(equal_steps(720)).max()) / mm,
-        "correlation": one.fit.correlation,
+        "correlation": surface.fit.correlation,
         "widened": curve.widened,
         "least_fault_point": least_fault(curve.sigma, 1.0, count) / mm,
         "least_fault_span": least_fault(curve.sigma, wide, curve.spans) / mm,
         "span_deg": 360.0 / curve.spans,
         "outliers": outliers,
-        "outlier_count": int(one.fit.outliers.sum()),
+        "outlier_count": int(surface.fit.outliers.sum()),
     }
 
 

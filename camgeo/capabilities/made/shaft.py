@@ -378,13 +378,13 @@ def _lift_rows(measured: Sequence[CamPoints], scale: float, probing: Probing) ->
 
     readings = [_readings(points, scale, probing) for points in measured]
     names = [points.cam.name for points in measured]
-    own, meant = rows_of_lifts(readings, [points.cam.zero for points in measured])
+    own, exact = rows_of_lifts(readings, [points.cam.zero for points in measured])
     return Rows(
         own,
-        meant,
+        exact,
         np.arange(len(measured)),
         names,
-        np.ptp(meant, axis=1),
+        np.ptp(exact, axis=1),
         np.ptp(own, axis=1),
         np.arange(len(measured)),
         OF_LIFTS,

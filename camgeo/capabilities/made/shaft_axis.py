@@ -69,15 +69,15 @@ class Leaning(NamedTuple):
         """Say that the axis leans, where that is certain, and what is done about it; cams that stand off it."""
         axis = self.axis
         lean, unsure = float(np.hypot(*axis.lean)), COVERAGE * axis.lean_deviation
-        told = f"{math.degrees(lean):.3g} +- {math.degrees(unsure):.2g} degrees"
+        amount = f"{math.degrees(lean):.3g} +- {math.degrees(unsure):.2g} degrees"
         if self.removed:
             return [
-                f"a lean of {told} and a shift of the axis were taken out by --align best-fit: motions show neither"
+                f"a lean of {amount} and a shift of the axis were taken out by --align best-fit: motions show neither"
             ]
         if lean <= CERTAIN * unsure:
             return []
         over = f"{1e3 * lean * axis.length:.3g} micrometres over {axis.length:.4g} mm"
-        return [f"the axis of the shaft leans by {told}, {over}, against that of z: `--align best-fit` takes it out"]
+        return [f"the axis of the shaft leans by {amount}, {over}, against that of z: `--align best-fit` takes it out"]
 
 
 def leaning_of(

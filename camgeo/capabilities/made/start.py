@@ -395,9 +395,7 @@ def _heights(measured: _MeasuredCam, programme: Programme) -> list[float]:
 def _told(measured: _MeasuredCam, programme: Programme) -> list[str]:
     """Lines of text on each recognised stroke: height, angles and law, with uncertainties."""
     unsure, lines = programme.uncertainty[0], []
-    order = sorted(
-        programme.strokes, key=lambda one: _angle(measured, programme.boundaries[one.first], unsure[one.first])
-    )
+    order = sorted(programme.strokes, key=lambda s: _angle(measured, programme.boundaries[s.first], unsure[s.first]))
     for number, stroke in enumerate(order, start=1):
         begin, end = (math.degrees(programme.boundaries[k]) for k in (stroke.first, stroke.last))
         begin = math.remainder(begin, 360.0) if begin > 360.0 - AT_ZERO else begin
@@ -478,5 +476,5 @@ def _verified(text: str, beside: collections.abc.Mapping[str, str], name: str, p
     profile = max(2.0 * disc.profile.greatest for disc in part.discs) / recipe.mm
     motion = float(np.abs(part.motion.remaining).max())
     scale, unit = (math.degrees(1.0), "deg") if design.exact.gauge.unit == "deg" else (1.0 / recipe.mm, recipe.units)
-    told = f"profile {profile:.3g} {UNIT_NAMES[recipe.units]}, motion within {scale * motion:.3g} {unit}"
-    return [f"verified against the points: {told}"]
+    words = f"profile {profile:.3g} {UNIT_NAMES[recipe.units]}, motion within {scale * motion:.3g} {unit}"
+    return [f"verified against the points: {words}"]

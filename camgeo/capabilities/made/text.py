@@ -29,27 +29,32 @@ def shown(report: dict[str, Any], *, everything: bool) -> str:
 def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
     """Rows of text (label, value) on what was measured; with `everything` all of them."""
     unit, rows = section["unit"], []
-    for one in section["surfaces"]:
-        on = f" on {one['name']}" if one["name"] else ""
-        told = f"{one['points']}{on}"
-        told += f", noise {one['noise']:.3g} {unit}" if one["noise"] else ""
-        rows.append(("points", told))
+    for surface in section["surfaces"]:
+        on = f" on {surface['name']}" if surface["name"] else ""
+        words = f"{surface['points']}{on}"
+        words += f", noise {surface['noise']:.3g} {unit}" if surface["noise"] else ""
+        rows.append(("points", words))
         if everything:
             rows.append(
                 (
                     "  smoothed over",
-                    f"{one['spans']} spans of {one['span_deg']:.3g} degrees, +- {one['smoothing']:.2g} {unit}",
+                    (
+                        f"{surface['spans']} spans of {surface['span_deg']:.3g} degrees, "
+                        f"+- {surface['smoothing']:.2g} {unit}"
+                    ),
                 )
             )
-            rows += [(f"  outlier, line {each['line']}", f"{each['residual']:+.4g} {unit}") for each in one["outliers"]]
-        point, wave, over = one["least_fault_point"], one["least_fault_span"], 2.0 * one["span_deg"]
+            rows += [
+                (f"  outlier, line {each['line']}", f"{each['residual']:+.4g} {unit}") for each in surface["outliers"]
+            ]
+        point, wave, over = surface["least_fault_point"], surface["least_fault_span"], 2.0 * surface["span_deg"]
         faults = f"{point:.2g} at one point, {wave:.2g} over {over:.3g} degrees"
         rows.append(("  least fault that is found", f"{faults} {unit}"))
     for disc in section["discs"]:
-        of = f" of {disc['name']}" if len(section["discs"]) > 1 else ""
+        ending = f" of {disc['name']}" if len(section["discs"]) > 1 else ""
         value = f"{disc['profile']:.4g} +- {disc['uncertainty']:.2g} {unit}"
         where = f"{disc['greatest']:+.4g} at {disc['at_deg']:.2f} degrees, line {disc['line']}"
-        rows.append((f"profile{of}, datum {disc['datum']}", f"{value}; {where}"))
+        rows.append((f"profile{ending}, datum {disc['datum']}", f"{value}; {where}"))
         rows.append(("  smoothed", f"{disc['smoothed']:.4g} {unit}"))
         if disc["datum"] != "part":
             rows.append(("  placed by minimax", _placed(disc, unit)))
@@ -59,14 +64,14 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
             weights = ", ".join(f"{weight:.4f}" for weight in disc["multipliers"])
             rows.append(("  certified by", f"{disc['certificate']:.6g} {unit}, multipliers {weights}"))
         for cause in disc["causes"]:
-            told = f"{cause['value']:+.4g} +- {cause['uncertainty']:.2g} {cause['unit']}"
-            told += f" at {cause['at_deg']:.1f} degrees" if "at_deg" in cause else ""
-            told += f", {cause['waves']} a turn" if "waves" in cause else ""
-            rows.append((f"  cause: {cause['cause']}", f"{told}; makes {cause['effect']:.3g} {unit}"))
+            words = f"{cause['value']:+.4g} +- {cause['uncertainty']:.2g} {cause['unit']}"
+            words += f" at {cause['at_deg']:.1f} degrees" if "at_deg" in cause else ""
+            words += f", {cause['waves']} a turn" if "waves" in cause else ""
+            rows.append((f"  cause: {cause['cause']}", f"{words}; makes {cause['effect']:.3g} {unit}"))
         if "reduction" in disc:
             cure = disc["reduction"]
-            told = f"{cure['size']:.3g} {unit}: the motion by {cure['offset']:+.3g} {cure['unit']}"
-            rows.append(("  good if smaller all round by", f"{told}, within {cure['change']:.2g} of that"))
+            words = f"{cure['size']:.3g} {unit}: the motion by {cure['offset']:+.3g} {cure['unit']}"
+            rows.append(("  good if smaller all round by", f"{words}, within {cure['change']:.2g} of that"))
     motion = section["motion"]
     for name, label in PER.items():
         own = motion[name]
@@ -79,10 +84,10 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
     peak = motion["peak_acceleration"]
     rows.append(("  peak acceleration", f"{peak['made']:.4g}, intended {peak['intended']:.4g} {peak['unit']}"))
     for figure in section.get("figures", ()):
-        told = (
+        words = (
             f"{figure['made']:.4g} +- {figure['uncertainty']:.2g}, intended {figure['intended']:.4g} {figure['unit']}"
         )
-        rows.append((f"  {figure['name']}", f"{told}, at {figure['at_deg']:.2f} degrees"))
+        rows.append((f"  {figure['name']}", f"{words}, at {figure['at_deg']:.2f} degrees"))
     rows += _events(section.get("events", {}))
     if "play" in section:
         play = section["play"]
@@ -90,8 +95,8 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
         rows.append(("play", f"{least} to {most} degrees, +- {play['uncertainty']:.2g} {play['unit']}"))
     if "output" in section:
         output = section["output"]
-        told = f"{output['max']:.4g} +- {output['uncertainty']:.2g} {output['unit']} at {output['at_deg']:.2f} degrees"
-        rows.append(("output, error", f"{told}; {output['centred']:.4g} centred"))
+        words = f"{output['max']:.4g} +- {output['uncertainty']:.2g} {output['unit']} at {output['at_deg']:.2f} degrees"
+        rows.append(("output, error", f"{words}; {output['centred']:.4g} centred"))
     if "lifts" in section:
         rows.append(("zero of the readings", f"{section['lifts']['zero']:+.6g} {motion['unit']}"))
     return rows
@@ -100,11 +105,11 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
 def _events(events: dict[str, Any]) -> list[tuple[str, str]]:
     """Lift, velocity and durations, each as made, its uncertainty, and as intended."""
     rows = []
-    for name, of in events.items():
+    for name, event in events.items():
         if name != "above":
-            rows += [(f"{name}, greatest {figure}", _against(own, own["unit"])) for figure, own in of.items()]
+            rows += [(f"{name}, greatest {figure}", _against(own, own["unit"])) for figure, own in event.items()]
     for above in events.get("above", ()):
-        label = f"{above['of']} above {above['lift']:.6g} {above['unit']}"
+        label = f"{above['event']} above {above['lift']:.6g} {above['unit']}"
         if above["duration_crank_deg"] is None:
             rows.append((label, "not crossed once upwards and once down"))
             continue
@@ -167,10 +172,10 @@ def _late(degrees: float) -> str:
 
 def _placed(placing: dict[str, Any], unit: str) -> str:
     x, y = placing["shifted"]
-    told = f"turned by {placing['turned_deg']:+.4g} degrees"
+    words = f"turned by {placing['turned_deg']:+.4g} degrees"
     if "turned_from_deg" in placing:
-        told += f" ({placing['turned_from_deg']:.4g} to {placing['turned_to_deg']:.4g})"
-    return told + (f", shifted by ({x:+.4g}, {y:+.4g}) {unit}" if x or y else "")
+        words += f" ({placing['turned_from_deg']:.4g} to {placing['turned_to_deg']:.4g})"
+    return words + (f", shifted by ({x:+.4g}, {y:+.4g}) {unit}" if x or y else "")
 
 
 def _named(check: dict[str, Any]) -> str:

@@ -63,19 +63,19 @@ def _unmade(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
 
 def _bored(recipe: Recipe) -> bool:
     """Whether the bore is a round one that is milled."""
-    part, asked = recipe.part, recipe.manufacture
-    if part.bore is None or asked is None or not asked.holes or not part.round_bore or part.of(Hub) is not None:
+    part, milling = recipe.part, recipe.manufacture
+    if part.bore is None or milling is None or not milling.holes or not part.round_bore or part.of(Hub) is not None:
         return False
-    return part.bore >= _least_hole(asked)
+    return part.bore >= _least_hole(milling)
 
 
 def _drilled(recipe: Recipe) -> bool:
     """Whether holes other than the bore are milled; lightening holes do not count, as they are placed later."""
-    part, asked = recipe.part, recipe.manufacture
-    if asked is None or not asked.holes:
+    part, milling = recipe.part, recipe.manufacture
+    if milling is None or not milling.holes:
         return False
     hub = part.of(Hub)
-    reach, least = 0.0 if hub is None else 0.5 * hub.diameter, 0.5 * _least_hole(asked)
+    reach, least = 0.0 if hub is None else 0.5 * hub.diameter, 0.5 * _least_hole(milling)
     circles = [opening.circle for opening in part.openings if opening.circle is not None]
     return any(math.hypot(*centre) >= reach and radius >= least for centre, radius in circles)
 

@@ -49,7 +49,7 @@ def places(tolerance: float, mm: float, lengths: Sequence[float] = ()) -> int:
     however coarse the tolerance, a centre off by 0.71 of the last place makes the two radii of an arc differ by up to
     1.42 of it: beyond `ARC_MM` controllers refuse the arc.
     """
-    last = min([SHARE * tolerance / 2.5, ARC_MM / 1.42, *(KEPT * one for one in lengths)])
+    last = min([SHARE * tolerance / 2.5, ARC_MM / 1.42, *(KEPT * length for length in lengths)])
     return max(math.ceil(-math.log10(last / mm)), LEAST_PLACES)
 
 
@@ -100,8 +100,8 @@ class _Numbers:
 
     def rounded(self, points: Array) -> Array:
         """Points (n, 2) in the program's unit as they are written."""
-        found: Array = np.round(points / self.mm, self.count) + 0.0
-        return found
+        numbers: Array = np.round(points / self.mm, self.count) + 0.0
+        return numbers
 
 
 def _pass(step: Pass, cutting: Cutting, number: _Numbers) -> Iterator[str]:

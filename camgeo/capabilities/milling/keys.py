@@ -51,5 +51,5 @@ def check_hub(values: Values, reader: Reader) -> None:
     if height is None or safe is None or hub.get("side") == "bottom" or safe > height:
         return
     remedy = f"give more than {height / reader.mm:.6g} {reader.units}"
-    given = f"{safe / reader.mm:.6g} {reader.units}"
-    reader.fault_at("manufacture.safe_height", "not above the hub's top", given, remedy)
+    height_words = f"{safe / reader.mm:.6g} {reader.units}"
+    reader.fault_at("manufacture.safe_height", "not above the hub's top", height_words, remedy)

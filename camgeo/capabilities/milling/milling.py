@@ -36,46 +36,46 @@ def pocket_of(design: Design) -> float | None:
 
 def few_passes(recipe: Recipe, depth: float | None, paths: int = 1) -> None:
     """Raise RecipeErrors for a depth of cut so slight that a program of so many paths would not come to an end."""
-    asked = recipe.manufacture
-    if depth is None or asked is None or asked.depth_of_cut is None:
+    manufacture = recipe.manufacture
+    if depth is None or manufacture is None or manufacture.depth_of_cut is None:
         return
-    count = paths * depth / asked.depth_of_cut
+    count = paths * depth / manufacture.depth_of_cut
     if count > MOST_PASSES:
-        given = f"{asked.depth_of_cut / recipe.mm:.6g} {recipe.units}"
+        depth_words = f"{manufacture.depth_of_cut / recipe.mm:.6g} {recipe.units}"
         what = f"makes {math.ceil(count)} passes, more than {MOST_PASSES}"
         remedy = f"give at least {paths * depth / MOST_PASSES / recipe.mm:.6g} {recipe.units}"
-        raise recipe.error("manufacture.depth_of_cut", what, given, remedy)
+        raise recipe.error("manufacture.depth_of_cut", what, depth_words, remedy)
 
 
 def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
     """Features of the part that a program leaves unmade, with the reasons; a program cuts straight down into a disc."""
     part = recipe.part
-    found = list(milled_holes(recipe, design)[1])
+    items = list(milled_holes(recipe, design)[1])
     if part.outer is not None:
-        found.append(("outline", f"the stock comes with it, a disc {part.outer / recipe.mm:.6g} across"))
+        items.append(("outline", f"the stock comes with it, a disc {part.outer / recipe.mm:.6g} across"))
     elif pocket_of(design) is not None:
-        found.append(("outline", "the stock comes with it"))
-    given = (feature for feature, _ in with_records(part.features))
-    return [*found, *((feature.name.replace("_", " "), feature.unmilled) for feature in given if feature.unmilled)]
+        items.append(("outline", "the stock comes with it"))
+    features = (feature for feature, _ in with_records(part.features))
+    return [*items, *((feature.name.replace("_", " "), feature.unmilled) for feature in features if feature.unmilled)]
 
 
 def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
     """Holes that the cutter goes round, and the names of those that it does not, with the reason."""
-    _, asked = milled_contours(recipe, design)
+    _, manufacture = milled_contours(recipe, design)
     stock = recipe.part.of(Hub)
     hub = 0.0 if stock is None else 0.5 * stock.diameter
-    found: list[RoundHole] = []
+    holes: list[RoundHole] = []
     others: list[tuple[str, str]] = []
     for opening in design.openings:
         if opening.circle is not None and opening.depth is None:
-            found.append(RoundHole(opening.name, *opening.circle))
+            holes.append(RoundHole(opening.name, *opening.circle))
         else:
             others.append((opening.name, "not a round hole" if opening.depth is None else "engraved"))
-    if not asked.holes:
-        return [], [*((hole.name, "manufacture.holes is not true") for hole in found), *others]
-    beside = [hole for hole in found if math.hypot(*hole.centre) >= hub]
-    others += [(hole.name, "within the hub, which is higher than the disc") for hole in found if hole not in beside]
-    wide = [hole for hole in beside if hole.radius >= asked.radius + LEAST_ROOM]
+    if not manufacture.holes:
+        return [], [*((hole.name, "manufacture.holes is not true") for hole in holes), *others]
+    beside = [hole for hole in holes if math.hypot(*hole.centre) >= hub]
+    others += [(hole.name, "within the hub, which is higher than the disc") for hole in holes if hole not in beside]
+    wide = [hole for hole in beside if hole.radius >= manufacture.radius + LEAST_ROOM]
     others += [(hole.name, "not wider than the cutter") for hole in beside if hole not in wide]
     return wide, others
 
@@ -84,33 +84,33 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     """Intent by which kin judges a milling program: the part without what is not milled, and the machine's side."""
     from kin.judge.intent import Milling
 
-    _, asked = milled_contours(recipe, design)
+    _, manufacture = milled_contours(recipe, design)
     reached = reach_checks(recipe, design)
     lost = [path is None or bool(path.lost) for _, path in reached]
-    meant, pocket = intended(recipe, design), pocket_of(design)
-    trimmed = [each.trimmed or less for each, less in zip(meant.surfaces, lost, strict=True)]
-    found, _ = milled_holes(recipe, design)
-    names = {hole.name for hole in found}
+    intent, pocket = intended(recipe, design), pocket_of(design)
+    trimmed = [each.trimmed or less for each, less in zip(intent.surfaces, lost, strict=True)]
+    holes, _ = milled_holes(recipe, design)
+    names = {hole.name for hole in holes}
     hub = recipe.part.of(Hub)
     top = None if hub is None or hub.side == "bottom" else hub
     (disc,) = design.discs
     shaped = () if disc.body is None or recipe.part.plain else holes_of(disc.body)
     milling = Milling(
-        radius=asked.radius,
+        radius=manufacture.radius,
         thickness=recipe.part.thickness or 0.0,
-        depth_of_cut=asked.depth_of_cut or recipe.part.thickness or 0.0,
-        climb=asked.direction == "climb",
-        standing=asked.unreached if any(lost) else 0.0,
+        depth_of_cut=manufacture.depth_of_cut or recipe.part.thickness or 0.0,
+        climb=manufacture.direction == "climb",
+        standing=manufacture.unreached if any(lost) else 0.0,
         hub=None if top is None else (0.5 * top.diameter, top.height),
         outline=recipe.part.outer is None and pocket is None,
         pocket=pocket,
     )
     return replace(
-        meant,
-        bore=meant.bore if "bore" in names else None,
+        intent,
+        bore=intent.bore if "bore" in names else None,
         holes=tuple(hole for hole in shaped if hole.name in names),
         layers=(),
         cross_holes=(),
-        surfaces=tuple(replace(each, trimmed=less) for each, less in zip(meant.surfaces, trimmed, strict=True)),
+        surfaces=tuple(replace(each, trimmed=less) for each, less in zip(intent.surfaces, trimmed, strict=True)),
         milling=milling,
     )

@@ -49,8 +49,8 @@ LEAST_LEAD = 1e-2  # mm: radius of a way in below which there is none
 
 def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one program; none is made for a cutter that does not reach all it must."""
-    recipe, asked = job.recipe, job.recipe.manufacture
-    if asked is None:
+    recipe, manufacture = job.recipe, job.recipe.manufacture
+    if manufacture is None:
         raise recipe.error("manufacture", "gcode needs manufacture")
     few_passes(recipe, recipe.part.thickness)
     with job.refusals(request), job.clock.stage("cutter path"):
@@ -59,11 +59,11 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
         return Made((), checks)
     mm = recipe.in_units_of(request).mm
     with job.refusals(request):
-        places_apart, mill = _told_apart(job, asked), _contour if pocket_of(job.design) is None else _pocket
+        places_apart, mill = _told_apart(job, manufacture), _contour if pocket_of(job.design) is None else _pocket
         count = places(job.tolerance(request), mm, places_apart)
-        steps, fine = mill(job, asked, job.tolerance(request) - rounding(count, mm))
+        steps, fine = mill(job, manufacture, job.tolerance(request) - rounding(count, mm))
         with job.clock.stage("write gcode"):
-            _write(job, request, path, [*_holes(job, asked), (FEATURE, steps)], count)
+            _write(job, request, path, [*_holes(job, manufacture), (FEATURE, steps)], count)
     bound = reduce(Bound.wider, (outline.bound for outline in fine)).widened(rounding(count, mm))
     made = job.judge(request, path, bound, sum(outline.count for outline in fine))
     return Made(made.files, (*checks, *made.checks))
@@ -73,8 +73,8 @@ def _told_apart(job: Job, manufacture: Manufacture) -> list[float]:
     """Differences between heights and paths of the program, mm, which its decimals must show."""
     pocket, thickness = pocket_of(job.design), job.recipe.part.thickness or 0.0
     step = -max(depths(depth, manufacture.depth_of_cut or math.inf)[0] for depth in (pocket or thickness, thickness))
-    found, _ = milled_holes(job.recipe, job.design)
-    lead = min([manufacture.lead, *(0.5 * (hole.radius - manufacture.radius) for hole in found)])
+    holes, _ = milled_holes(job.recipe, job.design)
+    lead = min([manufacture.lead, *(0.5 * (hole.radius - manufacture.radius) for hole in holes)])
     return [length for length in (step, manufacture.safe_height, manufacture.allowance, lead) if length]
 
 
@@ -150,8 +150,8 @@ def _pocket(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[
 
 def _holes(job: Job, manufacture: Manufacture) -> list[tuple[str, list[Pass]]]:
     """Passes of the holes that are milled, by name."""
-    found, _ = milled_holes(job.recipe, job.design)
-    return [(hole.name, _hole(job, manufacture, hole)) for hole in found]
+    holes, _ = milled_holes(job.recipe, job.design)
+    return [(hole.name, _hole(job, manufacture, hole)) for hole in holes]
 
 
 def _hole(job: Job, manufacture: Manufacture, hole: RoundHole) -> list[Pass]:
@@ -168,21 +168,23 @@ def _hole(job: Job, manufacture: Manufacture, hole: RoundHole) -> list[Pass]:
 
 
 def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str, list[Pass]]], count: int) -> None:
-    recipe, asked = job.recipe, job.recipe.manufacture
-    if asked is None or not (asked.feed and asked.plunge and asked.spindle and asked.safe_height):
+    recipe, manufacture = job.recipe, job.recipe.manufacture
+    if manufacture is None or not (
+        manufacture.feed and manufacture.plunge and manufacture.spindle and manufacture.safe_height
+    ):
         raise recipe.error("manufacture", "gcode needs feed, plunge, spindle, depth_of_cut and safe_height")
-    told = recipe.in_units_of(request)
-    mm = told.mm
+    in_units = recipe.in_units_of(request)
+    mm = in_units.mm
     top = "top of the stock" if recipe.part.of(Hub) is None else "upper face of the disc"
     remarks = [
         recipe.name,
         recipe.about,
-        f"units: {told.units}",
-        f"cutter: diameter {plain(asked.cutter / mm)}",
+        f"units: {in_units.units}",
+        f"cutter: diameter {plain(manufacture.cutter / mm)}",
         f"tolerance: {plain(job.tolerance(request) / mm)}",
         f"zero: the shaft, {top}; thickness {plain((recipe.part.thickness or 0.0) / mm)}",
-        f"{asked.direction} milling, spindle clockwise",
+        f"{manufacture.direction} milling, spindle clockwise",
         *(f"not milled: {name}, {why}" for name, why in unmilled(recipe, job.design)),
     ]
-    cutting = Cutting(asked.feed, asked.plunge, asked.spindle, asked.safe_height)
+    cutting = Cutting(manufacture.feed, manufacture.plunge, manufacture.spindle, manufacture.safe_height)
     write_gcode(path, features, cutting, remarks=[text for text in remarks if text], count=count, mm=mm)

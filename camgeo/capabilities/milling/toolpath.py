@@ -47,8 +47,8 @@ class Pass:
 def begun_at(path: ArcSpline, direction: float) -> ArcSpline:
     """Closed path that begins in its point farthest in a direction, rad; a piece is cut in two there where needed."""
     contour = Contour.from_bulges(path.points, path.bulges)
-    found = contour.support(np.array([direction]))
-    piece, point = int(found.piece[0]), found.point[0]
+    support = contour.support(np.array([direction]))
+    piece, point = int(support.piece[0]), support.point[0]
     points, bulges = np.roll(path.points, -piece, axis=0), np.roll(path.bulges, -piece)
     if np.hypot(*(point - points[1 % len(points)])) <= SAME:
         return ArcSpline(np.roll(points, -1, axis=0), np.roll(bulges, -1), path.bound)

@@ -162,8 +162,8 @@ def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Toleranc
         column.append(
             Callout(f"Ø{number(2.0 * radius)}", name, origin, radius, 0.8 * math.pi, 2.0 * radius, boxed=True)
         )
-    given = ((feature.callouts, value) for feature, value in with_records(part.features))
-    sizes = [callouts(value, drawn.view) for callouts, value in given if callouts is not None]
+    features = ((feature.callouts, value) for feature, value in with_records(part.features))
+    sizes = [callouts(value, drawn.view) for callouts, value in features if callouts is not None]
     column += [Callout(*size) for each in sizes for size in each]
     thick = body.thickness
     plain = part.bore is not None and not part.sides

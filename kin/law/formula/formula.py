@@ -80,9 +80,9 @@ class Formula:
             raise ValueError(f"no interval from {lower} to {upper}")
         waiting, knots, done = [(lower, upper, self.expression)], [lower], []
         at_lower = at_upper = False
-        seen = 0
+        count = 0
         while waiting:
-            seen += 1
+            count += 1
             a, b, expression = waiting.pop()
             places = innermost(expression)
             if not places:
@@ -94,7 +94,7 @@ class Formula:
             at_upper |= pieces.at_end and b == upper
             ends = pairwise((a, *pieces.inside, b))
             waiting += [(*end, part) for end, part in zip(ends, pieces.expressions, strict=True)][::-1]
-            if seen + len(waiting) > _MOST_STRETCHES:
+            if count + len(waiting) > _MOST_STRETCHES:
                 message = f"the formula switches too often to be taken apart: more than {_MOST_STRETCHES} stretches"
                 raise FormulaError(message, expression.steps[places[0]].column)
         return np.array(knots, dtype=float), tuple(done), (at_lower, at_upper)

@@ -147,9 +147,9 @@ def parsed(raw: bytes, path: Path) -> Document:
     if END_MARK.search(raw[-200:]) is None:
         raise ReadError("truncated", "the end mark EOF is missing: the file is cut short, or no DXF file", path)
 
-    if b"_" in raw and (found := UNDERSCORED.search(raw)):
-        line = raw.count(b"\n", 0, found.start(1)) + 1
-        raise ReadError("syntax", f"line {line}: {found[1].decode('ascii')} is not a number", path)
+    if b"_" in raw and (number := UNDERSCORED.search(raw)):
+        line = raw.count(b"\n", 0, number.start(1)) + 1
+        raise ReadError("syntax", f"line {line}: {number[1].decode('ascii')} is not a number", path)
 
     prepare_home()
     from ezdxf.filemanagement import dxf_stream_info, read
@@ -268,9 +268,9 @@ def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, p
     if chosen is None:
         types = [_dashes(document, entity) for entity in drawn]
         dashed.update(
-            (one.layer, f"{one.kind} of line type {name}") for one, name in zip(drawn, types, strict=True) if name
+            (item.layer, f"{item.kind} of line type {name}") for item, name in zip(drawn, types, strict=True) if name
         )
-        drawn = [one for one, name in zip(drawn, types, strict=True) if not name]
+        drawn = [item for item, name in zip(drawn, types, strict=True) if not name]
     # what is drawn with no thought for layers goes to the machine too
     entities = gather(drawn, wanted | {NO_LAYER} if layer is None else wanted, path)
     entities.aside.update(on_paper(document))

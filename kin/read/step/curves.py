@@ -249,14 +249,14 @@ def edge_of(space: Space, number: int) -> Edge:
         curve = file.reference(file.values(curve, kind, 2)[1], curve)
         kind = file.kind(curve, ("LINE", "CIRCLE", "ELLIPSE", *SPLINES), number)
     if kind == "LINE":
-        found: Straight | Conic | Spline = _line(space, curve)
+        shape: Straight | Conic | Spline = _line(space, curve)
     elif kind in {"CIRCLE", "ELLIPSE"}:
-        found = _conic(space, curve, kind, (start, end) if forward else (end, start), forward=forward)
+        shape = _conic(space, curve, kind, (start, end) if forward else (end, start), forward=forward)
     else:
         spline = spline_of(space, curve)
-        found = spline._replace(back=not forward)
-    edge = Edge(number, start, end, found)
-    if isinstance(found, Spline) and edge.misfit > BEYOND * float(np.ptp(edge.samples, axis=0).max()):
+        shape = spline._replace(back=not forward)
+    edge = Edge(number, start, end, shape)
+    if isinstance(shape, Spline) and edge.misfit > BEYOND * float(np.ptp(edge.samples, axis=0).max()):
         raise file.error(number, f"its curve #{curve} goes on beyond its ends; a spline is read whole")
     return edge
 

@@ -86,11 +86,11 @@ class _Places:
                 if TRANSFORMED in records:
                     raise file.error(number, "relates no two representations", "syntax")
                 continue
-            one, other = (file.reference(value, number) for value in file.values(number, kind, 4)[2:4])
+            first, other = (file.reference(value, number) for value in file.values(number, kind, 4)[2:4])
             if TRANSFORMED in records:
-                self.moved[number] = (one, other)
+                self.moved[number] = (first, other)
             else:
-                self.plain.append((number, one, other))
+                self.plain.append((number, first, other))
 
     def of(self, holder: int, *, alone: bool) -> Frame | None:
         """Where the solid of a representation stands in the outermost assembly, `alone` there or with other solids."""
@@ -163,8 +163,8 @@ class _Places:
         item = file.reference(file.values(number, TRANSFORMED, 1)[0], number)
         file.kind(item, ("ITEM_DEFINED_TRANSFORMATION",), number)
         first, last = file.values(item, "ITEM_DEFINED_TRANSFORMATION", 4)[2:4]
-        held = first in self._items(child) and last in self._items(parent)
-        if not held or not _still(self._frame(first, item)):
+        matches = first in self._items(child) and last in self._items(parent)
+        if not matches or not _still(self._frame(first, item)):
             raise file.error(item, "does not take the child's own axes to a placement of its parent; export it alone")
         return self._frame(last, item)
 

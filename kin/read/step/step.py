@@ -163,7 +163,7 @@ class _Body:
         if len(solids) < count:
             raise missing(len(solids), count, file.path)
         if len(solids) > count:
-            boxes = [(f"solid #{one}", _Body._reach(file, one)) for one in solids[:MOST_BODIES]]
+            boxes = [(f"solid #{number}", _Body._reach(file, number)) for number in solids[:MOST_BODIES]]
             raise beside(boxes, len(solids), file.path, expected=count)
         return [_Body._one(file, solid, alone=count == 1) for solid in solids]
 
@@ -182,7 +182,7 @@ class _Body:
         space = space_of(file, solid, alone=alone)
         edges: dict[int, Edge] = {}
         listed = file.several(file.values(shell, "CLOSED_SHELL", 2)[1], shell)
-        faces = [face_of(space, file.reference(one, shell), edges) for one in listed]
+        faces = [face_of(space, file.reference(listed_face, shell), edges) for listed_face in listed]
         if not edges:
             raise file.error(shell, "it has no edges", "empty")
         z = [float(place[2]) for edge in edges.values() for place in (edge.start, edge.end)]
