@@ -109,7 +109,7 @@ def _events(events: dict[str, Any]) -> list[tuple[str, str]]:
         if name != "above":
             rows += [(f"{name}, greatest {figure}", _against(own, own["unit"])) for figure, own in event.items()]
     for above in events.get("above", ()):
-        label = f"{above['event']} above {above['lift']:.6g} {above['unit']}"
+        label = f"{above['of']} above {above['lift']:.6g} {above['unit']}"
         if above["duration_crank_deg"] is None:
             rows.append((label, "not crossed once upwards and once down"))
             continue
