@@ -322,6 +322,43 @@ class ExactCam(ABC):
         """
 
 
+@dataclass(frozen=True, eq=False)
+class AlteredCam(ExactCam):
+    """A cam whose metal differs from that of the `nominal` one; law, follower and intended motion are that one's."""
+
+    nominal: ExactCam
+
+    @property
+    def cam(self) -> Cam:
+        """The nominal cam, as far as its own lengths are drawn."""
+        return self.nominal.cam
+
+    @property
+    def law(self) -> Lift | Displacement | Transmission:
+        """Law of the nominal motion."""
+        return self.nominal.law
+
+    @property
+    def judged_law(self) -> Piecewise | Transmission:
+        """Law of the nominal motion over the shaft angle, by which kin judges the files."""
+        return self.nominal.judged_law
+
+    @property
+    def follower(self) -> Follower:
+        """Follower of the nominal cam."""
+        return self.nominal.follower
+
+    @property
+    def motion(self) -> Position:
+        """Position of the follower in the nominal motion, over the shaft angle."""
+        return self.nominal.motion
+
+    @property
+    def gap(self) -> float:
+        """Axial gap between the discs of the nominal cam, mm."""
+        return self.nominal.gap
+
+
 class Cam(ABC):
     """A cam of a recipe, checked and converted: lengths in mm, angles in rad; each family has fields of its own."""
 

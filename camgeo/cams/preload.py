@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from camgeo.cams.family import ExactCam, GrownError, Preload
+from camgeo.cams.family import AlteredCam, ExactCam, GrownError, Preload
 from camgeo.schema.fields import MOST, Field, Kind, length, mapping
 from kin.law.contacts import eased_contact
 from kin.numeric.records import dataclass, replace
@@ -19,26 +19,20 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from camgeo.cams.family import Cam, Circle, Margin, Proof
-    from camgeo.cams.follower import Follower
     from camgeo.cams.surface import Surface
-    from camgeo.curve.moving_frame import Displacement
-    from camgeo.motions.position import Position
     from camgeo.schema.reader import Values
     from kin.follower.base import Follower as Gauge
     from kin.law.joints import Joint
-    from kin.law.piecewise import Piecewise
     from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
 
 
 @dataclass(frozen=True, eq=False)
-class PreloadedCam(ExactCam):
+class PreloadedCam(AlteredCam):
     """The exact cam `nominal` with metal that overlaps its contacts; the motion stays.
 
     Surface k is that of `grown_metal[k]`.
     """
 
-    nominal: ExactCam
     grown_metal: tuple[ExactCam, ...]
     held_by: Preload
 
@@ -46,26 +40,6 @@ class PreloadedCam(ExactCam):
     def preload(self) -> Preload:
         """The preload of the contacts."""
         return self.held_by
-
-    @property
-    def cam(self) -> Cam:
-        """The cam as far as its own lengths are drawn."""
-        return self.nominal.cam
-
-    @property
-    def law(self) -> Lift | Displacement | Transmission:
-        """Law of the nominal motion, without preload."""
-        return self.nominal.law
-
-    @property
-    def follower(self) -> Follower:
-        """Follower of the nominal cam."""
-        return self.nominal.follower
-
-    @property
-    def motion(self) -> Position:
-        """Position of the follower in the nominal motion, over the shaft angle."""
-        return self.nominal.motion
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
@@ -85,11 +59,6 @@ class PreloadedCam(ExactCam):
     def running(self) -> dict[str, Gauge]:
         """Real follower on each surface, by the surface's name; it overlaps the metal."""
         return self.nominal.gauges
-
-    @property
-    def judged_law(self) -> Piecewise | Transmission:
-        """The law of the nominal motion, for kin's followers."""
-        return self.nominal.judged_law
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -123,11 +92,6 @@ class PreloadedCam(ExactCam):
     def rounder_pitch(self, surface: str, mm: float) -> str:
         """Words for the size at which the roller is half the pitch curve's least convex radius, for the nominal cam."""
         return self.nominal.rounder_pitch(surface, mm)
-
-    @property
-    def gap(self) -> float:
-        """Axial gap between the discs, mm."""
-        return self.nominal.gap
 
     def circles(self, surface: str) -> tuple[Circle, ...]:
         """Reference circles of the nominal cam."""

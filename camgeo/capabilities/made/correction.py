@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.cams.family import ExactCam
+from camgeo.cams.family import AlteredCam
 from camgeo.capabilities.made.keys import Made
 from camgeo.capabilities.made.placed import demand_discs, name_of, points_of
 from camgeo.capabilities.made.reading import Probing
@@ -33,19 +33,13 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from camgeo.cams.family import Cam
-    from camgeo.cams.follower import Follower
+    from camgeo.cams.family import ExactCam
     from camgeo.cams.surface import Surface
     from camgeo.capabilities.made.placed import Points
     from camgeo.capabilities.made.runs import PointFile, Run
-    from camgeo.curve.moving_frame import Displacement
-    from camgeo.motions.position import Position
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.follower.base import Follower as Gauge
-    from kin.law.piecewise import Piecewise
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
     from kin.made.points import Deviations
 
 
@@ -154,46 +148,15 @@ def totals(recipe: Recipe, design: Design) -> dict[str, Smooth]:
 
 
 @dataclass(frozen=True, eq=False)
-class CorrectedCam(ExactCam):
+class CorrectedCam(AlteredCam):
     """An exact cam whose surfaces lie at smooth deviations from the nominal ones, above 0 for metal too much, mm."""
 
-    exact: ExactCam
     deviations: Mapping[str, Smooth]
-
-    @property
-    def cam(self) -> Cam:
-        """The nominal cam."""
-        return self.exact.cam
-
-    @property
-    def law(self) -> Lift | Displacement | Transmission:
-        """Law of the recipe, without the correction."""
-        return self.exact.law
-
-    @property
-    def judged_law(self) -> Piecewise | Transmission:
-        """Law of the recipe by which the motion is judged, without the correction."""
-        return self.exact.judged_law
-
-    @property
-    def follower(self) -> Follower:
-        """Follower of the recipe."""
-        return self.exact.follower
-
-    @property
-    def motion(self) -> Position:
-        """Motion of the recipe, which the corrected metal is to give."""
-        return self.exact.motion
-
-    @property
-    def gap(self) -> float:
-        """Axial gap between discs, mm."""
-        return self.exact.gap
 
     @property
     def surfaces(self) -> tuple[Surface, ...]:
         """The corrected surfaces."""
-        return tuple(self._corrected(surface) for surface in self.exact.surfaces)
+        return tuple(self._corrected(surface) for surface in self.nominal.surfaces)
 
     def _corrected(self, surface: Surface) -> Surface:
         by = Spline(surface.side * self.deviations[surface.name].pieces)
@@ -205,8 +168,8 @@ class CorrectedCam(ExactCam):
     @cached_property
     def on_metal(self) -> dict[str, Corrected]:
         """Gauges of the follower on metal that lies at the deviations, by surface."""
-        sides = {surface.name: surface.side for surface in self.exact.surfaces}
-        gauges = self.exact.gauges.items()
+        sides = {surface.name: surface.side for surface in self.nominal.surfaces}
+        gauges = self.nominal.gauges.items()
         return {name: Corrected.of(gauge, sides[name], self.deviations[name]) for name, gauge in gauges}
 
     @cached_property
@@ -217,12 +180,12 @@ class CorrectedCam(ExactCam):
     @cached_property
     def running(self) -> dict[str, Gauge]:
         """Gauges of the follower itself on the corrected surfaces, by surface, where `gauges` are wider."""
-        return {name: self.on_metal[name].run_by(follower) for name, follower in self.exact.running.items()}
+        return {name: self.on_metal[name].run_by(follower) for name, follower in self.nominal.running.items()}
 
     def grow(self, out: float, scale: float) -> ExactCam:
         """The nominal cam grown by `out` mm and scaled, with deviations scaled likewise."""
         curves = {name: curve.times(scale) for name, curve in self.deviations.items()}
-        return CorrectedCam(self.exact.grow(out, scale), curves)
+        return CorrectedCam(self.nominal.grow(out, scale), curves)
 
 
 def corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:
