@@ -45,9 +45,11 @@ class _Interrupts:
             signal.signal(signal.SIGINT, self._came)
             sys.unraisablehook = self._swallowed
 
-    def _came(self, _number: int, _frame: FrameType | None) -> None:
+    def _came(self, _number: int, frame: FrameType | None) -> None:
         now = time.monotonic()
-        if self.first is None or self._again:
+        if self._again and self._is_swallowing(frame):
+            self._repeat()
+        elif self.first is None or self._again:
             self.first, self._again = now, False
             if not self.over:
                 raise KeyboardInterrupt
@@ -69,13 +71,23 @@ class _Interrupts:
         if not isinstance(unraisable.exc_value, KeyboardInterrupt):
             sys.__unraisablehook__(unraisable)
         elif not self.over:
-            import threading
-            from _thread import interrupt_main
-
             self._again = True
-            again = threading.Timer(0.1, interrupt_main)  # not here, nor soon: it would fall into this same callback
-            again.daemon = True
-            again.start()
+            self._repeat()
+
+    def _is_swallowing(self, frame: FrameType | None) -> bool:
+        """Whether an interrupt that comes in this frame would be lost once more: its hook is not over yet."""
+        while frame is not None and frame.f_code is not _Interrupts._swallowed.__code__:
+            frame = frame.f_back
+        return frame is not None
+
+    def _repeat(self) -> None:
+        """Interrupt the run again, not here: it would fall into the same callback."""
+        import threading
+        from _thread import interrupt_main
+
+        again = threading.Timer(0.01, interrupt_main)
+        again.daemon = True
+        again.start()
 
 
 def main() -> NoReturn:

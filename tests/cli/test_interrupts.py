@@ -46,6 +46,18 @@ def schema(_):
     return 0
 cli._schema = schema
 """
+SWALLOWED_TWICE = (
+    """
+import os, signal, threading
+timer = threading.Timer
+def while_it_is_swallowed(delay, call):
+    threading.Timer = timer
+    os.kill(os.getpid(), signal.SIGINT)
+    return timer(delay, call)
+threading.Timer = while_it_is_swallowed
+"""
+    + SWALLOWED
+)
 TURNED = """
 import os, signal
 import camgeo.cli.main as cli
@@ -125,6 +137,7 @@ def test_a_sweep(tmp_path: Path, jobs: str) -> None:
         "import atexit, os, signal; atexit.register(lambda: os.kill(os.getpid(), signal.SIGINT))",
         # swallowed by a callback, as those of compiled libraries do; the run would go on to its end
         SWALLOWED,
+        SWALLOWED_TWICE,  # the repeated one comes while the first is not yet put aside, as on a busy machine
         TURNED,  # into an error, as numpy does where its import is interrupted
     ],
 )
