@@ -8,6 +8,7 @@ from support.cases import few
 from support.disc_followers import FOLLOWERS
 from support.heavy import interpolate
 
+import kin.follower.roller
 from kin.contour.arcs import unit
 from kin.contour.bezier import Beziers
 from kin.contour.closed_spline import closed_spline
@@ -81,7 +82,13 @@ def test_bounds_are_above_the_true_error_and_near(count: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("depth", "step"), [(0.003, 0.012), (-0.003, 0.012), pytest.param(-0.003, 5e-4, marks=pytest.mark.slow)]
+    ("depth", "step"),
+    [
+        (0.003, 0.012),
+        (-0.003, 0.012),
+        pytest.param(0.003, 5e-4, marks=pytest.mark.slow),
+        pytest.param(-0.003, 5e-4, marks=pytest.mark.slow),
+    ],
 )
 def test_a_fault_that_lies_between_all_samples_is_bounded(depth: float, step: float) -> None:
     """A bump or a dent midway between two shaft angles that are looked at; into the narrow one no roller fits."""
@@ -145,7 +152,7 @@ def test_splines_and_the_arcs_in_their_place_agree(name: str, monkeypatch: pytes
 
 
 @pytest.mark.parametrize("corner", [1e-3, -1e-3])
-def test_a_spline_with_a_corner_is_followed_by_arcs_and_proved(corner: float) -> None:
+def test_a_spline_with_a_corner_is_followed_by_arcs_and_proved(corner: float, monkeypatch: pytest.MonkeyPatch) -> None:
     contour = closed(ROLLER, 60, corner)
     with pytest.raises(UnsettledError, match="the contour has corners"):
         SplinePath.of(contour, RADIUS, Line(0.0), 0.0)
@@ -156,6 +163,8 @@ def test_a_spline_with_a_corner_is_followed_by_arcs_and_proved(corner: float) ->
     assert true <= motion.bound
     assert motion.max >= true - 1e-8
     assert motion.remainder == pytest.approx(ROLLER.motion_limit(contour.spread), rel=0.1, abs=2e-6 * motion.max)
+    monkeypatch.setattr(kin.follower.roller, "MOST_ARCS", 0)
+    assert ROLLER.judge(contour, FEW).motion.extremes == "sampled"
 
 
 def test_paths_that_are_no_graph_of_a_position_are_left_to_arcs() -> None:
