@@ -1,4 +1,4 @@
-"""What every family of cams implements: the cam of a recipe, its exact form, and advice.
+"""Interfaces of every family of cams: the cam of a recipe, its exact form, and advice.
 
 The rest of the package uses these names alone, whatever the family. `Cam` holds what a recipe says; `ExactCam` is that
 cam with its motion worked out.

@@ -263,7 +263,7 @@ def _peaks(layout: _Layout, arcs: _Arcs, frame: Frame) -> _Peaks:
 
 
 def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: float) -> tuple[Array, Array]:
-    """One step of Newton's method: moves of each joint along the curve and off it, mm, and its turn, rad (m, 3).
+    """A step of Newton's method: moves of each joint along the curve and off it, mm, and its turn, rad (m, 3).
 
     With it comes the level foreseen for each part. An arc through its two joints and along the direction of the first
     moves, seen from the curve, as their heights h0, h1 and the direction g0 do: by ``(1 - w) h0 + w h1 + (x - s w) g0``

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FileResult(OfSurfaces):
-    """One written file: its request, what was proved of it and what the judge measured, in mm and degrees.
+    """A written file: its request, what was proved of it and what the judge measured, in mm and degrees.
 
     `body` names the body that the file shows. `units` is the length of the file's unit, mm; None where its numbers have
     no unit or nothing was read. `surfaces`, `closures` and `bodies` (every closed contour as read) come from its

@@ -26,7 +26,7 @@ _SIDES = ("opening", "closing")
 
 @dataclass(frozen=True)
 class SideShape:
-    """One side of a lobe, opening or closing, as a recipe gives it; lengths in mm, angles in rad.
+    """A side of a lobe, opening or closing, as a recipe gives it; lengths in mm, angles in rad.
 
     `half` is the cam angle from foot to nose, `powers` are those of the polynomial. Instead of powers, `durations` are
     pairs of a lift and the crank angle over which the lobe is above it; a crank angle is `crank` times the cam angle

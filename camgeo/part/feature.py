@@ -1,4 +1,4 @@
-"""What a feature of the part is: the record that its file holds, and what such files share."""
+"""Records of features of the part, one for each file of `camgeo.part`, and helpers that such files share."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def _check_nothing(_part: Values, _reader: Reader) -> None:
 
 @dataclass(frozen=True)
 class Feature(Generic[T]):
-    """One feature of the part, all that is known of it; what does not apply is left out.
+    """A feature of the part: keys, openings, walls, remarks and callouts; fields that do not apply are left out.
 
     kind      class of its value, which `Part.of` and `Body.of` give
     field     its key of `part`

@@ -85,9 +85,9 @@ def keyed(radius: float, width: float, depth: float, angle: float) -> ArcSpline:
     `angle`, rad, is the direction of the keyway's middle.
     """
     half = 0.5 * width
-    floor, corner = radius + depth, math.sqrt(radius * radius - half * half)
+    bottom, corner = radius + depth, math.sqrt(radius * radius - half * half)
     sweep = 2.0 * (math.pi - math.asin(half / radius))
-    points = np.array([[corner, half], [corner, -half], [floor, -half], [floor, half]])
+    points = np.array([[corner, half], [corner, -half], [bottom, -half], [bottom, half]])
     return ArcSpline(_turned(points, angle), np.array([math.tan(0.25 * sweep), 0.0, 0.0, 0.0]), EXACT)
 
 

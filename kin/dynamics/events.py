@@ -177,21 +177,21 @@ def _dip(span: Span, low: float, high: float, work: Work) -> float | None:
 
 
 def crossing(
-    level: Callable[[float], float], low: float, high: float, limit: float, work: Work, *, room: float = 2.0 * _EPS
+    level: Callable[[float], float], low: float, high: float, limit: float, work: Work, *, width: float = 2.0 * _EPS
 ) -> float:
-    """Time between two others at which a level falls below `limit`: later end of a bracket of relative width `room`.
+    """Time between two others at which a level falls below `limit`: later end of a bracket of relative width `width`.
 
     Chandrupatla's method, Adv. Eng. Softw. 28, 1997: inverse interpolation where it is safe, else halving. A level that
     is below the limit at the start gives the start.
     """
     work.take(0)
-    room *= max(abs(low), abs(high))
+    width *= max(abs(low), abs(high))
     b, at_b, a, at_a = low, level(low) - limit, high, level(high) - limit
     if at_b < 0.0:
         return low
     c, at_c = b, at_b
     share = 0.5
-    while abs(b - a) > room:
+    while abs(b - a) > width:
         x = a + share * (b - a)
         at = level(x) - limit
         if (at < 0.0) == (at_a < 0.0):
@@ -199,7 +199,7 @@ def crossing(
         else:
             c, at_c, b, at_b = b, at_b, a, at_a
         a, at_a = x, at
-        near = room / abs(b - a) if b != a else 1.0
+        near = width / abs(b - a) if b != a else 1.0
         if near > 0.5:
             break
         share = _interpolated((a, b, c), (at_a, at_b, at_c))

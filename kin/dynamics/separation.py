@@ -142,8 +142,8 @@ class _Search:
         middle = math.sqrt(low.rpm * high.rpm)
         if part.width < _CLOSE and low.least > 0.0:
             if high.least < 0.0:
-                room = 0.5 * _RESOLUTION
-                speeds = crossing(lambda rpm: self._look(rpm).least, low.rpm, high.rpm, 0.0, self.work, room=room)
+                width = 0.5 * _RESOLUTION
+                speeds = crossing(lambda rpm: self._look(rpm).least, low.rpm, high.rpm, 0.0, self.work, width=width)
                 return [rpm for rpm in (speeds * (1.0 - _RESOLUTION), speeds) if low.rpm < rpm < high.rpm] or [middle]
             share = 0.9 * math.sqrt(high.reached / part.between)
             return [high.rpm - share * (high.rpm - low.rpm) if share < 0.5 and high.reached < low.reached else middle]

@@ -135,8 +135,8 @@ class Look:
         """Lower bound (m, 32) of the force that goes with q, on the windows of each stretch."""
         series = self._series
         at = series @ _ON_GRID
-        room = np.abs(series) @ _CURVED * (_GRID[1] - _GRID[0]) ** 2 / 8.0
-        lowest: Array = np.minimum(at[:, :-1], at[:, 1:]) - room[:, None]
+        sag = np.abs(series) @ _CURVED * (_GRID[1] - _GRID[0]) ** 2 / 8.0
+        lowest: Array = np.minimum(at[:, :-1], at[:, 1:]) - sag[:, None]
         return lowest
 
     def summed(self, decay: float) -> tuple[Array, float]:
@@ -171,7 +171,7 @@ class Look:
         start = np.stack([self._q @ AT_START, self._rate @ AT_START])
         return self._size(self.states - start)
 
-    def floor(self, rung: Array, driven: Array) -> Array:
+    def lower_bound(self, rung: Array, driven: Array) -> Array:
         """Lower bounds of the contact force, N or N m, on 32 windows of each of the m stretches (m, 32).
 
         `rung` (m,) is the size of the free motion h at the start of each stretch, `driven` (m, 32) a lower bound of the
@@ -188,12 +188,12 @@ class Look:
         It holds at this speed and at all lower ones.
         """
         sizes = self.turn / max(-math.expm1(-TURN * self.fading), 1e-300)
-        return float(self.floor(sizes, self.driven).min())
+        return float(self.lower_bound(sizes, self.driven).min())
 
     @cached_property
     def lowest(self) -> Array:
         """Lower bounds of the contact force at this speed, N or N m, on 32 windows of each stretch (m, 32)."""
-        return self.floor(self.rung, self.driven)
+        return self.lower_bound(self.rung, self.driven)
 
     @cached_property
     def least(self) -> float:
@@ -273,12 +273,14 @@ class Range:
         if not high.swings:
             return -math.inf
         sizes, driven = high.rung * high.oscillator.detuning, high.driven
-        room, power = self.width * (math.pi + _POWER / high.b), self.width * _POWER / high.b
+        growth, power = self.width * (math.pi + _POWER / high.b), self.width * _POWER / high.b
         if np.array_equal(low.found.slow, high.found.slow):
             sizes = np.maximum(sizes, low.gain / high.gain * low.rung * low.oscillator.detuning)
             driven = np.minimum(driven, low.driven)
-            room, power = room**2 / 8.0, power**2 / 4.0
-        return float(high.floor((sizes + room * high.turn) / self.detuning, driven).min()) - power * high.inertial
+            growth, power = growth**2 / 8.0, power**2 / 4.0
+        return (
+            float(high.lower_bound((sizes + growth * high.turn) / self.detuning, driven).min()) - power * high.inertial
+        )
 
     @cached_property
     def between(self) -> float:

@@ -48,7 +48,7 @@ class FrameError(CamgeoError, ValueError):
 
 @dataclass(frozen=True)
 class Rest:
-    """One way in which the frame lies on the cam, by weights 0 to 1 of the faces that place it.
+    """A way in which the frame lies on the cam, by weights 0 to 1 of the faces that place it.
 
     first    weight of face 1; face 3 has the rest
     second   weight of face 2; face 4 has the rest

@@ -231,8 +231,8 @@ class _Rollers(Moved):
         )
         place = np.stack([contact.contact.position(contact.reached(angles)) for contact in held])
         errors = place[: self.judged, : len(steps)] - self.course.rows(steps)[0]
-        floor = Greatest(*greatest(np.abs(errors).max(axis=0), steps), 0.0)
-        proved = greatest_error(counted, self.course, floor)
+        sampled = Greatest(*greatest(np.abs(errors).max(axis=0), steps), 0.0)
+        proved = greatest_error(counted, self.course, sampled)
         ends = np.cumsum([len(angles) - sum(map(len, rests)), *(len(angle) for angle in rests)])
         flatness = [float(np.ptp(part, axis=1).max()) for part in np.split(place[: self.judged], ends, axis=1)[1:-1]]
         worst = proved.error, proved.at

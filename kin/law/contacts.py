@@ -150,18 +150,18 @@ class Contact(Generic[G_co, T_co]):
         return replace(self, datum=self.datum - self.sense * by)
 
 
-def eased_contact(contact: Contact[Guide, Touch], room: float) -> Contact[Guide, Touch]:
-    """The contact of a gauge that stands off by `room`, mm, along its normal: metal grown by as much just fits it.
+def eased_contact(contact: Contact[Guide, Touch], clearance: float) -> Contact[Guide, Touch]:
+    """The contact of a gauge that stands off by `clearance`, mm, along its normal: metal grown by as much just fits it.
 
     Raises ValueError where nothing would be left of a round touch.
     """
     match contact.guide, contact.touch:
         case Oscillating(), Flat(nearer=nearer):
-            return replace(contact, touch=replace(contact.touch, nearer=nearer - room))
+            return replace(contact, touch=replace(contact.touch, nearer=nearer - clearance))
         case Translating(), Flat(tilt=tilt):
-            return replace(contact, datum=contact.datum + room / math.cos(tilt))
-        case _, Roller(radius=radius) | Shoe(radius=radius) if radius > room:
-            return replace(contact, touch=replace(contact.touch, radius=radius - room))
+            return replace(contact, datum=contact.datum + clearance / math.cos(tilt))
+        case _, Roller(radius=radius) | Shoe(radius=radius) if radius > clearance:
+            return replace(contact, touch=replace(contact.touch, radius=radius - clearance))
     raise ValueError(f"nothing is left of the {contact.touch.word}")
 
 

@@ -82,9 +82,12 @@ def shift_of(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> tupl
 
 
 class _Explained(NamedTuple):
-    """Which of turn, shifts and size are told apart, their columns (n, k), values, covariance, and what they leave."""
+    """Least squares of turn (0), shifts (1, 2) and size (3) over n points, of the k that are independent.
 
-    told: list[int]
+    columns (n, k), x (k,) their values, covariance (k, k) and the residual `left` (n,), mm and rad.
+    """
+
+    free: list[int]
     columns: Array
     x: Array
     covariance: Array

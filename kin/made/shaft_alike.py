@@ -1,7 +1,7 @@
-"""What the points or lifts of a shaft's cams look like, where they lie far off: told by rows over equal angles.
+"""Explanations of points or lifts of a shaft's cams that lie far off, found by rows over equal angles.
 
 All cams are looked at together, so that a shaft turned as one, mirrored, or with cams that stand for one another is
-told from a cam that alone is turned. Rows are radii over the polar angle, or lifts over the shaft angle, and are
+known from a cam that alone is turned. Rows are radii over the polar angle, or lifts over the shaft angle, and are
 correlated. A contour that turns back about the shaft has several radii at one angle, of which any is taken: these are
 looks, and nothing rests on them.
 """

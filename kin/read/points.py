@@ -269,7 +269,7 @@ def _with_heading(rows: Rows, path: Path) -> PointTable:
 
 
 def _turns_of(cell: str) -> TurnsOf:
-    """What the angles below a heading's cell are of, by its words."""
+    """Kind of angle below a heading's cell, by its words: of the cam, of the crank, or unknown."""
     return "crank" if OF_CRANK.search(cell) else "cam" if OF_CAM.search(cell) else ""
 
 

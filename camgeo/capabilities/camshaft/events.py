@@ -37,7 +37,7 @@ class Event(NamedTuple):
 
 
 class Stretch(NamedTuple):
-    """One phase of a follower's motion, from shaft angle `begin`, degrees from 0 to below 360, to `end` beyond it."""
+    """A phase of a follower's motion, from shaft angle `begin`, degrees from 0 to below 360, to `end` beyond it."""
 
     phase: Phase
     begin: float

@@ -177,7 +177,7 @@ def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
 
 
 def _one(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[str, Any], Check]:
-    """One run of the train, as intended or with a file's cam: entry of the report, and its check."""
+    """Entry of the report for a run of the train, as intended or with a file's cam, and its check."""
     drives = _drives(scene, design, file)
     entry: dict[str, Any] = {"from": "intended" if file is None else file.path.name}
     if len(drives) > 1:

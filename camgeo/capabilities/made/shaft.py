@@ -443,7 +443,7 @@ def _without_lean(
                 shifts.append(_shift(placed, fit(placed.deviations.parameter, placed.deviations.e).curve))
         leaning = _leaning(moved, alone, shifts, scale, removed=True)
         if leaning is None:
-            problem = f"lean and shift of a shaft are told by lobes at {LEAST_CAMS} heights or more"
+            problem = f"lean and shift of a shaft need lobes at {LEAST_CAMS} heights or more"
             raise CallError(f"--align: {problem}: give --align rotation, or none")
         total = leaning if total is None else total.after(leaning)
         moved = [points.moved(leaning.axis, scale) for points in moved]
@@ -463,7 +463,7 @@ def _leaning(
     *,
     removed: bool = False,
 ) -> Leaning | None:
-    """The axis of the shaft by the shift of each cam, which is told in its own axes."""
+    """The axis of the shaft by the shift of each cam, in the axes of its own points."""
     rows = [
         (float(points.heights(scale).mean()), points.cam.at + turn, shift)
         for points, turn, shift in zip(measured, alone, shifts, strict=True)

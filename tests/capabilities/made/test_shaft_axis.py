@@ -104,7 +104,7 @@ def test_what_tells_no_lean(tmp_path):
     rows = [row for row in shaft_points(recipe) if row[0] != "arm"]
     file = written(tmp_path / "points.csv", rows)
     assert "axis" not in camgeo.verify(recipe, file)["made"]
-    with pytest.raises(CallError, match="by lobes at 3 heights or more: give --align rotation, or none"):
+    with pytest.raises(CallError, match="need lobes at 3 heights or more: give --align rotation, or none"):
         camgeo.verify(recipe, file, align="best-fit")
     assert camgeo.verify(recipe, file, align="rotation").ok
 
