@@ -126,9 +126,6 @@ class Metal:
         points, after = self.surface(breaks)
         return Corners(breaks, points, self.surface(breaks - BEFORE)[1], after)
 
-    def _touching(self, parameter: Array, contact: int) -> tuple[Array, Array]:
-        return self.gauge.touching(*self.surface(parameter))[contact]
-
     def _within(self, place: Array, corner: Indices, contact: int) -> tuple[Array, Array]:
         """Shaft angles and positions of a contact at places (n,) of pieces that are `corner`."""
         points, normals = self.surface(np.where(corner < 0, place, 0.0))
