@@ -21,6 +21,7 @@ from camgeo.output.mixture import mixtures
 from camgeo.registry import registry, root
 from camgeo.registry.formats import FORMATS
 from camgeo.schema.quantity import read_quantity
+from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -47,6 +48,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         _complain("interrupted")
         return INTERRUPTED
+    except CamgeoError as error:
+        return _refusal(error)
     except OSError as error:
         # Files are seen to where they are written, so this is our own output. Where its reader went away nothing more
         # can be said; nothing is wrong with the recipe.
@@ -55,6 +58,25 @@ def main(argv: Sequence[str] | None = None) -> int:
         silence("stdout")
         return SURROUNDINGS
     return status
+
+
+def _refusal(error: CamgeoError) -> int:
+    """Print why a command cannot be carried out; the exit status. Raises errors that no user is meant to see."""
+    from camgeo.common.errors import CallError, SurroundingsError
+    from camgeo.schema.errors import RecipeErrors
+
+    match error:
+        case RecipeErrors():
+            complain(str(error))
+        case CallError():
+            for fault in error.faults:
+                _complain(fault)
+        case SurroundingsError():
+            _complain(str(error))
+            return SURROUNDINGS
+        case _:
+            raise error
+    return WRONG
 
 
 def _arguments(words: Sequence[str]) -> argparse.Namespace:
@@ -341,14 +363,11 @@ def _show(report: Entry, *, verbose: bool) -> None:
 
 def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
-    from camgeo.api.errors import CallError
     from camgeo.api.run import verify
     from camgeo.cli.new_file import demand_new, write_new
     from camgeo.cli.progress import Progress
-    from camgeo.common.errors import SurroundingsError
     from camgeo.recipe.loading import load_order
     from camgeo.report.document import as_json
-    from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
 
     try:
@@ -374,19 +393,9 @@ def _verify(arguments: argparse.Namespace) -> int:
             write_new({arguments.page: verdict.page})
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
-    except CallError as error:
-        for fault in error.faults:
-            _complain(fault)
-        return WRONG
     except UnitsError as error:
         _complain(f"{error}; leave --units out")
         return WRONG
-    except RecipeErrors as errors:
-        complain(str(errors))
-        return WRONG
-    except SurroundingsError as error:
-        _complain(str(error))
-        return SURROUNDINGS
     if arguments.json:
         say_json(as_json(report))
     elif name := registry.judge_of(paths[0], options):
@@ -399,7 +408,6 @@ def _verify(arguments: argparse.Namespace) -> int:
 def _new(arguments: argparse.Namespace) -> int:
     """Print a starter recipe, or write it where no file is yet; print the kinds without one, or for a kind of cam."""
     from camgeo.cli.new_file import write_new
-    from camgeo.common.errors import CallError, SurroundingsError
     from camgeo.recipe.starter import STARTERS, starter, starters_for
 
     sources: list[tuple[str, str]] = arguments.sources
@@ -419,21 +427,14 @@ def _new(arguments: argparse.Namespace) -> int:
     if arguments.file in {None, "-"}:
         say(text.removesuffix("\n"))
         return OK
-    try:
-        write_new({arguments.file: text})
-    except CallError as error:
-        _complain(str(error))
-        return WRONG
-    except SurroundingsError as error:
-        _complain(str(error))
-        return SURROUNDINGS
+    write_new({arguments.file: text})
     return OK
 
 
 def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str | None) -> int:
     """Make a recipe of files and another recipe by the capability of a folder, see `Label.sources`; the exit status."""
     from camgeo.cli.new_file import demand_new, write_new
-    from camgeo.common.errors import CallError, SurroundingsError
+    from camgeo.common.errors import CallError
     from camgeo.schema.errors import RecipeErrors
 
     if recipe is None or name is None or name == "-":
@@ -458,9 +459,6 @@ def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str
         return WRONG
     except OSError as error:
         _complain(f"{escaped(str(error.filename))}: {error.strerror}")
-        return SURROUNDINGS
-    except SurroundingsError as error:
-        _complain(str(error))
         return SURROUNDINGS
     say("\n".join([f"{escaped(name)}:", *(f"  {line}" for line in starter.lines)]))
     return OK

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.cli.arguments import name_of
-from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
+from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS
 from camgeo.common.terminal import complain, say, say_json
 
 if TYPE_CHECKING:
@@ -24,20 +24,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Work out one budget: 0 kept, 1 not kept or a wrong cam, 2 a wrong recipe, 3 the surroundings."""
     from camgeo.capabilities.budget.library import budget
     from camgeo.capabilities.budget.text import table
-    from camgeo.common.errors import CallError, SurroundingsError
     from camgeo.recipe.loading import load
-    from camgeo.schema.errors import RecipeErrors
 
     try:
         recipe = load(arguments.recipe)
         entry = budget(recipe, *arguments.files)
-    except RecipeErrors as errors:
-        complain(str(errors))
-        return WRONG
-    except CallError as error:
-        complain(f"camgeo: {error}")
-        return WRONG
-    except (SurroundingsError, OSError) as error:
+    except OSError as error:
         complain(f"camgeo: {error}")
         return SURROUNDINGS
     if arguments.json:

@@ -10,8 +10,8 @@ import numpy as np
 
 from camgeo.capabilities.follow.follower import TRACKS
 from camgeo.cli.arguments import decimal, name_of
-from camgeo.cli.exit_status import OK, SURROUNDINGS, WRONG
-from camgeo.common.terminal import complain, escaped, say, say_json
+from camgeo.cli.exit_status import OK
+from camgeo.common.terminal import escaped, say, say_json
 from camgeo.common.units import UNIT_MM
 
 if TYPE_CHECKING:
@@ -73,47 +73,34 @@ def run(arguments: argparse.Namespace) -> int:
     """Follow one contour; return the exit status: 0 done, 2 a wrong call or file, 3 the surroundings fail."""
     from camgeo.capabilities.follow.library import follow, judged_by_recipe
     from camgeo.cli.new_file import demand_new, write_new
-    from camgeo.common.errors import CallError, SurroundingsError
-    from camgeo.schema.errors import RecipeErrors
 
     lifts = None if arguments.recipe is None else str(Path(arguments.recipe).with_suffix(".csv"))
-    try:
-        demand_new(arguments.table, arguments.recipe, lifts, arguments.page)
-        followed = follow(
-            arguments.file,
-            roller=arguments.roller,
-            shoe=arguments.shoe,
-            flat=arguments.flat,
-            width=arguments.width,
-            offset=arguments.offset,
-            arm=arguments.arm,
-            leading=arguments.leading,
-            yoke=arguments.yoke,
-            track=arguments.track,
-            units=arguments.units,
-            at=arguments.at,
-            rotation=arguments.rotation,
-            reading=arguments.reading,
-        )
-        texts: dict[str, str] = {}
-        if arguments.table is not None:
-            texts[arguments.table] = followed.table()
-        if arguments.recipe is not None and lifts is not None:
-            texts[arguments.recipe] = followed.recipe(Path(lifts).name)
-            texts[lifts] = followed.lifts()
-        if arguments.page is not None:
-            texts[arguments.page] = judged_by_recipe(followed).page or ""
-        write_new(texts)
-    except CallError as error:
-        for fault in error.faults:
-            complain(f"camgeo: {fault}")
-        return WRONG
-    except RecipeErrors as errors:
-        complain(str(errors))
-        return WRONG
-    except SurroundingsError as error:
-        complain(f"camgeo: {error}")
-        return SURROUNDINGS
+    demand_new(arguments.table, arguments.recipe, lifts, arguments.page)
+    followed = follow(
+        arguments.file,
+        roller=arguments.roller,
+        shoe=arguments.shoe,
+        flat=arguments.flat,
+        width=arguments.width,
+        offset=arguments.offset,
+        arm=arguments.arm,
+        leading=arguments.leading,
+        yoke=arguments.yoke,
+        track=arguments.track,
+        units=arguments.units,
+        at=arguments.at,
+        rotation=arguments.rotation,
+        reading=arguments.reading,
+    )
+    texts: dict[str, str] = {}
+    if arguments.table is not None:
+        texts[arguments.table] = followed.table()
+    if arguments.recipe is not None and lifts is not None:
+        texts[arguments.recipe] = followed.recipe(Path(lifts).name)
+        texts[lifts] = followed.lifts()
+    if arguments.page is not None:
+        texts[arguments.page] = judged_by_recipe(followed).page or ""
+    write_new(texts)
     if arguments.json:
         from camgeo.report.document import as_json
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.cli.arguments import add_out, decimal
-from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
+from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
 from camgeo.files.errors import install
@@ -53,9 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from camgeo.capabilities.study.document import document, table
     from camgeo.capabilities.study.margins import margins
-    from camgeo.common.errors import SurroundingsError
     from camgeo.recipe.loading import load
-    from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.design import designed
 
     try:
@@ -74,10 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
         study = document(recipe, steps, margins(recipe, design), skipped, failed=failed, names=names)
         ok = not failed and all(row["ok"] for row in study["rows"])
         _write(recipe, study, Path(arguments.out), ok=ok)
-    except RecipeErrors as errors:
-        complain(str(errors))
-        return WRONG
-    except (SurroundingsError, OSError) as error:
+    except OSError as error:
         complain(f"camgeo: {error}")
         return SURROUNDINGS
     if arguments.json:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.cli.arguments import add_out, name_of, processes
-from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
+from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
 from camgeo.files.errors import install
@@ -46,14 +46,9 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from camgeo.capabilities.sweep.task import EXACT, Task
     from camgeo.recipe.loading import load
-    from camgeo.schema.errors import RecipeErrors
 
-    try:
-        task = Task.from_recipe(load(arguments.recipe))
-        outcome, problem, status = _search(task, arguments)
-    except RecipeErrors as errors:
-        complain(str(errors))
-        return WRONG
+    task = Task.from_recipe(load(arguments.recipe))
+    outcome, problem, status = _search(task, arguments)
     if outcome is None:
         _complain(task, problem)
         return status
