@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.cases import few
 from support.discs import CONTOURS, TURN
-from test_fit_wunderlich import arc_points, polygon_points, some, spline_points
+from support.fitted_points import arc_points, polygon_points, some, spline_points
 
 from camgeo.curve.curve import Curve
 from camgeo.fit.arcs import fit_arcs

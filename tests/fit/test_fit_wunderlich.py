@@ -15,6 +15,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from support.cases import few
+from support.fitted_points import arc_points, polygon_points, some, spline_points
 from support.programmes import Segment, law, programme
 
 from camgeo.curve.curvature import least_radius
@@ -129,31 +130,6 @@ def outward(case: Case, points: np.ndarray) -> np.ndarray:
     return np.sign(side) * np.hypot(*gap) + case.inside
 
 
-def polygon_points(polygon: Polygon, per_piece: int) -> np.ndarray:
-    share = np.linspace(0, 1, per_piece, endpoint=False)[None, :, None]
-    a = polygon.vertices[:, None]
-    return (a + share * (np.roll(a, -1, axis=0) - a)).reshape(-1, 2)
-
-
-def arc_points(arcs: ArcSpline, per_piece: int) -> np.ndarray:
-    """Points at equal angles, from the chord and the bulge alone: no centre, which may lie far away."""
-    a = arcs.points
-    chord = np.roll(a, -1, axis=0) - a
-    half = 2 * np.arctan(arcs.bulges)[:, None]
-    angle = np.linspace(0, 1, per_piece, endpoint=False) * half
-    with np.errstate(invalid="ignore"):
-        length = np.where(half == 0, angle * 0, np.sin(angle) / np.sin(half))
-    # the chord to the point at angle 2 x of 2 half turns by x - half from the whole chord
-    turn = np.exp(1j * (angle - half)) * length * (chord[:, :1] + 1j * chord[:, 1:])
-    return np.column_stack([(a[:, :1] + turn.real).ravel(), (a[:, 1:] + turn.imag).ravel()])
-
-
-def spline_points(spline: BSpline, per_piece: int) -> np.ndarray:
-    u = np.linspace(0, 1, per_piece, endpoint=False)
-    basis = np.stack([(1 - u) ** 3, 3 * u * (1 - u) ** 2, 3 * u**2 * (1 - u), u**3], axis=1)
-    return np.einsum("ui,nia->nua", basis, spline.beziers()).reshape(-1, 2)
-
-
 def check_proof(
     case: Case, fitted: Polygon | ArcSpline | BSpline, points: np.ndarray, tolerance: float, slack: float
 ) -> None:
@@ -164,10 +140,6 @@ def check_proof(
     assert -gap.min() <= fitted.bound.inward + floor
     assert fitted.bound.worst <= tolerance
     assert np.abs(gap).max() >= fitted.bound.worst - slack * tolerance - floor
-
-
-def some(count: int) -> int:
-    return max(5, min(200, 3_000 // count))
 
 
 @pytest.mark.thin(6)
