@@ -1,6 +1,7 @@
 """Frozen dataclasses that cost next to nothing until they are used.
 
-The standard library compiles six functions from text for each class when its module is loaded, a third of a short run.
+The standard library compiles six functions from text for each class when its module is loaded: half a millisecond a
+class, and a short run loads over two hundred. Below 80 classes, or 40 ms, this module would not be worth its lines.
 Here the fields are read from the annotations when the first record is made, and functions of one text for all classes
 go by their names. `dataclasses.fields` and what rests on it (`replace`, `asdict`, matching by place) is answered by the
 standard library, when that is asked. To a type checker there is no difference.
