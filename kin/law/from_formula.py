@@ -22,7 +22,6 @@ _TURN = 2 * math.pi
 # p(t + 2 pi) against p(t), relative to the largest of p, p', p'': the parameter itself is rounded to an ulp of 4 pi.
 _PERIOD = 1e-9
 _SEAM_ORDER = 6  # derivatives that must agree at 0 and 2 pi, else 0 is a break
-_SLIVER = 1e-11  # rad: switches closer than this are one, found twice
 _CLEAR = 1e-6  # rad: nearer to a switch p is not compared with itself a turn later
 _MOST_WAVES = 5000  # of p in a turn: what is proved and drawn of it is divided for each of them
 _ABOUT = 1.01  # the estimate may be off by so much
@@ -47,9 +46,7 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
     try:
         places, pieces = formula.pieces(0.0, _TURN)
         _demand_period(formula, places, scale)
-        wide = np.flatnonzero(np.diff(places) > _SLIVER)
-        pieces = tuple(pieces[i] for i in wide)
-        knots = [0.0, *places[wide[1:]].tolist(), _TURN]
+        knots = places.tolist()
         for piece, begin, end in zip(pieces, knots[:-1], knots[1:], strict=True):
             _demand_finite(piece, begin, end)
     except FormulaDomainError as error:
@@ -137,10 +134,5 @@ def _demand_finite(piece: Expression, begin: float, end: float) -> None:
 
 def _plain(piece: Expression, begin: float) -> Stretch:
     """Return the expression, or the circle that it is if it does not depend on t from `begin` on."""
-    function: Stretch = piece
-    if piece.jet(begin, 1).c[1].any():
-        return function
-    enclosed = piece.ball(0.0, _TURN, 1)
-    if not enclosed.mid[1].any() and not enclosed.rad[1].any():
-        return Circle(float(enclosed.mid[0, 0]))
-    return function
+    radius = piece.constant_value(begin)
+    return piece if radius is None else Circle(radius)

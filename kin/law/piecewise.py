@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.law.formula.expression import Expression
-from kin.law.segment import Affine, Alike, Constant, Round
+from kin.law.segment import Affine, Alike, Round, moved
 from kin.numeric.arrays import Array, Indices
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import BallJet, DomainError, Jet, cos, sin
@@ -178,17 +178,12 @@ class Piecewise:
         """Give the function plus the constant `by`; constant stretches stay constant."""
         if not by:
             return self
-        functions = tuple(
-            Constant(by + f.value) if isinstance(f, Constant) else Affine.of(f, offset=by) for f in self.functions
-        )
+        functions = tuple(moved(f, offset=by) for f in self.functions)
         return Piecewise(self.knots, functions, self.period, self.smooth_seam)
 
     def taken_from(self, whole: float) -> Piecewise:
         """Give `whole` less the function; constant stretches stay constant."""
-        functions = tuple(
-            Constant(whole - f.value) if isinstance(f, Constant) else Affine.of(f, offset=whole, scale=-1.0)
-            for f in self.functions
-        )
+        functions = tuple(moved(f, offset=whole, scale=-1.0) for f in self.functions)
         return Piecewise(self.knots, functions, self.period, self.smooth_seam)
 
     def derivatives(self, t: float | Array, order: int, side: Side = 1) -> Array:

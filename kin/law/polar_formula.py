@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 _LOOKS = 257  # places of a stretch at which a formula's values are looked at
 _SAME = 1e-9  # of the greatest |D|: D(t + delta) other than -D(t) by less is rounding
-_SLIVER = 1e-11  # of the angle: switches closer than this are one, found twice
 _CLEAR = 1e-6  # of delta: nearer to a switch D is not compared
 _SEAM_ORDER = 6  # derivatives that agree where one formula runs on over the period
 
@@ -70,14 +69,13 @@ def from_curve(lam: int, mu: int, arm: float, formula: Formula, scale: float = 1
     return _polar((lam, mu, arm), leaves, places, field)
 
 
-def _pieces(formula: Formula, end: float, field: str) -> tuple[list[float], list[Expression]]:
-    """Knots and pieces without switches over t in [0, end]; slivers between switches found twice are left out."""
+def _pieces(formula: Formula, end: float, field: str) -> tuple[list[float], tuple[Expression, ...]]:
+    """Knots and pieces without switches over t in [0, end]; raises IntentError where the formula has no value."""
     try:
         places, pieces = formula.pieces(0.0, end)
     except FormulaError as error:
         raise IntentError(error.message, field) from error
-    wide = [i for i in range(len(pieces)) if places[i + 1] - places[i] > _SLIVER * end]
-    return [0.0, *(float(places[i]) for i in wide[1:]), end], [pieces[i] for i in wide]
+    return places.tolist(), pieces
 
 
 def _demand_odd(formula: Formula, places: Sequence[float], delta: float, field: str) -> None:
@@ -148,8 +146,7 @@ def _runs_on(function: FromExpression, period: float) -> bool:
 
 def _at_rest(function: FromExpression, angle: float) -> Stretch:
     """Return the stretch, or the rest that it is if the formula does not depend on t there."""
-    enclosed = function.formula.ball(angle, angle + 1e-3, 1)
-    if enclosed.mid[1].any() or enclosed.rad[1].any():
+    if function.formula.constant_value(angle) is None:
         return function
     psi = float(function(Jet.variable(angle, 0)).c[0, 0])
     return Constant(0.0 if abs(psi) <= JOIN else psi)

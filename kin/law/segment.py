@@ -109,6 +109,15 @@ class Affine:
         return value + self.offset if self.offset else value
 
 
+def moved(
+    function: Stretch, *, offset: float = 0.0, scale: float = 1.0, start: float = 0.0, width: float = 1.0
+) -> Stretch:
+    """Give offset + scale f((t - start)/width); a constant stays a constant."""
+    if isinstance(function, Constant):
+        return Constant(offset + scale * function.value)
+    return Affine.of(function, offset=offset, scale=scale, start=start, width=width)
+
+
 @dataclass(frozen=True)
 class Power(Alike):
     """Sum of coefficient[k] u**k by Horner's scheme."""
@@ -185,12 +194,8 @@ def summed(terms: BallJet, n: int) -> BallJet:
     """Sum of terms side by side, each over the same n intervals: by halves."""
     while (count := terms.mid.shape[1] // n) > 1:
         half = count // 2 * n
-        first, second, odd = (BallJet(terms.mid[:, part], terms.rad[:, part]) for part in _halves(half))
+        parts = slice(half), slice(half, 2 * half), slice(2 * half, None)
+        first, second, odd = (BallJet(terms.mid[:, part], terms.rad[:, part]) for part in parts)
         terms = first + second
         terms = BallJet(np.hstack([terms.mid, odd.mid]), np.hstack([terms.rad, odd.rad]))
     return terms
-
-
-def _halves(half: int) -> tuple[slice, slice, slice]:
-    """The first so many columns, as many after them, and what is left."""
-    return slice(half), slice(half, 2 * half), slice(2 * half, None)

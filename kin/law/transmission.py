@@ -16,7 +16,7 @@ from kin.law.formula.expression import FormulaError
 from kin.law.piecewise import Piecewise
 from kin.law.programme import IntentError
 from kin.law.routes import FromArc, FromDelta, FromLeaf, steepness
-from kin.law.segment import Affine, Constant, Harmonics, Stretch
+from kin.law.segment import Constant, Harmonics, Stretch, moved
 from kin.law.transmission_law import Transmission
 
 if TYPE_CHECKING:
@@ -43,9 +43,7 @@ def over_period(
 ) -> tuple[Piecewise, tuple[float, ...]]:
     """Complete psi over 2 delta, with w for each stretch, from delta; rests at psi = 0 run on over the joints."""
     begin = knots[0]
-    images = [
-        Constant(-f.value) if isinstance(f, Constant) else Affine.of(f, scale=-1.0, start=delta) for f in functions
-    ]
+    images = [moved(f, scale=-1.0, start=delta) for f in functions]
     all_knots = [*knots[:-1], *(k + delta for k in knots)]
     all_knots[-1] = begin + 2 * delta
     stretches: list[Stretch] = [*functions, *images]
@@ -131,10 +129,9 @@ def from_law(
 
 
 def _scaled(function: Stretch, scale: float) -> Stretch:
-    if isinstance(function, Constant):
-        value = function.value * scale
-        return Constant(0.0 if abs(value) <= JOIN else value)
-    return Affine.of(function, scale=scale) if scale != 1 else function
+    if isinstance(function, Constant) and abs(function.value * scale) <= JOIN:
+        return Constant(0.0)
+    return moved(function, scale=scale) if scale != 1 else function
 
 
 def from_arc(
@@ -220,15 +217,18 @@ def from_rosette(lam: int, mu: int, arm: float, leaf: Formula, scale: float = 1.
     except FormulaError as error:
         raise IntentError(error.message, field) from error
     knots = [start + float(x) * delta for x in places]
-    functions = [_leaf_stretch(FromLeaf(piece, scale / (2 * arm), start, delta)) for piece in pieces]
+    functions = [
+        _leaf_stretch(FromLeaf(piece, scale / (2 * arm), start, delta), x)
+        for piece, x in zip(pieces, places[:-1].tolist(), strict=True)
+    ]
     psi, lean = over_period(delta, knots, functions, (0.5, 0.5))
     return checked(Transmission(lam, mu, arm, psi, lean, alpha / 2), knots, functions, field)
 
 
-def _leaf_stretch(stretch: FromLeaf) -> Stretch:
-    """Return the stretch, or the rest that it is if the leaf does not depend on x there."""
-    enclosed = stretch.leaf.ball(0.0, 1.0, 1)
-    if enclosed.mid[1].any() or enclosed.rad[1].any():
+def _leaf_stretch(stretch: FromLeaf, x: float) -> Stretch:
+    """Return the stretch, or the rest that it is if the leaf does not depend on its variable from `x` on."""
+    distance = stretch.leaf.constant_value(x)
+    if distance is None:
         return stretch
-    psi = 2 * math.asin(float(enclosed.mid[0, 0]) * stretch.scale)
+    psi = 2 * math.asin(distance * stretch.scale)
     return Constant(0.0 if abs(psi) <= JOIN else psi)

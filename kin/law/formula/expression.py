@@ -53,6 +53,7 @@ ANGLE = "angle"
 _OPERATIONS = {**FUNCTIONS, ANGLE: elementary.atan2}
 OF_TWO = ("atan2", "hypot", "min", "max")
 GREATEST_EXPONENT = 199
+_AHEAD = 1e-3  # of the variable: over so much it is proved that an expression is constant
 _LIBRARY = 2.0**-49  # relative error allowed to a function of an exact constant
 
 
@@ -120,6 +121,13 @@ class Expression:
     def ball(self, lower: float | Array, upper: float | Array, order: int) -> BallJet:
         """Return proved enclosures of the Taylor coefficients up to an order over the intervals [lower, upper] (n,)."""
         return self.on(BallJet.variable(lower, upper, order))
+
+    def constant_value(self, start: float) -> float | None:
+        """Its value, if it does not depend on its one variable from `start` on; else None."""
+        if self.jet(start, 1).c[1].any():
+            return None
+        enclosed = self.ball(start, start + _AHEAD, 1)
+        return None if enclosed.mid[1].any() or enclosed.rad[1].any() else float(enclosed.mid[0, 0])
 
     def on(self, *series: Series) -> Series:
         """Apply to jets or ball jets, one for each variable."""

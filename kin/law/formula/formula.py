@@ -27,6 +27,7 @@ __all__ = ["Expression", "Formula", "FormulaDomainError", "FormulaError"]
 
 # Stretches looked at while a formula is taken apart; some milliseconds each.
 _MOST_STRETCHES = 500
+_SLIVER = 1e-11  # of the variable: switches closer than this are one, found twice
 
 
 @dataclass(frozen=True)
@@ -70,9 +71,13 @@ class Formula:
         return np.array([*([lower] if ends[0] else []), *knots[1:-1], *([upper] if ends[1] else [])])
 
     def pieces(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...]]:
-        """Return knots (k + 1,) from lower to upper and k expressions without switches, one between each two knots."""
+        """Return knots (k + 1,) from lower to upper and k expressions without switches, one between each two knots.
+
+        Of switches that lie within rounding of each other, one found twice, only one is a knot.
+        """
         knots, expressions, _ = self._take_apart(lower, upper)
-        return knots, expressions
+        wide = np.flatnonzero(np.diff(knots) > _SLIVER)
+        return np.array([lower, *knots[wide[1:]], upper]), tuple(expressions[i] for i in wide)
 
     def _take_apart(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...], tuple[bool, bool]]:
         """Settle the innermost switches over the whole interval, then what is left over each part."""

@@ -483,11 +483,12 @@ def _mixture(family: _Family, card: SideCard, weights: Array) -> Mixture:
 def _no_card(lift: float, sides: Sequence[SideCard], nose: float | None, most: float) -> IntentError:
     """The error of a card that none meets, with the nearest one: the least greatest difference in degrees."""
     low, high = 0.0, 1.0
-    while not _meets(lift, sides, nose, most, high) and high < _FARTHEST:
+    while _weights_within(lift, sides, nose, most, high) is None and high < _FARTHEST:
         low, high = high, 2.0 * high
     for _ in range(_NEAREST):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _meets(lift, sides, nose, most, middle) else (middle, high)
+        met = _weights_within(lift, sides, nose, most, middle) is not None
+        low, high = (low, middle) if met else (middle, high)
     near = _nearest(lift, sides, nose, most, high)
     field = f"{next(card for card in sides if card.crossings).field}.duration"
     if near is None:
@@ -507,11 +508,6 @@ def _no_card(lift: float, sides: Sequence[SideCard], nose: float | None, most: f
 
 def _crank(card: SideCard, crossing: Crossing) -> float:
     return card.crank * math.degrees(crossing.angle)
-
-
-def _meets(lift: float, sides: Sequence[SideCard], nose: float | None, most: float, within: float) -> bool:
-    """Whether mixtures meet all crossings within so many degrees of the crank."""
-    return _weights_within(lift, sides, nose, most, within) is not None
 
 
 def _weights_within(

@@ -54,9 +54,7 @@ def scca(sine: float, constant: float, velocity: float = 0.0, field: str = "law"
     for name, member in _MEMBERS.items():
         if name in LAWS and max(abs(m - s) for m, s in zip(member, (b, c, x), strict=True)) <= _SAME:
             return LAWS[name]
-    motion = scca_motion(b, c, x)
-    shares = f"sine {b:.6g}, constant {c:.6g}, velocity {x:.6g}"
-    return Law(f"scca ({shares})", motion, peaks(motion))
+    return _of(f"scca (sine {b:.6g}, constant {c:.6g}, velocity {x:.6g})", scca_motion(b, c, x))
 
 
 def scca_motion(b: float, c: float, x: float) -> Piecewise:
@@ -185,8 +183,7 @@ def from_rows(samples: Samples, reading: float, field: str = "law") -> Law:
 
 def boundary(start: Sequence[float], end: Sequence[float], name: str = "boundary") -> Law:
     """Make the polynomial from 0 to 1 with given v, a (and j) at u = 0 and at u = 1, each by u; degree 2 n + 1."""
-    function = TwoPoint.of((0.0, *start), (1.0, *end))
-    return _of(name, Piecewise(np.array([0.0, 1.0]), (function,)), reverses=True)
+    return _single(name, TwoPoint.of((0.0, *start), (1.0, *end)), reverses=True)
 
 
 def split(law: Law, share: float, field: str = "law") -> Law:
@@ -218,14 +215,13 @@ def split(law: Law, share: float, field: str = "law") -> Law:
             functions.append(Affine.of(function, offset=1 - after, scale=after, start=1 - after, width=after))
             knots.append(1 - after * (1 - end))
     knots[-1] = 1.0
-    motion = Piecewise(np.array(knots), tuple(functions))
-    return Law(f"{law.name} (split {share:.6g})", motion, peaks(motion))
+    return _of(f"{law.name} (split {share:.6g})", Piecewise(np.array(knots), tuple(functions)))
 
 
 def sines(weights: Mapping[int, float], name: str) -> Law:
     """Make s = u - sum of w_k sin(2 pi k u)/(2 pi k), at rest at both ends: all w_k together are 1."""
     terms = tuple((2 * _PI * k, w / (2 * _PI * k)) for k, w in weights.items())
-    return _of(name, Piecewise(np.array([0.0, 1.0]), (Sines(terms),)))
+    return _single(name, Sines(terms))
 
 
 def _of(name: str, motion: Piecewise, *, reverses: bool = False) -> Law:
@@ -240,11 +236,6 @@ def _symmetric(knots: Sequence[float], half: Sequence[Stretch]) -> Piecewise:
 
 def _single(name: str, function: Stretch, *, reverses: bool = False) -> Law:
     return _of(name, Piecewise(np.array([0.0, 1.0]), (function,)), reverses=reverses)
-
-
-def _member(name: str) -> Law:
-    motion = scca_motion(*_MEMBERS[name])
-    return Law(name, motion, peaks(motion))
 
 
 @dataclass(frozen=True)
@@ -263,7 +254,10 @@ def _catalogue() -> dict[str, _Entry]:
         "constant-velocity": _Entry(lambda: _single("constant-velocity", Polynomial((0.0, 1.0))), "u"),
         **{name: _Entry(lambda name=name: LAWS[name], text) for name, text in _TODAY.items()},  # type: ignore[misc]
         **{
-            name: _Entry(lambda name=name: _member(name), f"scca: sine {b:.3g}, constant {c:.3g}, velocity {x:.3g}")  # type: ignore[misc]
+            name: _Entry(
+                lambda name=name: _of(name, scca_motion(*_MEMBERS[name])),  # type: ignore[misc]
+                f"scca: sine {b:.3g}, constant {c:.3g}, velocity {x:.3g}",
+            )  # type: ignore[misc]
             for name, (b, c, x) in _MEMBERS.items()
             if name not in LAWS
         },

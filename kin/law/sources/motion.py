@@ -11,7 +11,7 @@ import numpy as np
 from kin.law.joints import ORDERS, Joint, joints_of
 from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError
-from kin.law.segment import Affine, Constant
+from kin.law.segment import Constant, moved
 from kin.law.sources.peaks import extremes
 from kin.numeric.records import dataclass, replace
 
@@ -156,10 +156,7 @@ class Motion:
 
     def raised(self, by: float) -> Motion:
         """Give the motion with a constant added, mm or rad."""
-        if by == 0.0:
-            return self
-        functions = tuple(_raised(f, by) for f in self.motion.functions)
-        return replace(self, motion=Piecewise(self.motion.knots, functions))
+        return replace(self, motion=self.motion.raised(by)) if by else self
 
     def from_lowest(self) -> Motion:
         """The motion less its least value, so that it stands at 0 where it is lowest."""
@@ -189,10 +186,6 @@ def _remedy(angle: float, order: int) -> str:
     return "let both sides meet at one displacement" if angle else "let the motion end where it begins"
 
 
-def _raised(function: Stretch, by: float) -> Stretch:
-    return Constant(function.value + by) if isinstance(function, Constant) else Affine.of(function, offset=by)
-
-
 def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | None = 1) -> Motion:
     """Make a motion from stretches, stretch i between knots i and i + 1, rad.
 
@@ -218,10 +211,5 @@ def opposed(half: Motion) -> Motion:
     """
     half.demand_joined("motion", "mm")
     end, knots = float(half.at_end(0)[0]), half.motion.knots.tolist()
-    functions = list(half.motion.functions)
-    for function in half.motion.functions:
-        if isinstance(function, Constant):
-            functions.append(Constant(end - function.value))
-        else:
-            functions.append(Affine.of(function, offset=end, scale=-1.0, start=half.total))
-    return joined([*knots, *(knot + half.total for knot in knots[1:])], functions)
+    later = [moved(function, offset=end, scale=-1.0, start=half.total) for function in half.motion.functions]
+    return joined([*knots, *(knot + half.total for knot in knots[1:])], [*half.motion.functions, *later])

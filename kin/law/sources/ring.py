@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from kin.law.programme import IntentError
-from kin.law.segment import Affine, Constant, Stretch
+from kin.law.segment import Affine, Constant, Stretch, moved
 from kin.law.sources.motion import Motion, joined
 from kin.law.sources.spline import Ends
 
@@ -149,11 +149,12 @@ def settled(knots: Sequence[float], functions: Sequence[Stretch], turn: float, t
     pieces: list[tuple[float, float, Stretch]] = []
     for function, begin, end in zip(functions, knots[:-1], knots[1:], strict=True):
         shift = turn * math.floor((begin + SAME_ANGLE) / turn)
-        low, high, moved = begin - shift, end - shift, _shifted(function, -shift)
+        low, high = begin - shift, end - shift
+        folded = moved(function, start=-shift) if shift else function
         if high > turn + SAME_ANGLE:
-            pieces += [(low, turn, moved), (0.0, high - turn, _shifted(moved, -turn))]
+            pieces += [(low, turn, folded), (0.0, high - turn, moved(folded, start=-turn))]
         else:
-            pieces.append((max(low, 0.0), high, moved))
+            pieces.append((max(low, 0.0), high, folded))
     pieces.sort(key=lambda piece: piece[0])
     kept = [piece for piece in pieces if piece[0] < total - SAME_ANGLE]
     at = [0.0, *(piece[0] for piece in kept[1:]), total]
@@ -167,12 +168,6 @@ def _on_knots(function: Stretch, ends: tuple[float, float]) -> Stretch:
             if abs(function.start - knot) <= _FOLDED:
                 return replace(function, start=knot)
     return function
-
-
-def _shifted(function: Stretch, by: float) -> Stretch:
-    if by == 0.0 or isinstance(function, Constant):
-        return function
-    return Affine.of(function, start=by)
 
 
 def demand_whole(rows: Samples, total: float, around: int | None, field: str) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 DEGREE = 5
-_AT_REST = 3  # coefficients that one level takes at an end
+_AT_REST = 3  # coefficients that have one level at an end where the spline rests
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,14 +94,10 @@ def b_splines(knots: Array, index: Indices, x: Array, degree: int) -> Array:
 
 @dataclass(frozen=True)
 class Ends:
-    """Levels at which a spline rests at its ends; None: it has a period instead.
-
-    `taken` coefficients have the level there: with 3 S' = S'' = 0, with 2 S' = 0, with 1 neither.
-    """
+    """Levels at which a spline rests at its ends, S' = S'' = 0."""
 
     start: float
     end: float
-    taken: tuple[int, int] = (_AT_REST, _AT_REST)
 
 
 def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
@@ -111,16 +107,10 @@ def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
     span, rows = basis.rows(x[inner])
     matrix = np.zeros((len(span), basis.size))
     np.add.at(matrix, (np.arange(len(span)), basis.columns(span)), rows)
-    fixed = _end_coefficients(basis, ends)
+    fixed = np.full(basis.size, np.nan)
+    if ends:
+        fixed[:_AT_REST], fixed[-_AT_REST:] = ends.start, ends.end
     free = np.isnan(fixed)
     known = np.where(free, 0.0, fixed)
     fixed[free] = np.linalg.solve(matrix[:, free], s[inner] - matrix @ known)
     return basis.spans(fixed)
-
-
-def _end_coefficients(basis: Basis, ends: Ends | None) -> Array:
-    """Coefficients that the ends settle, nan where they are free."""
-    fixed = np.full(basis.size, np.nan)
-    if ends is not None:
-        fixed[: ends.taken[0]], fixed[-ends.taken[1] :] = ends.start, ends.end
-    return fixed

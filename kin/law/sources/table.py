@@ -14,7 +14,7 @@ from kin.law.sources.least_jerk import Bounds, CrowdedError, LowerLimit, Unsolve
 from kin.law.sources.motion import Kept, Motion, TableRemark, joined
 from kin.law.sources.ring import SAME_ANGLE, Samples, settled
 from kin.law.sources.suspects import ladder, suspect
-from kin.law.sources.tabled import BELOW, TableError, demand_rows, tabled
+from kin.law.sources.tabled import BELOW, TableError, advised, demand_rows, tabled
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def _motion(
             raise TableError(f"{sentence}; mend it, or give suspect: keep", field, line)
         remarks.append(TableRemark("table-row", f"line {layout.lines[standing.rows[0]]}: {sentence}"))
     if raised is not None and (standing is None or not standing.certain):
-        calm = layout.advised(raised * reading)
+        calm = advised(raised * reading, layout.unit)
         text = (
             f"with reading: {calm} the mean square of the jerk is a tenth: the rows scatter by more than their digits"
         )
@@ -134,7 +134,9 @@ def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Mot
         at, value = min(lows, key=lambda low: low[1])
         if value - limit.level <= _TOUCHES * layout.stroke:
             break
-        bounds = _with_level(bounds, float(bounds.x[0] + np.mod(at - bounds.x[0], total)), limit.level, total)
+        place = bounds.x[:1] + np.mod(at - bounds.x[0], total)
+        touched = Bounds(place, np.array([limit.level]), np.array([limit.level]), bounds.unit[:1], np.array([-1]))
+        bounds = bounds.with_more(touched, total)
     if around is None:
         return joined(*_pieces(dwells, moving, 0.0), None).raised(-dwells[0].level)
     turn, curve = layout.period, whole.curve
@@ -153,7 +155,7 @@ def _solved(space: Space, bounds: Bounds, near: Least, limit: LowerLimit | None)
 
 
 def _least_level(layout: Tabled, plain: Least) -> float | None:
-    """Level that a motion over a turn is never below, and has somewhere; None of a table that is moved as a whole.
+    """Lower limit of a motion over a turn, which it attains, mm or rad; None where the table sets none.
 
     A table that is lowest in a dwell has that level, or 0 where that is within its reading, as has any other table that
     is 0 within it. So has one whose motion is lowest at about 0, between two rows.
@@ -165,12 +167,6 @@ def _least_level(layout: Tabled, plain: Least) -> float | None:
     if any(run.level == level for run in runs(layout, None)):
         return level
     return 0.0 if level > 0.0 and abs(plain.curve.lowest()[1]) <= _ZERO * reading else None
-
-
-def _with_level(bounds: Bounds, at: float, level: float, period: float) -> Bounds:
-    """With a bound that brings the motion down to a level at an angle."""
-    same = np.array([level])
-    return bounds.with_more(Bounds(np.array([at]), same, same, bounds.unit[:1], np.array([-1])), period)
 
 
 def _pieces(dwells: Sequence[Run], moving: Sequence[Moving], turn: float) -> tuple[list[float], list[Stretch]]:
@@ -207,7 +203,7 @@ def _demand_stroke(layout: Tabled, reading: float, field: str) -> None:
     if layout.stroke > 1e-9 * float(np.abs(layout.s).max(initial=0.0)):
         small = f"the rows differ by {layout.tell(layout.stroke)} in all, less than their reading error leaves open"
         problem = f"{small}: {layout.tell(reading)} to either side"
-        raise IntentError(f"{problem}; give reading: {layout.advised(0.05 * layout.stroke)} or less", field)
+        raise IntentError(f"{problem}; give reading: {advised(0.05 * layout.stroke, layout.unit)} or less", field)
 
 
 def _scatter_advice(layout: Tabled, reading: float) -> str:
@@ -220,7 +216,7 @@ def _scatter_advice(layout: Tabled, reading: float) -> str:
     if apart > _MOST_ADVISED * layout.stroke:
         remedy = "see that the columns are those meant, or write means of successive rows"
         return f"{problem}, and lie about no smooth curve; {remedy}"
-    return f"{problem}; give reading: {layout.advised(apart)}, or fewer rows"
+    return f"{problem}; give reading: {advised(apart, layout.unit)}, or fewer rows"
 
 
 def _standing(layout: Tabled, standing: Suspect) -> str:

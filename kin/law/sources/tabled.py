@@ -67,11 +67,7 @@ class Tabled:
 
     def tell(self, value: float, digits: int = 6) -> str:
         """A displacement in the table's own unit, as a message has it."""
-        return f"{value / self.unit:.{digits}g}{_UNITS.get(self.unit, '')}"
-
-    def advised(self, reading: float) -> str:
-        """A reading error of two digits, not below this one, in a unit that a recipe may have."""
-        return advised(reading, self.unit)
+        return in_unit(value, self.unit, digits)
 
     def bounds(self, share: float = 1.0, least_level: float | None = None) -> Bounds:
         """Bounds of a motion, with readings that are so many times as great; none below its least level."""
@@ -94,6 +90,11 @@ class Tabled:
     def off(self, curve: Curve) -> Array:
         """Distance (n,) of each row's value from a curve, mm or rad."""
         return np.abs(curve(self.x) - self.s)
+
+
+def in_unit(value: float, unit: float, digits: int = 6) -> str:
+    """Text of a displacement in a unit of so many mm or rad, with the unit's name."""
+    return f"{value / unit:.{digits}g}{_UNITS.get(unit, '')}"
 
 
 def advised(reading: float, unit: float) -> str:
@@ -150,7 +151,7 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
     if over > total - SAME_ANGLE:
         _demand_no_rest(rest, field)
         if apart > allowed * (1.0 + 1e-9):
-            problem = f"the motion does not close: {_decimals(apart, rows)} off the first row, a turn later"
+            problem = f"the motion does not close: {in_unit(apart, rows.unit)} off the first row, a turn later"
             remedy = f"give this row the displacement of the first one, or reading: {advised(0.5 * apart, rows.unit)}"
             raise TableError(f"{problem}; {remedy}", field, line)
         s, readings = rows.s[:-1].copy(), within[:-1].copy()
@@ -163,7 +164,7 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
         _demand_no_rest(rest, field)
         return Tabled(rows.theta, rows.s, within, rows.lines, space, rows.unit)
     if rest is None and apart > allowed:
-        ends = f"the table ends after {math.degrees(over):.6g} degrees, {_decimals(apart, rows)} off its first row"
+        ends = f"the table ends after {math.degrees(over):.6g} degrees, {in_unit(apart, rows.unit)} off its first row"
         remedy = "add the rows that are missing, or give rest: mirror, cycle or dwell"
         raise TableError(f"{ends}: the rest of the turn can be no dwell; {remedy}", field, line)
     x, s, like = _rest(rows, total, rest or "dwell", field)
@@ -217,10 +218,6 @@ def _cycle(rows: Samples, total: float, field: str) -> tuple[Array, Array, Indic
     x = rows.theta[like] + np.repeat(np.arange(count), len(like) // count) * (total / count)
     more = slice(len(rows.s), None)
     return x[more], rows.s[like[more]], like[more]
-
-
-def _decimals(value: float, rows: Samples) -> str:
-    return f"{value / rows.unit:.6g}{_UNITS.get(rows.unit, '')}"
 
 
 def demand_rows(

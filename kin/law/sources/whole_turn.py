@@ -10,14 +10,13 @@ import numpy as np
 from kin.law.bounds import unbounded
 from kin.law.formula.expression import Expression, FormulaDomainError, FormulaError
 from kin.law.programme import IntentError
-from kin.law.segment import Affine, Constant, Stretch
+from kin.law.segment import Constant, Stretch, moved
 from kin.law.sources.motion import Motion, joined
 
 if TYPE_CHECKING:
     from kin.law.formula.formula import Formula
 
 
-_SLIVER = 1e-11  # of the variable: switches closer than this are one, found twice
 _LOOKS = 65
 
 
@@ -30,12 +29,7 @@ def from_formula(
     by `Motion.joints`.
     """
     knots, functions = pieces_of(formula, 0.0, total, field, formula.variables[0])
-    scaled = [_scaled(f, scale) for f in functions] if scale != 1 else functions
-    return joined(knots, scaled, around)
-
-
-def _scaled(function: Stretch, scale: float) -> Stretch:
-    return Constant(function.value * scale) if isinstance(function, Constant) else Affine(function, scale=scale)
+    return joined(knots, [moved(f, scale=scale) for f in functions] if scale != 1 else functions, around)
 
 
 def pieces_of(
@@ -48,9 +42,7 @@ def pieces_of(
 
     try:
         places, parts = formula.pieces(begin, end)
-        wide = np.flatnonzero(np.diff(places) > _SLIVER)
-        parts = tuple(parts[i] for i in wide)
-        knots = [begin, *places[wide[1:]].tolist(), end]
+        knots = places.tolist()
         for part, low, high in zip(parts, knots[:-1], knots[1:], strict=True):
             part.jet(np.linspace(low, high, _LOOKS), 2)  # raises where there is no value
             at = unbounded(part, low, high, 2)
@@ -68,9 +60,5 @@ def pieces_of(
 
 def _plain(part: Expression, angle: float) -> Stretch:
     """The expression, or the constant that it is if it does not depend on its variable from `angle` on."""
-    if part.jet(angle, 1).c[1].any():
-        return part
-    enclosed = part.ball(angle, angle + 1.0, 1)
-    if not enclosed.mid[1].any() and not enclosed.rad[1].any():
-        return Constant(float(enclosed.mid[0, 0]))
-    return part
+    value = part.constant_value(angle)
+    return part if value is None else Constant(value)
