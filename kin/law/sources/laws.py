@@ -257,7 +257,7 @@ def _catalogue() -> dict[str, _Entry]:
             name: _Entry(
                 lambda name=name: _of(name, scca_motion(*_MEMBERS[name])),  # type: ignore[misc]
                 f"scca: sine {b:.3g}, constant {c:.3g}, velocity {x:.3g}",
-            )  # type: ignore[misc]
+            )
             for name, (b, c, x) in _MEMBERS.items()
             if name not in LAWS
         },
