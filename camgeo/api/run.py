@@ -228,8 +228,7 @@ def _path_fault(path: Path) -> str:
 
 def _size_fault(path: Path) -> str:
     """Message on a file that is larger than the reader of its kind allows; empty for others."""
-    from kin.read.formats import suffixes
-    from kin.read.size import oversize
+    from kin.read.formats import oversize, suffixes
 
     kind = suffixes().get(path.suffix.lower())
     return "" if kind is None else oversize(path, kind)

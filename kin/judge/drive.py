@@ -14,7 +14,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.monotone import RoughError, between, cells, pieces
 from kin.read.curve_points import is_curve_points, read_curve_points
 from kin.read.errors import ReadError
-from kin.read.size import contents
+from kin.read.formats import contents
 
 if TYPE_CHECKING:
     from pathlib import Path

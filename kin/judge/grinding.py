@@ -23,8 +23,8 @@ from kin.contour.offset import TightError, chain_of, parallel
 from kin.judge.check import Check, at_most
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
+from kin.read.formats import contents
 from kin.read.nesting import Chain
-from kin.read.size import contents
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,20 +1,24 @@
-"""How many bodies a solid's file holds: what is sought of each, and one error where others are there."""
+"""Solids as files of any format hold them, what is sought of each, and the errors where others are there."""
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.numeric.records import dataclass, field, replace
 from kin.read.errors import ReadError
+from kin.read.nesting import Nest, scaled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
+    from typing import Self
 
     from kin.numeric.arrays import Array
 
-__all__ = ["MOST_BODIES", "Placed", "Sought", "beside", "missing"]
+__all__ = ["MOST_BODIES", "Placed", "ReadSolid", "Section", "Sought", "beside", "missing"]
 
 MOST_BODIES = 5  # that are named in a message
 RIGID = 1e-9  # a place turns and shifts only if its axes are square and of length 1 within this
@@ -25,14 +29,52 @@ def no_rows(columns: int) -> Array:
     return np.empty((0, columns))
 
 
-class Slivered:
-    """A solid some of whose walls lean, no farther than the rounding of its file explains.
+@dataclass(frozen=True, eq=False)
+class Section(Nest):
+    """Section of a solid at a height, mm: its closed chains."""
 
-    `slivers` (k, 4): least and greatest height, reach from the axis, and by how much, mm.
+    height: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ReadSolid(Nest):
+    """A part as a file of any format holds it, mm.
+
+    chains              of the section at `height`
+    z_min, z_max        least and greatest height
+    height              at which the section was taken
+    prism               the walls stand upright from the lowest face to the highest one, to the file's rounding
+    volume              mm^3, negative if the surface faces inward
+    sections            those that were asked for, by height as asked for
+    faces               heights of the horizontal faces, rising
+    leaning             triangles or faces neither horizontal nor upright (k, 4): least and greatest height, reach from
+                        the axis, mm, and by how much they go inward a mm of height, nan where that is not looked at
+    slivers             walls that lean no farther than the file's rounding explains (k, 4): least and greatest height,
+                        reach from the axis, and greatest distance from the upright, mm
+    rounding            by how much heights may differ through that rounding, mm; 0 where all are as they are meant
+    units_mm            length of the file's unit, None where it states none
     """
 
-    if TYPE_CHECKING:
-        slivers: Array
+    z_min: float
+    z_max: float
+    height: float
+    prism: bool
+    volume: float
+    sections: tuple[Section, ...]
+    faces: tuple[float, ...]
+    leaning: Array
+    slivers: Array = field(default_factory=partial(no_rows, 4))
+    rounding: float = 0.0
+    units_mm: float | None = None
+
+    def section(self, z: float) -> Section:
+        """Section at a height, mm, that was passed to the reader."""
+        return next(cut for cut in self.sections if cut.height == z)
+
+    @property
+    def thickness(self) -> float:
+        """Height of the part, mm."""
+        return self.z_max - self.z_min
 
     @property
     def uneven(self) -> float:
@@ -44,6 +86,36 @@ class Slivered:
         rows = self.slivers
         there = (rows[:, 0] < high) & (rows[:, 1] > low) & (rows[:, 2] >= beyond)
         return float(rows[there, 3].max(initial=0.0))
+
+    def in_units(self, heights: Sequence[float], units: float) -> Self:
+        """The solid of a file whose unit is `units` mm, read as if that were mm; `heights` of its sections are mm."""
+        sections = zip(heights, self.sections, strict=False)
+        return replace(
+            self,
+            chains=scaled(self.chains, units),
+            z_min=units * self.z_min,
+            z_max=units * self.z_max,
+            height=units * self.height,
+            volume=units**3 * self.volume,
+            sections=tuple(Section(scaled(section.chains, units), z) for z, section in sections),
+            faces=tuple(units * z for z in self.faces),
+            leaning=self.leaning * [units, units, units, 1.0],
+            slivers=units * self.slivers,
+            rounding=units * self.rounding,
+        )
+
+    def lowered(self, heights: Sequence[float], level: float) -> Self:
+        """The solid with its heights counted from a level, mm; `heights` of its sections are counted so."""
+        return replace(
+            self,
+            z_min=self.z_min - level,
+            z_max=self.z_max - level,
+            height=self.height - level,
+            sections=tuple(Section(section.chains, z) for z, section in zip(heights, self.sections, strict=False)),
+            faces=tuple(z - level for z in self.faces),
+            leaning=self.leaning - [level, level, 0.0, 0.0],
+            slivers=self.slivers - [level, level, 0.0, 0.0],
+        )
 
 
 class Placed(NamedTuple):
@@ -89,18 +161,18 @@ def beside(
     Where one is expected, that with the largest box is taken for the part, the others for what does not belong there.
     """
     if expected > 1:
-        named = "; ".join(told(*body) for body in bodies)
+        named = "; ".join(described(*body) for body in bodies)
         return ReadError("several", f"it holds {count} bodies, where {expected} are expected: {named}", path)
     sizes = [-1.0 if box is None else float(np.prod(box[1] - box[0])) for _, box in bodies]
     part = int(np.argmax(sizes))
-    others = [told(*item) for k, item in enumerate(bodies) if k != part]
+    others = [described(*body) for k, body in enumerate(bodies) if k != part]
     more = f", and {count - len(bodies)} more" if count > len(bodies) else ""
     name = bodies[part][0]
     message = f"it holds {count} bodies, where one is expected; beside {name} there is {'; '.join(others)}{more}"
     return ReadError("several", f"{message}; take out what does not belong", path)
 
 
-def told(name: str, box: tuple[Array, Array] | None) -> str:
+def described(name: str, box: tuple[Array, Array] | None) -> str:
     """Text of a body's name, size and place."""
     if box is None:
         return name

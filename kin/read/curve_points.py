@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.read.errors import ReadError
-from kin.read.size import contents
+from kin.read.formats import contents
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,7 +15,6 @@ REASONS = {
     "syntax": "the file is damaged or not of this format",
     "truncated": "the file ends too early",
     "empty": "the file holds nothing to cut",
-    "layer": "the layer does not exist",
     "unsupported": "the file holds something that is not a contour of lines, arcs and splines in one plane",
     "range": "a number is not finite or out of range",
     "open": "the contour does not close: a segment is missing",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -52,7 +51,7 @@ def read_solid(
         raise ValueError(f"{path.name} is no solid")
     if record.units or units is None or units == 1.0:
         return record.solid(path, heights, deepest)
-    return _in_units(record.solid(path, [z / units for z in heights], deepest), heights, units)
+    return record.solid(path, [z / units for z in heights], deepest).in_units(heights, units)
 
 
 def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
@@ -63,27 +62,6 @@ def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
         raise ValueError(f"{path.name} holds no mesh")
     scale = 1.0 if record.units or units is None else units
     return [placed._replace(corners=placed.corners * scale) for placed in record.meshes(path)]
-
-
-def _in_units(solid: AnySolid, heights: Sequence[float], units: float) -> AnySolid:
-    """The solid of a file in a unit, mm; its sections by their heights as they were asked for."""
-    from kin.read.mesh.stl import Section
-    from kin.read.nesting import scaled
-
-    sections = zip(heights, solid.sections, strict=False)
-    return replace(
-        solid,
-        chains=scaled(solid.chains, units),
-        z_min=units * solid.z_min,
-        z_max=units * solid.z_max,
-        height=units * solid.height,
-        volume=units**3 * solid.volume,
-        sections=tuple(Section(scaled(section.chains, units), z) for z, section in sections),
-        faces=tuple(units * z for z in solid.faces),
-        leaning=solid.leaning * [units, units, units, 1.0],
-        slivers=units * solid.slivers,
-        rounding=units * solid.rounding,
-    )
 
 
 def read_bodies(path: Path | str, sought: Sequence[Sought], levels: Sequence[float]) -> list[AnySolid]:
@@ -101,20 +79,4 @@ def read_bodies(path: Path | str, sought: Sequence[Sought], levels: Sequence[flo
     above = list(zip(sought, levels, strict=True))
     shifted = [wanted._replace(heights=[level + z for z in wanted.heights]) for wanted, level in above]
     solids = read(path, shifted)
-    return [_lowered(solid, wanted.heights, level) for solid, (wanted, level) in zip(solids, above, strict=True)]
-
-
-def _lowered(solid: AnySolid, heights: Sequence[float], level: float) -> AnySolid:
-    """The solid with its heights counted from a level, mm; those of its sections as they were asked for."""
-    from kin.read.mesh.stl import Section
-
-    return replace(
-        solid,
-        z_min=solid.z_min - level,
-        z_max=solid.z_max - level,
-        height=solid.height - level,
-        sections=tuple(Section(section.chains, z) for z, section in zip(heights, solid.sections, strict=False)),
-        faces=tuple(z - level for z in solid.faces),
-        leaning=solid.leaning - [level, level, 0.0, 0.0],
-        slivers=solid.slivers - [level, level, 0.0, 0.0],
-    )
+    return [solid.lowered(wanted.heights, level) for solid, (wanted, level) in zip(solids, above, strict=True)]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
 import numpy as np
 
 from kin.numeric.records import dataclass
+from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -74,8 +75,6 @@ def mesh(
     """Make the entry of a format that holds one mesh: `triangles` (t, 3, 3) of the bytes of a file, and its form."""
 
     def read(path: Path) -> tuple[Corners, Form]:
-        from kin.read.size import contents
-
         return triangles(contents(path, name), path)
 
     def solid(path: Path, heights: Sequence[float], deepest: int) -> Solid:
@@ -191,3 +190,16 @@ def format_of(path: Path) -> Format:
     if name is None:
         raise ValueError(f"{path.name}: none of {', '.join(known)}")
     return FORMATS[name]
+
+
+def oversize(path: Path, name: str) -> str:
+    """Say that a file is larger than is read of its format; empty where it is not. Raises OSError as `stat` does."""
+    size, most = path.stat().st_size, FORMATS[name].most
+    return "" if size <= most else f"{size / 1e6:.4g} MB, and of a {name} up to {most / 1e6:.4g} MB are read"
+
+
+def contents(path: Path, name: str) -> bytes:
+    """The bytes of a file of a format; raises ReadError for one that is too large, OSError as the file system does."""
+    if problem := oversize(path, name):
+        raise ReadError("range", problem, path)
+    return path.read_bytes()

@@ -17,7 +17,7 @@ import numpy as np
 from kin.contour.arcs import Arcs
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
-from kin.read.size import contents
+from kin.read.formats import contents
 
 __all__ = ["ARC_MM", "Move", "Program", "arcs_of", "read_gcode"]
 

@@ -17,9 +17,21 @@ if TYPE_CHECKING:
 
     from kin.contour.contour import Contour
 
-__all__ = ["Chain", "Nest", "Place", "counter_clockwise", "demand_few", "met", "nested", "scaled"]
+__all__ = [
+    "MOST_PIECES",
+    "Chain",
+    "Nest",
+    "Place",
+    "counter_clockwise",
+    "demand_few",
+    "demand_few_pieces",
+    "met",
+    "nested",
+    "scaled",
+]
 
 MOST_CONTOURS = 2000
+MOST_PIECES = 1_000_000  # of all contours: a polygon within 1e-9 mm may have more than half of that
 
 
 class Place(NamedTuple):
@@ -84,6 +96,12 @@ def demand_few(count: int, path: Path) -> None:
     """Raise ReadError for more closed contours than a part has, before the work on each is begun."""
     if count > MOST_CONTOURS:
         raise ReadError("range", f"it has {count} closed contours; up to {MOST_CONTOURS} are read", path)
+
+
+def demand_few_pieces(count: int, path: Path) -> None:
+    """Raise ReadError for more pieces than the contours of a part have, before the work on each is begun."""
+    if count > MOST_PIECES:
+        raise ReadError("range", f"its contours have {count} pieces; up to {MOST_PIECES} are read", path)
 
 
 def counter_clockwise(contour: Contour) -> Contour:

@@ -167,9 +167,9 @@ def unit_of(name: str) -> str | None:
 
 
 def _units(rows: Rows, sheet: Sheet, places: tuple[int, int], field: str) -> tuple[float, str]:
-    """One unit of the angles in rad of the cam, and the unit of the values.
+    """Radians of the cam in one unit of the column of angles, and the name of the unit of the values.
 
-    IntentError where heading and caller differ, or the heading's unit is another quantity's.
+    Raises IntentError where heading and caller differ, or the heading's unit is another quantity's.
     """
     first, second = (rows.heading[k] for k in places) if rows.heading else ("", "")
     for name in (first, second) if sheet.quantity == "share" else ():

@@ -154,7 +154,6 @@ def test_what_is_drawn_without_choosing_a_layer_is_cut_too(tmp_path: Path) -> No
     path = saved(document, tmp_path)
     (hole,) = read_dxf(path).holes
     assert hole.area == pytest.approx(25.0 * np.pi)
-    assert read_dxf(path, layer="CUT").holes == ()
 
 
 @pytest.mark.parametrize(("side", "expected"), [(1, 1.0), (-1, -1.0)])
@@ -489,18 +488,6 @@ def test_foreign_files_have_everything_on_layer_0(tmp_path: Path) -> None:
     assert drawing.contour.area == pytest.approx(625.0 * np.pi)
     assert sorted(h.area for h in drawing.holes) == pytest.approx([4.0 * np.pi, 25.0 * np.pi])
     assert [(a.layer, a.kind) for a in drawing.aside] == [("0", "TEXT")]
-
-
-def test_the_layer_can_be_named(tmp_path: Path) -> None:
-    document = new()
-    space = document.modelspace()
-    space.add_circle((0, 0), 25.0, dxfattribs={"layer": "Outline"})
-    space.add_circle((0, 0), 30.0, dxfattribs={"layer": "other"})
-    path = saved(document, tmp_path)
-    assert read_dxf(path, layer="outline").contour.box.x_max == 25.0
-    assert read_dxf(path, layer="OTHER").contour.box.x_max == 30.0
-    with pytest.raises(ReadError, match=r"nothing is drawn on a layer CUT; layers with curves: OTHER, OUTLINE"):
-        read_dxf(path, layer="CUT")
 
 
 def refused(folder: Path, draw: Callable[[Document], Any]) -> ReadError:

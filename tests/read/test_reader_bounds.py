@@ -14,12 +14,11 @@ from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
 from kin.read.errors import ReadError
 from kin.read.files import kind_of, read_drawing, read_solid
-from kin.read.formats import FORMATS, suffixes
+from kin.read.formats import FORMATS, contents, suffixes
 from kin.read.gcode import read_gcode
 from kin.read.mesh import threemf
 from kin.read.mesh.mesh import Mesh
 from kin.read.nesting import MOST_CONTOURS, nested
-from kin.read.size import contents
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="-50 -50 100 100">'
 
@@ -147,7 +146,7 @@ def test_a_drawing_of_more_pieces_than_a_contour_has(tmp_path, monkeypatch):
         path.write_text(f"{HEAD}{text}</svg>")
         assert len(read_drawing(path).contour) == 100
         with monkeypatch.context() as patch:
-            patch.setattr("kin.read.size.MOST_PIECES", 99)
+            patch.setattr("kin.read.nesting.MOST_PIECES", 99)
             patch.setattr("kin.read.drawing.svg_path.MOST_PIECES", 99)
             with pytest.raises(ReadError, match=r"more than 99 pieces|have 100 pieces; up to 99 are read"):
                 read_drawing(path)

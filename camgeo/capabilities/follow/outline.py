@@ -10,9 +10,8 @@ from kin.contour.about import circle_about, goes_round, tracks
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.files import read_drawing, read_solid
-from kin.read.formats import FORMATS, format_of, suffixes
+from kin.read.formats import FORMATS, format_of, oversize, suffixes
 from kin.read.nesting import MOST_CONTOURS, scaled
-from kin.read.size import oversize
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,8 +13,7 @@ from kin.contour.pieces import ARC, Pieces
 from kin.numeric.records import dataclass, replace
 from kin.read.drawing.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
 from kin.read.errors import ReadError
-from kin.read.nesting import Chain, Nest, counter_clockwise, demand_few, met, nested
-from kin.read.size import demand_few_pieces
+from kin.read.nesting import Chain, Nest, counter_clockwise, demand_few, demand_few_pieces, met, nested
 
 if TYPE_CHECKING:
     from collections import Counter

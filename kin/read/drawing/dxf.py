@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kin.contour.contour import Box
-from kin.read.drawing.affine import Affine
 from kin.read.drawing.drawing import (
     BESIDE,
-    BORE,
     CUT,
     ENGRAVED,
     REFERENCE,
@@ -26,10 +24,10 @@ from kin.read.drawing.drawing import (
     drawing_of,
 )
 from kin.read.drawing.dxf_entities import CURVES, NOTES, facing, shape_of
-from kin.read.drawing.shapes import UnfitError, check
+from kin.read.drawing.shapes import Affine, UnfitError, check
 from kin.read.errors import ReadError
+from kin.read.formats import contents
 from kin.read.home import prepare_home
-from kin.read.size import contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -65,7 +63,6 @@ DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, A
 def read_dxf(
     path: Path | str,
     gap: float | None = None,
-    layer: str | None = None,
     *,
     engraved: bool = False,
     deepest: int = 1,
@@ -74,11 +71,11 @@ def read_dxf(
 ) -> Drawing:
     """Read the outer contour and the holes that a DXF file gives to cut.
 
-    gap     mm; ends of loose pieces are joined if they lie within it. Default: 1e-6, or 2e-8 of a drawing below 50 mm
-    layer   the one to cut. Default: CUT, also BORE, HOLES, MARK, GROOVE_INNER, GROOVE_OUTER and 0, if there is
-            something on CUT; else all layers but those of reference geometry, without what has a line type with
-            dashes, as centre lines and hidden edges have: outlines are continuous (ISO 128). The outermost closed
-            chain is the contour, those inside it are holes.
+    Cut are the layers CUT, BORE, HOLES, MARK, GROOVE_INNER, GROOVE_OUTER and 0, if there is something on CUT; else all
+    layers but those of reference geometry, without what has a line type with dashes, as centre lines and hidden edges
+    have: outlines are continuous (ISO 128). The outermost closed chain is the contour, those inside it are holes.
+
+    gap       mm; ends of loose pieces are joined if they lie within it. Default: 1e-6, or 2e-8 of a drawing below 50 mm
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
     deepest   how many others a closed chain may lie inside: 1, so that a hole has no island
     bridged   mm; gaps up to this, and open chains within the contour, are told by `openings` and do not raise
@@ -94,7 +91,7 @@ def read_dxf(
         unit = unit_of(document, raw[:COMMENT_BYTES], path)
         scale = 1.0 if unit is None else unit
         drawn = everything(document, path)
-        entities = entities_to_cut(document, drawn, layer, path)
+        entities = entities_to_cut(document, drawn, path)
         marks = entities_engraved(drawn, path) if engraved else None
         low, high = (document.header.get(name) for name in ("$EXTMIN", "$EXTMAX"))
         stated = low is not None and high is not None and low[0] <= high[0] and low[1] <= high[1]
@@ -255,24 +252,20 @@ def _inserted(document: Document, insert: Drawn, path: Path) -> Iterator[Drawn]:
                 yield Drawn(entity, on, name, to, insert.rise + insert.scale * rise, insert.scale * scale)
 
 
-def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, path: Path) -> CutEntities:
+def entities_to_cut(document: Document, drawn: list[Drawn], path: Path) -> CutEntities:
     """Find the entities on the layers to cut, and count the others. Raises ReadError for what cannot be read there."""
     there = {entity.layer.upper() for entity in drawn if entity.kind in CURVES}
-    if layer is not None and layer.upper() not in there:
-        named = ", ".join(sorted(there)) or "none"
-        raise ReadError("layer", f"nothing is drawn on a layer {layer}; layers with curves: {named}", path)
-    chosen = layer if layer is not None else (CUT if CUT in there else None)
-    beside = BESIDE if layer is None else {BORE}
-    wanted = there - REFERENCE if chosen is None else {chosen.upper(), *beside}
+    by_name = CUT in there
+    wanted = {CUT, *BESIDE} if by_name else there - REFERENCE
     dashed = Counter[tuple[str, str]]()
-    if chosen is None:
+    if not by_name:
         types = [_dashes(document, entity) for entity in drawn]
         dashed.update(
             (item.layer, f"{item.kind} of line type {name}") for item, name in zip(drawn, types, strict=True) if name
         )
         drawn = [item for item, name in zip(drawn, types, strict=True) if not name]
     # what is drawn with no thought for layers goes to the machine too
-    entities = gather(drawn, wanted | {NO_LAYER} if layer is None else wanted, path)
+    entities = gather(drawn, wanted | {NO_LAYER}, path)
     entities.aside.update(on_paper(document))
     entities.aside.update(dashed)
     if not entities.shapes:
@@ -295,7 +288,7 @@ def _dashes(document: Document, drawn: Drawn) -> str:
 
 
 def entities_engraved(drawn: list[Drawn], path: Path) -> CutEntities:
-    """Find the entities on the layer that is engraved; none where no layer is cut by its name."""
+    """The entities on the engraving layer; empty unless something is drawn on the layer CUT."""
     by_name = any(entity.layer.upper() == CUT for entity in drawn)
     return gather(drawn, {ENGRAVED} if by_name else set(), path)
 

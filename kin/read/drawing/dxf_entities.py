@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kin.contour.bezier import Beziers
-from kin.read.drawing.shapes import Shape, UnfitError, check, shape
+from kin.read.drawing.shapes import Shape, UnfitError, check, check_degree, check_spline, shape
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,8 +18,6 @@ __all__ = ["CURVES", "NOTES", "shape_of"]
 
 # Nothing of these is ever cut: they are listed, not refused.
 NOTES = frozenset({"TEXT", "MTEXT", "ATTDEF", "DIMENSION", "LEADER", "MULTILEADER", "POINT", "VIEWPORT", "TOLERANCE"})
-LARGEST_WEIGHT_RATIO = 1e6
-HIGHEST_DEGREE = 25
 # Slope, and relative size, that is still rounding.
 LEVEL = 1e-9
 
@@ -135,19 +133,8 @@ def spline(entity: Any) -> Shape:  # noqa: ANN401
             "a spline of fit points alone has no definite shape; save it with control points, or as a polyline",
         )
     check(control, knots, weight)
-    if not 1 <= degree <= HIGHEST_DEGREE:
-        raise UnfitError("unsupported", f"it is of degree {degree}; up to {HIGHEST_DEGREE} is read")
-    if len(knots) != count + degree + 1 or count <= degree or len(weight) != count:
-        numbers = f"{count} control points, {len(knots)} knots, {len(weight)} weights, degree {degree}"
-        raise UnfitError("syntax", f"these numbers do not fit together: {numbers}")
-    first, last = knots[degree], knots[count]
-    if (np.diff(knots) < 0.0).any() or not first < last:
-        raise UnfitError("syntax", "its knots fall or span nothing")
-    inner = knots[(knots > first) & (knots < last)]
-    if (inner[degree:] == inner[:-degree]).any():
-        raise UnfitError("unsupported", "a knot repeated too often tears it apart")
-    if not ((weight > 0.0).all() and weight.max() <= LARGEST_WEIGHT_RATIO * weight.min()):
-        raise UnfitError("unsupported", "its weights are not all positive and of one order")
+    check_degree(degree)
+    check_spline(degree, knots, weight, count)
     pieces = Beziers.from_spline(degree, knots, control[:, :2], weight / weight[0])
     return shape(beziers=pieces, heights=control[:, 2])
 

@@ -1,7 +1,8 @@
-"""One entity of a drawing as numbers, in the plane and unit of the drawing."""
+"""Entities of a drawing as numbers, in its plane and unit, and the maps of an SVG's groups and a DXF's blocks."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,11 +13,15 @@ from kin.numeric.errors import CamgeoError
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
-__all__ = ["Shape", "UnfitError", "check", "shape"]
+__all__ = ["ALIKE", "Affine", "Shape", "UnfitError", "check", "check_degree", "check_spline", "shape"]
 
 # Beyond this, in drawing units, the squares of coordinates have no digits left for a contour.
 LARGEST = 1e7
 LARGEST_BULGE = 1e6
+LARGEST_WEIGHT_RATIO = 1e6
+HIGHEST_DEGREE = 25
+# Two radii, or two scales, that differ by less are equal; an arc's radius may be short of half its chord by as much.
+ALIKE = 1e-12
 
 
 class UnfitError(CamgeoError):
@@ -60,3 +65,82 @@ def check(*numbers: Array, limit: float = LARGEST) -> None:
         if bad.size:
             what = f"a value of {bad.flat[0]:g}" if np.isfinite(bad.flat[0]) else "a value that is not finite"
             raise UnfitError("range", what)
+
+
+def check_degree(degree: int) -> None:
+    """Raise UnfitError for a degree of a B-spline that is not read."""
+    if not 1 <= degree <= HIGHEST_DEGREE:
+        raise UnfitError("unsupported", f"it is of degree {degree}; up to {HIGHEST_DEGREE} is read")
+
+
+def check_spline(degree: int, knots: Array, weight: Array, count: int) -> None:
+    """Raise UnfitError where knots and weights do not fit `count` control points of a B-spline, or tear it apart."""
+    if len(knots) != count + degree + 1 or count <= degree or len(weight) != count:
+        numbers = f"{count} control points, {len(knots)} knots, {len(weight)} weights, degree {degree}"
+        raise UnfitError("syntax", f"these numbers do not fit together: {numbers}")
+    first, last = knots[degree], knots[count]
+    if (np.diff(knots) < 0.0).any() or not first < last:
+        raise UnfitError("syntax", "its knots fall or span nothing")
+    inner = knots[(knots > first) & (knots < last)]
+    if (inner[degree:] == inner[:-degree]).any():
+        raise UnfitError("unsupported", "a knot repeated too often tears it apart")
+    if not ((weight > 0.0).all() and weight.max() <= LARGEST_WEIGHT_RATIO * weight.min()):
+        raise UnfitError("unsupported", "its weights are not all positive and of one order")
+
+
+class Affine(NamedTuple):
+    """The map x' = a x + c y + e, y' = b x + d y + f, as SVG writes it."""
+
+    a: float = 1.0
+    b: float = 0.0
+    c: float = 0.0
+    d: float = 1.0
+    e: float = 0.0
+    f: float = 0.0
+
+    def after(self, first: Affine) -> Affine:
+        """Return the map that applies `first`, then this one."""
+        a, b, c, d, e, f = self
+        return Affine(
+            a * first.a + c * first.b,
+            b * first.a + d * first.b,
+            a * first.c + c * first.d,
+            b * first.c + d * first.d,
+            a * first.e + c * first.f + e,
+            b * first.e + d * first.f + f,
+        )
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """Give the image (x, y) of a point."""
+        return self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f
+
+    def scale_and_sense(self) -> tuple[float, float]:
+        """Scale of the map and its sense, -1 for a mirror; raises UnfitError for one that makes ellipses of circles."""
+        scale, sense = math.hypot(self.a, self.b), 1.0 if self.a * self.d - self.b * self.c > 0.0 else -1.0
+        off = max(abs(self.c + sense * self.b), abs(self.d - sense * self.a))
+        if not 0.0 < scale < math.inf or not off <= ALIKE * scale:
+            raise UnfitError("unsupported", "a transform makes ellipses of its circles")
+        return scale, sense
+
+    @staticmethod
+    def rotation(degrees: float) -> Affine:
+        """Return the rotation by an angle, counter-clockwise where y points up."""
+        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        return Affine(c, s, -s, c)
+
+    def moved(self, drawn: Shape, rise: float = 0.0, scale: float = 1.0) -> Shape:
+        """Return a shape under the map, each height z at `rise` + `scale` z; raises UnfitError as `scale_and_sense`."""
+        matrix, shift = np.array([[self.a, self.b], [self.c, self.d]]), np.array([self.e, self.f])
+        chords, arcs, beziers = drawn.chords.copy(), drawn.arcs.copy(), drawn.beziers
+        if len(chords):
+            chords[:, :2], chords[:, 2:4] = chords[:, :2] @ matrix + shift, chords[:, 2:4] @ matrix + shift
+        if len(arcs) or bool(chords[:, 4].any()):
+            size, sense = self.scale_and_sense()
+            chords[:, 4] *= sense
+            arcs[:, :2] = arcs[:, :2] @ matrix + shift
+            arcs[:, 2] *= size
+            arcs[:, 3] = math.atan2(self.b, self.a) + sense * arcs[:, 3]
+            arcs[:, 4] *= sense
+        if beziers.count:
+            beziers = Beziers(beziers.control @ matrix + shift, beziers.weight)
+        return shape(chords=chords, arcs=arcs, beziers=beziers, heights=rise + scale * drawn.heights)

@@ -13,12 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 from xml.etree import ElementTree as ET
 
-from kin.read.drawing.affine import Affine
 from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, CutEntities, Drawing, drawing_of
-from kin.read.drawing.shapes import Shape, UnfitError, shape
+from kin.read.drawing.shapes import Affine, Shape, UnfitError, shape
 from kin.read.drawing.svg_path import NUMBER, path_of
 from kin.read.errors import ReadError, xml_fault
-from kin.read.size import contents
+from kin.read.formats import contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -192,7 +191,7 @@ def _circle(element: Element, to: Affine) -> Shape:
     x, y, radius = (_plain(element.get(name, "0")) for name in ("cx", "cy", "r"))
     if not radius > 0.0:
         raise UnfitError("range", f"its radius is {radius:g}")
-    scale, _ = to.similar()
+    scale, _ = to.scale_and_sense()
     centre = to.at(x, y)
     return shape(arcs=[(*centre, scale * radius, begin, math.pi) for begin in (0.0, math.pi)], heights=0.0)
 

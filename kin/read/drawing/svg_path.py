@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.contour.bezier import Beziers
-from kin.read.drawing.affine import ALIKE
-from kin.read.drawing.shapes import Shape, UnfitError, check, shape
-from kin.read.size import MOST_PIECES
+from kin.read.drawing.shapes import ALIKE, Shape, UnfitError, check, shape
+from kin.read.nesting import MOST_PIECES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kin.read.drawing.affine import Affine
+    from kin.read.drawing.shapes import Affine
 
 __all__ = ["NUMBER", "path_of"]
 
@@ -71,7 +70,7 @@ def path_of(text: str, to: Affine) -> list[Shape]:
             inner = [to.at(*piece.numbers[k : k + 2]) for k in (0, 2, 4)]
             cubics.append([(x, y), *inner])
         else:
-            bulge = bulge_of(piece) * to.similar()[1] if piece.letter == "A" else 0.0
+            bulge = bulge_of(piece) * to.scale_and_sense()[1] if piece.letter == "A" else 0.0
             chords.append((x, y, *to.at(*piece.end), bulge))
     close()
     return shapes

@@ -1,13 +1,15 @@
-"""Triangle meshes as they come out of STL files: corners welded, edges matched, faults counted."""
+"""Triangle meshes as they come out of files: numbers of text forms, corners welded, edges matched, faults counted."""
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
 from kin.numeric.arrays import paired
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -15,13 +17,21 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["EdgeFaults", "Mesh", "plan_welded", "weld", "welded"]
+__all__ = ["EdgeFaults", "Mesh", "WordError", "doubles", "plan_welded", "weld", "welded"]
 
 Real = TypeVar("Real", bound=np.floating)
 
 # Odd multipliers that spread bits over a word of 64 (from the golden ratio, and from SplitMix64), and a shift to match.
 SPREAD, SPREAD_AGAIN = np.uint64(0x9E3779B97F4A7C15), np.uint64(0xBF58476D1CE4E5B9)
 FOLD = np.uint64(31)
+
+
+class WordError(CamgeoError, ValueError):
+    """A word that is no number, by its place among others."""
+
+    def __init__(self, place: int) -> None:
+        super().__init__(f"word {place} is no number")
+        self.place = place
 
 
 class EdgeFaults(NamedTuple):
@@ -112,6 +122,22 @@ class Mesh:
         rising = np.sort(self.corners, axis=1)
         rising = rising[np.lexsort(rising.T)]
         return int(np.count_nonzero((rising[1:] == rising[:-1]).all(axis=1)))
+
+
+def doubles(words: NDArray[np.bytes_]) -> Array:
+    """Numbers of a file in text form, words (n,), as doubles; raises WordError with the first that is none."""
+    if b"_" not in words.tobytes():  # Python reads 1_0 as 10
+        with suppress(ValueError):
+            return words.astype(np.float64)
+    raise WordError(next(place for place, word in enumerate(words.tolist()) if not _is_number(word)))
+
+
+def _is_number(word: bytes) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return b"_" not in word
 
 
 def welded(corners: NDArray[Real]) -> Mesh:

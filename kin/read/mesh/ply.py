@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from kin.read.errors import ReadError
+from kin.read.mesh.mesh import WordError, doubles
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -103,11 +104,11 @@ def _elements(elements: list[_Element], path: Path) -> tuple[_Element, _Element]
     if [element.name for element in there] != ["vertex", "face"]:
         raise ReadError("syntax", "the header lists no vertices and then faces", path)
     vertex, face = there
-    axes = {item.name: item for item in vertex.properties if item.type in {"f4", "f8"} and not item.length}
-    if not {"x", "y", "z"} <= axes.keys() or any(item.length for item in vertex.properties):
+    axes = {entry.name: entry for entry in vertex.properties if entry.type in {"f4", "f8"} and not entry.length}
+    if not {"x", "y", "z"} <= axes.keys() or any(entry.length for entry in vertex.properties):
         raise ReadError("unsupported", "a vertex has no x, y and z of type float or double, or a list", path)
-    lists = [item for item in face.properties if item.length]
-    whole = [item for item in lists if item.name in INDICES and "f" not in item.type + item.length]
+    lists = [entry for entry in face.properties if entry.length]
+    whole = [entry for entry in lists if entry.name in INDICES and "f" not in entry.type + entry.length]
     if len(lists) != 1 or not whole:
         raise ReadError("unsupported", f"a face has no list {INDICES[0]}, or another list beside it", path)
     if not face.number or not vertex.number:
@@ -119,12 +120,12 @@ def _of_bytes(
     raw: bytes, order: str, vertex: _Element, face: _Element, path: Path
 ) -> tuple[NDArray[np.float32] | NDArray[np.float64], Indices]:
     """Vertices (v, 3) and corners of the faces (t, 3) of a binary file."""
-    names = [item.name for item in vertex.properties]
-    row = np.dtype([(f"{k}", order + item.type) for k, item in enumerate(vertex.properties)])
+    names = [entry.name for entry in vertex.properties]
+    row = np.dtype([(f"{k}", order + entry.type) for k, entry in enumerate(vertex.properties)])
     parts: list[tuple[str, str] | tuple[str, str, int]] = []
-    for k, item in enumerate(face.properties):
-        parts += [("count", order + item.length), ("corners", order + item.type, CORNERS)] if item.length else []
-        parts += [] if item.length else [(f"{k}", order + item.type)]
+    for k, entry in enumerate(face.properties):
+        parts += [("count", order + entry.length), ("corners", order + entry.type, CORNERS)] if entry.length else []
+        parts += [] if entry.length else [(f"{k}", order + entry.type)]
     record = np.dtype(parts)
     begin, expected = vertex.number * row.itemsize, vertex.number * row.itemsize + face.number * record.itemsize
     if len(raw) < begin:
@@ -152,10 +153,10 @@ def _of_text(raw: bytes, vertex: _Element, face: _Element, path: Path) -> tuple[
     if len(words) < begin:
         message = f"{vertex.number} vertices have {begin} numbers, and {len(words)} follow"
         raise ReadError("truncated", message, path)
-    names = [item.name for item in vertex.properties]
+    names = [entry.name for entry in vertex.properties]
     table = _numbers(words[:begin], path).reshape(-1, wide)
     points = table[:, [names.index(axis) for axis in "xyz"]]
-    place = next(k for k, item in enumerate(face.properties) if item.length)
+    place = next(k for k, entry in enumerate(face.properties) if entry.length)
     width = len(face.properties) + CORNERS
     there = min(face.number, (len(words) - begin) // width)
     rows = _numbers(words[begin : begin + there * width], path).reshape(-1, width)
@@ -176,20 +177,10 @@ def _of_text(raw: bytes, vertex: _Element, face: _Element, path: Path) -> tuple[
 def _numbers(words: list[bytes], path: Path) -> NDArray[np.float64]:
     """Read numbers as doubles; raises ReadError with the first word that is none."""
     try:
-        if not any(b"_" in word for word in words):  # Python reads 1_0 as 10
-            return np.array(words, dtype="S").astype(np.float64)
-    except ValueError:
-        pass
-    wrong = next(word for word in words if not _is_number(word))
-    raise ReadError("syntax", f"{wrong.decode('latin-1')!r} is not a number", path)
-
-
-def _is_number(word: bytes) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return b"_" not in word
+        return doubles(np.array(words, dtype="S"))
+    except WordError as error:
+        text = words[error.place].decode("latin-1")
+        raise ReadError("syntax", f"{text!r} is not a number", path) from None
 
 
 def _demand_triangles(counts: NDArray[np.int64] | NDArray[np.float64], path: Path) -> None:

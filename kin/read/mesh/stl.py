@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,12 +11,13 @@ from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
 from kin.numeric.distinct import distinct
 from kin.numeric.places import place_text
-from kin.numeric.records import dataclass, field
-from kin.read.bodies import MOST_BODIES, Slivered, beside, no_rows
+from kin.numeric.records import dataclass
+from kin.read.bodies import MOST_BODIES, ReadSolid, Section, beside, no_rows
 from kin.read.errors import ReadError
+from kin.read.formats import contents
+from kin.read.mesh.mesh import WordError, doubles
 from kin.read.mesh.prism import Outline, evened, rounding, upright, walls
-from kin.read.nesting import Chain, Nest, counter_clockwise, demand_few, met, nested
-from kin.read.size import contents
+from kin.read.nesting import Chain, counter_clockwise, demand_few, met, nested
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 
     Form = Literal["binary", "text", "3mf"]
 
-__all__ = ["Section", "Solid", "read_stl", "solid_of"]
+__all__ = ["Solid", "read_stl", "solid_of"]
 
 HEADER = 84
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -50,63 +49,22 @@ MOST_STEPS = 8
 NOT_ONE = frozenset({"several", "island", "crossing"})
 
 
-@dataclass(frozen=True, eq=False)
-class Section(Nest):
-    """Section of a solid at a height, mm: its closed chains."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Solid(ReadSolid):
+    """A part as a file of triangles holds it, mm; its walls are upright to the rounding of `kin.read.mesh.prism`.
 
-    height: float
-
-
-@dataclass(frozen=True, eq=False)
-class Solid(Nest, Slivered):
-    """A part as an STL or 3MF file holds it, mm.
-
-    chains              polygons of the section at `height`
-    z_min, z_max        least and greatest height
-    height              at which the section was taken
-    prism               the walls stand upright and every section is the same, to the file's rounding
-                        (`kin.read.mesh.prism`)
-    leaning             triangles that are not level, nor upright to that rounding (k, 4): least and greatest height,
-                        reach from the axis, mm, and by how much they go inward a mm of height
-    slivers             where a point of the mesh is off such a prism or such walls through that rounding (k, 4): least
-                        and greatest height, reach, and by how much, mm
-    rounding            by how much heights may differ through that rounding, mm; 0 where all are as they are meant
-    volume              mm^3, negative if the triangles face inward
     triangles           number of them
     edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
     degenerate          triangles without area
     duplicate           triangles that another one covers
     form                "binary" or "text", or "3mf"
-    sections            those that were asked for, by height as asked for
-    faces               heights of the horizontal faces, rising
-    units_mm            length of the file's unit, None where it states none
     """
 
-    z_min: float
-    z_max: float
-    height: float
-    prism: bool
-    volume: float
     triangles: int
     edges: EdgeFaults
     degenerate: int
     duplicate: int
     form: Form
-    sections: tuple[Section, ...] = ()
-    faces: tuple[float, ...] = ()
-    leaning: Array = field(default_factory=partial(no_rows, 4))
-    slivers: Array = field(default_factory=partial(no_rows, 4))
-    rounding: float = 0.0
-    units_mm: float | None = None
-
-    def section(self, z: float) -> Section:
-        """Section at a height, mm, that was passed to the reader."""
-        return next(cut for cut in self.sections if cut.height == z)
-
-    @property
-    def thickness(self) -> float:
-        """Height of the part, mm."""
-        return self.z_max - self.z_min
 
     @property
     def faults(self) -> tuple[str, ...]:
@@ -265,7 +223,11 @@ def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
 
 
 def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -> tuple[Chain, ...]:
-    """Closed chains of a section, all of which lie inside the first; `across` triangles, or along a face."""
+    """Closed chains of a section, the outer one first, nested at most `deepest` deep inside it.
+
+    `across` says that the section runs across triangles, whose points on straight lines are left out, and not along
+    the edge of a plane face. Raises ReadError for chains that meet, lie outside the first, are too deep or too many.
+    """
     loops = [outline.points[ring] for ring in rings(outline, path)]
     demand_few(len(loops), path)
     contours = [Contour.from_vertices(straightened(loop) if across else loop) for loop in loops]
@@ -278,7 +240,11 @@ def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -
 
 
 def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "text"]]:
-    """Corners (t, 3, 3) in file order. The length tells the two forms apart: a binary header may begin with "solid"."""
+    """Corners (t, 3, 3) of the triangles, in the file's order and unit, and the form of the file.
+
+    The length tells the forms apart, as a binary header may begin with "solid" too. Raises ReadError for a file that
+    is empty, cut short or none of the format.
+    """
     count = int.from_bytes(raw[HEADER - 4 : HEADER], "little") if len(raw) >= HEADER else 0
     expected = HEADER + RECORD.itemsize * count
     if len(raw) >= HEADER and len(raw) == expected:
@@ -322,25 +288,12 @@ def facets(raw: bytes, path: Path) -> Array:
             there = table[wrong[0], column].decode("latin-1")
             message = f'facet {wrong[0] + 1} has "{there}" where "{word.decode("ascii")}" belongs'
             raise ReadError("syntax", message, path)
-    numbers = table[:, NUMBERS]
-    corners = None
-    if b"_" not in body:  # Python reads 1_0 as 10
-        with suppress(ValueError):
-            corners = numbers.astype(np.float64).reshape(-1, 3, 3)
-    if corners is None:
-        which = next(i for i, word in enumerate(numbers.ravel()) if not _is_number(word))
-        text = numbers.ravel()[which].decode("latin-1")
-        message = f"facet {which // numbers.shape[1] + 1}: the coordinate {text} is not a number"
-        raise ReadError("syntax", message, path)
-    return corners
-
-
-def _is_number(word: bytes) -> bool:
+    coordinates = table[:, NUMBERS].ravel()
     try:
-        float(word)
-    except ValueError:
-        return False
-    return b"_" not in word
+        return doubles(coordinates).reshape(-1, 3, 3)
+    except WordError as error:
+        facet, coordinate = error.place // len(NUMBERS) + 1, coordinates[error.place].decode("latin-1")
+        raise ReadError("syntax", f"facet {facet}: the coordinate {coordinate} is not a number", path) from None
 
 
 def section(mesh: Mesh, height: float) -> tuple[float, Outline]:

@@ -20,8 +20,8 @@ import numpy as np
 from kin.numeric.records import dataclass, field, replace
 from kin.read.bodies import RIGID, Placed, Sought, missing
 from kin.read.errors import ReadError, xml_fault
+from kin.read.formats import oversize
 from kin.read.mesh.stl import LARGEST, Solid, solid_of
-from kin.read.size import oversize
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

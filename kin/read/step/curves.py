@@ -10,7 +10,7 @@ from kin.contour.bezier import Beziers
 from kin.numeric.angles import TURN
 from kin.numeric.bernstein import roots, values
 from kin.numeric.records import dataclass
-from kin.read.drawing.shapes import LARGEST
+from kin.read.drawing.shapes import HIGHEST_DEGREE, LARGEST, UnfitError, check_degree, check_spline
 from kin.read.step.part21 import Reference
 
 if TYPE_CHECKING:
@@ -22,8 +22,6 @@ __all__ = ["Edge", "Frame", "Space", "Spline", "edge_of", "spline_of"]
 # A circle's ends this close, rad, are one: the whole circle.
 WHOLE = 1e-9
 CLOSED = 1e-9  # mm between the ends of a closed spline
-HIGHEST_DEGREE = 25
-LARGEST_WEIGHT_RATIO = 1e6
 BEYOND = 1e-3  # of its size, by which a spline's ends may miss the edge's before it is taken for a trimmed one
 SAMPLES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])  # of a piece, where it is held against its faces
 # Curves of a surface that carry their curve in space as their first value after the name.
@@ -166,7 +164,7 @@ class Edge:
 
     @property
     def samples(self) -> Array:
-        """Points (k, 3) along the curve, its ends as the curve has them among them."""
+        """Points (k, 3) along the curve, its two ends included."""
         match self.curve:
             case Straight():
                 return np.stack([self.start, 0.5 * (self.start + self.end), self.end])
@@ -308,10 +306,13 @@ def spline_of(space: Space, number: int) -> Spline:
     if "RATIONAL_B_SPLINE_CURVE" in records:
         shares = file.several(file.values(number, "RATIONAL_B_SPLINE_CURVE", 1)[0], number)
         weight = np.array([file.number(item, number) for item in shares])
-    if not 1 <= degree <= HIGHEST_DEGREE:
-        raise file.error(number, f"it is of degree {degree}; up to {HIGHEST_DEGREE} is read")
-    knots = _knots(space, number, knotted, degree, len(control))
-    _check_spline(space, number, (degree, control, weight, knots))
+    try:
+        check_degree(degree)
+        knots = _knots(space, number, knotted, degree, len(control))
+        check_spline(degree, knots, weight, len(control))
+    except UnfitError as error:
+        reason, what = error.args
+        raise file.error(number, what, reason) from None
     plan = Beziers.from_spline(degree, knots, control[:, :2], weight)
     rise = Beziers.from_spline(degree, knots, np.column_stack([control[:, 2], np.zeros(len(control))]), weight)
     return Spline(plan, rise)
@@ -329,19 +330,3 @@ def _knots(space: Space, number: int, knotted: tuple[Value, ...], degree: int, c
         return np.repeat(where, times)
     spans = (count - 1) // degree
     return np.concatenate([[0.0], np.repeat(np.arange(spans + 1.0), degree), [float(spans)]])
-
-
-def _check_spline(space: Space, number: int, spline: tuple[int, Array, Array, Array]) -> None:
-    degree, control, weight, knots = spline
-    count = len(control)
-    if len(knots) != count + degree + 1 or count <= degree or len(weight) != count:
-        numbers = f"{count} control points, {len(knots)} knots, {len(weight)} weights, degree {degree}"
-        raise space.file.error(number, f"these numbers do not fit together: {numbers}", "syntax")
-    first, last = knots[degree], knots[count]
-    if bool((np.diff(knots) < 0.0).any()) or not first < last:
-        raise space.file.error(number, "its knots fall or span nothing", "syntax")
-    inner = knots[(knots > first) & (knots < last)]
-    if bool((inner[degree:] == inner[:-degree]).any()):
-        raise space.file.error(number, "a knot repeated too often tears it apart")
-    if not (bool((weight > 0.0).all()) and float(weight.max()) <= LARGEST_WEIGHT_RATIO * float(weight.min())):
-        raise space.file.error(number, "its weights are not all positive and of one order")

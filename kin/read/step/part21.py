@@ -111,14 +111,14 @@ class Exchange(NamedTuple):
         return value
 
     def flag(self, value: Value, by: int) -> bool:
-        """Return a value as a logical one."""
+        """True for .T., False for .F.; raises ReadError, which names instance `by`, for any other value."""
         if value not in {"T", "F"} or not isinstance(value, Enumeration):
             raise self.error(by, f"{shown(value)} is neither .T. nor .F.", "syntax")
         return value == "T"
 
 
 def shown(value: Value) -> str:
-    """Text of a value for a message."""
+    """Text of a value for a message, "$" for None, cut to LONGEST characters."""
     return "$" if value is None else repr(value)[:LONGEST]
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from contextlib import suppress
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,13 +17,11 @@ import numpy as np
 
 from kin.numeric.distinct import distinct
 from kin.numeric.quadrature import gauss
-from kin.numeric.records import dataclass, field, replace
-from kin.read.bodies import MOST_BODIES, Slivered, Sought, beside, missing, no_rows
+from kin.numeric.records import dataclass, replace
+from kin.read.bodies import MOST_BODIES, ReadSolid, Section, Sought, beside, missing
 from kin.read.drawing.drawing import CutEntities, drawing_of
 from kin.read.errors import ReadError
-from kin.read.mesh.stl import Section
-from kin.read.nesting import Nest
-from kin.read.size import contents
+from kin.read.formats import contents
 from kin.read.step.faces import Plane, Tube, face_of
 from kin.read.step.part21 import exchange
 from kin.read.step.space import space_of
@@ -46,49 +44,19 @@ WOUND = 1.0  # rad, by which bounds may miss going round and back: they miss it 
 MOST_NAMED = 3  # edges in a message
 
 
-@dataclass(frozen=True, eq=False)
-class StepSolid(Nest, Slivered):
-    """A part as a STEP file holds it, mm; `Solid` of an STL has the same in triangles.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class StepSolid(ReadSolid):
+    """A part as a STEP file holds it, mm; its volume is that of sections.
 
-    chains              of the section at `height`
-    z_min, z_max        least and greatest height
-    height              at which the section was taken
-    prism               the walls stand upright from the lowest face to the highest one
-    volume              mm^3, from sections
-    sections            those that were asked for, by height as asked for
-    faces               heights of the horizontal faces, rising
-    leaning             faces neither horizontal nor upright (k, 4): least and greatest height, reach from the axis, mm,
-                        and nan: how steep they are is not looked at
     faults              edges that do not belong to exactly two faces which run along them opposite ways; lids that look
                         into the solid
     misfit              farthest that an edge lies off its faces or its ends off itself
     schema              of the file
-    units_mm            length of its unit
     """
 
-    z_min: float
-    z_max: float
-    height: float
-    prism: bool
-    volume: float
-    sections: tuple[Section, ...]
-    faces: tuple[float, ...]
-    leaning: Array
     faults: tuple[str, ...]
     misfit: float
     schema: str
-    units_mm: float
-    slivers: Array = field(default_factory=partial(no_rows, 4))  # none: its numbers are doubles
-    rounding: float = 0.0
-
-    @property
-    def thickness(self) -> float:
-        """Height of the part, mm."""
-        return self.z_max - self.z_min
-
-    def section(self, z: float) -> Section:
-        """Section at a height, mm, that was passed to the reader."""
-        return next(cut for cut in self.sections if cut.height == z)
 
 
 def read_step(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> StepSolid:
