@@ -11,7 +11,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.checks import remedies
-from camgeo.part import chamfer, hub, lightening, mark, set_screw
+from camgeo.part.features import FEATURES
 from camgeo.recipe.figures import (
     BACKLASH,
     CONTACT_TRAVEL,
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.cams.follower import Follower
-    from camgeo.part.feature import Feature
+    from camgeo.part.feature import Feature, FeatureCheck
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figures import Figure
     from camgeo.recipe.recipe import Recipe
@@ -94,7 +94,7 @@ class Declared:
     between    whether it is made once for a pair of discs, with the last of their files
     in_frame   whether with a linkage it concerns the cam in its frame, so that its place is the relative angle
     strict     whether a figure equal to its limit fails; `strict_at` are limits at which it fails
-    after      core's check behind which the check of a capability stands
+    after      check behind which the check of a capability or of a feature stands
     """
 
     name: str
@@ -175,18 +175,8 @@ def _drilled(scene: Scene, file: FileRequest) -> bool:
     return _contour(scene, file) and file.format.drilled(scene.recipe)
 
 
-def _has(feature: Feature[Any]) -> Exact:
-    """Whether the part has a feature."""
-    return lambda scene: scene.recipe.part.of(feature.kind) is not None
-
-
-def _with(feature: Feature[Any]) -> OfFile:
-    """Whether a file is a solid and its part has the feature."""
-    return lambda scene, file: _solid(scene, file) and scene.recipe.part.of(feature.kind) is not None
-
-
-def _marked(scene: Scene, file: FileRequest) -> bool:
-    return _contour(scene, file) and not file.format.program and scene.recipe.part.of(mark.Mark) is not None
+def _shaped(scene: Scene, file: FileRequest) -> bool:
+    return _contour(scene, file) and not file.format.program
 
 
 def _in_a_yoke(scene: Scene, file: FileRequest) -> bool:
@@ -317,7 +307,6 @@ WALL = Declared(
     remedy=remedies.smaller_bore,
     strict_at=(0.0,),
 )
-LIGHTENING = Declared(lightening.FEATURE.name, ("holes",), _has(lightening.FEATURE), field="part.lightening")
 
 # --- of files ---------------------------------------------------------------------------------------------------------
 
@@ -335,19 +324,7 @@ BORE = Declared(
 )
 OUTER = Declared("outer", ("mm",), of_file=_ringed, field="part.outer")
 HOLES = Declared("holes", ("mm",), of_file=_drilled, field="part")
-MARK = Declared(mark.FEATURE.name, ("mm",), of_file=_marked, field="part.mark")
 THICKNESS = Declared("thickness", ("mm",), of_file=_solid, field="part.thickness")
-HUB = Declared(hub.FEATURE.name, ("mm",), of_file=_with(hub.FEATURE), field="part.hub")
-CHAMFER = Declared(
-    chamfer.FEATURE.name,
-    ("mm",),
-    _has(chamfer.FEATURE),
-    _with(chamfer.FEATURE),
-    field="part.chamfer",
-    remedy=remedies.smaller_chamfer,
-    strict=True,
-)
-SET_SCREW = Declared("set-screw", ("mm",), of_file=_with(set_screw.FEATURE), field="part.set_screw")
 VOLUME = Declared("volume", ("mm^3",), of_file=_solid)
 CONTOUR = Declared("contour", ("mm",), of_file=_ground_or_drawn, field="export.tolerance", in_frame=True)
 HEAD = Declared("head", ("faults",), of_file=lambda _, file: file.form.ground)
@@ -392,7 +369,45 @@ OUTPUT = Declared(
     own_field="verify.output_error",
 )
 
-_CORE = {one.name: one for one in tuple(globals().values()) if isinstance(one, Declared)}
+# kind of files of which a feature is checked: condition, and the check behind which it stands
+_FILES: dict[str, tuple[OfFile | None, str]] = {
+    "none": (None, WALL.name),
+    "all": (_shaped, HOLES.name),
+    "solids": (_solid, THICKNESS.name),
+}
+
+
+def _of_feature(feature: Feature[Any], check: FeatureCheck) -> Declared:
+    """Declaration of the check of a feature, which is made where the part has it."""
+    condition, after = _FILES[check.files]
+
+    def exact(scene: Scene) -> bool:
+        return scene.recipe.part.of(feature.kind) is not None
+
+    def of_file(scene: Scene, file: FileRequest) -> bool:
+        return condition is not None and condition(scene, file) and exact(scene)
+
+    return Declared(
+        check.name,
+        (check.unit,),
+        exact if check.exact else None,
+        None if condition is None else of_file,
+        field=f"part.{feature.name}",
+        remedy=check.remedy,
+        strict=check.strict,
+        after=after,
+    )
+
+
+OF_FEATURES = tuple(_of_feature(feature, feature.judged) for feature in FEATURES if feature.judged is not None)
+_CORE = {
+    declared.name: declared
+    for own in tuple(globals().values())
+    if isinstance(own, Declared)
+    for declared in (own, *(check for check in OF_FEATURES if check.after == own.name))
+}
+LAST_EXACT = list(_CORE)[list(_CORE).index(READABLE.name) - 1]
+"""Name of the core's last check of the exact cam."""
 CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {one.name: one for one in capability.checks()})
 """Every check but the limits of a recipe's own, by name, in the order in which they are foreseen."""
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from camgeo.cams.family import SMALLER_SWING
 from camgeo.common.rounding import downward, upward
+from camgeo.part.features import FEATURES
 from camgeo.recipe.figures import (
     BACKLASH,
     BASE_RADIUS,
@@ -76,14 +77,6 @@ def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
     return recipe.cam.advice.on(check.get("surface", "")).rounder(value, limit, unit)
 
 
-def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Remedy for too wide a chamfer: the widest that the contour permits; empty for a check of a file."""
-    value = check["value"]
-    if value is None or check["limit"] is None or "file" in check:
-        return ""
-    return f"a chamfer below {downward(value)} {check['unit']}" if value > 0.0 else NO_CHAMFER
-
-
 def smaller_wheel(check: Entry, _report: Entry, _recipe: Recipe) -> str:
     """Remedy for hollows: the largest grinding wheel that reaches into them; empty for a sharp hollow."""
     value = check["value"]
@@ -108,9 +101,6 @@ def worst(check: Entry, report: Entry) -> float:
     """Least value of all checks of the same name, of the design and of files; nan where one has none."""
     values = [other_check["value"] for other_check in report["checks"] if other_check["name"] == check["name"]]
     return math.nan if None in values else min(values)
-
-
-NO_CHAMFER = "no chamfer, or a contour without corners"
 
 
 def lone_ring(recipe: Recipe) -> bool:
@@ -223,7 +213,7 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
     if figure == ROLLER_SPEED:
         return "a larger roller"
     if figure == ECCENTRICITY:  # metal about the shaft draws the centre of mass to it
-        return "a wider or a higher part.hub, or a smaller bore"
+        return ", or ".join([*(feature.steadies for feature in FEATURES if feature.steadies), "a smaller bore"])
     if figure in {SIZE, MASS, INERTIA, UNBALANCE}:
         return "a smaller cam" if figure == SIZE else "a thinner or a smaller part"
     eased_by = FIGURES[figure].eased_by

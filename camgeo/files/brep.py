@@ -2,12 +2,13 @@
 
 The walls stand on closed outlines. An arc's wall is a cylinder, a line's a plane, a spline's the surface that it
 sweeps; the chamfer of an arc is a cone and that of a line a plane. Neighbouring faces share their edges from the start,
-so that nothing is sewn; only a set screw's hole is cut by the kernel, which finds where two cylinders meet.
+so that nothing is sewn; only a cross hole is cut by the kernel, which finds where two cylinders meet.
 """
 
 from __future__ import annotations
 
 import math
+from functools import reduce
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -54,7 +55,7 @@ def need_kernel() -> None:
 
 
 def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
-    """Return the kernel's solid: within one outline, the first, with hub, openings, chamfers and set screw.
+    """Return the kernel's solid: within one outline, the first, with boss, openings, chamfers and cross holes.
 
     Raises RegionError where a piece is too short for the kernel, an arc is sharper than the chamfer, or the kernel
     finds the solid unsound; TypeError for a chamfer along anything but arcs.
@@ -64,9 +65,9 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     outermost, *inner_outlines = (layered.outline for layered in outlines)
     first, last = _contour(stack, outermost, solid)
     through = [cut for cut in solid.cuts if cut.low <= solid.low]
-    within = [cut for cut in through if solid.hub is not None and _is_within(cut.outline, solid.hub)]
-    low_hub, high_hub = solid.low < 0.0, solid.high > top
-    # wires in the disc's lower and upper face, and in those of the hub
+    within = [cut for cut in through if solid.boss is not None and _is_within(cut.outline, solid.boss)]
+    low_boss, high_boss = solid.low < 0.0, solid.high > top
+    # wires in the disc's lower and upper face, and in those of the boss
     under: list[Shape] = []
     above: list[Shape] = []
     inner_low: list[Shape] = []
@@ -90,15 +91,15 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
             (island if cut.island else above).append(head.wire)
             continue
         foot, head = stack.wall(cut.outline, solid.low if inside else 0.0, solid.high if inside else top)
-        (inner_low if inside and low_hub else under).append(foot.wire)
-        (inner_high if inside and high_hub else island if cut.island else above).append(head.wire)
-    if solid.hub is not None:
-        ring = _disc(0.5 * solid.hub)
-        if low_hub:
+        (inner_low if inside and low_boss else under).append(foot.wire)
+        (inner_high if inside and high_boss else island if cut.island else above).append(head.wire)
+    if solid.boss is not None:
+        ring = _disc(0.5 * solid.boss)
+        if low_boss:
             foot, head = stack.wall(ring, solid.low, 0.0)
             stack.lid(solid.low, foot.wire, inner_low)
             under.append(head.wire)
-        if high_hub:
+        if high_boss:
             foot, head = stack.wall(ring, top, solid.high)
             stack.lid(solid.high, head.wire, inner_high)
             above.append(foot.wire)
@@ -107,7 +108,7 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     stack.lid(0.0, first.wire, under)
     stack.lid(top, last.wire, above)
     shape = stack.solid()
-    return shape if solid.drill is None else _drill(shape, solid.drill)
+    return reduce(_drill, solid.drills, shape)
 
 
 def stack_shape(stretches: Sequence[tuple[Outline, float, float]], bore: Outline | None) -> Shape:
@@ -142,7 +143,7 @@ def raise_shape(shape: Shape, z: float) -> Shape:
 
 def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Wire, Wire]:
     """Walls on the outermost outline; its lowest and its highest loop."""
-    if solid.chamfer is None:
+    if not solid.chamfer:
         return stack.wall(outline, 0.0, solid.thickness)
     if not isinstance(outline, ArcSpline):
         raise TypeError("the chamfer of a spline is not a spline")

@@ -1,7 +1,7 @@
-"""Parts with a hub, a chamfer, a set screw or an engraved mark as meshes, made of prisms by manifold3d.
+"""Parts with a boss, chamfered edges, cross holes or engravings as meshes, made of prisms by manifold3d.
 
 Every outline is a polygon of numbers that the file holds before bodies are joined, and planes are horizontal or
-vertical, so that almost all corners of the result are such numbers; only where a set screw's hole meets a round wall
+vertical, so that almost all corners of the result are such numbers; only where a cross hole meets a round wall
 are new ones rounded. manifold3d computes in double precision. What it returns is checked once more after rounding.
 """
 
@@ -57,18 +57,19 @@ class Drill:
 
 @dataclass(frozen=True)
 class Solid:
-    """A disc from z = 0 to `thickness` with a round hub from `low` to `high` and what is cut out of both; mm.
+    """A disc from z = 0 to `thickness` with a round boss from `low` to `high` and what is cut out of both; mm.
 
-    `floor` is the height of a pocket between two contours, None without one.
+    `boss` is its diameter, None without one; `chamfer` that of both edges of the outline, 0 for none. `floor` is the
+    height of a pocket between two contours, None without one.
     """
 
     thickness: float
     low: float
     high: float
-    hub: float | None
-    chamfer: float | None
+    boss: float | None
+    chamfer: float
     cuts: Sequence[Cut]
-    drill: Drill | None
+    drills: Sequence[Drill] = ()
     floor: float | None = None
 
 
@@ -84,10 +85,10 @@ def joined_mesh(polygon: Polygon, solid: Solid, *, tolerance: float, precision: 
     precision.within("the contour", bound.worst, tolerance)
     part = manifold(*_disc(outer, solid.thickness, solid.chamfer, precision))
     facts = MeshFacts(0, len(outer), 0, dropped, moved, bound, None)
-    return hubbed_mesh(part, facts, solid, tolerance=tolerance, precision=precision)
+    return completed_mesh(part, facts, solid, tolerance=tolerance, precision=precision)
 
 
-def hubbed_mesh(
+def completed_mesh(
     part: Any,  # noqa: ANN401 - manifold3d has no types
     facts: MeshFacts,
     solid: Solid,
@@ -95,19 +96,19 @@ def hubbed_mesh(
     tolerance: float,
     precision: Precision,
 ) -> tuple[Mesh, MeshFacts]:
-    """Closed, oriented mesh of a manifold3d disc joined with its hub, its openings cut out; raises as `joined_mesh`."""
+    """Closed, oriented mesh of a manifold3d disc joined with its boss, openings cut out; raises as `joined_mesh`."""
     moved, bound = facts.displacement, facts.bound
-    for height in (solid.thickness, solid.low, solid.high, solid.chamfer or 0.0):
+    for height in (solid.thickness, solid.low, solid.high, solid.chamfer):
         precision.within("a height", abs(precision.number(height) - height), tolerance)
 
     # a corner between two walls that are off by e each is off by up to 2 e over the sine of its angle
-    fine = tolerance if solid.drill is None else 0.5 * tolerance * solid.drill.slope
+    fine = min((0.5 * tolerance * drill.slope for drill in solid.drills), default=tolerance)
     off = 0.0
-    if solid.hub is not None:
-        circle, straddle = bore_polygon(solid.hub, precision.fit_tolerance(fine, 0.5 * solid.hub))
+    if solid.boss is not None:
+        circle, straddle = bore_polygon(solid.boss, precision.fit_tolerance(fine, 0.5 * solid.boss))
         ring, ring_moved = precision.rounded(circle)
         off, moved = max(off, straddle + ring_moved), max(moved, ring_moved)
-        # the hub begins inside the disc, so that no two faces lie on each other
+        # the boss begins inside the disc, so that no two faces lie on each other
         low = solid.low if solid.low < 0.0 else 0.5 * solid.thickness
         high = solid.high if solid.high > solid.thickness else 0.5 * solid.thickness
         part += manifold(*prism(ring, low, high, precision))
@@ -118,8 +119,8 @@ def hubbed_mesh(
         off, moved = max(off, loop_off), max(moved, loop_moved)
         low = cut.low - BEYOND if cut.low <= solid.low else cut.low
         part -= manifold(*prism(loop, low, cut.high + BEYOND, precision))
-    if solid.drill is not None:
-        part -= manifold(*_drill(solid.drill, fine, precision))
+    for drill in solid.drills:
+        part -= manifold(*_drill(drill, fine, precision))
     mesh, merged = mesh_of_body(part, precision)
     bound, off, moved = bound.widened(merged), off + merged, moved + merged
     precision.within("the contour", bound.worst, tolerance)
@@ -171,9 +172,9 @@ def prism(loop: Array, low: float, high: float, precision: Precision) -> tuple[A
     return _stack([(loop, low), (loop, high)], disc(loop), precision)
 
 
-def _disc(outer: Array, thickness: float, chamfer: float | None, precision: Precision) -> tuple[Array, Triangles]:
+def _disc(outer: Array, thickness: float, chamfer: float, precision: Precision) -> tuple[Array, Triangles]:
     """The disc over a rounded contour, its edges chamfered by parallels of the polygon itself: every facet is plane."""
-    if chamfer is None:
+    if not chamfer:
         return prism(outer, 0.0, thickness, precision)
     inner, _ = precision.rounded(inset(outer, chamfer))
     layers = [(inner, 0.0), (outer, chamfer), (outer, thickness - chamfer), (inner, thickness)]

@@ -16,7 +16,6 @@ import numpy as np
 from camgeo.files.errors import demand_package
 from camgeo.fit.pieces import BSpline, Outline, Polygon
 from camgeo.formats.drawings import drawing_format
-from camgeo.part.hub import Hub
 from camgeo.schema.fields import Field, Kind
 from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
@@ -346,9 +345,9 @@ def _reference(job: Job, tolerance: float) -> list[Reference]:
     recipe, exact = job.recipe, job.design.exact
     pitches = {id(surface.base): surface for surface, _ in job.design.contours}.values()
     shapes: list[Reference] = [Point("shaft", (0.0, 0.0))]
-    hub = recipe.part.of(Hub)
-    if hub is not None:
-        shapes.append(Circle("hub", (0.0, 0.0), 0.5 * hub.diameter))
+    boss = recipe.part.boss
+    if boss is not None:
+        shapes.append(Circle(boss.name, (0.0, 0.0), 0.5 * boss.diameter))
     for surface in pitches:
         for name, radius in exact.circles(surface.name):
             if radius is not None:

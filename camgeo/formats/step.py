@@ -17,6 +17,7 @@ from camgeo.files.precision import conversion_error
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 from camgeo.formats.options import OF_SOLID
+from camgeo.part.features import EDGE_KEYS
 from camgeo.registry.formats import Form, Format
 from camgeo.schema.fields import Field, Kind, Table
 
@@ -240,8 +241,9 @@ def _foresee(_job: Job, _request: FileRequest) -> None:
 
 
 def _check(file: Values, _: Values, reader: Reader) -> None:
-    if file.get("as", "arcs") != "arcs" and "part.chamfer" in reader.marks:
-        remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
+    edges = [key for key in EDGE_KEYS if key in reader.marks]
+    if file.get("as", "arcs") != "arcs" and edges:
+        remedy = f"give arcs, whose chamfers are exact cones, or leave {edges[0]} out"
         field_path = f"{file['path']}.step.as"
         reader.fault_at(field_path, "the chamfer of a spline is not a spline", f"'{file['as']}'", remedy)
 

@@ -90,7 +90,7 @@ def compensate(recipe: Recipe, design: Design, compensation: Compensation, field
 
 def _with_body(disc: Disc, body: Body | None) -> Disc:
     """The disc with its body, the least radius of a chamfer taken from its new contour."""
-    if body is not None and body.chamfer is not None and disc.contours:
+    if body is not None and body.edge and disc.contours:
         body = replace(body, least_radius=least_radius(disc.contours[0][1])[0])
     return replace(disc, body=body)
 

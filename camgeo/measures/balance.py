@@ -2,7 +2,7 @@
 
 Every section is an area with holes; its moments are line integrals (`camgeo.curve.measures`). A section within a
 chamfer shrinks evenly, so that its moments are polynomials of the height, of the fourth degree at most, which three
-Gauss nodes integrate exactly. A set screw's hole is left out.
+Gauss nodes integrate exactly. Cross holes are left out.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def _balance(disc: Disc, body: Body, density: float, mirror: float) -> Balance:
     mass, x, y, inertia, z = (density * volume).tolist()
     size = max(contour.size for _, contour in disc.contours)
     share = float((error / (volume[0] * np.array([1.0, size, size, size * size]))).max())
-    without = () if body.screw is None else ("set screw",)
+    without = tuple(hole.name for hole in body.cross_holes)
     centre = (x / mass, mirror * y / mass, z / mass)
     return Balance(mass, centre, inertia, math.hypot(x, y), share, without)
 

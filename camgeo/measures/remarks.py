@@ -14,7 +14,7 @@ from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
 from camgeo.measures.figures import design_figures
 from camgeo.measures.units import UNIT_NAMES, displacement_unit
-from camgeo.part.keyway import Keyway
+from camgeo.part.features import with_records
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
 from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius
@@ -111,7 +111,7 @@ def remarks_of(
         "acceleration-jump": [_acceleration(recipe, design.exact.joints)],
         "output": _output(recipe, design),
         "shaft-outside": [_shaft(recipe, design)],
-        "metric-keyway": [_keyway(recipe)],
+        "metric-keyway": _metric(recipe),
         "thickness": [_thickness(recipe, design)],
     }
     for capability in registry.in_order(recipe.uses):
@@ -474,19 +474,18 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     return Remark("shaft-outside", distance, 0.0, "mm", sentence, design.motion.shaft_deg(parameter))
 
 
-def _keyway(recipe: Recipe) -> Remark | None:
-    """A bore by the inch with a keyway of a metric standard."""
-    bore, keyway = recipe.part.bore, recipe.part.of(Keyway)
-    if bore is None or keyway is None or not keyway.standard:
-        return None
+def _metric(recipe: Recipe) -> list[Remark]:
+    """A bore by the inch with a feature of metric standard sizes."""
+    bore = recipe.part.bore
+    if bore is None:
+        return []
     by_inch, metric = _is_whole(bore * STEP / INCH), _is_whole(bore / HALF_MM)
     if not (by_inch or not metric if recipe.units == "inch" else by_inch and not metric):
-        return None
-    sentence = (
-        f"a bore of {_length(recipe, bore)} takes a metric keyway of DIN 6885, {keyway.width:.4g} mm wide; "
-        "give part.keyway its width and depth for an inch key"
-    )
-    return Remark("metric-keyway", bore, None, "mm", sentence)
+        return []
+    features = with_records(recipe.part.features)
+    sizes = [feature.metric(value) for feature, value in features if feature.metric is not None]
+    sentences = [f"a bore of {_length(recipe, bore)} takes a {size}" for size in sizes if size]
+    return [Remark("metric-keyway", bore, None, "mm", sentence) for sentence in sentences]
 
 
 def _is_whole(value: float) -> bool:

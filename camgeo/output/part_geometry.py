@@ -54,7 +54,7 @@ def needs_booleans(body: Body) -> bool:
 
 def _plain(body: Body) -> bool:
     """Whether nothing stands on a disc, and nothing is engraved."""
-    return body.hub is None and all(opening.depth is None for opening in body.openings)
+    return body.boss is None and all(opening.depth is None for opening in body.openings)
 
 
 def part_mesh(
@@ -80,10 +80,10 @@ def part_mesh(
         )
         if plain:
             return mesh, facts
-        from camgeo.files.solid import hubbed_mesh, manifold
+        from camgeo.files.solid import completed_mesh, manifold
 
         disc = manifold(mesh.points, mesh.triangles)
-        return hubbed_mesh(disc, facts, solid_of(body), tolerance=tolerance, precision=precision)
+        return completed_mesh(disc, facts, solid_of(body), tolerance=tolerance, precision=precision)
     from camgeo.files.solid import joined_mesh
 
     polygon = outlines[0].outline
@@ -93,7 +93,7 @@ def part_mesh(
 
 
 def solid_of(body: Body) -> Solid:
-    """Cuts, holes, hub and chamfers of a body, for a solid of any outline; raises ValueError without a thickness."""
+    """Boss, chamfer, cuts and drills of a body, for a solid of any outline; raises ValueError without a thickness."""
     from camgeo.files.solid import Cut, Drill, Solid
 
     if body.thickness is None:
@@ -108,11 +108,17 @@ def solid_of(body: Body) -> Solid:
         for opening in body.openings
         for top in (body.top if opening.depth is None else body.thickness,)
     ]
-    drill = None
-    if body.screw is not None and body.hub is not None and body.screw_height is not None:
+    boss = None if body.boss is None else body.boss.diameter
+    drills = [
         # a flat or a keyway meets the hole's sides no flatter than the circle does
-        slope = math.sqrt(1.0 - min(body.screw.diameter / body.bore, 1.0) ** 2) if body.bore else 1.0
-        drill = Drill(body.screw.at, body.screw.diameter, body.screw_height, 0.5 * body.hub.diameter + 1.0, slope)
-    hub = None if body.hub is None else body.hub.diameter
+        Drill(
+            hole.at,
+            hole.diameter,
+            hole.z,
+            0.5 * (boss or 0.0) + 1.0,
+            math.sqrt(1.0 - min(hole.diameter / body.bore, 1.0) ** 2) if body.bore else 1.0,
+        )
+        for hole in body.cross_holes
+    ]
     floor = None if body.pocket is None else body.thickness - body.pocket
-    return Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill, floor)
+    return Solid(body.thickness, body.bottom, body.top, boss, body.edge, cuts, drills, floor)

@@ -1,13 +1,12 @@
-"""A part's body in kin's words: the openings, layers and radial holes that a file will be held against."""
+"""A part's body in kin's words: the openings and layers that a file will be held against."""
 
 from __future__ import annotations
 
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from camgeo.part.chamfer import inset
 from kin.judge.holes import Hole, round_hole
-from kin.judge.layers import CrossHole, Layer
+from kin.judge.layers import Layer
 
 if TYPE_CHECKING:
     from camgeo.part.body import Body
@@ -27,10 +26,8 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
     if thickness is None:
         return ()
     through = tuple(_hole(opening) for opening in body.openings if opening.depth is None)
-    chamfer = body.chamfer or 0.0
-    heights = {0.0, thickness}
-    if chamfer:
-        heights |= {chamfer, thickness - chamfer}
+    edge = body.edge
+    heights = {0.0, thickness, edge, thickness - edge}
     floor = 0.0
     if body.pocket is not None and body.outer is not None:
         floor = thickness - body.pocket
@@ -44,14 +41,14 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
             for opening in body.openings
             if opening.depth is not None and thickness - opening.depth <= low
         )
-        insets = (inset(low, thickness, chamfer), inset(high, thickness, chamfer))
+        insets = (_inset(low, thickness, edge), _inset(high, thickness, edge))
         blank = round_hole("outline", "thickness", (0.0, 0.0), body.outer) if body.outer and high <= floor else None
         layers.append(Layer(low, high, (*through, *shallow), blank, insets))
-    hub = body.hub
-    if hub is not None:
-        outline = round_hole("hub", "hub", (0.0, 0.0), hub.diameter)
+    boss = body.boss
+    if boss is not None:
+        outline = round_hole(boss.name, "hub", (0.0, 0.0), boss.diameter)
         inside = tuple(
-            _hole(opening) for opening in body.openings if opening.depth is None and hub.holds(opening.middle)
+            _hole(opening) for opening in body.openings if opening.depth is None and boss.holds(opening.middle)
         )
         if body.bottom < 0.0:
             layers.insert(0, Layer(body.bottom, 0.0, inside, outline))
@@ -60,12 +57,10 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
     return tuple(layers)
 
 
-def cross_holes_of(body: Body) -> tuple[CrossHole, ...]:
-    """Record for kin of the set screw's radial hole, in a tuple; empty without one."""
-    height = body.screw_height
-    if body.screw is None or height is None:
-        return ()
-    return (CrossHole("set screw", body.screw.at, body.screw.diameter, height),)
+def _inset(z: float, thickness: float, chamfer: float) -> float:
+    """Distance of the outline inside the contour at height z of a chamfered disc, mm; exactly 0 between chamfers."""
+    upper = thickness - chamfer
+    return max(chamfer - z, 0.0) if z <= upper else z - upper
 
 
 def _hole(opening: Opening) -> Hole:

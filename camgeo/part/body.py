@@ -1,26 +1,23 @@
-"""The part of a recipe as geometry: its openings, hub, set screw and chamfer, in the cam's axes and mm."""
+"""The part of a recipe as geometry: its openings, boss, cross holes and chamfer, in the cam's axes and mm."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from camgeo.curve.curvature import least_radius
-from camgeo.part.chamfer import Chamfer
 from camgeo.part.feature import Site
-from camgeo.part.features import with_records
-from camgeo.part.hub import Hub
-from camgeo.part.set_screw import SetScrew
+from camgeo.part.features import boss_of, edge_of, with_records
 from camgeo.part.shapes import Opening, disc, polygonal
 from camgeo.part.walls import distance_inside
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.part.feature import Boss
     from camgeo.part.part import Part
     from camgeo.part.walls import Looks
     from kin.judge.check import Check
-
-T = TypeVar("T")
+    from kin.judge.layers import CrossHole
 
 
 @dataclass(frozen=True)
@@ -42,25 +39,24 @@ class Body:
     pocket: float | None = None
     checks: tuple[Check, ...] = ()
 
-    def of(self, kind: type[T]) -> T | None:
-        """Give the feature of this class, None where the part has none."""
-        return next((value for value in self.features if isinstance(value, kind)), None)
+    @property
+    def boss(self) -> Boss | None:
+        """Boss about the shaft; None without one."""
+        return boss_of(self.features)
 
     @property
-    def hub(self) -> Hub | None:
-        """Hub of the part; None without one."""
-        return self.of(Hub)
+    def edge(self) -> float:
+        """Chamfer of 45 degrees along both edges of the contour, mm; 0 without one."""
+        return edge_of(self.features)
 
     @property
-    def screw(self) -> SetScrew | None:
-        """Set screw of the part; None without one."""
-        return self.of(SetScrew)
-
-    @property
-    def chamfer(self) -> float | None:
-        """Height of the chamfer, mm; None without one."""
-        chamfer = self.of(Chamfer)
-        return None if chamfer is None else chamfer.height
+    def cross_holes(self) -> tuple[CrossHole, ...]:
+        """Radial holes through the boss, in kin's words; none without a boss or a thickness."""
+        boss, thickness = self.boss, self.thickness
+        if boss is None or thickness is None:
+            return ()
+        features = with_records(self.features)
+        return tuple(feature.cross(value, boss, thickness) for feature, value in features if feature.cross is not None)
 
     @property
     def rim(self) -> Opening | None:
@@ -69,39 +65,36 @@ class Body:
 
     @property
     def fineness(self) -> float:
-        """Share of a tolerance within which a polygon must be fitted, so that a chamfer keeps it too."""
-        chamfer = self.of(Chamfer)
-        return 1.0 if chamfer is None else chamfer.fineness(self.least_radius)
+        """Share of a tolerance within which a polygon must be fitted so that its chamfer's inner edge keeps it too.
+
+        Let f be the polygon's distance from the contour, e at most, and b half its turn at a corner, 4 e = r b^2 for a
+        radius of curvature r. Its parallel at the distance c is off by f and by up to c b^2/2 r/(r - c) = 2 e c/(r - c)
+        more, to first order.
+        """
+        share = self.edge / self.least_radius
+        return (1.0 - share) / (1.0 + share)
 
     @property
     def prism(self) -> bool:
         """Whether every section of the part is the same."""
         engraved = any(opening.depth is not None for opening in self.openings)
-        return self.hub is None and self.chamfer is None and self.pocket is None and not engraved
+        return self.boss is None and not self.edge and self.pocket is None and not engraved
 
     @property
     def bottom(self) -> float:
-        """Lowest z, mm: 0 without a hub below the disc."""
-        return -self.hub.height if self.hub is not None and self.hub.side != "top" else 0.0
+        """Lowest z, mm: 0 without a boss below the disc."""
+        return 0.0 if self.boss is None else -self.boss.below + 0.0
 
     @property
     def top(self) -> float:
-        """Greatest z, mm: that of the disc, or of a hub above it."""
-        above = self.hub.height if self.hub is not None and self.hub.side != "bottom" else 0.0
-        return (self.thickness or 0.0) + above
-
-    @property
-    def screw_height(self) -> float | None:
-        """Height z of the set screw's axis: in the upper hub where there are two; None without one."""
-        if self.screw is None or self.hub is None:
-            return None
-        beyond = 0.5 * self.hub.height if self.screw.height is None else self.screw.height
-        return -beyond if self.hub.side == "bottom" else (self.thickness or 0.0) + beyond
+        """Greatest z, mm: that of the disc, or of a boss above it."""
+        return (self.thickness or 0.0) + (0.0 if self.boss is None else self.boss.above)
 
     def mirrored(self) -> Body:
         """Body mirrored about the x axis."""
         features = tuple(
-            replace(value, at=-value.at) if isinstance(value, SetScrew) else value for value in self.features
+            value if feature.mirrored is None else feature.mirrored(value)
+            for feature, value in with_records(self.features)
         )
         return replace(self, openings=tuple(opening.mirrored() for opening in self.openings), features=features)
 
@@ -113,17 +106,15 @@ def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
     """
     openings = [*_bore(part), *part.openings]
     checks: list[Check] = []
-    hub, chamfer = part.of(Hub), part.of(Chamfer)
-    standing = [] if hub is None else [disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)]
-    edge = 0.0 if chamfer is None else chamfer.height
+    standing = [] if part.boss is None else [part.boss.circle]
     for feature, value in with_records(part.features):
         if feature.place is not None:
-            placed = feature.place(value, Site(looks, [*openings, *standing], part.wall, edge))
+            placed = feature.place(value, Site(looks, [*openings, *standing], part.wall, part.edge))
             openings += placed.openings
             checks += [] if placed.check is None else [placed.check]
     if pocket is not None:
         openings = [replace(each, island=distance_inside(looks, each.middle)[0] > 0.0) for each in openings]
-    radius = math.inf if chamfer is None else least_radius(looks.contour)[0]
+    radius = least_radius(looks.contour)[0] if part.edge else math.inf
     return Body(part.thickness, tuple(openings), part.bore, part.features, radius, part.outer, pocket, tuple(checks))
 
 

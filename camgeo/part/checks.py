@@ -11,7 +11,6 @@ import numpy as np
 
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.measures import farthest
-from camgeo.part.chamfer import chamfer_check
 from camgeo.part.feature import WALL
 from camgeo.part.features import FEATURES, with_records
 from camgeo.part.walls import (
@@ -70,9 +69,10 @@ def part_checks(
         at_deg = None if worst.parameter is None else shaft_deg(worst.parameter)
         detail += more + _free_of_thin_walls(thin, body, limit)
         checks.append(Check(WALL, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=detail))
-    if body.chamfer is not None:
-        chamfers = ((looks.name, chamfer_check(body.chamfer, looks.contour, shaft_deg)) for looks in surfaces)
-        checks += [replace(check, surface=name) for name, check in chamfers]
+    for feature, value in with_records(body.features):
+        if feature.contour is not None:
+            each = ((looks.name, feature.contour(value, looks.contour, shaft_deg)) for looks in surfaces)
+            checks += [replace(check, surface=name) for name, check in each]
     checks += body.checks
     return checks
 

@@ -44,6 +44,7 @@ FEATURE = Feature(
         length("hole", "diameter of the hole", required=True),
         angle("at", "direction of the hole"),
     ),
+    locates=True,
     holes=True,
     openings=_openings,
     round=("dowel", "part.dowel.hole"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
 
 from camgeo.schema.fields import Field, Kind, Table
 from kin.numeric.errors import CamgeoError
@@ -12,13 +12,16 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
+    from camgeo.curve.curve import Curve
     from camgeo.fit.pieces import ArcSpline
     from camgeo.part.body import Body
     from camgeo.part.part import Part
     from camgeo.part.shapes import Opening
     from camgeo.part.walls import Looks, Possible
+    from camgeo.recipe.recipe import Recipe
     from camgeo.schema.reader import Reader, Values
     from kin.judge.check import Check
+    from kin.judge.layers import CrossHole
 
 T = TypeVar("T")
 MOST_HOLES = 60
@@ -26,7 +29,7 @@ WALL = "wall"  # name of the check on the least wall, and of the figure
 
 
 class Site(NamedTuple):
-    """Part in which a feature seeks its place: the contour, and the openings and the hub that are there.
+    """Part in which a feature seeks its place: the contour, and the openings and the boss that are there.
 
     `wall` is the recipe's least wall, mm, None where it states none; `edge`, mm, is what a chamfer takes off the
     contour.
@@ -43,6 +46,54 @@ class Placed(NamedTuple):
 
     openings: Sequence[Opening]
     check: Check | None = None
+
+
+class Boss(NamedTuple):
+    """Round body about the shaft that stands on the disc; lengths in mm.
+
+    `name` is that of its edge, and of the check of files. `above` and `below` are its heights beyond the upper and the
+    lower face of the disc, 0 where it does not stand.
+    """
+
+    name: str
+    diameter: float
+    above: float
+    below: float
+
+    @property
+    def circle(self) -> Opening:
+        """Its outline."""
+        from camgeo.part.shapes import disc
+
+        return disc(self.name, "HOLES", (0.0, 0.0), 0.5 * self.diameter)
+
+    def holds(self, point: tuple[float, float]) -> bool:
+        """Whether a point (x, y) of the disc's face, mm, lies within it."""
+        x, y = point
+        return x * x + y * y < 0.25 * self.diameter * self.diameter
+
+
+class Refusal(NamedTuple):
+    """Why a feature does not go with something, and what to do; `unless` tells by its keys where it does."""
+
+    problem: str
+    remedy: str
+    unless: Callable[[Values], bool] | None = None
+
+
+class FeatureCheck(NamedTuple):
+    """Check of a feature: its name in reports and its unit, and of what it is made.
+
+    `exact`: of the exact cam; `files`: of no file, of solids, or of all files with a contour but programs. `strict`: a
+    figure equal to its limit fails. `remedy` gives what would let it hold, of the check and the report as plain JSON.
+    """
+
+    name: str
+    unit: str = "mm"
+    exact: bool = False
+    files: Literal["none", "solids", "all"] = "solids"
+    strict: bool = False
+    remedy: Callable[[dict[str, Any], dict[str, Any], Recipe], str] | None = None
 
 
 class Callout(NamedTuple):
@@ -93,21 +144,33 @@ def _check_nothing(_part: Values, _reader: Reader) -> None:
 
 @dataclass(frozen=True)
 class Feature(Generic[T]):
-    """A feature of the part: keys, openings, walls, remarks and callouts; fields that do not apply are left out.
+    """A feature of the part: all that the core asks of it; fields that do not apply are left out.
+
+    Openings, a boss, chamfered edges and cross holes are what solids are made of, and what the judge is given.
 
     kind      class of its value, which `Part.of` and `Body.of` give
     field     its key of `part`
     needs     other keys of `part` that it cannot be without, each with the reason
     of_ring   whether a ring may have it, `of_pair` whether conjugate discs may
+    grooved   why a disc with a groove cannot have it
+    locates   whether it fixes the angle of the part on its shaft
     holes     whether it cuts holes, `walled` whether there are walls between it and other edges without them
     check     notes the faults between its keys and others of `part`
     make      its value by what was read of it and of all of `part`; without it `kind` takes its keys
     bore      outline of the bore that it shapes, of a radius in mm
     openings  what it cuts where the recipe says
     place     what it cuts where it finds a place, in the order of the features
+    boss      boss that it is
+    edge      chamfer of 45 degrees that it gives both edges of the contour, mm
+    cross     radial hole that it drills through a boss of a disc of this thickness, mm
     walls     walls round it besides those of its openings, of a body with these surfaces
+    contour   check of a contour of the part; the last argument gives the shaft angle, degrees, of its parameter
+    judged    what is checked of it
     round     beginning of the names of its round openings, and the field that states their diameter
     grown     its value with metal grown by `out` mm, then scaled
+    mirrored  its value in a part mirrored about the x axis
+    steadies  change of it that draws the centre of mass to the shaft
+    metric    its metric standard size, and what to give instead beside a bore by the inch; empty of any other
     remark    what a drawing does not show of it, in units of so many mm
     unmilled  why a program for a milling machine leaves it
     callouts  its sizes on a shop drawing, beside a bore's own view
@@ -118,6 +181,8 @@ class Feature(Generic[T]):
     needs: Sequence[tuple[str, str]] = ()
     of_ring: bool = True
     of_pair: bool = True
+    grooved: Refusal | None = None
+    locates: bool = False
     holes: bool = False
     walled: bool = False
     check: Callable[[Values, Reader], None] = _check_nothing
@@ -125,9 +190,17 @@ class Feature(Generic[T]):
     bore: Callable[[T, float], ArcSpline] | None = None
     openings: Callable[[T], Sequence[Opening]] | None = None
     place: Callable[[T, Site], Placed] | None = None
+    boss: Callable[[T], Boss] | None = None
+    edge: Callable[[T], float] | None = None
+    cross: Callable[[T, Boss, float], CrossHole] | None = None
     walls: Callable[[T, Body, Sequence[Looks]], Iterable[Possible]] | None = None
+    contour: Callable[[T, Curve, Callable[[float], float]], Check] | None = None
+    judged: FeatureCheck | None = None
     round: tuple[str, str] | None = None
     grown: Callable[[T, float, float], T] | None = None
+    mirrored: Callable[[T], T] | None = None
+    steadies: str = ""
+    metric: Callable[[T], str] | None = None
     remark: Callable[[T, float], str] | None = None
     unmilled: str = ""
     callouts: Callable[[T, View], Iterable[Callout]] | None = None

@@ -6,16 +6,41 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
-    from camgeo.part.feature import Feature
+    from camgeo.part.feature import Boss, Feature
+    from camgeo.schema.reader import Values
 
 NAMES = ("keyway", "flat", "hub", "set_screw", "bolts", "dowel", "slot", "chamfer", "mark", "lightening")
 """In the order of the keys, and in that in which they take their place."""
 FEATURES: tuple[Feature[Any], ...] = tuple(import_module(f"camgeo.part.{name}").FEATURE for name in NAMES)
 RECORDS = {feature.kind: feature for feature in FEATURES}
+EDGE_KEYS = tuple(f"part.{feature.name}" for feature in FEATURES if feature.edge is not None)
+"""Paths of the keys that chamfer the edges of the contour."""
 
 
 def with_records(values: Iterable[object]) -> list[tuple[Feature[Any], Any]]:
     """Pairs of a feature's record and its value, in the order of the values."""
     return [(RECORDS[type(value)], value) for value in values]
+
+
+def boss_of(values: Iterable[object]) -> Boss | None:
+    """Boss of a part with features of these values; None without one."""
+    return next((feature.boss(value) for feature, value in with_records(values) if feature.boss is not None), None)
+
+
+def edge_of(values: Iterable[object]) -> float:
+    """Chamfer along both edges of the contour of a part with features of these values, mm; 0 without one."""
+    return sum((feature.edge(value) for feature, value in with_records(values) if feature.edge is not None), 0.0)
+
+
+def values_read(part: Values) -> Iterator[object]:
+    """Values of the features that make a boss or chamfer edges, of keys of `part` of which some may be faulty.
+
+    One of which a required key is missing is left out.
+    """
+    for feature in FEATURES:
+        if feature.name in part and (feature.boss is not None or feature.edge is not None):
+            table = feature.field.table
+            if table is None or all(key.name in part[feature.name] for key in table.fields if key.required):
+                yield feature.build(part)

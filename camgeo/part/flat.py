@@ -48,6 +48,7 @@ FEATURE = Feature(
     ),
     needs=(("bore", "a flat is left in a bore"),),
     of_ring=False,
+    locates=True,
     check=_check,
     bore=_bore,
 )

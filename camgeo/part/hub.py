@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 from camgeo.common.rounding import upward
 from camgeo.part.bore import LEAST_SIZE, diameter_of
-from camgeo.part.feature import Feature, optional, size_words
+from camgeo.part.feature import Boss, Feature, FeatureCheck, Refusal, optional, size_words
 from camgeo.schema.fields import Field, Kind, length
 from kin.numeric.records import dataclass, replace
 
@@ -26,11 +26,6 @@ class Hub:
     height: float
     side: Literal["top", "bottom", "both"] = "top"
 
-    def holds(self, point: tuple[float, float]) -> bool:
-        """Whether a point of the disc's face lies within the hub."""
-        x, y = point
-        return x * x + y * y < 0.25 * self.diameter * self.diameter
-
 
 def _check(part: Values, reader: Reader) -> None:
     bore, diameter = diameter_of(part), part.get("hub", {}).get("diameter")
@@ -41,17 +36,22 @@ def _check(part: Values, reader: Reader) -> None:
     reader.fault_at("part.hub.diameter", problem, size_words(diameter, reader), remedy)
 
 
+def _boss(hub: Hub) -> Boss:
+    above = 0.0 if hub.side == "bottom" else hub.height
+    return Boss("hub", hub.diameter, above, 0.0 if hub.side == "top" else hub.height)
+
+
 def _walls(hub: Hub, body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     """Walls between the hub and all else; a hole may pass beside the hub or through it."""
-    from camgeo.part.shapes import disc
     from camgeo.part.walls import inside_gap, known, outside_gap, to_surface
 
-    circle = disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)
+    boss = _boss(hub)
+    circle = boss.circle
     yield to_surface(circle, body, surfaces)
     for opening in body.openings:
-        within = opening.name == "bore" or (opening.depth is None and hub.holds(opening.middle))
+        within = opening.name == "bore" or (opening.depth is None and boss.holds(opening.middle))
         gap = (inside_gap if within else outside_gap)(opening.chain, circle.chain)
-        yield known(opening.name, "hub", gap)
+        yield known(opening.name, boss.name, gap)
 
 
 def _grown(hub: Hub, out: float, scale: float) -> Hub:
@@ -76,10 +76,18 @@ FEATURE = Feature(
     needs=(("thickness", "a hub stands on the disc"),),
     of_ring=False,
     of_pair=False,
+    grooved=Refusal(
+        "a groove is milled from the top face",
+        "leave it out, or give it side: bottom",
+        unless=lambda keys: bool(keys.get("side", "top") == "bottom"),
+    ),
     walled=True,
     check=_check,
+    boss=_boss,
     walls=_walls,
+    judged=FeatureCheck("hub"),
     grown=_grown,
+    steadies="a wider or a higher part.hub",
     remark=lambda hub, mm: f"hub: diameter {hub.diameter / mm:.9g}, height {hub.height / mm:.9g}, side {hub.side}",
     unmilled="the stock comes with it, its disc as thick as part.thickness",
 )

@@ -88,12 +88,19 @@ def _bore(keyway: Keyway, radius: float) -> ArcSpline:
     return keyed(radius, keyway.width, keyway.depth, keyway.at)
 
 
+def _metric(keyway: Keyway) -> str:
+    size = f"metric keyway of DIN 6885, {keyway.width:.4g} mm wide"
+    return f"{size}; give part.keyway its width and depth for an inch key" if keyway.standard else ""
+
+
 FEATURE = Feature(
     Keyway,
     Field("keyway", Kind.OWN, "keyway in a round bore", default="none", table=TABLE, form=FORM),
     needs=(("bore", "a keyway is cut into a bore"),),
     of_ring=False,
+    locates=True,
     check=_check,
     make=_make,
     bore=_bore,
+    metric=_metric,
 )

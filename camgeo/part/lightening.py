@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.part.feature import Callout, Feature, Placed, angle, count, optional
+from camgeo.part.feature import Callout, Feature, FeatureCheck, Placed, angle, count, optional
 from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
@@ -35,7 +35,7 @@ def _check(part: Values, reader: Reader) -> None:
 
 
 def _place(lightening: Lightening, site: Site) -> Placed:
-    """Holes in a contour round openings and hub that are there."""
+    """Holes in a contour round what is there."""
     from camgeo.part.largest_holes import Space, largest, ring
     from camgeo.part.shapes import disc
     from kin.judge.check import Check
@@ -91,5 +91,6 @@ FEATURE = Feature(
     holes=True,
     check=_check,
     place=_place,
+    judged=FeatureCheck("lightening", "holes", exact=True, files="none"),
     callouts=_callouts,
 )

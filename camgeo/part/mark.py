@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.part.feature import Callout, Feature, Placed, check_below, optional
+from camgeo.part.feature import Callout, Feature, FeatureCheck, Placed, check_below, optional
 from camgeo.schema.fields import Field, Kind, length
 from kin.numeric.records import dataclass, replace
 
@@ -160,5 +160,6 @@ FEATURE = Feature(
     check=_check,
     make=lambda values, _part: Mark(**{"kind" if key == "as" else key: item for key, item in values.items()}),
     place=_place,
+    judged=FeatureCheck("mark", files="all"),
     callouts=_callouts,
 )

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from camgeo.common.rounding import NOISE, upward
 from camgeo.part import bore
-from camgeo.part.features import FEATURES, with_records
+from camgeo.part.features import FEATURES, boss_of, edge_of, with_records
 from camgeo.schema.fields import Field, Kind, length, mapping
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.part.feature import Boss
     from camgeo.part.shapes import Opening
     from camgeo.schema.reader import Reader, Values
 
@@ -45,9 +46,20 @@ class Part:
         """Give the feature of this class, None where the part has none."""
         return next((value for value in self.features if isinstance(value, kind)), None)
 
-    def without(self, kind: type) -> Part:
-        """Give the part without the feature of this class."""
-        return replace(self, features=tuple(value for value in self.features if not isinstance(value, kind)))
+    @property
+    def boss(self) -> Boss | None:
+        """Boss about the shaft; None without one."""
+        return boss_of(self.features)
+
+    @property
+    def edge(self) -> float:
+        """Chamfer along both edges of the contour, mm; 0 without one."""
+        return edge_of(self.features)
+
+    def with_sharp_edges(self) -> Part:
+        """Give the part without what chamfers the edges of its contour."""
+        kept = tuple(value for feature, value in with_records(self.features) if feature.edge is None)
+        return replace(self, features=kept)
 
     @property
     def plain(self) -> bool:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.part.bore import width_of
-from camgeo.part.feature import Callout, Feature, angle, check_below, narrowed, optional
-from camgeo.part.hub import Hub
+from camgeo.part.feature import Callout, Feature, FeatureCheck, angle, check_below, narrowed, optional
 from camgeo.schema.fields import length
 from kin.numeric.records import dataclass, replace
 
@@ -14,9 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from camgeo.part.body import Body
-    from camgeo.part.feature import View
+    from camgeo.part.feature import Boss, View
     from camgeo.part.walls import Looks, Possible
     from camgeo.schema.reader import Reader, Values
+    from kin.judge.layers import CrossHole
 
 
 @dataclass(frozen=True)
@@ -41,22 +41,31 @@ def _check(part: Values, reader: Reader) -> None:
         check_below(reader, "part.set_screw.height", screw.get("height"), hub["height"], "the hub's height")
 
 
+def _cross(screw: SetScrew, boss: Boss, thickness: float) -> CrossHole:
+    """Its hole, in the upper one of two bosses."""
+    from kin.judge.layers import CrossHole
+
+    beyond = 0.5 * (boss.above or boss.below) if screw.height is None else screw.height
+    return CrossHole("set screw", screw.at, screw.diameter, thickness + beyond if boss.above else -beyond)
+
+
 def _walls(screw: SetScrew, body: Body, _surfaces: Sequence[Looks]) -> Iterator[Possible]:
     """Walls between the screw's hole, both faces of the hub, and the holes through the hub."""
     from camgeo.part.shapes import Opening, strip
     from camgeo.part.walls import NOWHERE, Gap, known, outside_gap
 
-    hub, height = body.hub, body.screw_height
-    if hub is None or height is None or body.thickness is None:
+    boss = body.boss
+    if boss is None or body.thickness is None:
         return
-    beyond = -height if hub.side == "bottom" else height - body.thickness
+    hole = _cross(screw, boss, body.thickness)
+    beyond = hole.z - body.thickness if boss.above else -hole.z
     radius = 0.5 * screw.diameter
-    along = Opening("set screw", "HOLES", strip(0.5 * hub.diameter, screw.diameter, screw.at))
+    along = Opening(hole.name, "HOLES", strip(0.5 * boss.diameter, screw.diameter, screw.at))
     for opening in body.openings:
-        if opening.name != "bore" and opening.depth is None and hub.holds(opening.middle):
-            yield known("set screw", opening.name, outside_gap(opening.chain, along.chain))
-    yield known("set screw", "the disc's face", Gap(beyond - radius, NOWHERE))
-    yield known("set screw", "the hub's face", Gap(hub.height - beyond - radius, NOWHERE))
+        if opening.name != "bore" and opening.depth is None and boss.holds(opening.middle):
+            yield known(hole.name, opening.name, outside_gap(opening.chain, along.chain))
+    yield known(hole.name, "the disc's face", Gap(beyond - radius, NOWHERE))
+    yield known(hole.name, "the hub's face", Gap((boss.above or boss.below) - beyond - radius, NOWHERE))
 
 
 def _grown(screw: SetScrew, out: float, scale: float) -> SetScrew:
@@ -65,12 +74,12 @@ def _grown(screw: SetScrew, out: float, scale: float) -> SetScrew:
 
 
 def _callouts(screw: SetScrew, view: View) -> tuple[Callout, ...]:
-    hub = view.part.of(Hub)
-    if hub is None:
+    boss = view.part.boss
+    if boss is None:
         return ()
-    note = f"at {view.degrees(screw.at)}, {view.number(screw.height or 0.5 * hub.height)} up"
+    note = f"at {view.degrees(screw.at)}, {view.number(screw.height or 0.5 * (boss.above or boss.below))} up"
     text = f"Ø{view.number(screw.diameter)} set screw"
-    return (Callout(text, note, (0.0, 0.0), 0.5 * hub.diameter, view.direction(screw.at)),)
+    return (Callout(text, note, (0.0, 0.0), 0.5 * boss.diameter, view.direction(screw.at)),)
 
 
 FEATURE = Feature(
@@ -86,8 +95,11 @@ FEATURE = Feature(
     of_ring=False,
     of_pair=False,
     check=_check,
+    cross=_cross,
     walls=_walls,
+    judged=FeatureCheck("set-screw"),
     grown=_grown,
+    mirrored=lambda screw: replace(screw, at=-screw.at),
     remark=lambda screw, mm: f"set screw: radial hole through the hub, diameter {screw.diameter / mm:.9g}",
     unmilled="it runs across the shaft",
     callouts=_callouts,

@@ -157,8 +157,9 @@ def contour_gap(looks: Looks, chain: Arcs) -> Gap:
 
 
 def to_surface(opening: Opening, body: Body, surfaces: Sequence[Looks]) -> Possible:
-    """The wall between an opening or a hub and the surface in whose metal it lies, or its chamfer: the widest."""
-    edge, other = (0.0, "contour") if body.chamfer is None else (body.chamfer, "chamfer")
+    """The wall between an opening or a boss and the surface in whose metal it lies, or its chamfer: the widest."""
+    edge = body.edge
+    other = "chamfer" if edge else "contour"
 
     def pair() -> Pair:
         gaps = [(contour_gap(looks, opening.chain), looks.name) for looks in surfaces]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.cams.families import FAMILIES
+from camgeo.part.features import FEATURES
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.linkage import LINKAGES
@@ -61,6 +62,7 @@ def _disc(title: str, base: str, stroke: str, follower: Given) -> Starter:
     return Starter(f"A disc cam for {title}.", "disc", cam, unfit=unfit)
 
 
+_UNGROOVED = tuple(each.name for each in FEATURES if each.grooved is not None and each.grooved.unless is None)
 _SHAFT: Given = {"shaft": "[10, 4]"}
 # Figures 9a and 13a of AS 2023: what their outputs do around 3 pi/2 and pi no plain four-bar can
 DWELLING = "25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t)"
@@ -159,7 +161,7 @@ _CORE = {
             "motion": _DWELLS.format("24"),
         },
         {"part": {"thickness": "12", "bore": "20"}},
-        unfit=("track", "length", "angle", "arm", "hub", "set_screw"),
+        unfit=("track", "length", "angle", "arm", *(feature.name for feature in FEATURES if not feature.of_pair)),
     ),
     "disc-ring": Starter(
         "A ring for a roller that runs inside it, on a stem.",
@@ -183,7 +185,7 @@ _CORE = {
             "motion": _DWELLS.format("20"),
         },
         {"part": {"thickness": "12", "bore": "16", "outer": "160"}},
-        unfit=("undercut", "chamfer"),
+        unfit=("undercut", *_UNGROOVED),
     ),
     "constant-diameter": Starter(
         "A cam between two opposite rollers of one frame, from its motion over one half turn.",

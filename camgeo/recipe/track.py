@@ -55,11 +55,12 @@ def _check_groove(values: Values, reader: Reader) -> None:
         reader.fault_at("cam.follower.kind", "does not run in a groove", follower, remedy)
     if cam.get("undercut") == "trim":
         reader.fault_at("cam.undercut", "a groove is not trimmed", "trim", "leave it out")
-    if "chamfer" in part:
-        reader.fault_at("part.chamfer", "the edges of a groove are not chamfered", None, "leave it out")
-    if part.get("hub", {}).get("side", "bottom" if "hub" not in part else "top") != "bottom":
-        remedy = "leave it out, or give it side: bottom"
-        reader.fault_at("part.hub", "a groove is milled from the top face", None, remedy)
+    for feature in FEATURES:
+        refusal = feature.grooved
+        if refusal is None or feature.name not in part:
+            continue
+        if refusal.unless is None or not refusal.unless(part[feature.name]):
+            reader.fault_at(f"part.{feature.name}", refusal.problem, None, refusal.remedy)
     if groove.get("clearance", 0.0) < 0.0:
         remedy = "give 0 or more; one roller on both flanks would scrub"
         reader.fault_at("cam.track.groove.clearance", "a roller in a groove needs clearance", None, remedy)

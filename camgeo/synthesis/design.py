@@ -15,6 +15,7 @@ from camgeo.checks.declared import BENT, CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDE
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
+from camgeo.part.features import EDGE_KEYS
 from camgeo.registry import registry
 from kin.judge.check import Check
 from kin.numeric.records import dataclass, replace
@@ -188,7 +189,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         with clock.stage("part"):
             bodied = [_with_body(recipe, disc, exact) for disc in discs_of(sounded, recipe.part, exact.gap)]
     except CurveError as error:
-        raise recipe.error("part.chamfer", str(error)) from error
+        raise recipe.error(next((key for key in EDGE_KEYS if key in recipe.marks), "part"), str(error)) from error
     discs = tuple(disc for disc, _ in bodied)
     checks += [check for _, walls in bodied for check in walls]
     return Design(exact, discs, tuple(checks), driven)

@@ -58,10 +58,10 @@ def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
     )
     if recipe.part.plain or disc.body is None:
         return intent
-    from camgeo.part.as_intent import cross_holes_of, holes_of, layers_of
+    from camgeo.part.as_intent import holes_of, layers_of
 
     body = disc.body
-    return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=cross_holes_of(body))
+    return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=body.cross_holes)
 
 
 def closures_between(design: Design) -> tuple[ClosureIntent, ...]:

@@ -322,7 +322,7 @@ def test_a_tolerance_below_rounding_is_refused(tmp_path):
     with pytest.raises(ToleranceError, match=r"more than 1e-10 mm: circles of nearly straight arcs"):
         write_step(
             tmp_path / "x.step",
-            [StepBody([LayerOutline("CUT", outline)], Solid(5.0, 0.0, 5.0, None, None, [], None))],
+            [StepBody([LayerOutline("CUT", outline)], Solid(5.0, 0.0, 5.0, None, 0.0, []))],
             tolerance=1e-10,
         )
 
@@ -390,7 +390,7 @@ def test_without_the_extra_the_run_says_what_to_install(tmp_path, monkeypatch, c
     with pytest.raises(MissingExtraError):
         write_step(
             tmp_path / "x.step",
-            [StepBody([LayerOutline("CUT", circle)], Solid(5.0, 0.0, 5.0, None, None, [], None))],
+            [StepBody([LayerOutline("CUT", circle)], Solid(5.0, 0.0, 5.0, None, 0.0, []))],
             tolerance=1e-3,
         )
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from camgeo.formats.tables.tabled import check_step
 from camgeo.motions.lift_table import read_path
 from camgeo.part.bore import LEAST_SIZE
-from camgeo.part.chamfer import Chamfer
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export, export_of
 from camgeo.recipe.keys import CORE, UNITS, recipe_table
@@ -94,7 +93,7 @@ class Lobe:
     def made(self) -> Recipe:
         """Recipe of the cam as it is made on the shaft: as long as the lobe is, and without chamfers."""
         long = round(self.high - self.low, DECIMALS)
-        return replace(self.recipe, part=replace(self.recipe.part.without(Chamfer), thickness=long))
+        return replace(self.recipe, part=replace(self.recipe.part.with_sharp_edges(), thickness=long))
 
 
 @dataclass(frozen=True)

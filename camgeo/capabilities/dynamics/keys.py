@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.capabilities.dynamics.load_table import LOAD
 from camgeo.common.rounding import downward
+from camgeo.part.features import edge_of, values_read
 from camgeo.recipe.discs import is_pair
 from camgeo.recipe.linkage import TURNING
 from camgeo.recipe.track import is_groove
@@ -130,15 +131,15 @@ BOUNDS = {
 
 
 def contact_width(
-    width: float | None, thickness: float | None, chamfer: float | None = None, depth: float | None = None
+    width: float | None, thickness: float | None, edge: float = 0.0, depth: float | None = None
 ) -> Width | None:
     """Width of contacts, mm: the least of what is stated of it and of the metal, None where nothing is.
 
-    `chamfer` runs along both edges of the part; `depth` is that of a groove, None of what goes through.
+    `edge` is the chamfer along both edges of the part, 0 for none; `depth` that of a groove, None of what goes through.
     """
     bounds = {"width": width, "thickness": thickness, "groove": depth}
-    if thickness is not None and chamfer is not None:
-        bounds["land"] = thickness - 2.0 * chamfer
+    if thickness is not None and edge:
+        bounds["land"] = thickness - 2.0 * edge
     lengths = [Width(length, name) for name, length in bounds.items() if length is not None]
     return min(lengths, default=None)
 
@@ -411,7 +412,7 @@ def _check_width(values: Values, reader: Reader) -> None:
     width, part = values.get("dynamics", {}).get("width"), values.get("part", {})
     cam = values.get("cam", {})
     depth = cam["track"].get("groove", {}).get("depth") if is_groove(cam) else None
-    metal = contact_width(None, part.get("thickness"), part.get("chamfer"), depth)
+    metal = contact_width(None, part.get("thickness"), edge_of(values_read(part)), depth)
     if width is not None and metal is not None and width > metal.length * (1.0 + SAME) and metal.length > 0.0:
         most = f"{metal.length / reader.mm:.9g} {reader.units}"
         what = f"wider than the metal: {BOUNDS[metal.bound]} is {most}"

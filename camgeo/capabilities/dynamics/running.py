@@ -16,7 +16,6 @@ import numpy as np
 
 from camgeo.capabilities.dynamics.keys import contact_width
 from camgeo.capabilities.dynamics.load_table import MOST_LOAD
-from camgeo.part.chamfer import Chamfer
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
 
@@ -188,11 +187,11 @@ class Running(ABC):
     @cached_property
     def width(self) -> Width | None:
         """Width of the contacts, and what bounds it; None where neither the recipe nor the metal has one."""
-        part, chamfer = self.recipe.part, self.recipe.part.of(Chamfer)
+        part = self.recipe.part
         depth = min(
             (surface.depth for surface in self.design.exact.surfaces if surface.depth is not None), default=None
         )
-        return contact_width(self.train.width, part.thickness, None if chamfer is None else chamfer.height, depth)
+        return contact_width(self.train.width, part.thickness, part.edge, depth)
 
     def hertz(self, normal: Array, curvature: Array) -> Array | None:
         """Hertz's pressure of line contacts, N/mm^2, by forces, N, and curvatures, 1/mm; None without material."""

@@ -6,9 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.made.runs import POINTS, places_of
-from camgeo.part.dowel import Dowel
-from camgeo.part.flat import Flat
-from camgeo.part.keyway import Keyway
+from camgeo.part.features import with_records
 from camgeo.schema.fields import Field, Kind, either, length, mapping
 from kin.numeric.records import dataclass, replace
 
@@ -100,5 +98,5 @@ def datum_of(made: Made | None, part: Part) -> Datum:
     """Datum of a recipe: what it gives, or what its bore fixes."""
     if made is not None and made.datum is not None:
         return made.datum
-    fixed = bool(part.sides) or any(part.of(kind) is not None for kind in (Keyway, Flat, Dowel))
+    fixed = bool(part.sides) or any(feature.locates for feature, _ in with_records(part.features))
     return "part" if fixed else "none" if part.bore is None else "bore"

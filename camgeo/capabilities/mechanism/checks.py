@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.checks.declared import LIGHTENING, READABLE, Declared
+from camgeo.checks.declared import LAST_EXACT, READABLE, Declared
 
 if TYPE_CHECKING:
     from camgeo.checks.declared import Scene
@@ -29,7 +29,7 @@ def _apart(_check: Entry, _report: Entry, recipe: Recipe) -> str:
     return slimmer_sizes(recipe)
 
 
-CLEARANCE = Declared("clearance", ("mm",), _has_bodies, strict_at=(0.0,), after=LIGHTENING.name)
-COLLISION = Declared("collision", ("mm",), _has_bodies, field=NAME, remedy=_apart, after=LIGHTENING.name)
+CLEARANCE = Declared("clearance", ("mm",), _has_bodies, strict_at=(0.0,), after=LAST_EXACT)
+COLLISION = Declared("collision", ("mm",), _has_bodies, field=NAME, remedy=_apart, after=LAST_EXACT)
 OUTLINE = Declared("outline", ("mm",), after=READABLE.name)  # of the other bodies, whose files are not foreseen
 CHECKS = (CLEARANCE, COLLISION, OUTLINE)

@@ -16,7 +16,6 @@ from camgeo.capabilities.mechanism.shapes import disc, retainer
 from camgeo.capabilities.mechanism.sizes import THIN, BodyError, require_thickness
 from camgeo.fit.pieces import ArcSpline
 from camgeo.part.flat import Flat
-from camgeo.part.hub import Hub
 from camgeo.part.keyway import Keyway
 from camgeo.part.shapes import flattened, keyed, polygonal
 from kin.contour.contour import Contour
@@ -78,10 +77,10 @@ def cam_disk(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) ->
             Plate(inner, island, floor, part.thickness),
             Plate(blank, (_arcs(outer), *outside), floor, part.thickness),
         ]
-    hub = part.of(Hub)
-    if hub is None:
+    boss = part.boss
+    if boss is None:
         return Disk(tuple(plates), part.thickness, 0.0, part.thickness, pocket=body.pocket)
-    radius = 0.5 * hub.diameter
+    radius = 0.5 * boss.diameter
     inside = tuple(opening.outline for opening in through if math.hypot(*opening.middle) < radius)
     if body.bottom < 0.0:
         plates.append(Plate(disc(radius), inside, body.bottom, 0.0))

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.milling.keys import check_hub, check_milling, check_slight
+from camgeo.capabilities.milling.keys import check_boss, check_milling, check_slight
 from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
-from camgeo.part.hub import Hub
 from camgeo.registry.formats import Format
 from camgeo.schema.fields import Table
 
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 
 def _check(file: Values, values: Values, reader: Reader) -> None:
     check_slight(values, reader)
-    check_hub(values, reader)
+    check_boss(values, reader)
     check_milling(file["path"], reader)
 
 
@@ -64,7 +63,7 @@ def _unmade(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
 def _bored(recipe: Recipe) -> bool:
     """Whether the bore is a round one that is milled."""
     part, milling = recipe.part, recipe.manufacture
-    if part.bore is None or milling is None or not milling.holes or not part.round_bore or part.of(Hub) is not None:
+    if part.bore is None or milling is None or not milling.holes or not part.round_bore or part.boss is not None:
         return False
     return part.bore >= _least_hole(milling)
 
@@ -74,8 +73,7 @@ def _drilled(recipe: Recipe) -> bool:
     part, milling = recipe.part, recipe.manufacture
     if milling is None or not milling.holes:
         return False
-    hub = part.of(Hub)
-    reach, least = 0.0 if hub is None else 0.5 * hub.diameter, 0.5 * _least_hole(milling)
+    reach, least = 0.0 if part.boss is None else 0.5 * part.boss.diameter, 0.5 * _least_hole(milling)
     circles = [opening.circle for opening in part.openings if opening.circle is not None]
     return any(math.hypot(*centre) >= reach and radius >= least for centre, radius in circles)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.part.features import boss_of, values_read
 from camgeo.schema.fields import either
 
 if TYPE_CHECKING:
@@ -44,12 +45,11 @@ def check_slight(values: Values, reader: Reader) -> None:
                 reader.fault_at(f"{table}.{name}", "too little for a program", f"{value / mm:.6g} {unit}", remedy)
 
 
-def check_hub(values: Values, reader: Reader) -> None:
-    """Note a safe height at which rapid moves would run into a hub on the upper side."""
-    hub, safe = values.get("part", {}).get("hub", {}), values.get("manufacture", {}).get("safe_height")
-    height = hub.get("height")
-    if height is None or safe is None or hub.get("side") == "bottom" or safe > height:
+def check_boss(values: Values, reader: Reader) -> None:
+    """Note a safe height at which rapid moves would run into a boss on the upper side."""
+    boss, safe = boss_of(values_read(values.get("part", {}))), values.get("manufacture", {}).get("safe_height")
+    if boss is None or not boss.above or safe is None or safe > boss.above:
         return
-    remedy = f"give more than {height / reader.mm:.6g} {reader.units}"
+    remedy = f"give more than {boss.above / reader.mm:.6g} {reader.units}"
     height_words = f"{safe / reader.mm:.6g} {reader.units}"
-    reader.fault_at("manufacture.safe_height", "not above the hub's top", height_words, remedy)
+    reader.fault_at("manufacture.safe_height", f"not above the {boss.name}'s top", height_words, remedy)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, NamedTuple
 from camgeo.machining.reach import milled_contours, reach_checks
 from camgeo.part.as_intent import holes_of
 from camgeo.part.features import with_records
-from camgeo.part.hub import Hub
 from camgeo.synthesis.intent import intended
 
 if TYPE_CHECKING:
@@ -62,8 +61,8 @@ def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
 def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
     """Holes that the cutter goes round, and the names of those that it does not, with the reason."""
     _, manufacture = milled_contours(recipe, design)
-    stock = recipe.part.of(Hub)
-    hub = 0.0 if stock is None else 0.5 * stock.diameter
+    boss = recipe.part.boss
+    reach, within = (0.0, "") if boss is None else (0.5 * boss.diameter, f"within the {boss.name}")
     holes: list[RoundHole] = []
     others: list[tuple[str, str]] = []
     for opening in design.openings:
@@ -73,8 +72,8 @@ def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[
             others.append((opening.name, "not a round hole" if opening.depth is None else "engraved"))
     if not manufacture.holes:
         return [], [*((hole.name, "manufacture.holes is not true") for hole in holes), *others]
-    beside = [hole for hole in holes if math.hypot(*hole.centre) >= hub]
-    others += [(hole.name, "within the hub, which is higher than the disc") for hole in holes if hole not in beside]
+    beside = [hole for hole in holes if math.hypot(*hole.centre) >= reach]
+    others += [(hole.name, f"{within}, which is higher than the disc") for hole in holes if hole not in beside]
     wide = [hole for hole in beside if hole.radius >= manufacture.radius + LEAST_ROOM]
     others += [(hole.name, "not wider than the cutter") for hole in beside if hole not in wide]
     return wide, others
@@ -91,8 +90,7 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     trimmed = [each.trimmed or less for each, less in zip(intent.surfaces, lost, strict=True)]
     holes, _ = milled_holes(recipe, design)
     names = {hole.name for hole in holes}
-    hub = recipe.part.of(Hub)
-    top = None if hub is None or hub.side == "bottom" else hub
+    boss = recipe.part.boss
     (disc,) = design.discs
     shaped = () if disc.body is None or recipe.part.plain else holes_of(disc.body)
     milling = Milling(
@@ -101,7 +99,7 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
         depth_of_cut=manufacture.depth_of_cut or recipe.part.thickness or 0.0,
         climb=manufacture.direction == "climb",
         standing=manufacture.unreached if any(lost) else 0.0,
-        hub=None if top is None else (0.5 * top.diameter, top.height),
+        hub=(0.5 * boss.diameter, boss.above) if boss is not None and boss.above else None,
         outline=recipe.part.outer is None and pocket is None,
         pocket=pocket,
     )

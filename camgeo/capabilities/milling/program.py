@@ -26,7 +26,6 @@ from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.cutter import CutterPath
 from camgeo.machining.reach import cutter_paths, path_arcs, reach_checks
 from camgeo.output.job import Made
-from camgeo.part.hub import Hub
 from kin.judge.check import about
 from kin.numeric.records import replace
 
@@ -175,7 +174,7 @@ def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str,
         raise recipe.error("manufacture", "gcode needs feed, plunge, spindle, depth_of_cut and safe_height")
     in_units = recipe.in_units_of(request)
     mm = in_units.mm
-    top = "top of the stock" if recipe.part.of(Hub) is None else "upper face of the disc"
+    top = "top of the stock" if recipe.part.boss is None else "upper face of the disc"
     remarks = [
         recipe.name,
         recipe.about,

@@ -180,8 +180,8 @@ def _notes(drawn: Drawn, recipe: Recipe, *, wide: float, full: bool) -> list[str
         "The contour is theoretically exact by the table, or the DXF of this drawing: layer CUT, 1 : 1.",
         f"0° marks the start of the motion. The shaft turns {sense}, as drawn. Angles are polar, from 0°.",
     ]
-    if body.chamfer is not None:
-        notes.append(f"Edges of the contour: chamfer {number(body.chamfer)} × 45°, both sides.")
+    if body.edge:
+        notes.append(f"Edges of the contour: chamfer {number(body.edge)} × 45°, both sides.")
     if body.thickness is None:
         notes.append("The thickness is not stated.")
     keyway = part.of(Keyway)

@@ -44,9 +44,9 @@ class Drawn:
 
     @property
     def reach(self) -> float:
-        """Greatest distance of an outline, or of the hub, from the shaft, mm."""
+        """Greatest distance of an outline, or of the boss, from the shaft, mm."""
         far = max(float(np.hypot(*loop.points.T).max()) for loop in self.loops)
-        return far if self.body.hub is None else max(far, 0.5 * self.body.hub.diameter)
+        return far if self.body.boss is None else max(far, 0.5 * self.body.boss.diameter)
 
     @property
     def depth(self) -> float:
@@ -139,19 +139,19 @@ def sections(drawn: Drawn) -> list[list[tuple[float, float]]]:
     A groove is as deep as its pocket. A chamfer is drawn as if the section met the contour at right angles.
     """
     body = drawn.body
-    thick, hub = body.thickness or 0.0, body.hub
+    thick, boss = body.thickness or 0.0, body.boss
     whole = [loop for loop in drawn.loops if loop.through]
     floor = thick if body.pocket is None else thick - body.pocket
-    reach = 0.0 if hub is None else 0.5 * hub.diameter
+    reach = 0.0 if boss is None else 0.5 * boss.diameter
     ground = whole if body.pocket is None else [loop for loop in whole if not loop.surface]
     chains = []
     for base in metal(ground):
         above = (
             [base] if body.pocket is None else [other for other in metal(whole) if base.low <= other.low < base.high]
         )
-        hubs = max(base.low, -reach), min(base.high, reach)
-        low = _side(base, [base], (0.0, 0.0), (body.bottom, hubs), body.chamfer or 0.0)
-        high = _side(base, above, (floor, thick), (body.top, hubs), -(body.chamfer or 0.0))
+        stretch = max(base.low, -reach), min(base.high, reach)
+        low = _side(base, [base], (0.0, 0.0), (body.bottom, stretch), body.edge)
+        high = _side(base, above, (floor, thick), (body.top, stretch), -body.edge)
         chains.append([*low, *reversed(high)])
     return chains
 
@@ -160,15 +160,15 @@ def _side(
     stretch: Metal,
     raised: Sequence[Metal],
     heights: tuple[float, float],
-    hub: tuple[float, tuple[float, float]],
+    boss: tuple[float, tuple[float, float]],
     chamfer: float,
 ) -> list[tuple[float, float]]:
-    """One face of a stretch of metal, by rising y: its ground, what is raised from that, and the hub.
+    """One face of a stretch of metal, by rising y: its ground, what is raised from that, and the boss.
 
     `heights` are those of the ground and of what is raised from it; `chamfer` is how far an edge lies behind the face.
     """
     ground, face = heights
-    far, (low, high) = hub
+    far, (low, high) = boss
     cut, chain = abs(chamfer), list[tuple[float, float]]()
     if stretch.low < raised[0].low:
         chain.append((ground, stretch.low))

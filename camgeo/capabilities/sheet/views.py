@@ -32,7 +32,6 @@ from camgeo.capabilities.sheet.options import SCALES
 from camgeo.capabilities.sheet.part import hatching, number, sections
 from camgeo.part.features import with_records
 from camgeo.part.flat import Flat
-from camgeo.part.hub import Hub
 from camgeo.part.keyway import Keyway
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
@@ -178,14 +177,12 @@ def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Toleranc
     if body.pocket is not None:
         under.append(Along(thick - body.pocket, thick, f"{number(body.pocket)} groove"))
     right = []
-    hub = part.of(Hub)
-    if hub is not None:
-        both = "2 × " if hub.side == "both" else ""
-        ends = (-hub.height, 0.0) if hub.side == "bottom" else (thick, body.top)
-        under.append(Along(*ends, f"{both}{number(hub.height)} hub"))
-        right.append(
-            Across(body.bottom if hub.side == "bottom" else body.top, hub.diameter, f"Ø{number(hub.diameter)}")
-        )
+    boss = part.boss
+    if boss is not None:
+        both = "2 × " if boss.above and boss.below else ""
+        ends = (thick, body.top) if boss.above else (body.bottom, 0.0)
+        under.append(Along(*ends, f"{both}{number(boss.above or boss.below)} {boss.name}"))
+        right.append(Across(body.top if boss.above else body.bottom, boss.diameter, f"Ø{number(boss.diameter)}"))
     if part.outer is not None:
         right.append(Across(thick, part.outer, f"Ø{number(part.outer)}"))
     bore = None
@@ -312,11 +309,11 @@ def _draw_face(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
     reach = k * drawn.reach
     for loop in drawn.loops:
         page.marks.append(Line(shifted(loop.points, k, layout.face), THICK, "", closed=True))
-    hub = drawn.body.hub
-    if hub is not None:
-        pattern = "dashed" if hub.side == "bottom" else ""
+    boss = drawn.body.boss
+    if boss is not None:
+        pattern = "" if boss.above else "dashed"
         page.marks.append(
-            Circle(layout.face, 0.5 * k * hub.diameter, THIN if pattern else THICK, "VIEW", pattern)  # type: ignore[arg-type]
+            Circle(layout.face, 0.5 * k * boss.diameter, THIN if pattern else THICK, "VIEW", pattern)  # type: ignore[arg-type]
         )
     page.line((x - reach - 4.0, y), (x + reach + 2.0, y), layer="CENTRE", pattern="chain")
     solid = drawn.body.thickness is not None
@@ -450,12 +447,11 @@ def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> Non
         page.line(*edges, weight=THICK, layer="VIEW")
     right = left + k * drawn.depth
     page.line((left - 4.0, y), (right + 4.0, y), layer="CENTRE", pattern="chain")
-    if body.screw is not None and body.screw_height is not None and body.hub is not None:
-        half, side = 0.5 * body.screw.diameter, 1.0 if math.sin(body.screw.at) >= 0.0 else -1.0
-        for z in (body.screw_height - half, body.screw_height + half):
-            page.line(
-                placed(z, side * 0.5 * (body.bore or 0.0)), placed(z, side * 0.5 * body.hub.diameter), layer="VIEW"
-            )
+    outer = 0.0 if body.boss is None else 0.5 * body.boss.diameter
+    for hole in body.cross_holes:
+        half, side = 0.5 * hole.diameter, 1.0 if math.sin(hole.at) >= 0.0 else -1.0
+        for z in (hole.z - half, hole.z + half):
+            page.line(placed(z, side * 0.5 * (body.bore or 0.0)), placed(z, side * outer), layer="VIEW")
     top = y + k * drawn.reach + ROUND + 2.0
     page.text((0.5 * (left + right), top + 1.5), "A-A", PLAIN, "middle")
     low = min(height for chain in [*chains, *behind] for _, height in chain)

@@ -129,13 +129,14 @@ def _drawing_of(group: Sequence[outline.Read]) -> Drawn:
 
 
 def _on_face(disc_design: Disc) -> list[Shape]:
-    """Hub and timing mark of a disc, which a file's outline lacks or does not tell from other holes."""
+    """Boss and timing mark of a disc, which a file's outline lacks or does not tell from other holes."""
     body = disc_design.body
     if body is None:
         return []
-    shapes = [] if body.hub is None else [Shape("hub", (disc(0.0, 0.0, 0.5 * body.hub.diameter),), "hub")]
+    boss = body.boss
+    shapes = [] if boss is None else [Shape("hub", (disc(0.0, 0.0, 0.5 * boss.diameter),), boss.name)]
     for opening in body.openings:
-        if opening.name == "mark":
+        if opening.layer in {"MARK", "ENGRAVE"}:
             ring = Ring(opening.outline.points, opening.outline.bulges)
             shapes.append(Shape("timing mark", (ring,), "zero of the motion"))
     return shapes
@@ -161,7 +162,7 @@ def _openings(recipe: Recipe, disc_design: Disc) -> tuple[Ring, ...]:
 
 
 def _discs(design: Design, drawings: list[Drawn], bore: float | None, size: float, turned: Array) -> list[Body]:
-    """Return each disc with its hub and mark, the lowest first; discs above it are drawn translucent."""
+    """Return each disc with its boss and mark, the lowest first; discs above it are drawn translucent."""
     several = len(design.discs) > 1
     return [
         cam(
