@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from support.places import ROOT
 
-from camgeo.checks.declared import CHECKS, LIMIT, READABLE, declaration, declarations
+from camgeo.checks.declared import CHECKS, LIMIT, OF_FEATURES, READABLE, declaration, declarations
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.loading import load, load_text
@@ -24,7 +24,12 @@ MAKERS = {"Check", "at_most", "failed", "above_zero"}
 DECLARED = [PACKAGE / "checks" / "declared.py", *sorted(PACKAGE.glob("capabilities/*/checks.py"))]
 HOMES = {
     path.relative_to(PACKAGE).as_posix()
-    for path in (*DECLARED, PACKAGE / "recipe" / "figures.py", *PACKAGE.glob("capabilities/*/figures.py"))
+    for path in (
+        *DECLARED,
+        PACKAGE / "recipe" / "figures.py",
+        *PACKAGE.glob("capabilities/*/figures.py"),
+        *PACKAGE.glob("part/*.py"),
+    )
 }
 # names that are no other word of a recipe, a program or a drawing
 OWN = {name for name in CHECKS if "-" in name} | {"mobility", "reversal", "watertight", "readable"}
@@ -85,7 +90,7 @@ def test_the_search_for_names_finds_some() -> None:
 
 def test_each_is_declared_once() -> None:
     text = (PACKAGE / "checks" / "declared.py").read_text(encoding="utf-8")
-    assert len(re.findall(r"^[A-Z_]+ = Declared\(", text, re.MULTILINE)) == len(CHECKS.among(()))
+    assert len(re.findall(r"^[A-Z_]+ = Declared\(", text, re.MULTILINE)) + len(OF_FEATURES) == len(CHECKS.among(()))
     names = [one.name for one in declarations()]
     assert names == [*CHECKS, *(LIMIT + name for name in FIGURES)]
     assert all(declaration(name).name == name for name in names)
