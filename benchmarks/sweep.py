@@ -5,9 +5,10 @@
 
 Speed is processor time, the least of several repeats, as a ratio too: to bare kinematics, the plain numpy expressions
 for the angles and positions of the same four-bars at as many samples, with nothing found from them. Take one core:
-OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself, in a process of its own. `screen` holds
-estimates of cams without a linkage against their exact designs, 1,000 random ones, in some minutes: what it measured
-stands in `camgeo.capabilities.sweep.screen`. `accuracy` does so for four-bars.
+OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself, in a process of its own. `engines`
+takes it in one process, in two, and with two workers of a Dask scheduler, and gives the processor time of each.
+`screen` holds estimates of cams without a linkage against their exact designs, 1,000 random ones, in some minutes: what
+it measured stands in `camgeo.capabilities.sweep.screen`. `accuracy` does so for four-bars.
 """
 
 from __future__ import annotations
@@ -138,15 +139,23 @@ print(status, spent[0], time.process_time(), file=sys.stderr)
 """
 
 
+LIMITS = "transmission-angle: {at_least: 34}, size: {at_most: 44}"
+
+
+def search_text(limits: str, count: int) -> str:
+    """Recipe that searches `count` four-bars within limits."""
+    vary = ", ".join(f"'{path}': {{from: {low}, to: {high}}}" for path, (low, high) in PLACES.items())
+    text = CAM_2A.text[: CAM_2A.text.index("sweep:")] + SEARCH.replace("VARY", vary).replace("LIMITS", limits)
+    return text.replace("COUNT", str(count))
+
+
 def command() -> float:
     """The command itself; gives designs a second that it computes, of the usual limits."""
     print(f"\n`camgeo sweep --jobs 1`, {SOUGHT:,} four-bars, 360 angles, designs a second of processor; target 20,000")
-    vary = ", ".join(f"'{path}': {{from: {low}, to: {high}}}" for path, (low, high) in PLACES.items())
     print(f"{'':42}{'computing':>10} {'whole process':>14}")
     found = []
-    for limits in ("transmission-angle: {at_least: 34}, size: {at_most: 44}", "peak-velocity: {at_most: 22}"):
-        text = CAM_2A.text[: CAM_2A.text.index("sweep:")] + SEARCH.replace("VARY", vary).replace("LIMITS", limits)
-        text = text.replace("COUNT", str(SOUGHT))
+    for limits in (LIMITS, "peak-velocity: {at_most: 22}"):
+        text = search_text(limits, SOUGHT)
         best = [math.inf, math.inf]
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "speed.yaml").write_text(text)
@@ -158,6 +167,73 @@ def command() -> float:
         print(f"limits on {limits.split(':')[0]:24} {SOUGHT / best[0]:10.0f} {SOUGHT / best[1]:14.0f}")
         found.append(SOUGHT / best[0])
     return found[0]
+
+
+class Running:
+    """A process with those that it starts: a session of its own, whose processor time is read while it runs."""
+
+    def __init__(self, folder: str, *arguments: str) -> None:
+        environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+        nowhere = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "start_new_session": True}
+        self.process = subprocess.Popen([sys.executable, "-m", *arguments], cwd=folder, env=environment, **nowhere)
+        self._seconds: dict[str, float] = {}
+
+    def seconds(self) -> float:
+        """Processor seconds of all its processes so far."""
+        for path in Path("/proc").glob("[0-9]*/stat"):
+            try:
+                values = path.read_text().rpartition(")")[2].split()
+            except OSError:  # it ended meanwhile
+                continue
+            if int(values[3]) == self.process.pid:
+                ticks = int(values[11]) + int(values[12])
+                self._seconds[path.parent.name] = ticks / os.sysconf("SC_CLK_TCK")
+        return sum(self._seconds.values())
+
+    def finish(self) -> float:
+        """Wait for its end; give its processor seconds."""
+        while self.process.poll() is None:
+            self.seconds()
+            time.sleep(0.02)
+        if self.process.returncode:
+            raise SystemExit(f"exit status {self.process.returncode}")
+        return self.seconds()
+
+
+ADDRESS = "tcp://127.0.0.1:8799"
+SECONDS_TO_START = 6.0  # of a scheduler, or a worker, at most, on a busy machine
+
+
+def engines() -> None:
+    """Processor seconds of one sweep by engine; needs Linux and the extra `dask`."""
+    small, large = (500, 2_000) if SMALL else (20_000, 100_000)
+    print("\n`camgeo sweep --fresh`, four-bars, 360 angles: processor seconds, the least of several runs")
+    print(f"{'designs':>8} {'engine':24} {'command':>8} {'scheduler':>10} {'workers':>14} {'all':>6}")
+    with tempfile.TemporaryDirectory() as folder:
+        options = ("--host", "127.0.0.1", "--port", ADDRESS.rpartition(":")[2], "--no-dashboard")
+        cluster = [Running(folder, "distributed.cli.dask_scheduler", *options)]
+        time.sleep(SECONDS_TO_START)
+        options = (ADDRESS, "--nthreads", "1", "--no-nanny", "--no-dashboard")
+        cluster += [Running(folder, "distributed.cli.dask_worker", *options) for _ in range(2)]
+        time.sleep(SECONDS_TO_START)
+        try:
+            for count in (small, large):
+                (Path(folder) / f"of-{count}.yaml").write_text(search_text(LIMITS, count))
+                least: dict[str, list[float]] = {}
+                for _ in range(1 if SMALL else 3):
+                    for engine in ("--jobs 1", "--jobs 2", f"--scheduler {ADDRESS}"):
+                        before = [each.seconds() for each in cluster]
+                        call = ("camgeo", "sweep", f"of-{count}.yaml", "--fresh", *engine.split())
+                        spent = [Running(folder, *call).finish()]
+                        if "scheduler" in engine:
+                            spent += [each.seconds() - b for each, b in zip(cluster, before, strict=True)]
+                        least[engine] = min(least.get(engine, [math.inf]), spent, key=sum)
+                for engine, spent in least.items():
+                    row = f"{spent[1]:10.2f} {spent[2]:6.2f} and {spent[3]:.2f}" if spent[1:] else f"{'':26}"
+                    print(f"{count:8,} {engine.split(':')[0]:24} {spent[0]:8.2f} {row} {sum(spent):6.2f}", flush=True)
+        finally:
+            for each in reversed(cluster):
+                each.process.terminate()
 
 
 SOME = ("dwell", "margin", "shaft-rate", "transmission-angle", "swing")
@@ -290,7 +366,7 @@ def cam_text(cam: str, ranges: dict[str, tuple[float, float]]) -> str:
 
 
 if __name__ == "__main__":
-    parts = {"command": command, "speed": speed, "screen": screen, "accuracy": accuracy}
+    parts = {"command": command, "engines": engines, "speed": speed, "screen": screen, "accuracy": accuracy}
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("part", nargs="*", help=f"of {', '.join(parts)} (default: all)")
     parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
