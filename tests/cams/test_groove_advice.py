@@ -56,6 +56,7 @@ SIZED = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", SIZED)
 def test_a_size_obeys_both_flanks(name):
     """Least radii of the metal from 3600 points: the path bends outward at the inner flank, inward at the outer one."""
@@ -80,6 +81,7 @@ def remarks(folder, clearance, tolerance):
     return {remark["name"]: remark for remark in outcome.report["remarks"]}
 
 
+@pytest.mark.slow
 def test_a_tolerance_that_takes_the_play_is_remarked_on(tmp_path):
     said = remarks(tmp_path, 0.005, 0.04)["no-play"]
     assert said["value"] < 0.0

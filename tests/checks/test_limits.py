@@ -595,7 +595,7 @@ REMEDIES = [
 ]
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize(
     ("text", "name", "bound", "said", "change"),
     [row for row in REMEDIES if row[1] in FIGURES],  # those of a capability are where it is

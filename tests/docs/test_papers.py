@@ -149,7 +149,7 @@ def differences(one: str, other: str) -> list[str]:
     return found
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_the_pictures_are_what_the_script_draws(script: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(DOCS))

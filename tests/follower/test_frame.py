@@ -88,6 +88,7 @@ def test_outputs_by_vertices(pair):
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * max(1.0, np.abs(expected).max()))
 
 
+@pytest.mark.slow
 @pytest.mark.thin(12)
 def test_the_verdict_by_vertices(pair):
     """Greatest error, rms, increment and play: nothing that dense sampling finds is missed, and nothing made up."""

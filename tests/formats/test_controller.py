@@ -82,6 +82,7 @@ def test_a_drive_is_within_what_its_table_says(cam: str, controller: str, tmp_pa
     assert checks["interpolation"].value == pytest.approx(error, rel=1e-4, abs=1e-10)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("cam", few(CAMS, 2))
 def test_a_curve_point_table_has_its_number_of_rows_and_holds_its_tolerance(cam: str, tmp_path: Path) -> None:
     path = written(tmp_path, cam, "for: sew", "0.0002" if cam == "inch" else "0.005")

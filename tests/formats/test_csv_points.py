@@ -114,6 +114,7 @@ def test_a_step_that_makes_more_points_than_are_read_is_refused(tmp_path: Path) 
     assert camgeo.load(written(tmp_path, "stem", ", step: 0.0036"))
 
 
+@pytest.mark.slow
 def test_a_contour_with_corners_is_no_spline(tmp_path: Path) -> None:
     sharp = "cam: {kind: disc, base_radius: 12, undercut: trim, follower: {kind: flat}, motion: [{rise: 20, over: 60, "
     sharp += "law: cycloidal}, {return: 20, over: 60, law: cycloidal}, {dwell: 240}]}\n"
@@ -125,6 +126,7 @@ def test_a_contour_with_corners_is_no_spline(tmp_path: Path) -> None:
     camgeo.export(path, tmp_path / "out")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(5)
 @pytest.mark.parametrize("cam", ["stem", "ccw", "inch"])
 @pytest.mark.parametrize("suffix", ["csv", "txt", "xyz"])

@@ -218,7 +218,7 @@ VARIANTS = {
 }
 
 
-@pytest.mark.thin(10)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize("name", VARIANTS)
 def test_fault_of_a_solid(solid, tmp_path, name):
     recipe, design, _ = solid

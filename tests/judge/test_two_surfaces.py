@@ -149,6 +149,7 @@ def dented(count):
     return flank(wavy, -ROLLER, count) + bump, flank(wavy, ROLLER + CLEARANCE, count) + dent
 
 
+@pytest.mark.slow
 def test_what_is_left_between_two_flanks_by_every_point_of_them(tmp_path):
     path = drawn(tmp_path / "groove.dxf", *dented(2 * MANY), bore=None)
     (closure,) = verify(path, groove(law_of(WAVY)), 36, Limits(0.01)).closures

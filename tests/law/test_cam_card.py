@@ -119,6 +119,7 @@ def test_no_angle_has_a_lower_peak_by_another_solver(count):
     assert peak(lobe_of(mixture.side, mixture.side), mixture.side.half) <= least * 1.001
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("card", [((1.27, 228.0), (0.15, 250.0), (5.08, 140.0)), ((1.27, 228.0), (5.08, 60.0))])
 def test_a_card_that_none_meets_is_refused_with_the_nearest_which_is_met(card):
@@ -165,6 +166,7 @@ def test_uneven_sides_have_the_peak_of_the_worse_one_alone_where_the_other_can_f
     assert peaks(*sides_of_card(LIFT, *AGREE, HALF_TURN)) == pytest.approx(worse, rel=2e-4)
 
 
+@pytest.mark.slow
 def test_uneven_sides_are_searched_together_where_their_noses_differ():
     # over the angles that are best of each side alone it is 38.86, and the worse one alone has 34.68
     opening, closing = sides_of_card(LIFT, *APART, HALF_TURN)

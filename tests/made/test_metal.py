@@ -146,6 +146,7 @@ def test_metal_too_much_lifts_every_follower_by_what_first_order_says(kind):
     assert np.abs(up).max() <= (np.radians(limit) if follower.unit == "deg" else limit) * (1.0 + 1e-6)
 
 
+@pytest.mark.slow
 def test_a_face_turns_on_the_corner_that_a_jump_of_curvature_leaves() -> None:
     """Radii of 45 and 5 mm meet: a smooth deviation makes a corner, on which the face stays for a tenth of a degree."""
     ((_, _, surface),) = surfaces(RECIPES["yoke"])

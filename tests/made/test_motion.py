@@ -32,6 +32,7 @@ def test_derivatives_of_the_error_are_its_own():
     assert errors.rows[0] == pytest.approx(errors.gain * curve.rows(SHAFT)[0], abs=2e-4)
 
 
+@pytest.mark.slow
 def test_scatter_of_many_noises_is_the_uncertainty():
     follower, draw = FOLLOWERS["roller, offset"], np.random.default_rng(2)
     t = np.arange(720) * TURN / 720

@@ -106,6 +106,7 @@ def test_the_circle_of_a_level_is_that_on_which_the_follower_stands():
         assert motion.lifted_circle(level) == pytest.approx(larger, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_what_a_long_wave_hides_is_what_it_moves():
     """Refitted with a wave of height 0.01 mm at three phases, levels move by what is told at most, and come near it."""
     text = disc(ROLLER)

@@ -77,6 +77,7 @@ def passes(recipe: Any) -> bool:
     return all(check.ok for check in camgeo.check(recipe).checks if check.file is None)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(CASES, 3))
 def test_the_angle_found_holds_and_a_hundredth_less_does_not(name: str) -> None:
     recipe = camgeo.load(CASES[name])
@@ -115,6 +116,7 @@ def test_the_recipe_with_the_numbers_in_makes_the_same_file() -> None:
     )
 
 
+@pytest.mark.slow
 def test_an_angle_is_found_though_longer_ones_fail() -> None:
     text = STEM.replace("35}", "35}, duration: {at_most: 560, at_lift: 0.5 mm}")
     recipe = camgeo.load(text)

@@ -139,6 +139,7 @@ def test_the_same_recipe_gives_the_same_bytes(name: str, tmp_path: Path) -> None
     assert first.report == second.report
 
 
+@pytest.mark.slow
 def test_counter_clockwise_mirrors_drawing_and_keeps_motion(tmp_path: Path) -> None:
     recipe = load(RECIPES[0].with_name("as-figure-2d.yaml"))
     other = replace(recipe, rotation="ccw", name="other")

@@ -23,6 +23,7 @@ TEXT = (
 )
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_paths_in_files(tmp_path: Path, rotation: str) -> None:
     """The path of joint D is an arc about B, which stands at [ground, 0] in the table and turned in the drawing."""

@@ -87,6 +87,7 @@ def test_a_kernel_reads_its_volume_from_a_step(tmp_path):
     assert properties.Mass() == pytest.approx(8 * (math.pi * (30**2 - 6**2) - AREA), rel=1e-6)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", ["dxf", "stl"])
 @pytest.mark.parametrize("change", [{"at": math.radians(40.2)}, {"length": 12.1}, {"circle": 36.1}, None])
 def test_a_planted_fault_is_caught(tmp_path, kind, change):

@@ -266,6 +266,7 @@ def test_aliases_stand_for_what_they_name() -> None:
     assert motion[0] == motion[1]
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize(("ends", "mark"), [("\n", b""), ("\r\n", b""), ("\r", b""), ("\n", b"\xef\xbb\xbf")])
 def test_line_ends_and_a_byte_order_mark_change_nothing(ends: str, mark: bytes) -> None:
@@ -285,6 +286,7 @@ def test_recipes_are_read_alike_without_the_c_reader(monkeypatch: pytest.MonkeyP
         assert load(path).marks == recipe.marks
 
 
+@pytest.mark.slow
 def test_a_recipe_travels_between_processes() -> None:
     for path in SHIPPED:
         recipe = load(path)

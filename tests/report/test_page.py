@@ -377,6 +377,7 @@ def test_two_rollers_keep_their_distance_from_the_cam() -> None:
     assert worst > check["value"] - 0.2  # the check looks at breaks too
 
 
+@pytest.mark.thin(3)
 def test_errors_round_the_contour_are_those_that_the_judge_found(made: Made) -> None:
     reports = {file["path"]: file for file in made.outcome.report["files"]}
     drawn = [name for error in made.content.errors for name in error.name.split(", ")]

@@ -371,6 +371,7 @@ def test_it_prints_and_follows_the_colours(browser: Browser, tmp_path: Path) -> 
 UNDERCUT = "cam: {kind: support, p: 10 + 2*cos(3*t)}\npart: {thickness: 5}\n"
 
 
+@pytest.mark.slow
 def test_one_player_shows_one_scene_after_another(browser: Browser, tmp_path: Path) -> None:
     """What a program plays is a design's scene; what was shown before is gone, and hears of nothing."""
     made = of("shu-wu")

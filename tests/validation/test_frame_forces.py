@@ -581,6 +581,7 @@ def test_faces_of_unequal_stiffness():
     assert over.normal[3][lost] == pytest.approx(over.reactions["along"][lost], abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("text", [PRESSED, UNEVEN])
 def test_speeds_from_which_faces_are_lost(text):
@@ -594,6 +595,7 @@ def test_speeds_from_which_faces_are_lost(text):
         assert below.contacts[rank][0].value > 0.0
 
 
+@pytest.mark.slow
 def test_files_of_a_preloaded_frame(tmp_path):
     """The metal is made larger and judged about that; a file of the nominal cam, and of one twice too large, fails."""
     from camgeo import verify

@@ -281,6 +281,7 @@ def test_a_solid_has_the_pocket(kind, tmp_path):
     assert failed(wider, path) >= {("contour", "outer"), ("motion", "outer")}
 
 
+@pytest.mark.slow
 @kernel
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["arcs", "spline"])

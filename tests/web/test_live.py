@@ -71,7 +71,7 @@ def test_numbers_have_units_and_bounds_words_have_their_choices() -> None:
     assert part(text, fields["part.bore"]) == "8"  # behind a character of two units
 
 
-@pytest.mark.thin(7)
+@pytest.mark.thin(21)
 @pytest.mark.parametrize("name", OF_CAMS)
 def test_a_recipe_in_inches_makes_the_same_cam_and_comes_back(name: str) -> None:
     text = TEXTS[name]
@@ -190,6 +190,7 @@ FOLLOWER: dict[str, Any] = {
 
 
 # needs: follow
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("name", "follower", "words"),
     [

@@ -214,7 +214,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize("name", READ)
 def test_parts_of_a_file_begin_with_its_own_errors(name: str, made: Path) -> None:
     """Nothing off, the error by contact is the one that the judge finds of the file."""

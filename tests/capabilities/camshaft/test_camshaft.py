@@ -633,6 +633,7 @@ def test_what_would_do_for_a_thin_gap_does(tmp_path: Path, z: str) -> None:
     assert camgeo.check(shaft(tmp_path, rows, body="  shaft: {diameter: 24, to: 60}\n")).ok
 
 
+@pytest.mark.slow
 def test_a_thin_gap_is_held_where_the_tolerance_is_finer(tmp_path: Path) -> None:
     rows = "recipe: intake.yaml, at: 0, z: 1, length: 5\nrecipe: intake.yaml, at: 90, z: 6.001, length: 5"
     path = shaft(tmp_path, rows, files="[3mf, step]", body="  shaft: {diameter: 24, to: 60}\n")

@@ -163,6 +163,7 @@ def test_a_polygon_of_few_points_comes_near_its_law(tmp_path: Path) -> None:
     assert -2.0 * 0.00372 < float(low.min()) < float(low.max()) < 1e-9
 
 
+@pytest.mark.slow
 def test_rows_of_a_recipe_are_no_slips_of_a_pen(tmp_path: Path) -> None:
     """In the hollow of a limacon the rows of a polygon bend so sharply that a table as read off would be refused."""
     angle = 2.0 * np.pi * np.arange(360) / 360
@@ -253,6 +254,7 @@ OPENINGS: dict[str, tuple[list[list[tuple[float, float, float]]], int, float | N
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", OPENINGS)
 def test_openings_are_passed_over_and_said(drawings: dict[str, Path], tmp_path: Path, name: str) -> None:
     openings, count, bore = OPENINGS[name]

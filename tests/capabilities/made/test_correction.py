@@ -43,6 +43,7 @@ def corrected_runs(folder, text, play, tolerance=0.0003):
 
 
 # needs: milling
+@pytest.mark.slow
 @pytest.mark.parametrize("sides", [3, pytest.param(5, marks=pytest.mark.slow)])
 def test_the_machine_is_corrected_to_its_noise_on_a_reuleaux_polygon(sides, tmp_path):
     greatest, mean = corrected_runs(tmp_path, polygon(sides, 5.0) + MILL, 0.0)
@@ -53,6 +54,7 @@ def test_the_machine_is_corrected_to_its_noise_on_a_reuleaux_polygon(sides, tmp_
 
 
 # needs: milling
+@pytest.mark.slow
 @pytest.mark.parametrize("play", [0.0, pytest.param(0.004, marks=pytest.mark.slow)])
 def test_a_machine_is_corrected_to_its_noise_in_three_runs(play, tmp_path):
     """A cutter that is too small, axes that are not square, screws with play: a fifth is left of it each time.
@@ -145,6 +147,7 @@ def test_a_jump_of_acceleration_leaves_no_corner_either(kind, tmp_path):
     assert [check for check in report["checks"] if not check["ok"]] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["roller on a stem", pytest.param("flat", marks=pytest.mark.slow)])
 def test_tables_that_grind_or_draw_the_contour_are_corrected(kind, tmp_path):
     """Where a wheel of 200 mm stands, and which way it faces, say where it leaves the metal."""

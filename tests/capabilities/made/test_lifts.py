@@ -34,6 +34,7 @@ def lifts(folder, text, late=0.0, *, heading="angle_deg,lift_mm", angles=(1.0,),
     return recipe, file
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("late", [12.3, -90.0, 180.0, 154.3])
 def test_lifts_from_any_zero_are_told_and_judged(late, tmp_path, capsys):
     recipe, file = lifts(tmp_path, ROLLER + LIMIT, late)
@@ -47,6 +48,7 @@ def test_lifts_from_any_zero_are_told_and_judged(late, tmp_path, capsys):
     assert made["verdicts"] == {"made-profile": "ok"}
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("late", [0.1, 1.5, -3.0])
 def test_lifts_that_are_a_little_late_show_their_phase(late, tmp_path):
     """As they stand the motion is that of the turned cam, by contact: a phase and the fault, and nothing else."""
@@ -73,6 +75,7 @@ def test_crank_degrees_of_a_heading_are_halved(heading, tmp_path):
     assert abs(made["motion"]["phase_deg"]) < 0.005
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("wrong", "factor", "right"),
     [
@@ -100,6 +103,7 @@ def test_radii_over_crank_degrees_are_refused(tmp_path, capsys):
     assert "crank degrees, crank_deg; a polar angle is the part's own: head it polar_deg" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_swings_in_radians(tmp_path, capsys):
     recipe, file = lifts(tmp_path, ARM, heading="angle_deg,lift_rad")
     assert abs(camgeo.verify(recipe, file)["made"]["motion"]["error"]["max"]) < 1e-5
@@ -108,6 +112,7 @@ def test_swings_in_radians(tmp_path, capsys):
     assert "they look like radians read as degrees: head their column lift_rad" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_lifts_of_another_cam(tmp_path):
     recipe, file = lifts(tmp_path, ROLLER)
     recipe.write_text(
@@ -121,6 +126,7 @@ def test_lifts_of_another_cam(tmp_path):
         camgeo.verify(recipe, file)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("change", "told"),
     [

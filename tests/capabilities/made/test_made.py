@@ -201,7 +201,7 @@ BAD = {
 }
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize("wrong", list(BAD))
 def test_points_that_are_not_of_this_cam_are_told_what_they_look_like(wrong, tmp_path, capsys):
     recipe, (file,) = measured(tmp_path, ROLLER)

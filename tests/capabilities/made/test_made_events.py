@@ -47,6 +47,7 @@ def planted(tmp_path):
     return recipe, files, frame.points + flank(0.02)(t)[:, None] * frame.normals, frame.points
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lift", [pytest.param(1.27, marks=pytest.mark.slow), 5.0])
 def test_durations_are_those_of_brute_force(lift, planted):
     recipe, files, metal, exact = planted

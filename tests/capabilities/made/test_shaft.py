@@ -24,6 +24,7 @@ def lobes_of(report):
     return {lobe["name"]: lobe for lobe in report["made"]["lobes"]}
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("more", ["", "rotation: ccw\n", "units: inch\n"])
 def test_a_clean_shaft_holds_and_shows_no_phase(more, tmp_path):
     recipe = camshaft(tmp_path, limits=LIMITS, more=more)
@@ -68,6 +69,7 @@ def test_planted_faults_are_found_on_their_lobe_alone(more, tmp_path):
     assert report["made"]["verdicts"]["made-profile, arm"] == "failed"
 
 
+@pytest.mark.slow
 def test_a_shaft_turned_as_one_is_turned_back_as_one(tmp_path, capsys):
     recipe = camshaft(tmp_path)
     planted = {"arm": Planted(late=0.2)}
@@ -84,6 +86,7 @@ def test_a_shaft_turned_as_one_is_turned_back_as_one(tmp_path, capsys):
     assert made["turned_late_deg"] == pytest.approx(report["made"]["turned_late_deg"], abs=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rotation", [pytest.param("cw", marks=pytest.mark.slow), "ccw"])
 def test_lifts_are_those_of_the_shafts_own_table(rotation, tmp_path):
     """Its table of lifts over the shaft's angle is made without points, angles and metal: followers stand anywhere."""
@@ -125,6 +128,7 @@ def lift_table(recipe, file, late=0.0, *, alone=(0.0, 0.0, 0.0), step=1.0, facto
     return file
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("late", "alone"),
     [
@@ -149,6 +153,7 @@ def test_lifts_from_any_zero_are_told_and_judged_as_one(late, alone, tmp_path, c
         assert (f"{lobe['name']} looks turned by {own:.3g} degrees against the others" in made["remarks"]) == bool(own)
 
 
+@pytest.mark.slow
 def test_lifts_of_a_shaft_that_turns_the_other_way_or_of_other_lobes(tmp_path):
     recipe = camshaft(tmp_path)
     file = lift_table(recipe, tmp_path / "lift.csv", 20.0, factor=-1.0)
@@ -163,6 +168,7 @@ def test_lifts_of_a_shaft_that_turns_the_other_way_or_of_other_lobes(tmp_path):
         camgeo.verify(recipe, file, units="inch")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", [True, False])
 def test_crank_degrees_of_an_engine(engine, tmp_path, capsys):
     """Angles over two turns that nothing names are the crank's where the recipe has an engine; else a heading says."""
@@ -186,6 +192,7 @@ def test_crank_degrees_of_an_engine(engine, tmp_path, capsys):
         assert halved not in made["remarks"]
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("label", ["number", "name", "2.0"])
 def test_lobes_by_a_column(label, tmp_path):
     recipe = camshaft(tmp_path)
@@ -320,6 +327,7 @@ def test_the_phase_scatters_as_its_uncertainty_says(tmp_path, monkeypatch):
     assert (np.abs(ratio - 1.0) < 0.4).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [pytest.param("", marks=pytest.mark.slow), "rotation: ccw\n"])
 def test_what_is_to_be_measured_is_judged_at_its_digits(more, tmp_path):
     """Inspection table and DMIS, measured without error: places, heights, normals, zones of the lobes that have one."""
@@ -374,6 +382,7 @@ OFF = r"points.csv: the points lie \S+ mm off the contours on average: "
 UP = "measure it with the upper end up, as the file is drawn, or turn y round"
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("wrong", "columns", "message"),
     [
@@ -429,6 +438,7 @@ def test_points_that_are_not_of_this_shaft_are_told_what_they_look_like(wrong, c
     assert re.search(message, line)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("wrong", "right", "options"),
     [

@@ -38,6 +38,7 @@ def more_lobes(recipe):
     return recipe
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("more", ["", "rotation: ccw\n"])
 def test_a_lean_is_found_and_taken_out_when_that_is_said(more, tmp_path):
     recipe = camshaft(tmp_path, more=more, limits="made: {profile: 0.01}\n")
@@ -99,6 +100,7 @@ def test_a_lobe_that_is_turned_on_a_leaning_axis(tmp_path):
     assert made["axis"]["leans_deg"] == pytest.approx(3.0 * math.degrees(5e-4), rel=0.05)
 
 
+@pytest.mark.slow
 def test_what_tells_no_lean(tmp_path):
     recipe = camshaft(tmp_path)
     rows = [row for row in shaft_points(recipe) if row[0] != "arm"]

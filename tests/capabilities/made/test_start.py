@@ -147,7 +147,7 @@ def test_the_recipe_of_a_clean_cam_comes_back(kind, tmp_path, capsys):
     assert camgeo.verify(tmp_path / "new.yaml", tmp_path / "points.csv")["made"]["discs"][0]["profile"] < 0.007
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("kind", TWO_CONTACTS)
 def test_the_recipe_of_a_clean_cam_with_two_contacts_comes_back(kind, tmp_path, capsys):
     text = TWO_CONTACTS[kind]
@@ -197,6 +197,7 @@ def test_a_support_function_that_its_harmonics_miss_is_refused(tmp_path, capsys)
     assert not (tmp_path / "new.yaml").exists()
 
 
+@pytest.mark.slow
 def test_a_frame_under_a_linkage_comes_back(tmp_path):
     linkage = "\nlinkage: {kind: inverted-slider-crank, ground: 90, rocker: 0}"
     assert start_all(tmp_path, framed("constant-breadth") + linkage) == 0
@@ -216,6 +217,7 @@ def test_each_law_of_two_contacts_is_told(kind, law, tmp_path):
     assert new.count(f"law: {law}") == text.count(f"law: {law}")
 
 
+@pytest.mark.slow
 def test_play_is_told_and_halved_between_both_sides(tmp_path, capsys):
     """Both discs 0.01 mm too small: the motion is the one midway, and the contacts have 0.02 mm of play."""
     text = RECIPES["conjugate discs"]
@@ -239,6 +241,7 @@ def test_the_breadth_of_a_yoke_is_that_of_its_points(tmp_path, capsys):
     assert re.search(r"the part is -0\.001\d* to \+0\.008\d* mm off a constant distance", told)
 
 
+@pytest.mark.slow
 def test_a_long_wave_moves_what_is_found_as_far_as_is_told(tmp_path, capsys):
     """A cosine of one wave a turn, 0.02 mm high, is eccentricity as much as motion."""
     text = RECIPES["roller on a stem"]
@@ -297,6 +300,7 @@ def test_inches_and_a_shaft_that_turns_the_other_way(tmp_path):
     assert new.count("law: modified-sine") == 2
 
 
+@pytest.mark.slow
 def test_a_worn_cam_becomes_a_table(tmp_path, capsys):
     """A groove worn 0.2 mm deep beside the top of the rise: no law has it."""
     assert start(tmp_path, RECIPES["roller on a stem"], bump(-0.2, 5.0)) == 0

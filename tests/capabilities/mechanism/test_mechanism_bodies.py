@@ -463,6 +463,7 @@ def test_too_small_an_axial_gap_is_caught() -> None:
     assert check.detail.startswith("yoke and cap-right interfere")
 
 
+@pytest.mark.slow
 def test_what_drives_is_told_by_how_much_it_is_too_wide_to_slip_round() -> None:
     """In the words of report.json: of the shaft in the bore of the cam, and the figure is the assembly's own."""
     recipe = load_text(SHAPES["yoke"] + PART.replace("bore: 8", "bore: {square: 5}"), "set.yaml")

@@ -142,7 +142,7 @@ def with_sheet(text: str, options: str) -> str:
 # --- pages ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(18)
 @pytest.mark.parametrize("paper", ["A3", "A4"])
 @pytest.mark.parametrize("path", few(SHIPPED, 12), ids=lambda path: path.stem)
 def test_nothing_lies_over_anything_else(path: Path, paper: str, drawn: list[drawing.Pages], tmp_path: Path) -> None:

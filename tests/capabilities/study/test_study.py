@@ -111,6 +111,7 @@ def test_a_rung_of_two_discs_is_of_both_files(tmp_path: Path) -> None:
     assert not rung.failed
 
 
+@pytest.mark.slow
 def test_a_study_of_two_discs_says_of_which_a_figure_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recipe = str(RECIPES / "conjugate-stem.yaml")
     assert main.main(["study", recipe, "--form", "arcs", "--patience", "0.001", "--out", str(tmp_path)]) == 0

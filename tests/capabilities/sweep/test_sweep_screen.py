@@ -218,6 +218,7 @@ def test_designs_with_words_have_the_figures_of_their_recipes():
     }
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_files_tell_words(tmp_path):
     from camgeo.capabilities.sweep.command import procedures
@@ -376,6 +377,7 @@ def test_where_all_fall_none_is_kept_and_the_nearest_is_exact(swept):
     assert sum(report["screen"]["fell"].values()) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_polishing_goes_by_estimates_and_keeps_exact_designs(swept):
     plain, _ = swept()
