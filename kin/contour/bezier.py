@@ -228,7 +228,10 @@ class Beziers:
         return rising_root(-slope)
 
     def area_over_chords(self) -> float:
-        """Area between the pieces and their chords, mm^2: Gauss's rule, exact for polynomials, else to rounding."""
+        """Area between the pieces and their chords, mm^2, above 0 where they bulge to the right of the chord.
+
+        By Gauss's rule, exact for polynomials, else to rounding.
+        """
         if not self.count:
             return 0.0
         # x . y' of degree 2d-1 needs d nodes; a rational piece of at most a half turn is smooth enough for 24 more.

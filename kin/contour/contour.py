@@ -284,8 +284,10 @@ class Contour(Pieces):
         from 1e-12 to 2e-11 of the extent. Cost grows as tolerance^(-1/3). Raises ValueError where rounding is larger.
         """
         # the arcs of the default are kept: where they are not many more, they serve for what is asked
-        alike = tolerance is None or not self.beziers.count or self._fine <= tolerance <= ALIKE * self._fine
-        return self._fine_arcs if tolerance is None or alike else self._arcs_within(tolerance)
+        usual = self._arc_tolerance
+        if tolerance is None or not self.beziers.count or usual <= tolerance <= ALIKE * usual:
+            return self._usual_arcs
+        return self._arcs_within(tolerance)
 
     @cached_property
     def rough(self) -> tuple[Arcs, float]:
@@ -306,18 +308,19 @@ class Contour(Pieces):
     @property
     def spread(self) -> float:
         """Greatest distance, mm, of the arcs that stand for splines by default from the splines; 0 without splines."""
-        return self._fine if self.beziers.count else 0.0
+        return self._arc_tolerance if self.beziers.count else 0.0
 
     @property
-    def _fine(self) -> float:
+    def _arc_tolerance(self) -> float:
+        """Greatest distance, mm, of the arcs that stand for splines by default from the splines."""
         if self.arcs_within is not None:
             return self.arcs_within
         extent = float(np.abs(self.vertices).max())
         return max(ARC_SHARE * extent, min(ARC_TOLERANCE, MOST_SHARE * extent))
 
     @cached_property
-    def _fine_arcs(self) -> tuple[Arcs, Indices]:
-        return self._arcs_within(self._fine) if self.beziers.count else self.plain
+    def _usual_arcs(self) -> tuple[Arcs, Indices]:
+        return self._arcs_within(self._arc_tolerance) if self.beziers.count else self.plain
 
     @cached_property
     def plain(self) -> tuple[Arcs, Indices]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from kin.contour.arcs import cross, dot, left, right, unit
 from kin.numeric.angles import TURN
-from kin.numeric.feet import Feet, better, climb, gauss, grid, searched_again, two_best
+from kin.numeric.feet import Feet, better, climb, grid, searched_again, turn_quadrature, two_best
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -288,7 +288,7 @@ class FlatEnvelope:
 
     def area_and_perimeter(self) -> tuple[float, float]:
         """1/2 integral of (p^2 - p'^2) over t, mm^2, and integral of p, mm (Cauchy)."""
-        tau, weight = gauss(self.pitch.breaks)
+        tau, weight = turn_quadrature(self.pitch.breaks)
         (p, slope, _), t = self._support(tau)
         weight = weight * t[1]
         return float(0.5 * weight @ (p * p - slope * slope)), float(weight @ p)
@@ -471,7 +471,7 @@ class RollerEnvelope:
 
     def area_and_perimeter(self) -> tuple[float, float]:
         """Steiner's formulas for the inner parallel curve: A - e P + pi e^2 and P - 2 pi e."""
-        tau, weight = gauss(self.pitch.breaks)
+        tau, weight = turn_quadrature(self.pitch.breaks)
         point, first, _ = self.pitch.points(tau)
         area = float(0.5 * weight @ cross(point, first))
         perimeter = float(weight @ np.hypot(first[:, 0], first[:, 1]))

@@ -131,7 +131,10 @@ def _demand_joined(law: Transmission, field: str, *, corners: bool) -> None:
 
 
 def demand_leaf(x: Array, distance: Array, arm: float, most: float) -> None:
-    """Refuse |OQ| below 0, not 0 where the leaf begins and ends, or so long that no swing leads there."""
+    """Raise IntentError unless |OQ| = `distance` (n,), mm, at places x (n,) of a leaf, 0 to 1, can be on `arm`, mm.
+
+    It is 0 at both ends, nowhere negative, and below `most`, mm, where an arm is fully stretched or meets the shaft.
+    """
     field = "rosette.leaf"
     ends = np.flatnonzero(((x == 0) | (x == 1)) & (np.abs(distance) > JOIN * arm))
     low, high = int(np.argmin(distance)), int(np.argmax(distance))

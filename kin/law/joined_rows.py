@@ -26,9 +26,10 @@ _SHARE = 1e-12  # of the greatest position, to which the difference is followed
 
 @dataclass(frozen=True, eq=False)
 class JoinedRows:
-    """Rows of a master's angle (n,), rad, from 0 to a turn, and of a slave's position, (1 or 3, n), mm or rad.
+    """Rows of a master's angle (n,), rad, from 0 to a turn, and of a slave, (1 or 3, n): its position, mm or rad.
 
-    By a line the position alone is met; by a quintic velocity and acceleration too, rows 1 and 2, by rad of the master.
+    By a line the position alone is met; by a quintic its first and second derivative by rad of the master too, in rows
+    1 and 2 of the slave.
     """
 
     master: Array
@@ -53,7 +54,7 @@ class JoinedRows:
         return rows
 
     def position(self, angle: Array) -> Array:
-        """The slave's position at angles of the master (n,), rad."""
+        """The slave's position (n,), mm or rad, at angles of the master (n,), rad."""
         coefficients, last = self.coefficients, len(self.master) - 2
         part = np.clip(np.searchsorted(self.master, angle, side="right") - 1, 0, last)
         x = (angle - self.master[part]) / (self.master[part + 1] - self.master[part])

@@ -43,12 +43,13 @@ def joints_of(meetings: Iterable[tuple[float, Array, Array]], size: Array) -> tu
     `size` has the greatest value of each derivative.
     """
 
-    def told(value: Array, k: int) -> float:
+    def without_rounding(value: Array, k: int) -> float:
         return float(value[k]) if abs(value[k]) > _JOIN * size[k] else 0.0  # what rounding leaves of a rest is 0
 
     joints = []
     for at, before, after in meetings:
         jumps = np.flatnonzero(np.abs(after - before) > _JOIN * size)
         if len(jumps):
-            joints.append(Joint(at, tuple((k, told(before, k), told(after, k)) for k in jumps.tolist())))
+            limits = ((k, without_rounding(before, k), without_rounding(after, k)) for k in jumps.tolist())
+            joints.append(Joint(at, tuple(limits)))
     return tuple(joints)

@@ -139,9 +139,10 @@ def from_arc(
 ) -> Transmission:
     """Make the law of a pitch curve that begins with a circular arc over t in [0, delta] (W sections 3, 7a; Figure 5).
 
-    The arc joins two mean positions, psi = 0 and r = R = 2 l cos(alpha/2), bulging outwards (convex) or inwards. Being
-    symmetric about its bisector it meets its image with a common tangent. Raises IntentError for an excluded ratio, a
-    radius below half the chord (concave: up to `_least_concave`), and a law that swings too far or turns the cam back.
+    `arm` and `radius` are mm, lam/mu is the ratio pi/alpha. The arc joins two mean positions, psi = 0 and r = R =
+    2 l cos(alpha/2), bulging outwards (convex) or inwards. Being symmetric about its bisector it meets its image with a
+    common tangent. Raises IntentError for an excluded ratio, a radius too small for the chord, or for a cam with a
+    concave arc to be turned through, and a law that swings too far or turns the cam back.
     """
     demand_ratio(lam, mu, arm)
     alpha, delta = math.pi * mu / lam, math.pi / lam

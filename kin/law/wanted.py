@@ -80,7 +80,7 @@ def nearest(wanted: Transmission, harmonics: int) -> Nearest:
         if extremes.greatest <= max(_NOTHING, (1 + 0.01 * _CLOSE) * least) or not search.least(reference):
             break
         coefficients = coefficients + search.levelling_change(
-            reference, reference.error, search.rows(coefficients, reference)
+            reference, reference.error, search.jacobian(coefficients, reference)
         )
     if not best.greatest <= max(_NOTHING, (1 + _CLOSE) * least):
         other = "a smaller stroke" if harmonics == MOST_HARMONICS else "other harmonics"
@@ -220,18 +220,18 @@ class _Search:
         whole = len(reference.error) == 2 * len(self.odd) + 1
         return float(np.abs(reference.error).min()) if whole else 0.0
 
-    def rows(self, coefficients: Array, places: _Extremes) -> Array:
-        """By how much the error at places (n,) rises with each coefficient, (n, 2 m)."""
+    def jacobian(self, coefficients: Array, places: _Extremes) -> Array:
+        """Derivatives of the error at n places by the 2 m coefficients, (n, 2 m)."""
         angles = self.rates[:, None] * places.t
         psi, slope = self._psi(coefficients, places.t)
         rate = -1.0 / np.sqrt(np.maximum(np.cos(psi) ** 2, 1.0 - _SHARE**2))
         weight = rate / np.maximum(1.0 + 0.5 * slope, _STEEP)
-        rows: Array = (weight * np.concatenate([np.cos(angles), np.sin(angles)])).T
-        return rows
+        jacobian: Array = (weight * np.concatenate([np.cos(angles), np.sin(angles)])).T
+        return jacobian
 
-    def levelling_change(self, reference: _Extremes, error: Array, rows: Array) -> Array:
+    def levelling_change(self, reference: _Extremes, error: Array, jacobian: Array) -> Array:
         """The change of the coefficients that gives all of a reference one error in turn, as far as it is linear."""
-        solved: Array = np.linalg.solve(np.column_stack([rows, -np.sign(reference.error)]), -error)
+        solved: Array = np.linalg.solve(np.column_stack([jacobian, -np.sign(reference.error)]), -error)
         return solved[:-1]
 
     def on_grid(self, coefficients: Array) -> Array:
@@ -245,7 +245,7 @@ class _Search:
             error, t = self._sampled_error(coefficients)
         for _ in range(_STEPS):
             places = _Extremes(self.grid, t, error)
-            step = self._best_change(places, self.rows(coefficients, places))
+            step = self._best_change(places, self.jacobian(coefficients, places))
             for halving in range(_HALVINGS):
                 trial = coefficients + 0.5**halving * step
                 error, t = self._sampled_error(trial)
@@ -265,17 +265,17 @@ class _Search:
         except UnsettledError:
             return np.full(self.grid.shape, math.inf), self.grid
 
-    def _best_change(self, places: _Extremes, rows: Array) -> Array:
+    def _best_change(self, places: _Extremes, jacobian: Array) -> Array:
         """The change of the coefficients (2 m,) that is best for the linear problem at places."""
-        change, error = np.zeros(rows.shape[1]), places.error
+        change, error = np.zeros(jacobian.shape[1]), places.error
         for _ in range(_STEPS):
             reference = self.reference(_Extremes(np.arange(len(error), dtype=float), places.t, error))
             level = self.least(reference)
             if not level or np.abs(error).max() <= (1 + 1e-3) * level:
                 break
             kept = reference.tau.astype(np.intp)
-            change = self.levelling_change(reference, places.error[kept], rows[kept])
-            error = places.error + rows @ change
+            change = self.levelling_change(reference, places.error[kept], jacobian[kept])
+            error = places.error + jacobian @ change
         return change
 
 

@@ -133,7 +133,7 @@ def _regular_and_local(deviations: Deviations, curve: Smooth, rest: Array) -> li
     smooth = fit(deviations.parameter, rest, curve.spans).curve
     t = equal_steps(LOOKS)
     form = smooth.rows(t)[0]
-    sd = smooth.deviations(t)
+    sd = smooth.standard_deviations(t)
     waves = np.fft.rfft(form - form.mean()) * (2.0 / LOOKS)
     named = []
     k = int(np.argmax(np.abs(waves[2:])) + 2)

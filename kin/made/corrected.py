@@ -55,7 +55,7 @@ class _Beyond(NamedTuple):
         return self.drive.smooth
 
     def rows(self, phi: Array) -> Array:
-        """See `Excitation`."""
+        """Position, velocity and acceleration, SI by rad, (3, n), at shaft angles (n,); see `Excitation`."""
         outwards = self.follower.contacts[self.contact].sense  # own positions grow outwards
         rows: Array = self.drive.rows(phi) - outwards * self.follower.si * self.follower.added(phi)[self.contact]
         return rows
@@ -78,7 +78,7 @@ class _Meant:
         return True
 
     def rows(self, phi: Array) -> Array:
-        """See `Excitation`."""
+        """Intended position, velocity and acceleration, SI by rad, (3, n), at shaft angles (n,); see `Excitation`."""
         rows: Array = self.follower.si * self.follower.motion.derivatives(phi, 2)[:3]
         return rows
 
@@ -163,11 +163,11 @@ class Corrected(Follower):
         return [_Beyond(drive, self, k) for k, drive in enumerate(self.exact.drives(contour))]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """See `Follower`."""
+        """Of the follower on its own contour, as `Follower.pressed` has it."""
         return self.exact.pressed(contour, phi)
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
-        """See `Follower`."""
+        """Shaft angle and own position of each contact at points (n, 2) with normals; as `Follower.touching`."""
         return self.exact.touching(points, normals)
 
     def added(self, shaft: Array) -> Array:

@@ -119,7 +119,7 @@ class MadeMotion:
         return None
 
     def highest(self, place: float) -> Estimate:
-        """Greatest lift; the intended one is reached at a shaft angle."""
+        """Estimate of the greatest lift, mm or rad; `place`, rad of shaft, is where the intended motion has it."""
         weights, _ = self._weights(place)
         intended = self._intended(place)[0] - float(self.errors.intended[0].min())
         return Estimate(intended + float(weights @ self.errors.rows[0]), intended, self.errors.influence(weights))

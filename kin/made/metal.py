@@ -88,9 +88,11 @@ class Metal:
     def of(
         follower: Follower, side: Side, deviation: Deviation, finest: int = 0, gauge: Follower | None = None
     ) -> Metal:
-        """Metal whose surface lies `deviation` mm off the exact contour along its normal, above 0 for too much.
+        """Metal whose surface lies off the exact contour along its normal, above 0 for too much, inside it or outside.
 
-        It lies inside the contour (`side` 1) or outside (-1). The deviation has `finest` spans or waves a turn.
+        `side` is 1 for metal inside the contour, -1 outside. `deviation` of parameters (n,) is the distance, mm, and
+        its derivative, (2, n). `finest` is the number of its shortest waves or spans in a turn. `gauge` runs on the
+        metal, by default the follower.
         """
 
         def skin(parameter: Array, height: float) -> tuple[Array, Array]:
@@ -127,17 +129,24 @@ class Metal:
         return Corners(breaks, points, self.surface(breaks - BEFORE)[1], after)
 
     def _within(self, place: Array, corner: Indices, contact: int) -> tuple[Array, Array]:
-        """Shaft angles and positions of a contact at places (n,) of pieces that are `corner`."""
+        """Shaft angles (n,) and positions (n,) at which a contact touches places (n,) of the metal.
+
+        A place is a parameter, or where `corner` (n,) is 0 or more, that corner's number, the share from 0 to 1 of the
+        turn of the normal there.
+        """
         points, normals = self.surface(np.where(corner < 0, place, 0.0))
-        turned = corner >= 0
-        own, share = corner[turned], place[turned, None]
-        points[turned] = self.corners.points[own]
+        at_corner = corner >= 0
+        own, share = corner[at_corner], place[at_corner, None]
+        points[at_corner] = self.corners.points[own]
         chord = (1.0 - share) * self.corners.before[own] + share * self.corners.after[own]
-        normals[turned] = chord / np.hypot(chord[:, :1], chord[:, 1:])
+        normals[at_corner] = chord / np.hypot(chord[:, :1], chord[:, 1:])
         return self.gauge.touching(points, normals)[contact]
 
     def _pieces(self, contact: int) -> _Pieces:
-        """All pieces in order. Raises ContactError where the contact does not reach the metal."""
+        """Stretches of the metal between `places`, and its corners, in order, with the shaft angles of their touch.
+
+        Places of a corner run from 0 to 1. Raises ContactError where the contact does not reach the metal.
+        """
         breaks = self.corners.parameters
         near = np.mod(self.places[:, None] - breaks + 2.0 * BEFORE, TURN) < 4.0 * BEFORE
         places = self.places[~near.any(axis=1)]
@@ -174,23 +183,23 @@ class Metal:
         return outwards * best, parameter
 
     def _place(
-        self, contact: int, shaft: Array, corner: Indices, ends: tuple[Array, Array], off: tuple[Array, Array]
+        self, contact: int, shaft: Array, corner: Indices, ends: tuple[Array, Array], excess: tuple[Array, Array]
     ) -> Array:
         """Places between two ends (n,) at which the contact stands at shaft angles (n,): Illinois' rule.
 
-        `off` are the shaft angles at the ends less those.
+        `excess` is that of the shaft angles at the ends over those.
         """
-        (a, b), (at_a, at_b) = ends, off
+        (a, b), (excess_a, excess_b) = ends, excess
         place = a
         for _ in range(STEPS):
-            width = at_b - at_a
-            place = np.where(width != 0.0, b - at_b * (b - a) / np.where(width != 0.0, width, 1.0), a)
+            width = excess_b - excess_a
+            place = np.where(width != 0.0, b - excess_b * (b - a) / np.where(width != 0.0, width, 1.0), a)
             angle, _ = self._within(place, corner, contact)
-            at = np.mod(angle - shaft + np.pi, TURN) - np.pi
-            same = (at > 0.0) == (at_b > 0.0)
-            a, at_a = np.where(same, a, b), np.where(same, 0.5 * at_a, at_b)
-            b, at_b = place, at
-            if np.abs(at).max(initial=0.0) < SETTLED:
+            middle = np.mod(angle - shaft + np.pi, TURN) - np.pi
+            same = (middle > 0.0) == (excess_b > 0.0)
+            a, excess_a = np.where(same, a, b), np.where(same, 0.5 * excess_a, excess_b)
+            b, excess_b = place, middle
+            if np.abs(middle).max(initial=0.0) < SETTLED:
                 break
         return place
 

@@ -214,7 +214,7 @@ def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array, 
         place = np.unwrap(places[k], axis=0, period=TURN)
         rate = np.abs(FIRST @ place / step)
         gain = (raised[k] - lowered[k]) / (2.0 * RAISED)
-        sds = np.stack([np.abs(gain) * rate**q * curve.deviations(place[2], q) for q in range(3)])
+        sds = np.stack([np.abs(gain) * rate**q * curve.standard_deviations(place[2], q) for q in range(3)])
         normals = turned(side * follower.envelope.frames(place[2]).normals, np.array(turned_by))
         contacts.append(Errors(shaft, rows, sds, gain, intended, (Felt(curve, place[2], gain, normals),)))
     return contacts
@@ -290,7 +290,7 @@ def output_errors(
     square = np.zeros_like(centred)
     for face in range(4):
         moved = ring.copy()
-        moved[face] += curve.deviations(relative + face * QUARTER)
+        moved[face] += curve.standard_deviations(relative + face * QUARTER)
         square += (output(CENTRED.first, CENTRED.second, moved)[1] - centred) ** 2
     return OutputErrors(shaft, centred, worst, np.sqrt(square))
 

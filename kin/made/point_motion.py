@@ -126,8 +126,9 @@ def measured_motion(
 ) -> PointMotion:
     """Let a follower run on the metal of each of its surfaces, and give its motion over a span from angle 0.
 
-    `opposed` contacts are as far apart as the points say, so that play is what their distance varies by. A swing over a
-    section of the turn changes its sign from one to the next over the shaft angle less `lag` times the swing.
+    `opposed` contacts are as far apart as the points say, so that play is what their distance varies by. Where
+    `span` is a section of the turn, the swing of each section is the negative of that before, over the shaft angle less
+    `lag` times the swing; the mean of all is given, and as `uneven` how far one is off it.
 
     Raises ContactError where a contact finds no metal, GapError for a gap, ValueError as `fit` does.
     """
@@ -165,7 +166,10 @@ def measured_motion(
 
 
 def _sections(swing: Array, span: float, lag: float) -> tuple[Array, float]:
-    """Swing over equal shaft angles of the first of equal sections, as all of them tell it; how far one is off that."""
+    """Mean swing of equal sections over equal shaft angles of the first (n,), and how far one is off it, rad.
+
+    The swing of each is the negative of that before over the cam's own angle, the shaft's less `lag` times the swing.
+    """
     phi = equal_steps(FINER * len(swing))
     fine = _finer(swing)
     count = round(TURN / span)

@@ -78,7 +78,10 @@ class Rows(NamedTuple):
     words: Words
 
     def off(self, measured: Array, nominal: Array, turns: dict[int, float] | None = None) -> Array:
-        """Root mean square (m,) of the rows' difference, as a share of their sizes, some turned back."""
+        """Root mean square (m,) of measured less nominal rows, each as a share of the size of its cam.
+
+        `turns` are angles, rad, by which the rows of these ranks are turned back first.
+        """
         back = measured.copy()
         every = equal_steps(LOOKS)
         for rank, turn in (turns or {}).items():

@@ -109,7 +109,7 @@ class Smooth:
         rows: Array = np.stack([(c * _values(place, q, self.spans)).sum(axis=0) for q in range(order + 1)])
         return rows
 
-    def deviations(self, t: Array, order: int = 0) -> Array:
+    def standard_deviations(self, t: Array, order: int = 0) -> Array:
         """Standard deviation (n,) of the curve's derivative of an order at parameters t (n,), mm/rad^order."""
         place, span = _place(t, self.spans)
         index = (span + np.arange(WIDTH)[:, None]) % self.spans

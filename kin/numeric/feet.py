@@ -187,8 +187,8 @@ def better(first: Feet, two: Feet, score_one: Array | None = None, score_two: Ar
     return Feet(*(np.where(wins if a.ndim == 1 else wins[:, None], a, b) for a, b in pairs))
 
 
-def gauss(breaks: Array) -> tuple[Array, Array]:
-    """Nodes and weights (m,) that integrate over one turn a function smooth between the breaks."""
+def turn_quadrature(breaks: Array) -> tuple[Array, Array]:
+    """Nodes and weights (m,), rad, that integrate over one turn a function smooth between the breaks."""
     ends = grid(breaks, 64)
     ends = np.append(ends, ends[0] + TURN)
     node, weight = quadrature.gauss(16)

@@ -199,7 +199,7 @@ def cbrt_rows(x: Row, value: Row, order: int) -> Row:
 
 
 def tan_rows(value: Row, sense: float, order: int) -> Row:
-    """Taylor coefficients of tan (sense 1) and tanh (sense -1), from the value: y' = 1 + sense y^2."""
+    """Taylor coefficients (order + 1, ...) of tan (sense 1), tanh (sense -1), from the value: y' = 1 + sense y^2."""
     rows = [value]
     if order:
         rows.append(value**2 * sense + 1.0)

@@ -236,7 +236,7 @@ class _Machine:
             raise self._error(number, "a coordinate stands before G0 to G3, and G90 or G91", "syntax")
         if motion in "23" and self.modes.get("plane") is None:
             raise self._error(number, "an arc stands before G17", "syntax")
-        start = list(self.at)
+        before = list(self.at)
         for k, axis in enumerate("XYZ"):
             if axis not in numbers:
                 continue
@@ -252,17 +252,16 @@ class _Machine:
             raise self._error(number, what, "syntax")
         if motion != "0" and not (self.feed > 0.0 and self.turning):
             raise self._error(number, "a feed move without a feed F and a turning spindle M3", "syntax")
-        begin = [now if was is None else was for was, now in zip(start, self.at, strict=True)]
-        if any(value is None for value in self.at):  # the first moves are to a place from nowhere known
+        x, y, z = self.at
+        if x is None or y is None or z is None:  # the first moves go to a place that is not wholly known
             if motion != "0":
                 raise self._error(number, "a feed move from an unknown place", "syntax")
             return
-        # from nowhere known a coordinate comes as it is reached
-        first = (float(begin[0] or 0.0), float(begin[1] or 0.0), float(begin[2] or 0.0))
-        last = (float(self.at[0] or 0.0), float(self.at[1] or 0.0), float(self.at[2] or 0.0))
-        if any(value is None for value in start):
-            first = (first[0], first[1], max(first[2], last[2]))
-        move = Move(number, motion == "0", first, last, 0.0, None, 0.0 if motion == "0" else self.feed, self.turning)
+        # a coordinate that was not known is taken as it is reached, and the cutter no lower than it ends
+        known = [now if was is None else was for was, now in zip(before, (x, y, z), strict=True)]
+        first = (known[0], known[1], max(known[2], z) if None in before else known[2])
+        rapid = motion == "0"
+        move = Move(number, rapid, first, (x, y, z), 0.0, None, 0.0 if rapid else self.feed, self.turning)
         self.moves.append(self._bent(move, numbers, motion) if centred else move)
 
     def _bent(self, move: Move, numbers: dict[str, float], motion: str) -> Move:

@@ -26,7 +26,7 @@ def test_uncertainty_of_a_curve_and_its_derivatives(spans):
     at = np.arange(36_000) * TURN / 36_000
     told = []
     for order, unit in enumerate((1e3, 1.0, 1.0)):
-        sd = found.curve.deviations(at, order) * 0.002 / (found.curve.sigma * found.curve.widened) * unit
+        sd = found.curve.standard_deviations(at, order) * 0.002 / (found.curve.sigma * found.curve.widened) * unit
         told.append((float(np.sqrt(np.mean(sd**2))), float(sd.max())))
     rms, most = zip(*told, strict=True)
     assert rms == pytest.approx(UNCERTAIN[spans][:3], rel=1e-9)

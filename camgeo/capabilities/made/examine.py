@@ -70,7 +70,7 @@ def _surface(recipe: Recipe, design: Design, name: str, curve: Smooth, error: fl
         "greatest": float(e[worst]) / recipe.mm,
         "at_deg": degrees(float(design.exact.gauges[name].shaft_angle(t[worst : worst + 1])[0])),
         "rms": float(np.sqrt(np.mean(e**2))) / recipe.mm,
-        "uncertainty": math.hypot(COVERAGE * float(curve.deviations(t).max()), error) / recipe.mm,
+        "uncertainty": math.hypot(COVERAGE * float(curve.standard_deviations(t).max()), error) / recipe.mm,
     }
 
 
@@ -99,7 +99,7 @@ def _correction(
         each[surface.name] = paired(gauge, contact_errors(gauge, surface.side, curve, shaft))
         e = curve.rows(t)[0]
         greatest = max(greatest, float(e.max()), float(e.min()), key=abs)
-        uncertain = max(uncertain, COVERAGE * float(curve.deviations(t).max()))
+        uncertain = max(uncertain, COVERAGE * float(curve.standard_deviations(t).max()))
     motion, _ = follower_motion(design, each)
     swings = design.exact.gauge.unit == "deg"
     scale = math.degrees(1.0) if swings else 1.0 / recipe.mm

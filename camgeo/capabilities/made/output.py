@@ -186,7 +186,7 @@ def _over_shaft(recipe: Recipe, surface: SurfaceMade) -> str:
     dots = np.mod(np.degrees(follower.shaft_angle(deviations.parameter[chosen])), 360.0), deviations.e[chosen] / mm
     zone = recipe.of(Made)
     half = None if zone is None or zone.profile is None else 0.5 * zone.profile / mm
-    e, band = surface.fit.curve.rows(t)[0] / mm, COVERAGE * surface.fit.curve.deviations(t) / mm
+    e, band = surface.fit.curve.rows(t)[0] / mm, COVERAGE * surface.fit.curve.standard_deviations(t) / mm
     return _plot(shaft[order], e[order], band[order], dots=dots, zone=half)
 
 
@@ -242,7 +242,7 @@ def stretches(surface: SurfaceMade) -> list[tuple[float, float, float, float]]:
     Angles are degrees of the shaft, the excess is in mm; it exceeds twice its standard deviation all along.
     """
     t = equal_steps(LOOKS)
-    e, band = surface.fit.curve.rows(t)[0], COVERAGE * surface.fit.curve.deviations(t)
+    e, band = surface.fit.curve.rows(t)[0], COVERAGE * surface.fit.curve.standard_deviations(t)
     over = e > np.maximum(band, 1e-6)
     if not over.any():
         return []

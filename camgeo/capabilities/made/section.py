@@ -200,7 +200,7 @@ def _surface(recipe: Recipe, paths: Sequence[Path], surface: SurfaceMade) -> dic
         "places": count,
         "spans": curve.spans,
         "noise": curve.sigma / mm,
-        "smoothing": COVERAGE * float(curve.deviations(equal_steps(720)).max()) / mm,
+        "smoothing": COVERAGE * float(curve.standard_deviations(equal_steps(720)).max()) / mm,
         "correlation": surface.fit.correlation,
         "widened": curve.widened,
         "least_fault_point": least_fault(curve.sigma, 1.0, count) / mm,

@@ -189,7 +189,7 @@ class Curve(NamedTuple):
         return float(place[i]), float(value[i])
 
     def dips(self, level: float) -> tuple[Array, Array]:
-        """Local minima below a level, but those at a knot: where, and how deep they lie, (m,) each."""
+        """Local minima below `level`, except at knots: places (m,), rad, and positive depths below the level (m,)."""
         slope = _polynomial(self._rows(1)[:, None], _SHARES[:, None])
         i, piece = np.nonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))
         low, high = _SHARES[i], _SHARES[i + 1]
@@ -609,7 +609,7 @@ class _Search:
         return self._solved(Touch(which, which == j))
 
     def _without_wrong_signs(self, touch: Touch) -> _State | None:
-        """Only those bounds of a set whose multipliers have their signs; None where too few are left."""
+        """The bounds of a set whose multipliers (`pull`) have their signs; None where too few are left."""
         while len(touch.which) >= self.least:
             state = self._solved(touch)
             right = np.where(touch.upper, -state.pull, state.pull) > 0.0
