@@ -15,7 +15,7 @@ import numpy as np
 
 from kin.contour.contour import apart
 from kin.follower.frame_contact import CENTRED, RESOLUTION, WAYS, FrameError, driven, laid, resolution
-from kin.follower.frame_dwell import Output, longest_dwell
+from kin.follower.frame_dwell import Output, longest_dwells
 from kin.follower.motion_error import MotionError, Play, motion_error, with_steps
 from kin.follower.support import bearing_of
 from kin.numeric.angles import TURN, degrees
@@ -335,13 +335,12 @@ def _intended_dwell(mechanism: Mechanism, band: float) -> Array:
 
 def _dwells(ways: list[Resting], mechanism: Mechanism, band: float, over: Over) -> tuple[DwellFound, ...]:
     """Return the longest dwell of each way, the shortest of them first; of those as short the first way's."""
-    dwells = []
-    for way in ways:
-        dwell = longest_dwell(_output(way, mechanism, over), band)
-        band_width = float(np.degrees(band)) if mechanism.unit == "deg" else band
-        dwells.append(
-            DwellFound(over, band_width, degrees(dwell.start), float(np.degrees(dwell.length)), way.rest.name)
-        )
+    width = float(np.degrees(band)) if mechanism.unit == "deg" else band
+    longest = longest_dwells([_output(way, mechanism, over) for way in ways], band)
+    dwells = [
+        DwellFound(over, width, degrees(dwell.start), float(np.degrees(dwell.length)), way.rest.name)
+        for way, dwell in zip(ways, longest, strict=True)
+    ]
     return tuple(sorted(dwells, key=lambda dwell: round(dwell.length_deg, ALIKE)))
 
 

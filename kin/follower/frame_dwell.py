@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.numeric.longest_window import Dwell, doubled, dwells
+from kin.numeric.longest_window import Dwell, doubled, dwells, longest_of_each
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator, Sequence
 
     from kin.numeric.arrays import Array
 
@@ -63,12 +63,16 @@ class _Span(NamedTuple):
         return _Span(self.begin, max(self.core, other.core), min(self.rest, other.rest), max(self.end, other.end))
 
 
-def longest_dwell(output: Output, band: float) -> Dwell:
-    """Find the longest window over which an output stays within the band; it begins in one period from 0."""
-    spans = _spans(output, band)
-    dwells = [_within(output, span, band) for span in spans] or [_anywhere(output, band)]
-    best = max(dwells, key=lambda dwell: round(dwell.length, ALIKE))
-    return Dwell(best.start % output.period, best.length, best.least, best.greatest)
+def longest_dwells(outputs: Sequence[Output], band: float) -> list[Dwell]:
+    """Longest window of each output over which it stays within the band; each begins in one period from 0."""
+    spans = [_spans(output, band) for output in outputs]
+    within = _within([(output, span) for output, some in zip(outputs, spans, strict=True) for span in some], band)
+    longest = []
+    for output, some in zip(outputs, spans, strict=True):
+        dwells = [next(within) for _ in some] or [_anywhere(output, band)]
+        best = max(dwells, key=lambda dwell: round(dwell.length, ALIKE))
+        longest.append(Dwell(best.start % output.period, best.length, best.least, best.greatest))
+    return longest
 
 
 def _anywhere(output: Output, band: float) -> Dwell:
@@ -77,40 +81,72 @@ def _anywhere(output: Output, band: float) -> Dwell:
     return Dwell(best.start + begin, best.length, best.least, best.greatest)
 
 
-def _within(output: Output, span: _Span, band: float) -> Dwell:
-    """Find the longest window in a span, which may go on beyond the period's end; at its ends it leaves the band.
+class _Cut(NamedTuple):
+    """An output from `begin` over `width`, with a polygon through `places` and `values` in place of the core.
 
-    The rest of the period is cut out, and a roof that quickly leaves the band put in its place. In place of the core is
-    put what passes both its extremes at either end: a window contains all of that, or hardly any.
+    The polygon passes both extremes of the core at either end: a window contains all of it, or hardly any. `breaks`
+    are the nodes and places.
     """
-    begin, core, rest, end = span
-    width, cored = end - begin, core < rest
-    nodes = np.concatenate([output.x[:-1], output.x[:-1] + output.period])
-    nodes = nodes[(nodes > begin) & (nodes < end)]
-    places, values = np.zeros(0), np.zeros(0)
-    if cored:
-        nodes = nodes[(nodes < core) | (nodes > rest)]
-        least, greatest = output.extremes(core, rest)
-        places = core + (rest - core) * np.array([0.0, *PASSING, 1.0])
-        first, last = output.f(places[[0, -1]])
-        values = np.array([first, greatest, least, greatest, least, last])
-    ends = output.f(np.array([begin, end]))
-    height = ROOF * max(float(np.ptp(output.value)), band)
-    roof = width * np.array([1.0, *RIDGE])
 
-    def cut(t: Array, _: int) -> Array:
-        value, x = np.empty_like(t), t + begin
-        outside = t >= width
-        inside = (x > core) & (x < rest) & cored
-        value[outside] = np.interp(t[outside], roof, (ends[1], ends[1] + height, ends[0]))
-        if cored:
-            value[inside] = np.interp(x[inside], places, values)
-        value[~outside & ~inside] = output.f(x[~outside & ~inside])
+    f: Callable[[Array], Array]
+    begin: float
+    width: float
+    places: Array
+    values: Array
+    breaks: Array
+
+    @staticmethod
+    def of(output: Output, span: _Span) -> _Cut:
+        begin, core, rest, end = span
+        nodes = np.concatenate([output.x[:-1], output.x[:-1] + output.period])
+        nodes = nodes[(nodes > begin) & (nodes < end)]
+        places, values = np.zeros(0), np.zeros(0)
+        if core < rest:
+            nodes = nodes[(nodes < core) | (nodes > rest)]
+            least, greatest = output.extremes(core, rest)
+            places = core + (rest - core) * np.array([0.0, *PASSING, 1.0])
+            first, last = output.f(places[[0, -1]])
+            values = np.array([first, greatest, least, greatest, least, last])
+        return _Cut(output.f, begin, end - begin, places, values, np.concatenate([nodes, places]))
+
+    def __call__(self, x: Array) -> Array:
+        """Values (n,) at x (n,) of the span."""
+        if not len(self.places):
+            return self.f(x)
+        value: Array = np.interp(x, self.places, self.values)
+        outside = (x <= self.places[0]) | (x >= self.places[-1])
+        value[outside] = self.f(x[outside])
+        return value
+
+
+def _within(spans: Sequence[tuple[Output, _Span]], band: float) -> Iterator[Dwell]:
+    """Find the longest window in each span, which may go on beyond the period's end; at its ends it leaves the band.
+
+    The spans stand side by side as one function, roofs between them that quickly leave the band.
+    """
+    if not spans:
+        return
+    cuts = [_Cut.of(*pair) for pair in spans]
+    width = np.array([cut.width for cut in cuts])
+    edges = np.append(0.0, np.cumsum(RIDGE[1] * width))
+    ends = np.array([cut.f(np.array([cut.begin, cut.begin + cut.width])) for cut in cuts])
+    values = np.concatenate([output.value for output, _ in spans])
+    top = values.max() + ROOF * max(float(np.ptp(values)), band)
+    roofs = np.ravel([edges[:-1], edges[:-1] + width, edges[:-1] + RIDGE[0] * width], order="F")
+    levels = np.ravel([ends[:, 0], ends[:, 1], np.full(len(cuts), top)], order="F")
+    roofs, levels = np.append(roofs, edges[-1]), np.append(levels, levels[0])
+
+    def joined(t: Array, _: int) -> Array:
+        value: Array = np.interp(t, roofs, levels)
+        for low, cut in zip(edges.tolist(), cuts, strict=False):
+            inside = (t >= low) & (t < low + cut.width)
+            value[inside] = cut(t[inside] - low + cut.begin)
         return value[None]
 
-    breaks = np.concatenate([nodes - begin, places - begin, roof[:2]])
-    best = dwells(cut, breaks, band, float(roof[2]), 1)[0]
-    return Dwell(best.start + begin, best.length, best.least, best.greatest)
+    breaks = [cut.breaks - cut.begin + low for low, cut in zip(edges.tolist(), cuts, strict=False)]
+    best = longest_of_each(joined, np.concatenate([*breaks, roofs]), band, edges)
+    for low, cut, dwell in zip(edges.tolist(), cuts, best, strict=False):
+        yield Dwell(dwell.start - low + cut.begin, dwell.length, dwell.least, dwell.greatest)
 
 
 def _spans(output: Output, band: float) -> list[_Span]:

@@ -14,6 +14,7 @@ either excluded by their ranges or bracketed.
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
     Flags = NDArray[np.bool_]
 
-__all__ = ["Dwell", "doubled", "dwells"]
+__all__ = ["Dwell", "doubled", "dwells", "longest_of_each"]
 
 # Output that differs by less than this part of the band is resolved no further; ends are then found from f itself.
 _RESOLUTION = 1e-9
@@ -85,6 +86,34 @@ def dwells(
     period, or as far as f's rounding lets them be known. An output that never leaves the band is one window of a
     whole period. Raises ValueError for a band that is not positive, or is lost in the rounding of f.
     """
+    search = _search(f, breaks, band, period)
+    (least, _), (greatest, _) = search.of.least(), search.of.greatest()
+    if greatest - least <= band + 2.0 * search.of.noise:  # a run from a little above the least takes in all of it
+        return (Dwell(0.0, period, least, greatest),)
+    at_nodes = search.node_windows()
+    shortest = float((at_nodes.b - at_nodes.a).max(initial=0.0)) if most == 1 else 0.0
+    return _polished(_disjoint(search.maximal_windows(at_nodes, shortest), period, most), f, search)
+
+
+def longest_of_each(
+    f: Callable[[Array, int], Array], breaks: Sequence[float] | Array, band: float, edges: Array
+) -> tuple[Dwell, ...]:
+    """Find the longest window of each section between `edges` (m + 1,), the period's 0 and end among them.
+
+    As `dwells`; f leaves the band about each edge, so that no window reaches from one section into the next.
+    """
+    search = _search(f, breaks, band, float(edges[-1]))
+    at_nodes = search.node_windows()
+    length = at_nodes.b - at_nodes.a
+    sections = range(len(edges) - 1)
+    section = search.section(at_nodes, edges)
+    longest = search.maximal_windows(at_nodes, min(float(length[section == k].max(initial=0.0)) for k in sections))
+    section = search.section(longest, edges)
+    each = [_disjoint(longest.take(section == k), search.period, 1) for k in sections]
+    return _polished(each[0].joined(*each[1:]), f, search)
+
+
+def _search(f: Callable[[Array, int], Array], breaks: Sequence[float] | Array, band: float, period: float) -> _Search:
     if not (math.isfinite(band) and band > 0):
         raise ValueError(f"the band of a dwell must be above 0, not {band!r}")
     places = between(0.0, period, np.mod(np.asarray(breaks, dtype=float), period).tolist())
@@ -92,15 +121,7 @@ def dwells(
     if band <= 4.0 * function.noise:
         raise ValueError(f"a band of {band:.3g} is lost in the rounding of the output, {function.noise:.3g}")
     _demand_continuous(function, band)
-    (least, _), (greatest, _) = function.least(), function.greatest()
-    if greatest - least <= band + 2.0 * function.noise:  # a run that begins a little above the least takes in all of it
-        return (Dwell(0.0, period, least, greatest),)
-    search = _Search.through(function, band, period)
-    at_nodes = search.node_windows()
-    least = float((at_nodes.b - at_nodes.a).max(initial=0.0)) - _EQUAL * period if most == 1 else 0.0
-    longest = at_nodes.take(search.is_longest(at_nodes)).joined(search.balanced_windows(at_nodes.a, least))
-    chosen = _disjoint(longest, period, most)
-    return _polished(chosen, lambda x: f(np.mod(x, period), 0)[0], search)
+    return _Search.through(function, band, period)
 
 
 def _demand_continuous(pieces: Pieces, band: float) -> None:
@@ -143,8 +164,8 @@ class _Windows(NamedTuple):
     def take(self, which: Flags | Indices) -> _Windows:
         return _Windows(*map(itemgetter(which), self))
 
-    def joined(self, other: _Windows) -> _Windows:
-        return _Windows(*(np.concatenate(columns) for columns in zip(self, other, strict=True)))
+    def joined(self, *others: _Windows) -> _Windows:
+        return _Windows(*map(np.concatenate, zip(self, *others, strict=True)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,6 +235,30 @@ class _Search:
         b = self.crossing(last, np.where(leaves_up, low + self.band, low))
         windows = _Windows(a, b, first, last, rises, leaves_up, node, upper)
         return windows.take(b - a > _SAME * self.period)
+
+    @cached_property
+    def runs(self) -> Indices:
+        """For each piece the run of pieces, numbered through three periods, along which |f'| rises or falls all along.
+
+        Jumps the other way that are less than what balances count as none.
+        """
+        of = self.of
+        steep = np.abs(np.diff(of.coefficients, axis=1)[:, [0, -1]]) / of.width[:, None]
+        begin, end = np.tile(steep, (3, 1)).T
+        way = np.sign(end - begin)
+        step = way[1:] * (begin[1:] - end[:-1])
+        broken = (way[1:] != way[:-1]) | (way[1:] == 0.0) | (step < -_BALANCED * end[:-1])
+        runs: Indices = np.append(0, np.cumsum(broken))
+        return runs
+
+    def section(self, w: _Windows, edges: Array) -> Indices:
+        """In which section between `edges` (m + 1,) the middle of each window lies."""
+        return np.searchsorted(edges, np.mod(0.5 * (w.a + w.b), self.period), side="right") - 1
+
+    def maximal_windows(self, at_nodes: _Windows, shortest: float) -> _Windows:
+        """Windows that cannot be lengthened; those clearly below `shortest` at whose ends slopes balance may lack."""
+        balanced = self.balanced_windows(at_nodes.a, shortest - _EQUAL * self.period)
+        return at_nodes.take(self.is_longest(at_nodes)).joined(balanced)
 
     def is_longest(self, w: _Windows) -> Flags:
         """Whether the windows can not be lengthened by moving their bands a little up or down."""
@@ -306,15 +351,18 @@ class _Family:
         As db/da = f'(a)/f'(b), the length grows where f is steeper at a than at b. As b rises with a, no window between
         them is longer than from left to the end of the last; one of at least `least` is looked for.
         """
-        period = self.search.period
-        of = np.arange(len(left))
+        period, runs = self.search.period, self.search.runs
+        of, in_run = np.arange(len(left)), runs[self.first] == runs[self.last]
         _, at_a, at_b = self.ends(left)
         end, to_a, to_b = self.ends(right)
-        places = []
-        while len(of):
+        places: list[tuple[Indices, Array, Array, Array, Array]] = []
+        while len(of) or not places:
             least_a, most_a = np.minimum(at_a, to_a), np.maximum(at_a, to_a)
             least_b, most_b = np.minimum(at_b, to_b), np.maximum(at_b, to_b)
             apart = (least_a > most_b) | (most_a < least_b) | (end - left < least)
+            # of two places of one run the same is steeper all along
+            unlike = (np.abs(at_a - at_b) > _BALANCED * at_b) & (np.abs(to_a - to_b) > _BALANCED * to_b)
+            apart |= in_run[of] & unlike
             one_way = ((to_a <= at_a) & (to_b >= at_b)) | ((to_a >= at_a) & (to_b <= at_b))
             small = (right - left) * (most_a - least_b) <= _EQUAL * period * least_b
             settled = apart | one_way | small | (len(of) > _MOST_CELLS)
@@ -339,7 +387,7 @@ class _Family:
         """
         if not len(left):
             return left
-        last = left
+        last, rose = left, np.full(len(left), -1)
         for step in range(_FALSE_POSITIONS + _HALVINGS):
             drop = before - after
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -348,8 +396,8 @@ class _Family:
             _, at_a, at_b = self.ends(a)
             h = at_a - at_b
             rises = h > 0
-            after = np.where(rises, 0.5 * after, h)
-            before = np.where(rises, h, 0.5 * before)
+            again = np.where(rises == rose, 0.5, 1.0)  # an end that stays twice counts half
+            before, after, rose = np.where(rises, h, again * before), np.where(rises, again * after, h), rises
             left, right = np.where(rises, a, left), np.where(rises, right, a)
             if (np.abs(a - last) <= _SAME * self.search.period).all():
                 break
@@ -375,12 +423,17 @@ def _disjoint(windows: _Windows, period: float, most: int) -> _Windows:
     return windows.take(np.array(chosen, dtype=np.intp))
 
 
-def _polished(w: _Windows, f: Callable[[Array], Array], search: _Search) -> tuple[Dwell, ...]:
+def _polished(w: _Windows, f: Callable[[Array, int], Array], search: _Search) -> tuple[Dwell, ...]:
     """Put the ends where f itself, not its polynomial, crosses the edges of the band."""
-    edge = f(np.where(w.anchor >= 0, search.x[w.anchor], w.a))
+
+    def value(x: Array) -> Array:
+        values: Array = f(np.mod(x, search.period), 0)[0]
+        return values
+
+    edge = value(np.where(w.anchor >= 0, search.x[w.anchor], w.a))
     low = edge - search.band * w.upper
     a, b = (
-        _moved(x, piece, low + search.band * is_upper, f, search)
+        _moved(x, piece, low + search.band * is_upper, value, search)
         for x, piece, is_upper in ((w.a, w.first, ~w.rises), (w.b, w.last, w.leaves_up))
     )
     start = np.mod(a, search.period)

@@ -1,5 +1,7 @@
 """The frame on a contour: against plain geometry on vertices, closed forms, and dense sampling."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from support.camfiles import arcs_through, support_points
@@ -11,7 +13,7 @@ from kin.contour.contour import Contour
 from kin.follower.frame import FrameError, _output, implied_limit, judge_frame
 from kin.follower.frame_contact import WAYS, Rest
 from kin.follower.frame_contact import laid as all_laid
-from kin.follower.frame_dwell import Output, _runs, longest_dwell
+from kin.follower.frame_dwell import Output, _runs, longest_dwells
 from kin.follower.support import bearing_of
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 from kin.linkage.dyad import RPR
@@ -381,12 +383,32 @@ def test_the_longest_dwell_wherever_it_starts(band, count):
     for begin in (0.0, 0.4, 3.3):
         x = begin + np.linspace(0.0, TURN, count + 1)
         slack = 2 * (TURN / count) ** 2 / 8 * 10.0
-        found = longest_dwell(Output(wavy, wavy_range, x, wavy(x), slack), band)
+        (found,) = longest_dwells([Output(wavy, wavy_range, x, wavy(x), slack)], band)
         fine = np.arange(4000) * TURN / 4000
         assert found.length == pytest.approx(min(longest_run(wavy(fine), band) * TURN / 4000, TURN), abs=4e-3)
         assert 0.0 <= found.start < TURN
         inside = wavy(found.start + found.length * np.linspace(0, 1, 5001))
         assert np.ptp(inside) <= band * (1 + 1e-9)
+
+
+def test_the_longest_dwells_of_several_outputs_are_those_of_each_alone():
+    x = np.linspace(0.0, TURN, 241)
+    slack = 2 * (TURN / 240) ** 2 / 8 * 10.0
+    outputs = [Output(partial(moved, by), partial(moved_range, by), x, moved(by, x), slack) for by in (0.0, 0.7, -0.3)]
+    together = longest_dwells(outputs, 0.2)
+    for output, by, dwell in zip(outputs, (0.0, 0.7, -0.3), together, strict=True):
+        (alone,) = longest_dwells([output], 0.2)
+        assert [dwell.start, dwell.length] == pytest.approx([alone.start, alone.length], abs=1e-9)
+        assert dwell.start == pytest.approx((together[0].start + by) % TURN, abs=1e-9)
+
+
+def moved(by, x):
+    """`wavy`, later by an angle."""
+    return wavy(x - by)
+
+
+def moved_range(by, a, b):
+    return wavy_range(a - by, b - by)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 8, 60])

@@ -11,7 +11,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from kin.numeric.longest_window import Dwell, _Family, dwells
+from kin.numeric.longest_window import Dwell, _Family, dwells, longest_of_each
 
 TURN = 2 * math.pi
 SAMPLES = 3000
@@ -304,3 +304,56 @@ def test_slopes_that_hardly_differ_are_balanced_nevertheless(power):
     at = np.array([0.0]), np.array([0.9])
     before, after = np.array([0.3**power]), np.array([-(0.6**power)])
     assert family.refined(*at, before, after)[0] == pytest.approx(0.3, abs=3e-12)
+
+
+def counted(monkeypatch):
+    """Numbers of windows whose ends are asked for, call by call."""
+    counts, ends = [], _Family.ends
+
+    def counting(family, a):
+        counts.append(len(a))
+        return ends(family, a)
+
+    monkeypatch.setattr(_Family, "ends", counting)
+    return counts
+
+
+def test_flanks_along_which_the_slope_rises_or_falls_are_not_searched(monkeypatch):
+    counts = counted(monkeypatch)
+
+    def cycloidal(x, _order):
+        u = np.where(x < np.pi, x, TURN - x) / np.pi
+        return (u - np.sin(2 * np.pi * u) / (2 * np.pi))[None]
+
+    top, bottom = dwells(cycloidal, [np.pi], 0.002)
+    # near a rest s = (2 pi u)^3/(12 pi), and as far on either side of it
+    length = 2 * np.pi * np.cbrt(6 * 0.002 / (2 * np.pi) ** 2)
+    assert [top.length, bottom.length] == pytest.approx([length, length], rel=0.01)
+    assert sum(counts) < 300  # each range of starts at both its ends, none of them halved
+
+
+def test_few_steps_balance_the_slopes(monkeypatch):
+    counts = counted(monkeypatch)
+    period = 4 * math.pi
+
+    def f(x, _order):
+        y = np.where(x <= period / 2, x, period - x)
+        return (y + np.sin(y) + 0.05 * np.sin(2.0 * y + 0.4))[None]
+
+    dwells(f, [period / 2], 0.02, period)
+    assert 0 < sum(0 < count <= 2 for count in counts) <= 12
+
+
+def test_the_longest_of_each_section_is_that_of_the_section_alone():
+    """Three sections of a bent polyline, each followed by a roof far above the band."""
+    x = np.array([0, 1, 2, 3, 3.5, 4, 5, 6, 7, 8, 8.5, 9, 10, 11, 12, 12.25, TURN * 2])
+    y = np.array([0, 1, 0.9, 1.4, 20, 0, 0.1, 0.6, 0.5, 0.7, 21, 0, 0.4, 0.1, 0.3, 22, 0])
+    edges = np.array([0.0, 4.0, 9.0, 2 * TURN])
+
+    def bent(t, _order):
+        return (np.interp(t, x, y) + 0.2 * np.sin(2.0 * t))[None]
+
+    every = dwells(bent, x, 0.3, 2 * TURN, most=50)
+    for low, high, longest in zip(edges[:-1], edges[1:], longest_of_each(bent, x, 0.3, edges), strict=True):
+        alone = next(dwell for dwell in every if low < dwell.start + 0.5 * dwell.length < high)
+        assert [longest.start, longest.length] == pytest.approx([alone.start, alone.length], abs=1e-9)
