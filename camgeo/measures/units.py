@@ -48,4 +48,9 @@ def in_units(recipe: Order, value: float | None, unit: str) -> tuple[float | Non
 def displacement_unit(recipe: Recipe) -> tuple[float, str]:
     """Factor from mm or rad to the unit in which the follower's displacements are reported, and that unit."""
     swings = recipe.cam.arrangement.unit == "deg" or recipe.cam.by_linkage
-    return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
+    return report_unit(recipe, "deg" if swings else "mm")
+
+
+def report_unit(recipe: Order, unit: str) -> tuple[float, str]:
+    """Factor from mm to a recipe's unit, and that unit; where `unit` is deg, the factor from rad to degrees, and deg."""
+    return (math.degrees(1.0), "deg") if unit == "deg" else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])

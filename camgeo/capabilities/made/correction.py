@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.cams.family import AlteredCam
-from camgeo.capabilities.made.keys import Made
-from camgeo.capabilities.made.placed import demand_discs, name_of, points_of
-from camgeo.capabilities.made.reading import Probing
+from camgeo.capabilities.made.keys import POINTS_PATH, Made, files_of_run
+from camgeo.capabilities.made.options import Probing
+from camgeo.capabilities.made.part_points import demand_points, part_points, read_tables
 from camgeo.capabilities.made.refusal import refused_at
-from camgeo.capabilities.made.runs import POINTS_PATH, places_of_run
 from camgeo.common.errors import CallError
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
@@ -35,8 +34,7 @@ if TYPE_CHECKING:
 
     from camgeo.cams.family import ExactCam
     from camgeo.cams.surface import Surface
-    from camgeo.capabilities.made.placed import Points
-    from camgeo.capabilities.made.runs import PointFile, Run
+    from camgeo.capabilities.made.keys import Run
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.follower.base import Follower as Gauge
@@ -60,7 +58,7 @@ class RunMade:
     points: Mapping[str, int]
     curves: Mapping[str, Smooth]
     scatter: Mapping[str, float | None]
-    error: float = 0.0
+    error: float
 
 
 class _FilePoints(NamedTuple):
@@ -86,13 +84,13 @@ def runs_made(recipe: Recipe, design: Design) -> list[RunMade]:
     made = recipe.of(Made)
     listed = () if made is None else made.points
     runs = [_files(recipe, design, run, f"{POINTS_PATH}[{i}]") for i, run in enumerate(listed)]
-    names = [surface.name for surface in design.exact.surfaces]
-    spans = {name: _spans(name, [file for run in runs for file in run]) for name in names} if runs else {}
-    errors = [max((file.error or 0.0 for file in files), default=0.0) for files in listed]
-    return [replace(_run(run, spans), error=error) for run, error in zip(runs, errors, strict=True)]
+    every = [file for run in runs for file in run]
+    spans = {surface.name: _spans(surface.name, every) for surface in design.exact.surfaces}
+    errors = [max(file.error or 0.0 for file in files) for files in listed]
+    return [_run(run, spans, error) for run, error in zip(runs, errors, strict=True)]
 
 
-def _run(files: Sequence[_FilePoints], spans: Mapping[str, int]) -> RunMade:
+def _run(files: Sequence[_FilePoints], spans: Mapping[str, int], error: float) -> RunMade:
     """Average the smoothed deviations of a run's files by surface; their scatter is None for a single file."""
     points, curves, scatter = {}, {}, {}
     for name, count in spans.items():
@@ -101,7 +99,7 @@ def _run(files: Sequence[_FilePoints], spans: Mapping[str, int]) -> RunMade:
         points[name] = sum(len(file.deviations[name].e) for file in own)
         curves[name] = Smooth.total(each).times(1.0 / len(own))
         scatter[name] = _scatter(each) if len(own) > 1 else None
-    return RunMade(tuple(file.name for file in files), points, curves, scatter)
+    return RunMade(tuple(file.name for file in files), points, curves, scatter, error)
 
 
 def _scatter(curves: Sequence[Smooth]) -> float:
@@ -121,30 +119,24 @@ def _spans(surface: str, files: Sequence[_FilePoints]) -> int:
 
 def _files(recipe: Recipe, design: Design, run: Run, place: str) -> list[_FilePoints]:
     """Points of the files of a run, each placed by itself; raises RecipeErrors where a disc has none."""
-    files, missing = [], None
-    for rank, (below, file) in enumerate(places_of_run(run, place)):
-        points = _points(recipe, design, file, below, rank)
-        surfaces = [surface for disc in points.discs for surface in disc.surfaces]
-        deviations = {surface.surface.name: surface.points.deviations for surface in surfaces}
+    files: list[_FilePoints] = []
+    missing: list[str] = []
+    for rank, (below, file) in enumerate(files_of_run(run, place)):
+        path = Path(recipe.path).parent / file.file
+        with refused_at(recipe, below, file.file, path):
+            probing = Probing(file.align, file.ball, file.face, file.units)
+            points = part_points(recipe, design, read_tables([path]), probing, rank)
+        deviations = {surface.intent.name: surface.deviations for disc in points.discs for surface in disc.surfaces}
         files.append(_FilePoints(recipe, below, file.file, deviations))
-        lacking = {name_of(disc.part) for disc in points.missing}
-        missing = [disc for disc in (points.missing if missing is None else missing) if name_of(disc.part) in lacking]
+        missing = [name for name in points.missing if rank == 0 or name in missing]
     with refused_at(recipe, place):
-        demand_discs(missing or ())
+        demand_points(missing)
     return files
 
 
-def _points(recipe: Recipe, design: Design, file: PointFile, place: str, rank: int) -> Points:
-    """Points of a file of a run, by its own options; `place` is its path in the recipe, `rank` its index in the run."""
-    path = Path(recipe.path).parent / file.file
-    with refused_at(recipe, place, file.file, path):
-        return points_of(recipe, design, [path], Probing(file.align, file.ball, file.face, file.units), rank)
-
-
-def totals(recipe: Recipe, design: Design) -> dict[str, Smooth]:
-    """Sum over all runs of the smoothed deviation of each surface, by its name, mm; raises as `runs_made`."""
-    runs = runs_made(recipe, design)
-    return {name: Smooth.total([run.curves[name] for run in runs]) for name in (runs[0].curves if runs else ())}
+def total_deviations(runs: Sequence[RunMade]) -> dict[str, Smooth]:
+    """Sum over all runs of the smoothed deviation of each surface, by its name, mm."""
+    return {name: Smooth.total([run.curves[name] for run in runs]) for name in runs[0].curves}
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +189,8 @@ def corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, sca
         raise CallError(
             "a contour with sharp corners is not corrected: give `reuleaux.rounding`, or leave `correct` out"
         )
-    curves = {name: total.times(-share * scale) for name, total in totals(recipe, design).items()}
+    totals = total_deviations(runs_made(recipe, design))
+    curves = {name: total.times(-share * scale) for name, total in totals.items()}
     cam = CorrectedCam(exact, curves)
     for name, follower in cam.on_metal.items():
         reach, where = follower.within_reach()

@@ -12,17 +12,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.made.judge import expanded
-from camgeo.capabilities.made.section import scale_of
 from camgeo.measures.lobe import CRANK, EventError, event_of, lift_pieces
+from camgeo.measures.units import report_unit
 from camgeo.recipe.figures import FIGURES
 from camgeo.registry import registry
 from kin.made.events import MadeMotion
 from kin.made.motion import COVERAGE
 
 if TYPE_CHECKING:
-    from camgeo.capabilities.made.judge import PartMade
-    from camgeo.capabilities.made.reading import Call
+    from camgeo.capabilities.made.made_part import PartMade
+    from camgeo.capabilities.made.options import PointOptions
     from camgeo.recipe.recipe import Recipe
     from camgeo.registry.capability import Moved
     from camgeo.synthesis.design import Design
@@ -59,7 +58,11 @@ def stated_lifts(recipe: Recipe, design: Design, events: float | None = None) ->
 
 
 def events_section(
-    recipe: Recipe, design: Design, result: PartMade, call: Call, shaft: tuple[float | None, float] = (None, 0.0)
+    recipe: Recipe,
+    design: Design,
+    result: PartMade,
+    options: PointOptions,
+    shaft: tuple[float | None, float] = (None, 0.0),
 ) -> dict[str, Any]:
     """Section `events` of the report: greatest lift and velocity, and the angles of each stated lift.
 
@@ -70,17 +73,17 @@ def events_section(
     lifts = stated_lifts(recipe, design, events)
     if not lifts:
         return {}
-    made = MadeMotion(result.surfaces[0].on.surface.gauge.motion, result.motion)
+    made = MadeMotion(result.surfaces[0].gauge.motion, result.motion)
     highest = made.highest(lift_pieces(design.exact).greatest()[1])
-    scale, unit = scale_of(recipe, result)
+    scale, unit = report_unit(recipe, result.motion_unit)
     entry: dict[str, Any] = {}
     for moved in dict.fromkeys([None, *(row.moved for row in lifts)]):
         entry[_name(moved)] = {
-            "lift": _greatest_lift(moved, highest, call, scale) | {"unit": unit},
+            "lift": _greatest_lift(moved, highest, options, scale) | {"unit": unit},
             "velocity": _greatest_velocity(moved, made, scale) | {"unit": f"{unit}/rad"},
         }
     entry["above"] = [
-        {"of": _name(row.moved), "lift": scale * row.lift, "unit": unit, **_above(row, made, design, call, zero)}
+        {"of": _name(row.moved), "lift": scale * row.lift, "unit": unit, **_above(row, made, design, options, zero)}
         for row in lifts
     ]
     return {"events": entry}
@@ -94,10 +97,10 @@ def _row(scale: float, made: float, intended: float, uncertainty: float) -> dict
     return {"made": scale * made, "intended": scale * intended, "uncertainty": scale * uncertainty}
 
 
-def _greatest_lift(moved: Moved | None, highest: Estimate, call: Call, scale: float) -> dict[str, Any]:
+def _greatest_lift(moved: Moved | None, highest: Estimate, options: PointOptions, scale: float) -> dict[str, Any]:
     made, intended = (_moving(moved, np.array([[lift], [1.0], [0.0]])) for lift in highest[:2])
     ratio = float(made[1, 0])  # velocity of what is moved, by that of the follower
-    return _row(scale, float(made[0, 0]), float(intended[0, 0]), ratio * expanded(call, highest.influence))
+    return _row(scale, float(made[0, 0]), float(intended[0, 0]), ratio * options.expanded(highest.influence))
 
 
 def _greatest_velocity(moved: Moved | None, made: MadeMotion, scale: float) -> dict[str, Any]:
@@ -114,7 +117,7 @@ def _moving(moved: Moved | None, rows: Array) -> Array:
     return rows if moved is None else moved.rows(rows)
 
 
-def _above(row: StatedLift, made: MadeMotion, design: Design, call: Call, zero: float) -> dict[str, Any]:
+def _above(row: StatedLift, made: MadeMotion, design: Design, options: PointOptions, zero: float) -> dict[str, Any]:
     """Crossings of a lift, degrees of the shaft, and the crank's between; None where there are not just two."""
     try:
         event = event_of(design.exact, row.follower)
@@ -124,13 +127,12 @@ def _above(row: StatedLift, made: MadeMotion, design: Design, call: Call, zero: 
         above = made.above(event.opening, event.closing)
     if above is None:
         return dict.fromkeys((*ANGLES, DURATION))
-    turning = 0.0 if call.axes is None else call.axes[1]
     entry: dict[str, Any] = {}
     for name, crossing in zip(ANGLES, (above.opening, above.closing, above.centre), strict=True):
         intended = math.degrees(crossing.intended + zero) % 360.0
-        uncertain = math.degrees(math.hypot(expanded(call, crossing.influence), turning))
+        uncertain = math.degrees(math.hypot(options.expanded(crossing.influence), options.axes_turn))
         entry[name] = _row(1.0, intended + math.degrees(crossing.made - crossing.intended), intended, uncertain)
     crank = math.degrees(CRANK)
     duration = above.duration
-    entry[DURATION] = _row(crank, duration.made, duration.intended, expanded(call, duration.influence))
+    entry[DURATION] = _row(crank, duration.made, duration.intended, options.expanded(duration.influence))
     return entry

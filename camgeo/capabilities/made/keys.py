@@ -1,26 +1,57 @@
-"""What a recipe says of the part as made: the zone of its profile, what fixes its axes, and points of runs."""
+"""What a recipe says of the part as made: the zone of its profile, what fixes its axes, and points of earlier runs."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.made.runs import POINTS, places_of
+from camgeo.motions.lift_table import read_path
 from camgeo.part.features import with_records
-from camgeo.schema.fields import Field, Kind, either, length, mapping
+from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
+from camgeo.schema.scalars import MOST_TEXT
+from camgeo.schema.yaml_source import Mapping, describe, join
+from camgeo.schema.yaml_source import Sequence as YamlSequence
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.capabilities.made.runs import Run
     from camgeo.part.part import Part
     from camgeo.recipe.export import FileRequest
-    from camgeo.registry.formats import Form, Format
+    from camgeo.registry.formats import Form as TableForm
+    from camgeo.registry.formats import Format
+    from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
     from kin.made.points import Datum
 
 DATUMS = ("part", "bore", "none")
+ALIGN = {"none": "", "rotation": "g", "best-fit": "gxy"}
+"""What `align` frees: unknowns of a placing by least squares."""
+UNITS = {"mm": 1.0, "inch": 25.4}
+
+
+@dataclass(frozen=True)
+class PointFile:
+    """A file of points, its path as seen from the recipe.
+
+    units   mm in its unit where its heading states none; None for that of the recipe
+    align   unknowns that are placed by least squares: of g, x, y
+    ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
+    face    width of an indicator's flat face, mm
+    error   expanded uncertainty (k = 2) of a point, mm
+    """
+
+    file: str
+    units: float | None = None
+    align: str = ""
+    ball: float | None = None
+    face: float | None = None
+    error: float | None = None
+
+
+Run = tuple[PointFile, ...]
 
 
 @dataclass(frozen=True)
@@ -33,6 +64,101 @@ class Made:
     profile: float | None = None
     datum: Datum | None = None
     points: tuple[Run, ...] = ()
+
+
+# --- the key ----------------------------------------------------------------------------------------------------------
+
+_FILE = Form(
+    "the path of a file",
+    "the path of a file of points, such as run1.csv",
+    read_path,
+    lambda _: {"type": "string", "minLength": 1, "maxLength": MOST_TEXT},
+)
+POINT_FILE = Table(
+    (
+        Field("file", Kind.OWN, "its path as seen from the recipe", required=True, form=_FILE),
+        Field("units", Kind.CHOICE, "unit of a file whose heading states none", default="the recipe's", choices=UNITS),
+        Field("align", Kind.CHOICE, "how the points are placed by least squares", default="none", choices=ALIGN),
+        mapping(
+            "probe",
+            "what measured them",
+            length("radius", "radius of the ball whose centres they are; of lifts, of its roller"),
+            length("face", "width of the flat face of an indicator of lifts"),
+            length("error", "expanded uncertainty (k = 2) of a point along its normal"),
+        ),
+    )
+)
+
+
+def _read(reader: Reader, field: Field, node: Node, path: str) -> tuple[Run, ...] | None:
+    """Read runs: a file each, or a list of files that are taken together."""
+    runs = []
+    for i, run in enumerate(reader.items(field, node, path, MOST_FILES)):
+        below = join(path, i)
+        nodes = [(run, below)]
+        if isinstance(run, YamlSequence):
+            nodes = [(entry, join(below, k)) for k, entry in enumerate(reader.items(field, run, below, MOST_FILES))]
+        files = [_point_file(reader, field, entry, place) for entry, place in nodes]
+        runs.append(tuple(entry for entry in files if entry is not None))
+    return tuple(runs) or None
+
+
+def _point_file(reader: Reader, field: Field, node: Node, path: str) -> PointFile | None:
+    if isinstance(node, Mapping):
+        values: Values | None = reader.field(Field("", Kind.TABLE, "", table=POINT_FILE), node, path)
+        if values is None or "file" not in values:
+            return None
+        probe = values.get("probe", {})
+        units, align = UNITS.get(values.get("units", "")), ALIGN[values.get("align", "none")]
+        return PointFile(values["file"], units, align, probe.get("radius"), probe.get("face"), probe.get("error"))
+    if isinstance(node, YamlSequence):
+        reader.fault(node.mark, path, "not the path of a file", describe(node), reader.wanted(field))
+        return None
+    name = read_path(reader, field, node, path)
+    return None if name is None else PointFile(name)
+
+
+def _schema(_: Field) -> Schema:
+    from camgeo.schema.json_schema import table_schema
+
+    file = {"anyOf": [{"type": "string", "minLength": 1, "maxLength": MOST_TEXT}, table_schema(POINT_FILE)]}
+    some = {"type": "array", "items": file, "minItems": 1, "maxItems": MOST_FILES}
+    return {"type": "array", "items": {"anyOf": [file, some]}, "minItems": 1, "maxItems": MOST_FILES}
+
+
+POINTS = Field(
+    "points",
+    Kind.OWN,
+    "files of points of parts, in the order made, each from the export before it; of one run in a list",
+    form=Form(
+        "a list of files of points",
+        "a list of files of points such as [run1.csv, [run2a.csv, run2b.csv]]",
+        _read,
+        _schema,
+        tables={"file": POINT_FILE},
+        group="the points",
+    ),
+)
+
+POINTS_PATH = f"made.{POINTS.name}"
+
+
+def files_of_run(run: Run, place: str) -> list[tuple[str, PointFile]]:
+    """Each file of a run with its place in the recipe, by that of the run, such as `made.points[1]`."""
+    return [(f"{place}[{k}]" if len(run) > 1 else place, file) for k, file in enumerate(run)]
+
+
+_OPTION_KEYS = (
+    f"{field.name}-{key.name}" if field.table else field.name
+    for field in POINT_FILE.fields
+    for key in (field.inner.fields if field.table else (field,))
+)
+_OPTION = re.compile(rf"--({'|'.join(_OPTION_KEYS)})((?: (?:{'|'.join((*UNITS, *ALIGN, 'cm', 'm'))})\b)?)")
+
+
+def in_recipe(text: str) -> str:
+    """Say by keys of a file's entry what a text says by options of `verify`."""
+    return _OPTION.sub(lambda option: f"{option[1].replace('-', '.')}{option[2] and ':'}{option[2]}", text)
 
 
 def fields() -> Sequence[Field]:
@@ -62,17 +188,18 @@ def offered(record: Format) -> bool:
     return record.contour or any(_is_contour(form) for form in record.forms.values())
 
 
-def _is_contour(form: Form) -> bool:
+def _is_contour(form: TableForm) -> bool:
     """Whether a form of tables holds a contour: a grinder's, or points of a curve."""
     return form.ground or form.curve
 
 
 def check(values: Values, reader: Reader) -> None:
     """Note files of points that are not there."""
-    for place, file in places_of(values.get("made", {}).get("points", ())):
-        if not (Path(reader.source.file).parent / file.file).is_file():
-            remedy = "give its path as seen from the recipe's folder"
-            reader.fault_at(place, "no such file", repr(file.file), remedy)
+    for i, run in enumerate(values.get("made", {}).get("points", ())):
+        for place, file in files_of_run(run, f"{POINTS_PATH}[{i}]"):
+            if not (Path(reader.source.file).parent / file.file).is_file():
+                remedy = "give its path as seen from the recipe's folder"
+                reader.fault_at(place, "no such file", repr(file.file), remedy)
 
 
 def check_corrected(request: FileRequest, values: Values, reader: Reader, path: str) -> None:

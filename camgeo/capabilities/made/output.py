@@ -1,4 +1,7 @@
-"""What points told, in a folder: a page, the deviation round the contour as a drawing, every point as a table."""
+"""Files on a measured part in a folder: a page, the deviation round the contour as a drawing, every point as a table.
+
+Of a shaft each cam has these files, and the shaft a page that leads to theirs.
+"""
 
 from __future__ import annotations
 
@@ -8,23 +11,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.made.judge import motion_uncertainty
 from camgeo.capabilities.made.keys import Made
-from camgeo.capabilities.made.section import scale_of
-from camgeo.capabilities.made.text import table_rows
+from camgeo.capabilities.made.made_part import motion_uncertainty
+from camgeo.capabilities.made.part_points import label_of
+from camgeo.capabilities.made.section_text import shaft_rows, table_rows
 from camgeo.common.errors import SurroundingsError
 from camgeo.files.markup import one_line
 from camgeo.files.table import write_table
-from camgeo.measures.units import UNIT_NAMES
+from camgeo.measures.units import UNIT_NAMES, report_unit
 from kin.made.motion import COVERAGE
 from kin.numeric.feet import equal_steps
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from camgeo.capabilities.made.judge import PartMade, SurfaceMade
-    from camgeo.capabilities.made.reading import Call
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.capabilities.made.made_part import PartMade, SurfaceMade
+    from camgeo.capabilities.made.options import PointOptions
+    from camgeo.capabilities.made.shaft import ShaftMade
+    from camgeo.recipe.recipe import Order, Recipe
     from kin.numeric.arrays import Array
 
 LOOKS = 1440  # places of a curve round the contour or over the shaft angle
@@ -39,28 +44,41 @@ STYLE = (
 )
 
 
-def write(recipe: Recipe, result: PartMade, section: dict[str, Any], call: Call) -> list[str]:
-    """Write the three files; returns their paths. Raises SurroundingsError as the disk does not do what it should."""
-    folder = Path(call.out or "")
+def write_part(recipe: Recipe, result: PartMade, section: dict[str, Any], options: PointOptions) -> list[str]:
+    """Write the three files; returns their paths. Raises SurroundingsError where the file system refuses."""
+    folder = Path(options.out or "")
     drawing = _drawing(recipe, result)
-    page = _page(recipe, result, section, call, drawing)
-    files = {".html": page.encode(), ".svg": drawing.encode()}
-    written = []
+    page = _page(recipe, result, section, options, drawing)
+    table, html, svg = (folder / f"{recipe.name}-made{suffix}" for suffix in (".csv", ".html", ".svg"))
+    _write_whole(table, lambda path: _write_points(recipe, result, path))
+    _write_whole(html, lambda path: path.write_bytes(page.encode()))
+    _write_whole(svg, lambda path: path.write_bytes(drawing.encode()))
+    return [str(html), str(svg), str(table)]
+
+
+def write_shaft(recipe: Order, result: ShaftMade, section: dict[str, Any], options: PointOptions) -> list[str]:
+    """Write the page of a shaft and the files of each cam; returns their paths. Raises as `write_part`."""
+    written, pages = [], []
+    for lobe, entry in zip(result.cams, section["lobes"], strict=True):
+        cam = lobe.points.cam
+        named = replace(cam.recipe, name=f"{recipe.name}-{label_of(cam.name)}")
+        written += write_part(named, lobe.result, entry, options)
+        pages.append((cam.name, f"{named.name}-made.html"))
+    path = Path(options.out or "") / f"{recipe.name}-made.html"
+    page = _shaft_page(recipe.name, section, pages)
+    _write_whole(path, lambda partial: partial.write_bytes(page.encode()))
+    return [str(path), *written]
+
+
+def _write_whole(path: Path, write: Callable[[Path], object]) -> None:
+    """Let a file take its place when all of it is written; raises SurroundingsError where the file system refuses."""
+    partial = path.with_name(f".{path.name}.partial")
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        table = folder / f"{recipe.name}-made.csv"
-        part = table.with_name(f".{table.name}.partial")
-        _write_points(recipe, result, part)
-        part.replace(table)
-        for suffix, data in files.items():
-            path = folder / f"{recipe.name}-made{suffix}"
-            part = path.with_name(f".{path.name}.partial")
-            part.write_bytes(data)
-            part.replace(path)
-            written.append(str(path))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write(partial)
+        partial.replace(path)
     except OSError as error:
-        raise SurroundingsError(error.strerror or str(error), folder) from error
-    return [*written, str(table)]
+        raise SurroundingsError(error.strerror or str(error), path.parent) from error
 
 
 # --- the table --------------------------------------------------------------------------------------------------------
@@ -73,10 +91,10 @@ def _write_points(recipe: Recipe, result: PartMade, path: Path) -> None:
     names += [f"deviation_{unit}", f"residual_{unit}", "outlier"]
     blocks = []
     for rank, surface in enumerate(result.surfaces):
-        points, deviations = surface.on.points, surface.on.points.deviations
-        feet = points.follower.envelope.points(deviations.parameter)
-        shaft = np.mod(np.degrees(points.follower.shaft_angle(deviations.parameter)), 360.0)
-        columns = [np.full(len(points), rank + 1.0), surface.on.files + 1.0, surface.on.lines.astype(float)]
+        points, deviations = surface.measured.points, surface.measured.deviations
+        feet = surface.gauge.envelope.points(deviations.parameter)
+        shaft = np.mod(np.degrees(surface.gauge.shaft_angle(deviations.parameter)), 360.0)
+        columns = [np.full(len(points), rank + 1.0), surface.measured.files + 1.0, surface.measured.lines.astype(float)]
         columns += [points.places[:, 0] / recipe.mm, sign * points.places[:, 1] / recipe.mm, shaft]
         columns += [feet[:, 0] / recipe.mm, sign * feet[:, 1] / recipe.mm]
         columns += [deviations.e / recipe.mm, surface.fit.residuals / recipe.mm, surface.fit.outliers.astype(float)]
@@ -94,10 +112,10 @@ def _drawing(recipe: Recipe, result: PartMade) -> str:
     size, most = 0.0, 0.0
     curves = []
     for surface in result.surfaces:
-        frame = surface.on.points.follower.envelope.frames(t)
+        frame = surface.gauge.envelope.frames(t)
         e = surface.fit.curve.rows(t)[0]
         size, most = max(size, float(np.abs(frame.points).max())), max(most, float(np.abs(e).max()))
-        curves.append((frame.points * sign, surface.on.points.side * frame.normals * sign, e))
+        curves.append((frame.points * sign, surface.measured.points.side * frame.normals * sign, e))
     magnified = float(f"{SHARE * size / max(most, 1e-9):.1g}")
     reach = size * (1.0 + 1.3 * SHARE)
     thin = reach / 400.0
@@ -135,33 +153,43 @@ def _path(points: Array) -> str:
 # --- the page ---------------------------------------------------------------------------------------------------------
 
 
-def _page(recipe: Recipe, result: PartMade, section: dict[str, Any], call: Call, drawing: str) -> str:
+def _page(recipe: Recipe, result: PartMade, section: dict[str, Any], options: PointOptions, drawing: str) -> str:
     unit, mm = UNIT_NAMES[recipe.units], recipe.mm
-    scale, moved = scale_of(recipe, result)
-    parts = [f"<h1>{one_line(recipe.name)}</h1><p>{one_line(', '.join(section['files']))}</p>"]
-    rows = "".join(
-        f"<tr><td>{one_line(label)}</td><td>{one_line(value)}</td></tr>"
-        for label, value in table_rows(section, everything=True)
-    )
-    verdicts = "".join(
-        f"<p><b>{one_line(name)}: {one_line(word)}</b></p>" for name, word in section["verdicts"].items()
-    )
-    remarks = "".join(f"<li>{one_line(text)}</li>" for text in section["remarks"])
-    parts.append(f"{verdicts}<table>{rows}</table><ul>{remarks}</ul>")
+    scale, moved = report_unit(recipe, result.motion_unit)
+    parts = [_heading(recipe.name, section), _findings(section, table_rows(section, everything=True))]
     parts.append(f"<h2>Deviation round the contour, magnified</h2>{drawing}")
     for surface in result.surfaces:
-        name = f" of {one_line(surface.on.surface.name)}" if surface.on.surface.name else ""
+        name = f" of {one_line(surface.measured.intent.name)}" if surface.measured.intent.name else ""
         parts.append(f"<h2>Deviation{name} over the shaft angle, {unit}</h2>{_over_shaft(recipe, surface)}")
-    errors, uncertain = result.motion, motion_uncertainty(result, call)
-    shaft = np.degrees(errors.shaft)
-    limit = _limit(recipe, moved)
+    errors, uncertain = result.motion, motion_uncertainty(result, options)
+    limit = recipe.verify.motion_error
+    zone = None if limit is None else math.degrees(limit) if moved == "deg" else limit / mm
     parts.append(f"<h2>Error of the motion less its constant offset, {moved}</h2>")
-    parts.append(_plot(shaft, scale * errors.remaining, scale * uncertain, zone=limit))
+    parts.append(_plot(np.degrees(errors.shaft), scale * errors.remaining, scale * uncertain, zone=zone))
     parts.append("<h2>What to take off</h2>" + _take_off(result, mm, unit))
-    return document(recipe.name, "\n".join(parts))
+    return _document(recipe.name, "\n".join(parts))
 
 
-def document(name: str, body: str) -> str:
+def _shaft_page(name: str, section: dict[str, Any], pages: Sequence[tuple[str, str]]) -> str:
+    links = "".join(f'<li><a href="{one_line(page)}">{one_line(title)}</a></li>' for title, page in pages)
+    findings = _heading(name, section) + _findings(section, shaft_rows(section, everything=False))
+    return _document(name, f"{findings}\n<h2>Each lobe</h2><ul>{links}</ul>")
+
+
+def _heading(name: str, section: dict[str, Any]) -> str:
+    """Name of the recipe and the files of points."""
+    return f"<h1>{one_line(name)}</h1><p>{one_line(', '.join(section['files']))}</p>"
+
+
+def _findings(section: dict[str, Any], rows: Sequence[tuple[str, str]]) -> str:
+    """Verdicts, a table of rows (label, value), and remarks."""
+    verdicts = "".join(f"<p><b>{one_line(key)}: {one_line(word)}</b></p>" for key, word in section["verdicts"].items())
+    cells = "".join(f"<tr><td>{one_line(label)}</td><td>{one_line(value)}</td></tr>" for label, value in rows)
+    remarks = "".join(f"<li>{one_line(text)}</li>" for text in section["remarks"])
+    return f"{verdicts}<table>{cells}</table><ul>{remarks}</ul>"
+
+
+def _document(name: str, body: str) -> str:
     """HTML page on the part that was made of a recipe, by its name."""
     return (
         '<!doctype html>\n<html lang="en"><meta charset="utf-8">'
@@ -170,22 +198,15 @@ def document(name: str, body: str) -> str:
     )
 
 
-def _limit(recipe: Recipe, unit: str) -> float | None:
-    limit = recipe.verify.motion_error
-    if limit is None:
-        return None
-    return math.degrees(limit) if unit == "deg" else limit / recipe.mm
-
-
 def _over_shaft(recipe: Recipe, surface: SurfaceMade) -> str:
     t = equal_steps(LOOKS)
-    follower, mm, deviations = surface.on.points.follower, recipe.mm, surface.on.points.deviations
-    shaft = np.mod(np.degrees(follower.shaft_angle(t)), 360.0)
+    gauge, mm, deviations = surface.gauge, recipe.mm, surface.measured.deviations
+    shaft = np.mod(np.degrees(gauge.shaft_angle(t)), 360.0)
     order = np.argsort(shaft, kind="stable")
     chosen = np.linspace(0, len(deviations.e) - 1, min(MOST_DOTS, len(deviations.e))).astype(np.intp)
-    dots = np.mod(np.degrees(follower.shaft_angle(deviations.parameter[chosen])), 360.0), deviations.e[chosen] / mm
-    zone = recipe.of(Made)
-    half = None if zone is None or zone.profile is None else 0.5 * zone.profile / mm
+    dots = np.mod(np.degrees(gauge.shaft_angle(deviations.parameter[chosen])), 360.0), deviations.e[chosen] / mm
+    made = recipe.of(Made)
+    half = None if made is None or made.profile is None else 0.5 * made.profile / mm
     e, band = surface.fit.curve.rows(t)[0] / mm, COVERAGE * surface.fit.curve.standard_deviations(t) / mm
     return _plot(shaft[order], e[order], band[order], dots=dots, zone=half)
 
@@ -236,7 +257,7 @@ def _plot(
     return f'<svg viewBox="0 0 {WIDE} {HIGH}" role="img" font-family="system-ui,sans-serif">{"".join(parts)}</svg>'
 
 
-def stretches(surface: SurfaceMade) -> list[tuple[float, float, float, float]]:
+def _excesses(surface: SurfaceMade) -> list[tuple[float, float, float, float]]:
     """Stretches of a surface with certainly too much metal, as (begin, end, greatest excess, its angle).
 
     Angles are degrees of the shaft, the excess is in mm; it exceeds twice its standard deviation all along.
@@ -249,19 +270,19 @@ def stretches(surface: SurfaceMade) -> list[tuple[float, float, float, float]]:
     turn = 0 if over.all() else int(np.flatnonzero(~over)[0])
     over, e, t = np.roll(over, -turn), np.roll(e, -turn), np.roll(t, -turn)
     edges = np.flatnonzero(np.diff(over.astype(np.intp), prepend=0, append=0))
-    shaft = np.mod(np.degrees(surface.on.points.follower.shaft_angle(t)), 360.0)
-    stretches = []
+    shaft = np.mod(np.degrees(surface.gauge.shaft_angle(t)), 360.0)
+    excesses = []
     for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         worst = a + int(np.argmax(e[a:b]))
-        stretches.append((float(shaft[a]), float(shaft[b - 1]), float(e[worst]), float(shaft[worst])))
-    return stretches
+        excesses.append((float(shaft[a]), float(shaft[b - 1]), float(e[worst]), float(shaft[worst])))
+    return excesses
 
 
 def _take_off(result: PartMade, mm: float, unit: str) -> str:
     rows: list[Sequence[str]] = []
     for surface in result.surfaces:
-        for begin, end, most, at in stretches(surface):
-            rows.append((surface.on.surface.name, f"{begin:.1f}", f"{end:.1f}", f"{most / mm:.4g}", f"{at:.1f}"))
+        for begin, end, most, at in _excesses(surface):
+            rows.append((surface.measured.intent.name, f"{begin:.1f}", f"{end:.1f}", f"{most / mm:.4g}", f"{at:.1f}"))
     if not rows:
         return "<p>Nowhere is metal too much beyond its uncertainty.</p>"
     head = "".join(f"<th>{text}</th>" for text in ("surface", "from, deg", "to, deg", f"most, {unit}", "at, deg"))

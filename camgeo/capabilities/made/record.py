@@ -42,43 +42,43 @@ def _checks() -> Sequence[Declared]:
 
 
 def _claims(path: Path, options: Mapping[str, object]) -> bool:
-    from camgeo.capabilities.made.reading import claims
+    from camgeo.capabilities.made.options import claims
 
     return claims(path, options)
 
 
 def _judge(recipe: Recipe, design: Design, call: FileCall, clock: Clock) -> Results:
-    from camgeo.capabilities.made.run import judge
+    from camgeo.capabilities.made.verify import judge
 
     return judge(recipe, design, call, clock)
 
 
 def _judge_shaft(recipe: Order, cams: Sequence[ShaftCam], call: FileCall, clock: Clock) -> Results:
-    from camgeo.capabilities.made.run import judge_shaft
+    from camgeo.capabilities.made.verify import judge_shaft
 
     return judge_shaft(recipe, cams, call, clock)
 
 
 def _examine(recipe: Recipe, design: Design, _: Sequence[FileResult], clock: Clock) -> Results:
-    from camgeo.capabilities.made.examine import examine
+    from camgeo.capabilities.made.earlier_runs import examine
 
     return examine(recipe, design, clock)
 
 
 def _lines(report: dict[str, Any]) -> str:
-    from camgeo.capabilities.made.run_table import lines
+    from camgeo.capabilities.made.earlier_runs import lines
 
     return lines(report)
 
 
 def _panel(report: dict[str, Any]) -> str:
-    from camgeo.capabilities.made.run_table import panel
+    from camgeo.capabilities.made.earlier_runs import panel
 
     return panel(report)
 
 
 def _shown(report: dict[str, Any], everything: bool) -> str:
-    from camgeo.capabilities.made.text import shown
+    from camgeo.capabilities.made.section_text import shown
 
     return shown(report, everything=everything)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.made.runs import in_recipe
+from camgeo.capabilities.made.keys import in_recipe
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.schema.errors import RecipeErrors

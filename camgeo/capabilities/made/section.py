@@ -1,4 +1,4 @@
-"""What points told, as a section of the report: in the recipe's units and degrees."""
+"""The section `made` of a report on measured points, of a part or of a shaft: in the recipe's units and degrees."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.made.judge import expanded, motion_uncertainty, systematic
 from camgeo.capabilities.made.keys import Made
-from camgeo.capabilities.made.placed import name_of
-from camgeo.measures.units import UNIT_NAMES
+from camgeo.capabilities.made.made_part import motion_uncertainty
+from camgeo.capabilities.made.part_points import name_of
+from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.registry import registry
 from camgeo.registry.capability import MadeMotion
 from kin.made.causes import causes
@@ -22,9 +22,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from camgeo.capabilities.made.judge import DiscMade, PartMade, SurfaceMade
-    from camgeo.capabilities.made.reading import Call
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.capabilities.made.made_part import DiscMade, PartMade, SurfaceMade
+    from camgeo.capabilities.made.options import PointOptions
+    from camgeo.capabilities.made.shaft import Phase, ShaftMade
+    from camgeo.recipe.recipe import Order, Recipe
     from camgeo.synthesis.design import Design
     from kin.made.points import Placing
     from kin.numeric.arrays import Array
@@ -34,7 +35,7 @@ DERIVATIVES = ("error", "velocity", "acceleration")
 
 
 def section(
-    recipe: Recipe, paths: Sequence[Path], result: PartMade, call: Call, verdicts: Mapping[str, str]
+    recipe: Recipe, paths: Sequence[Path], result: PartMade, options: PointOptions, verdicts: Mapping[str, str]
 ) -> dict[str, Any]:
     """Give the section `made`."""
     entry: dict[str, Any] = {
@@ -43,30 +44,26 @@ def section(
         "verdicts": dict(verdicts),
         "discs": [_disc(recipe, disc) for disc in result.discs],
         "surfaces": [_surface(recipe, paths, surface) for surface in result.surfaces],
-        "motion": motion_section(recipe, result, call),
+        "motion": _motion(recipe, result, options),
     }
-    if result.play is not None:
-        worst = {key: int(pick(result.play.gap)) for key, pick in (("least", np.argmin), ("most", np.argmax))}
-        scale, unit = scale_of(recipe, result)
+    scale, unit = report_unit(recipe, result.motion_unit)
+    if (play := result.play) is not None:
         entry["play"] = {"unit": unit}
-        for key, at in worst.items():
-            entry["play"][key] = scale * float(result.play.gap[at])
-            entry["play"][f"{key}_at_deg"] = degrees(float(result.play.shaft[at]))
-        entry["play"]["uncertainty"] = scale * COVERAGE * float(result.play.sds.max())
-    if result.output is not None:
-        linkage = result.discs[0].part.linkage
-        swings = linkage is not None and linkage.mechanism.unit == "deg"
-        factor = math.degrees(1.0) if swings else 1.0 / recipe.mm
-        worst_at = int(np.argmax(np.abs(result.output.worst)))
+        for key, worst in (("least", int(np.argmin(play.gap))), ("most", int(np.argmax(play.gap)))):
+            entry["play"][key] = scale * float(play.gap[worst])
+            entry["play"][f"{key}_at_deg"] = degrees(float(play.shaft[worst]))
+        entry["play"]["uncertainty"] = scale * COVERAGE * float(play.sds.max())
+    if (output := result.output) is not None:
+        factor, output_unit = report_unit(recipe, result.output_unit)
+        worst = int(np.argmax(np.abs(output.worst)))
         entry["output"] = {
-            "unit": "deg" if swings else UNIT_NAMES[recipe.units],
-            "max": factor * abs(float(result.output.worst[worst_at])),
-            "at_deg": degrees(float(result.output.shaft[worst_at])),
-            "centred": factor * float(np.abs(result.output.centred).max()),
-            "uncertainty": factor * COVERAGE * float(result.output.sds[worst_at]),
+            "unit": output_unit,
+            "max": factor * abs(float(output.worst[worst])),
+            "at_deg": degrees(float(output.shaft[worst])),
+            "centred": factor * float(np.abs(output.centred).max()),
+            "uncertainty": factor * COVERAGE * float(output.sds[worst]),
         }
     if result.lifts is not None:
-        scale, _ = scale_of(recipe, result)
         entry["lifts"] = {"zero": scale * result.lifts[0], "turned_deg": math.degrees(result.lifts[1])}
     entry["remarks"] = list(result.remarks)
     return entry
@@ -84,25 +81,19 @@ def add_figures(entry: dict[str, Any], recipe: Recipe, design: Design, result: P
     entry["remarks"] += [remark for metal in made for remark in metal.remarks]
 
 
-def scale_of(recipe: Recipe, result: PartMade) -> tuple[float, str]:
-    """Factor and unit of the follower's motion in a report."""
-    swings = result.surfaces[0].on.surface.gauge.unit == "deg"
-    return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
-
-
 def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
     mm, profile = recipe.mm, disc.profile
     worst = int(np.argmax(np.abs(profile.e)))
-    surface, index = _of_all(disc, worst)
+    surface, index = _surface_of(disc, worst)
     parameter = profile.deviations[surface].parameter[index : index + 1]
-    gauge = disc.surfaces[surface].on.surface.gauge
+    gauge = disc.surfaces[surface].gauge
     entry: dict[str, Any] = {
         "name": name_of(disc.part),
         "datum": profile.datum,
         "profile": 2.0 * profile.greatest / mm,
         "greatest": float(profile.e[worst]) / mm,
         "at_deg": degrees(float(gauge.shaft_angle(parameter)[0])),
-        "line": int(disc.surfaces[surface].on.lines[index]),
+        "line": int(disc.surfaces[surface].measured.lines[index]),
         "uncertainty": 2.0 * float(disc.uncertain[worst]) / mm,
         "smoothed": 2.0 * disc.smoothed / mm,
         "least_squares": {"profile": 2.0 * profile.least[1] / mm, **_placing(recipe, profile.least[0])},
@@ -114,8 +105,8 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
         entry["certificate"] = 2.0 * profile.certified.certificate / mm
         entry["multipliers"] = profile.certified.multipliers.tolist()
     entry["causes"] = _causes(recipe, disc)
-    zone = recipe.of(Made)
-    lack = 0.0 if zone is None or zone.profile is None else -float(profile.e.min()) - 0.5 * zone.profile
+    made = recipe.of(Made)
+    lack = 0.0 if made is None or made.profile is None else -float(profile.e.min()) - 0.5 * made.profile
     if lack > 0.0:
         entry["reduction"] = _reduction(recipe, disc, lack)
     if disc.placing.turn or any(disc.placing.shift):
@@ -125,15 +116,14 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
 
 def _reduction(recipe: Recipe, disc: DiscMade, lack: float) -> dict[str, Any]:
     """Least reduction all round that leaves no metal lacking, and what it does to the motion: offset, and change."""
-    swings = disc.surfaces[0].on.surface.gauge.unit == "deg"
-    scale = math.degrees(1.0) if swings else 1.0 / recipe.mm
+    scale, unit = report_unit(recipe, disc.surfaces[0].gauge.unit)
     moved = -lack * disc.surfaces[0].errors.gain
     offset = float(moved.mean())
     return {
         "size": lack / recipe.mm,
         "offset": scale * offset,
         "change": scale * float(np.abs(moved - offset).max()),
-        "unit": "deg" if swings else UNIT_NAMES[recipe.units],
+        "unit": unit,
     }
 
 
@@ -142,24 +132,21 @@ def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
 
     The points are taken as they stand, before they are placed by a datum.
     """
-    sign = -1.0 if recipe.rotation == "ccw" else 1.0
     rows = []
-    deviations, curves = (
-        [surface.on.points.deviations for surface in disc.surfaces],
-        [surface.fit.curve for surface in disc.surfaces],
-    )
-    for cause in causes(deviations, curves, disc.turned):
-        turned, mirrored = cause.names == ("turned",), cause.names in {("turned",), ("shifted along y",)}
-        scale = (math.degrees(1.0) if turned else 1.0 / recipe.mm) * (sign if mirrored else 1.0)
+    deviations = [surface.measured.deviations for surface in disc.surfaces]
+    for cause in causes(deviations, [surface.fit.curve for surface in disc.surfaces], disc.turned):
+        mirrored = cause.names in {("turned",), ("shifted along y",)}
+        scale, unit = report_unit(recipe, "deg" if cause.names == ("turned",) else "mm")
+        scale *= _drawn(recipe) if mirrored else 1.0
         row: dict[str, Any] = {
             "cause": " and ".join(cause.names),
             "value": scale * cause.value,
             "uncertainty": abs(scale) * cause.uncertainty,
-            "unit": "deg" if turned else UNIT_NAMES[recipe.units],
+            "unit": unit,
             "effect": cause.effect / recipe.mm,
         }
         if cause.at is not None:
-            gauge = disc.surfaces[0].on.surface.gauge
+            gauge = disc.surfaces[0].gauge
             row["at_deg"] = degrees(float(gauge.shaft_angle(np.array([cause.at]))[0]))
         if cause.waves is not None:
             row["waves"] = cause.waves
@@ -167,36 +154,41 @@ def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
     return rows
 
 
-def _of_all(disc: DiscMade, index: int) -> tuple[int, int]:
+def _surface_of(disc: DiscMade, index: int) -> tuple[int, int]:
     """Surface, and index among its points, of a point among all of a disc."""
     for rank, surface in enumerate(disc.surfaces):
-        if index < len(surface.on.points):
+        if index < len(surface.measured.points):
             return rank, index
-        index -= len(surface.on.points)
+        index -= len(surface.measured.points)
     raise IndexError(index)
+
+
+def _drawn(recipe: Recipe) -> float:
+    """Sign of y and of turns as the file is drawn, by those of a drawing that is not mirrored."""
+    return -1.0 if recipe.rotation == "ccw" else 1.0
 
 
 def _placing(recipe: Recipe, placing: Placing) -> dict[str, Any]:
     """Turn and shift, as the file is drawn."""
-    sign = -1.0 if recipe.rotation == "ccw" else 1.0
+    sign = _drawn(recipe)
     x, y = placing.shift
     return {"turned_deg": sign * math.degrees(placing.turn), "shifted": [x / recipe.mm, sign * y / recipe.mm]}
 
 
 def _surface(recipe: Recipe, paths: Sequence[Path], surface: SurfaceMade) -> dict[str, Any]:
-    mm, curve, count = recipe.mm, surface.fit.curve, len(surface.on.points)
+    mm, curve, count = recipe.mm, surface.fit.curve, len(surface.measured.points)
     wide = count / curve.spans * math.sqrt(math.pi)
     outliers = [
         {
-            "file": paths[int(surface.on.files[i])].name,
-            "line": int(surface.on.lines[i]),
+            "file": paths[int(surface.measured.files[i])].name,
+            "line": int(surface.measured.lines[i]),
             "residual": float(surface.fit.residuals[i]) / mm,
         }
         for i in np.flatnonzero(surface.fit.outliers)[:MOST_OUTLIERS].tolist()
     ]
     return {
-        "name": surface.on.surface.name,
-        "points": surface.on.repeats,
+        "name": surface.measured.intent.name,
+        "points": surface.measured.repeats,
         "places": count,
         "spans": curve.spans,
         "noise": curve.sigma / mm,
@@ -211,31 +203,68 @@ def _surface(recipe: Recipe, paths: Sequence[Path], surface: SurfaceMade) -> dic
     }
 
 
-def motion_section(recipe: Recipe, result: PartMade, call: Call) -> dict[str, Any]:
+def _motion(recipe: Recipe, result: PartMade, options: PointOptions) -> dict[str, Any]:
     """Errors of the motion with their uncertainties."""
-    scale, unit = scale_of(recipe, result)
+    scale, unit = report_unit(recipe, result.motion_unit)
     errors = result.motion
-    uncertain = motion_uncertainty(result, call)
+    uncertain = motion_uncertainty(result, options)
     phase, remaining = errors.phase
     rows = np.stack([errors.remaining, errors.rows[1], errors.rows[2]])
-    common: Array = np.abs(errors.gain) * systematic(call)
+    common: Array = np.abs(errors.gain) * options.systematic
     entry: dict[str, Any] = {"unit": unit, "offset": scale * errors.offset}
     entry["offset_uncertainty"] = scale * float(common.mean())
     for k, name in enumerate(DERIVATIVES):
-        at = int(np.nanargmax(np.abs(rows[k])))
-        own = uncertain[at] if k == 0 else COVERAGE * errors.sds[k, at]
+        worst = int(np.nanargmax(np.abs(rows[k])))
+        own = uncertain[worst] if k == 0 else COVERAGE * errors.sds[k, worst]
         entry[name] = {
-            "max": scale * float(rows[k, at]),
-            "at_deg": degrees(float(errors.shaft[at])),
+            "max": scale * float(rows[k, worst]),
+            "at_deg": degrees(float(errors.shaft[worst])),
             "uncertainty": scale * float(own),
             "unit": unit + ("", "/rad", "/rad^2")[k],
         }
-    sign = -1.0 if recipe.rotation == "ccw" else 1.0
-    turning = 0.0 if call.axes is None else call.axes[1]
-    own = math.hypot(expanded(call, errors.influence(errors.phase_weights)), turning)
-    entry["phase_deg"] = sign * math.degrees(phase)
+    own = math.hypot(options.expanded(errors.influence(errors.phase_weights)), options.axes_turn)
+    entry["phase_deg"] = _drawn(recipe) * math.degrees(phase)
     entry["phase_uncertainty_deg"] = math.degrees(own)
     entry["without_phase"] = scale * float(np.abs(remaining).max())
-    made_peak, meant_peak = errors.peak_acceleration
-    entry["peak_acceleration"] = {"made": scale * made_peak, "intended": scale * meant_peak, "unit": f"{unit}/rad^2"}
+    made_peak, intended_peak = errors.peak_acceleration
+    entry["peak_acceleration"] = {"made": scale * made_peak, "intended": scale * intended_peak, "unit": f"{unit}/rad^2"}
     return entry
+
+
+# --- a shaft ----------------------------------------------------------------------------------------------------------
+
+
+def shaft_section(
+    recipe: Order, paths: Sequence[Path], result: ShaftMade, sections: Sequence[dict[str, Any]]
+) -> dict[str, Any]:
+    """Section `made` of the report on a shaft, from the sections of its cams; angles are degrees of the shaft."""
+    entry: dict[str, Any] = {
+        "files": [path.name for path in paths],
+        "unit": UNIT_NAMES[recipe.units],
+        "verdicts": {
+            f"{check}, {lobe.points.cam.name}": verdict
+            for lobe, own in zip(result.cams, sections, strict=True)
+            for check, verdict in own["verdicts"].items()
+        },
+        "lobes": [
+            {"name": lobe.points.cam.name, "phase": _phase(lobe.phase), **own}
+            for lobe, own in zip(result.cams, sections, strict=True)
+        ],
+        "datum": result.cams[0].points.cam.name,
+        "missing": list(result.missing),
+    }
+    if result.late is not None:
+        entry["turned_late_deg"] = math.degrees(result.late)
+    if result.leaning is not None:
+        entry["axis"] = result.leaning.section(recipe)
+    entry["remarks"] = list(result.remarks)
+    return entry
+
+
+def _phase(phase: Phase) -> dict[str, float]:
+    return {
+        "late_deg": math.degrees(phase.late),
+        "uncertainty_deg": math.degrees(phase.uncertainty),
+        "against_datum_deg": math.degrees(phase.against),
+        "against_datum_uncertainty_deg": math.degrees(phase.against_uncertainty),
+    }

@@ -12,10 +12,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.made.judge import TURNED, expanded, part_of_points
 from camgeo.capabilities.made.keys import Made
-from camgeo.capabilities.made.placed import points_of_tables, readings_of, scale_of
-from camgeo.capabilities.made.reading import label_of, places_of, sorted_out, tables_of
+from camgeo.capabilities.made.made_part import TURNED, part_of_points
+from camgeo.capabilities.made.part_points import (
+    MIXED,
+    NO_SHIFT,
+    label_of,
+    part_points,
+    places_of,
+    read_tables,
+    readings_of,
+    scale_of,
+    surface_points,
+)
 from camgeo.capabilities.made.refusal import as_call_errors
 from camgeo.capabilities.made.shaft_axis import leaning_of
 from camgeo.common.errors import CallError
@@ -37,15 +46,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.capabilities.made.judge import PartMade
-    from camgeo.capabilities.made.reading import Call, Probing
+    from camgeo.capabilities.made.made_part import PartMade
+    from camgeo.capabilities.made.options import PointOptions, Probing
+    from camgeo.capabilities.made.part_points import MeasuredSurface
     from camgeo.capabilities.made.shaft_axis import Leaning
     from camgeo.registry.capability import ShaftCam
     from kin.made.axis import Axis
     from kin.made.lifts import Readings
     from kin.made.motion import Errors
-    from kin.made.points import SurfacePoints
-    from kin.made.smooth import Smooth
     from kin.numeric.arrays import Array, Indices
     from kin.read.points import PointTable
 
@@ -145,64 +153,63 @@ class ShaftMade:
     remarks: tuple[str, ...]
 
 
-def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], call: Call) -> ShaftMade:
+def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOptions) -> ShaftMade:
     """Judge the cams of a shaft by their measured points; give each cam's result and phase, and the axis of the shaft.
 
     Raises CallError for points that cannot be judged.
     """
-    tables, removing = tables_of(paths), call.probing.align == "gxy"
+    files, probing = read_tables(paths), options.probing
+    tables = [table for _, table in files]
     if len({table.measured for table in tables}) > 1:
-        raise CallError("some files have lifts and others places: give them in calls of their own")
-    scale, _ = scale_of(cams[0].recipe, tables, call.probing.units)
-    lifts = tables[0].measured == "lift"
-    measured, halved = _by_cam(cams, paths, tables, scale), ""
+        raise CallError(MIXED)
+    scale, _ = scale_of(cams[0].recipe, tables, probing.units)
+    lifts, without_lean = tables[0].measured == "lift", probing.align == "gxy"
+    measured, halved = _by_cam(cams, files, scale), ""
     if lifts:
-        measured, halved = _at_cam_degrees(measured, scale, call.probing)
+        measured, halved = _at_cam_degrees(measured, scale, probing)
     measured = [points.turned(-points.cam.zero if lifts else -points.cam.at) for points in measured]
 
     def rows() -> Rows:
-        probing = call.probing
         return _lift_rows(measured, scale, probing) if lifts else _radii(cams, measured, scale, probing)
 
     late, together = None, []
-    if call.probing.align:
+    if probing.align:
         with as_call_errors(paths):
             together = np.flatnonzero(standing_together(rows())).tolist()
-            late = _shaft_turn([measured[rank] for rank in together], scale, call)
+            late = _shaft_turn([measured[rank] for rank in together], scale, probing)
         measured = [points.turned(-late) for points in measured]
     with as_call_errors(paths):
         turns = lone_turns(rows(), aligned=late is not None)
     alone = [turns.get(rank, 0.0) for rank in range(len(measured))]
     leaning = None
-    if removing and late is not None:
-        measured, leaning = _without_lean(measured, alone, scale, call.probing)
+    if without_lean and late is not None:
+        measured, leaning = _without_lean(measured, alone, scale, probing)
         with as_call_errors(paths):
-            left = _shaft_turn([measured[rank] for rank in together], scale, call)  # a shift looks like some turn
+            left = _shaft_turn([measured[rank] for rank in together], scale, probing)  # a shift looks like some turn
         measured, late = [points.turned(-left) for points in measured], late + left
     results = [
-        _judge_cam(points, replace(call, probing=replace(call.probing, align="", alone=turn)))
+        _judge_cam(points, replace(options, probing=replace(probing, align="", turned=turn)))
         for points, turn in zip(measured, alone, strict=True)
     ]
-    if not lifts and not removing:
-        shifts = [_shift(result.surfaces[0].on.points, result.surfaces[0].fit.curve) for result in results]
+    if not lifts and not without_lean:
+        firsts = [result.surfaces[0] for result in results]
+        shifts = [shift_of([first.measured.deviations], [first.fit.curve]) for first in firsts]
         leaning = _leaning(measured, alone, shifts, scale)
-    phases = _phases(measured, [result.motion for result in results], call)
+    phases = _phases(measured, [result.motion for result in results], options)
     names = {points.cam.name for points in measured}
-    return ShaftMade(
-        tuple(CamMade(*row) for row in zip(measured, results, phases, strict=True)),
-        tuple(cam.name for cam in cams if cam.name not in names),
-        late,
-        leaning,
-        (
-            *([halved] if halved else []),
-            *([] if leaning is None else leaning.remarks()),
-            *_remarks(measured, results, late, [cam.name for cam in cams if cam.name not in names]),
-            *_lone_remarks(measured, phases),
-        ),
+    missing = tuple(cam.name for cam in cams if cam.name not in names)
+    remarks = (
+        *([halved] if halved else []),
+        *([] if leaning is None else leaning.remarks()),
+        *_remarks(measured, results, late, missing),
+        *_lone_remarks(measured, phases),
     )
+    made = tuple(CamMade(*row) for row in zip(measured, results, phases, strict=True))
+    return ShaftMade(made, missing, late, leaning, remarks)
 
 
-def _judge_cam(points: CamPoints, call: Call) -> PartMade:
+def _judge_cam(points: CamPoints, options: PointOptions) -> PartMade:
+    """Judge a cam by its points; raises CallError where there is no contour to hold them against."""
     cam = points.cam
     if not cam.design.contours:
         raise CallError(f"{cam.name}: there is no exact contour to hold points against: a check of its recipe fails")
@@ -211,19 +218,17 @@ def _judge_cam(points: CamPoints, call: Call) -> PartMade:
     made = cam.recipe.of(Made)
     datum = "bore" if made is None or made.datum is None else made.datum
     with as_call_errors(points.paths, cam.name):
-        placed = points_of_tables(cam.recipe, cam.design, points.files, call.probing)
-        return part_of_points(cam.recipe, cam.design, placed, call, datum)
+        placed = part_points(cam.recipe, cam.design, points.files, options.probing)
+        return part_of_points(cam.recipe, cam.design, placed, options, datum)
 
 
 # --- which cam a point is of ------------------------------------------------------------------------------------------
 
 
-def _by_cam(
-    cams: Sequence[ShaftCam], paths: Sequence[Path], tables: Sequence[PointTable], scale: float
-) -> list[CamPoints]:
+def _by_cam(cams: Sequence[ShaftCam], files: Sequence[tuple[Path, PointTable]], scale: float) -> list[CamPoints]:
     """Points of each cam that has any; raises CallError for points of none, and for too few of a cam."""
     pieces: list[list[tuple[Path, PointTable]]] = [[] for _ in cams]
-    for path, table in zip(paths, tables, strict=True):
+    for path, table in files:
         owner = _owners(cams, path, table, scale)
         for rank, piece in enumerate(pieces):
             if (owner == rank).any():
@@ -330,19 +335,20 @@ def _turn_table(table: PointTable, drawn: float, angle: float) -> PointTable:
     return replace(table, columns=columns)
 
 
-def _shaft_turn(measured: Sequence[CamPoints], scale: float, call: Call) -> float:
+def _shaft_turn(measured: Sequence[CamPoints], scale: float, probing: Probing) -> float:
     """Angle, rad, by which the shaft as one stands later than meant, by least squares over all its points."""
-    probing = call.probing
     if measured[0].tables[0].measured == "lift":
         from kin.made.lifts import lateness
 
         return lateness([_readings(points, scale, probing) for points in measured])
-    surfaces = []
-    for points in measured:
-        (part,) = intents(points.cam.recipe, points.cam.design)
-        pieces = [(i, table, scale) for i, table in enumerate(points.tables)]
-        surfaces += [on.points for on in sorted_out(part, pieces, probing)]
-    return turned_at(surfaces).turn
+    return turned_at([_on_surface(points, scale, probing).points for points in measured]).turn
+
+
+def _on_surface(points: CamPoints, scale: float, probing: Probing) -> MeasuredSurface:
+    """Points of a cam, which has one surface, held against its exact contour."""
+    (part,) = intents(points.cam.recipe, points.cam.design)
+    (surface,) = surface_points(part, list(enumerate(points.tables)), scale, probing)
+    return surface
 
 
 def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float, probing: Probing) -> Rows:
@@ -356,15 +362,15 @@ def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float
         mirrored = points.cam.recipe.rotation == "ccw"
         places = np.concatenate([places_of(table, scale, mirrored=mirrored)[0] for table in points.tables])
         rows.append(radii(turned(places, np.array(points.cam.at))) - (probing.ball or 0.0))
-    own, nominal = np.stack(rows), np.stack(contours)
+    own, nominal, names = np.stack(rows), np.stack(contours), [cam.name for cam in cams]
     order = np.argsort([cam.low for cam in cams])
     other_end = np.empty_like(order)
     other_end[order] = order[::-1]
     return Rows(
         own,
         nominal,
-        _ranks(cams, measured),
-        [cam.name for cam in cams],
+        np.array([names.index(points.cam.name) for points in measured], dtype=np.intp),
+        names,
         nominal.mean(axis=1),
         own.mean(axis=1),
         other_end,
@@ -414,11 +420,6 @@ def _at_cam_degrees(measured: Sequence[CamPoints], scale: float, probing: Probin
     return [points.halved() for points in measured], remark
 
 
-def _ranks(cams: Sequence[ShaftCam], measured: Sequence[CamPoints]) -> Indices:
-    names = [cam.name for cam in cams]
-    return np.array([names.index(points.cam.name) for points in measured], dtype=np.intp)
-
-
 # --- the axis ---------------------------------------------------------------------------------------------------------
 
 
@@ -430,17 +431,14 @@ def _without_lean(
     Raises CallError for lifts, and for cams at fewer than three heights.
     """
     if measured[0].tables[0].measured == "lift":
-        raise CallError("lifts tell no shift: --align rotation is all that they can be placed by")
+        raise CallError(NO_SHIFT)
     moved, total = list(measured), None
     for _ in range(ROUNDS):
         shifts = []
         for points, turn in zip(moved, alone, strict=True):
             with as_call_errors(points.paths, points.cam.name):
-                (part,) = intents(points.cam.recipe, points.cam.design)
-                pieces = [(i, table, scale) for i, table in enumerate(points.tables)]
-                (on,) = sorted_out(part, pieces, probing)
-                placed = on.points.placed(Placing(turn))
-                shifts.append(_shift(placed, fit(placed.deviations.parameter, placed.deviations.e).curve))
+                deviations = _on_surface(points, scale, probing).points.placed(Placing(turn)).deviations
+                shifts.append(shift_of([deviations], [fit(deviations.parameter, deviations.e).curve]))
         leaning = _leaning(moved, alone, shifts, scale, removed=True)
         if leaning is None:
             problem = f"lean and shift of a shaft need lobes at {LEAST_CAMS} heights or more"
@@ -449,10 +447,6 @@ def _without_lean(
         moved = [points.moved(leaning.axis, scale) for points in moved]
     assert total is not None
     return moved, total
-
-
-def _shift(points: SurfacePoints, curve: Smooth) -> tuple[Array, Array]:
-    return shift_of([points.deviations], [curve])
 
 
 def _leaning(
@@ -474,19 +468,19 @@ def _leaning(
 # --- phases -----------------------------------------------------------------------------------------------------------
 
 
-def _phases(measured: Sequence[CamPoints], motions: Sequence[Errors], call: Call) -> list[Phase]:
+def _phases(measured: Sequence[CamPoints], motions: Sequence[Errors], options: PointOptions) -> list[Phase]:
     """Phase of each cam, by the turn that explains most of its motion's error; the first is the datum of the others."""
     lates = [errors.phase[0] for errors in motions]
     parts = [
         _on_shaft(errors.influence(errors.phase_weights), points.cam.at)
         for errors, points in zip(motions, measured, strict=True)
     ]
-    turning, datum = 0.0 if call.axes is None else call.axes[1], parts[0]
+    datum = parts[0]
     phases = []
     for late, part in zip(lates, parts, strict=True):
         between = Influence(math.hypot(part.sd, datum.sd), part.worst + datum.worst, part.shifted - datum.shifted)
-        own = math.hypot(expanded(call, part), turning)
-        phases.append(Phase(late, own, late - lates[0], expanded(call, between)))
+        own = math.hypot(options.expanded(part), options.axes_turn)
+        phases.append(Phase(late, own, late - lates[0], options.expanded(between)))
     return [replace(phases[0], against_uncertainty=0.0), *phases[1:]]
 
 

@@ -15,14 +15,22 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.cams.families import FAMILIES
-from camgeo.capabilities.made.judge import made_part
 from camgeo.capabilities.made.keys import Made
-from camgeo.capabilities.made.placed import by_disc, demand_points, scale_of
-from camgeo.capabilities.made.reading import Call, label_of, places_of, tables_of
+from camgeo.capabilities.made.made_part import made_part
+from camgeo.capabilities.made.options import PointOptions
+from camgeo.capabilities.made.part_points import (
+    by_disc,
+    by_label,
+    demand_points,
+    joined,
+    places_of,
+    read_tables,
+    scale_of,
+)
 from camgeo.capabilities.made.refusal import as_call_errors
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
-from camgeo.measures.units import UNIT_NAMES
+from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.recipe.recipe import load_text
 from camgeo.schema.change import replace_entry, set_value
 from camgeo.schema.errors import RecipeErrors
@@ -126,7 +134,7 @@ def _by_strokes(measured: _MeasuredCam, source: Source, name: str) -> tuple[Sour
         lines.append(f"the motion is a table, {table}, within {reading}: {why}; every deviation of form is part of it")
     else:
         made = _with_motion(made, keys, keys.motion, segments)
-        lines += _told(measured, measured.programme)
+        lines += _stroke_lines(measured, measured.programme)
     return made, beside, lines
 
 
@@ -201,12 +209,12 @@ def _placeholders(path: Path, paths: Sequence[Path]) -> _Rough:
         source = _with(source, f"cam.{keys.base}", 40.0)
     source = _with_motion(source, keys, *keys.still)
     rough = load_text(source.text, path)
-    tables = tables_of(paths)
-    if any(table.measured == "lift" for table in tables):
+    files = read_tables(paths)
+    if any(table.measured == "lift" for _, table in files):
         raise CallError("lifts tell no base radius: a recipe is made of points x,y")
-    scale, remarks = scale_of(rough, tables, None)
+    scale, remarks = scale_of(rough, [table for _, table in files], None)
     exact = rough.cam.exact()
-    points = _by_surface(rough, exact, tables, paths, scale)
+    points = _by_surface(rough, exact, files, scale)
     base = 0.0
     if keys.base:
         places, _ = points[exact.surfaces[0].name]
@@ -224,7 +232,7 @@ def _keys(source: Source) -> ByMotion:
 
 
 def _by_surface(
-    recipe: Recipe, exact: ExactCam, tables: Sequence[PointTable], paths: Sequence[Path], scale: float
+    recipe: Recipe, exact: ExactCam, files: Sequence[tuple[Path, PointTable]], scale: float
 ) -> dict[str, tuple[Array, Array | None]]:
     """Points of each surface, mm, and their normals; raises CallError where one has none."""
     discs: dict[int, list[str]] = {}
@@ -232,7 +240,7 @@ def _by_surface(
         discs.setdefault(surface.disc, []).append(surface.name)
     names = list(discs.values())
     rows: dict[str, list[tuple[Array, Array | None]]] = {surface.name: [] for surface in exact.surfaces}
-    for place, (path, table) in enumerate(zip(paths, tables, strict=True)):
+    for place, (path, table) in enumerate(files):
         for disc, own in by_disc(names, table, path, place):
             places, normals = places_of(own, scale, mirrored=recipe.rotation == "ccw")
             owner = _flanks(own, names[disc], places)
@@ -240,23 +248,15 @@ def _by_surface(
                 if (chosen := owner == rank).any():
                     rows[name].append((places[chosen], None if normals is None else normals[chosen]))
     demand_points([name for name in rows if not rows[name]])
-    return {name: _joined(pieces) for name, pieces in rows.items()}
-
-
-def _joined(pieces: Sequence[tuple[Array, Array | None]]) -> tuple[Array, Array | None]:
-    normals = [piece[1] for piece in pieces if piece[1] is not None]
-    joined = np.concatenate(normals) if len(normals) == len(pieces) else None
-    return np.concatenate([piece[0] for piece in pieces]), joined
+    return {name: joined(pieces) for name, pieces in rows.items()}
 
 
 def _flanks(table: PointTable, names: Sequence[str], places: Array) -> Indices:
     """Index (n,) of each point's surface, counted from the shaft: by its label, else by the gap between flanks."""
     if len(names) == 1:
         return np.zeros(len(places), dtype=np.intp)
-    own = [label_of(name) for name in names]
-    labels = [label_of(label) for label in table.labels]
-    if labels and set(labels) <= set(own):
-        return np.array([own.index(label) for label in labels], dtype=np.intp)
+    if (owner := by_label(names, table)) is not None:
+        return owner
     radius, angle = np.hypot(places[:, 0], places[:, 1]), np.arctan2(places[:, 1], places[:, 0])
     order = np.argsort(angle)
     about = np.sort(np.stack([np.roll(radius[order], k) for k in range(-BESIDE, BESIDE + 1)]), axis=0)
@@ -299,8 +299,9 @@ def _measured_cam(rough: _Rough) -> _MeasuredCam:
 
 def _demand_symmetry(recipe: Recipe, motion: PointMotion) -> None:
     """Raise CallError for points of another kind of cam, and of one whose swing is not 0 where the turn begins."""
-    swing, swings = float(np.ptp(motion.turn)), motion.gauge.unit == "deg"
-    scale, unit = (math.degrees(1.0), "degrees") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
+    swing = float(np.ptp(motion.turn))
+    scale, unit = report_unit(recipe, motion.gauge.unit)
+    unit = "degrees" if unit == "deg" else unit
     if motion.uneven > MOST_UNEVEN * swing:
         off = f"{scale * motion.uneven:.3g} {unit} of a motion over {scale * swing:.3g} {unit}"
         raise CallError(
@@ -320,7 +321,8 @@ def _in_unit(measured: _MeasuredCam, value: float) -> float:
 
 
 def _unit(measured: _MeasuredCam) -> str:
-    return "deg" if measured.motion.gauge.unit == "deg" else UNIT_NAMES[measured.recipe.units]
+    """Unit of displacements: that of the recipe, or deg."""
+    return report_unit(measured.recipe, measured.motion.gauge.unit)[1]
 
 
 def _number(value: float, uncertainty: float) -> float:
@@ -392,7 +394,7 @@ def _heights(measured: _MeasuredCam, programme: Programme) -> list[float]:
     return [_number(_in_unit(measured, height), _in_unit(measured, unsure)) for height, unsure in pairs]
 
 
-def _told(measured: _MeasuredCam, programme: Programme) -> list[str]:
+def _stroke_lines(measured: _MeasuredCam, programme: Programme) -> list[str]:
     """Lines of text on each recognised stroke: height, angles and law, with uncertainties."""
     unsure, lines = programme.uncertainty[0], []
     order = sorted(programme.strokes, key=lambda s: _angle(measured, programme.boundaries[s.first], unsure[s.first]))
@@ -472,9 +474,10 @@ def _verified(text: str, beside: collections.abc.Mapping[str, str], name: str, p
             why = "; ".join(f"{check.name}: {check.detail}" for check in failed)
             raise CallError(f"the cam of these points cannot be made: {why}")
         with as_call_errors(paths):
-            part = made_part(recipe, design, paths, Call())
+            part = made_part(recipe, design, paths, PointOptions())
     profile = max(2.0 * disc.profile.greatest for disc in part.discs) / recipe.mm
     motion = float(np.abs(part.motion.remaining).max())
-    scale, unit = (math.degrees(1.0), "deg") if design.exact.gauge.unit == "deg" else (1.0 / recipe.mm, recipe.units)
+    scale, _ = report_unit(recipe, design.exact.gauge.unit)
+    unit = "deg" if design.exact.gauge.unit == "deg" else recipe.units
     words = f"profile {profile:.3g} {UNIT_NAMES[recipe.units]}, motion within {scale * motion:.3g} {unit}"
     return [f"verified against the points: {words}"]

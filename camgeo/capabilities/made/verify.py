@@ -1,14 +1,14 @@
-"""From points to checks, a section of the report and, where a folder is given, its files."""
+"""`camgeo verify` with points: checks, a section of the report and, where a folder is given, files in it."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.made.events import events_section
-from camgeo.capabilities.made.judge import checks_of, made_part
-from camgeo.capabilities.made.reading import Call
+from camgeo.capabilities.made.made_part import checks_of, made_part
+from camgeo.capabilities.made.options import read_options
 from camgeo.capabilities.made.refusal import as_call_errors
-from camgeo.capabilities.made.section import add_figures, section
+from camgeo.capabilities.made.section import add_figures, section, shaft_section
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.registry.capability import Results
@@ -23,49 +23,46 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 
-def judge(recipe: Recipe, design: Design, files: FileCall, clock: Clock) -> Results:
+def judge(recipe: Recipe, design: Design, call: FileCall, clock: Clock) -> Results:
     """Judge points; see `FileJudge`."""
-    paths, units, options = files
-    call = Call.of(options, recipe, units)
+    paths, options = call.paths, read_options(call.options, recipe, call.units)
     name = escaped(str(paths[0]))
     if not design.contours:
         raise CallError(f"{name}: there is no exact contour to hold it against: a check of the recipe fails")
     if design.trimmed:
         raise CallError(f"{name}: points of a cam whose undercut is cut off are not judged; give undercut: refuse")
     with as_call_errors(paths):
-        result = made_part(recipe, design, paths, call)
-        checks, verdicts = checks_of(recipe, result, call)
-        report = section(recipe, paths, result, call, verdicts) | events_section(recipe, design, result, call)
+        result = made_part(recipe, design, paths, options)
+        checks, verdicts = checks_of(recipe, result, options)
+        report = section(recipe, paths, result, options, verdicts) | events_section(recipe, design, result, options)
     add_figures(report, recipe, design, result)
-    if call.out is not None:
-        from camgeo.capabilities.made.output import write  # most calls write nothing
+    if options.out is not None:
+        from camgeo.capabilities.made.output import write_part  # most calls write nothing
 
         with clock.stage("write"):
-            report["written"] = write(recipe, result, report, call)
+            report["written"] = write_part(recipe, result, report, options)
     return Results({"made": report}, checks)
 
 
-def judge_shaft(recipe: Order, cams: Sequence[ShaftCam], files: FileCall, clock: Clock) -> Results:
+def judge_shaft(recipe: Order, cams: Sequence[ShaftCam], call: FileCall, clock: Clock) -> Results:
     """Judge points of several cams on one shaft; see `FileJudge`."""
     from camgeo.capabilities.made.shaft import made_shaft
-    from camgeo.capabilities.made.shaft_section import shaft_section
 
-    paths, units, options = files
-    call = Call.of(options, cams[0].recipe, units)
-    result = made_shaft(cams, paths, call)
+    paths, options = call.paths, read_options(call.options, cams[0].recipe, call.units)
+    result = made_shaft(cams, paths, options)
     checks, entries = [], []
     for lobe in result.cams:
         cam = lobe.points.cam
         with as_call_errors(lobe.points.paths, cam.name):
-            own, verdicts = checks_of(cam.recipe, lobe.result, call)
-            events = events_section(cam.recipe, cam.design, lobe.result, call, (cam.events, cam.zero))
-            entries.append(section(cam.recipe, lobe.points.paths, lobe.result, call, verdicts) | events)
+            own, verdicts = checks_of(cam.recipe, lobe.result, options)
+            events = events_section(cam.recipe, cam.design, lobe.result, options, (cam.events, cam.zero))
+            entries.append(section(cam.recipe, lobe.points.paths, lobe.result, options, verdicts) | events)
         checks += [replace(check, surface=cam.name) for check in own]
         add_figures(entries[-1], cam.recipe, cam.design, lobe.result)
     report = shaft_section(recipe, paths, result, entries)
-    if call.out is not None:
-        from camgeo.capabilities.made.shaft_output import write_shaft
+    if options.out is not None:
+        from camgeo.capabilities.made.output import write_shaft
 
         with clock.stage("write"):
-            report["written"] = write_shaft(recipe, result, report, call)
+            report["written"] = write_shaft(recipe, result, report, options)
     return Results({"made": report}, checks)

@@ -1,4 +1,4 @@
-"""What points told, as lines for the terminal."""
+"""The section `made` of a report in lines of text, for the terminal and the page."""
 
 from __future__ import annotations
 

@@ -1,29 +1,35 @@
-"""What points of earlier runs tell of a recipe's export: the deviations of each, and what corrected files change."""
+"""Points of earlier runs beside an export: deviations of each run, what corrected files take off, and their table."""
 
 from __future__ import annotations
 
 import math
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.made.correction import LOOKS, runs_made
-from camgeo.capabilities.made.judge import follower_motion
+from camgeo.capabilities.made.correction import LOOKS, runs_made, total_deviations
 from camgeo.capabilities.made.keys import CORRECT, Made
-from camgeo.measures.units import UNIT_NAMES
+from camgeo.capabilities.made.made_part import follower_motion
+from camgeo.common.terminal import escaped
+from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.registry.capability import Results
+from camgeo.report.document import align
 from kin.made.motion import COVERAGE, contact_errors, paired
-from kin.made.smooth import Smooth
 from kin.numeric.angles import degrees
 from kin.numeric.feet import equal_steps
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from camgeo.capabilities.made.correction import RunMade
     from camgeo.common.clock import Clock
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
+    from kin.made.smooth import Smooth
+
+HEAD = ("run", "surface", "points", "greatest", "at", "rms", "+-", "files differ by")
+NOTE = "Smoothed deviations, above 0 where metal is too much; of their sum over all runs `correct` takes off a share."
 
 
 def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
@@ -36,7 +42,7 @@ def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
         raise recipe.error("made.points", problem, None, "give undercut: refuse")
     with clock.stage("made"):
         runs = runs_made(recipe, design)
-    totals = {name: Smooth.total([run.curves[name] for run in runs]) for name in runs[0].curves}
+    totals = total_deviations(runs)
     error = sum(run.error for run in runs)
     entry = {
         "unit": UNIT_NAMES[recipe.units],
@@ -101,8 +107,7 @@ def _correction(
         greatest = max(greatest, float(e.max()), float(e.min()), key=abs)
         uncertain = max(uncertain, COVERAGE * float(curve.standard_deviations(t).max()))
     motion, _ = follower_motion(design, each)
-    swings = design.exact.gauge.unit == "deg"
-    scale = math.degrees(1.0) if swings else 1.0 / recipe.mm
+    scale, unit = report_unit(recipe, design.exact.gauge.unit)
     worst = int(np.argmax(np.abs(motion.remaining)))
     return {
         CORRECT.name: share,
@@ -110,9 +115,66 @@ def _correction(
         "greatest": greatest / recipe.mm,
         "uncertainty": math.hypot(uncertain, share * error) / recipe.mm,
         "motion": {
-            "unit": "deg" if swings else UNIT_NAMES[recipe.units],
+            "unit": unit,
             "offset": scale * motion.offset,
             "change": scale * float(motion.remaining[worst]),
             "at_deg": degrees(float(motion.shaft[worst])),
         },
     }
+
+
+# --- as a table -------------------------------------------------------------------------------------------------------
+
+
+def _rows(section: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Rows below `HEAD`: each run's surfaces, the sums over all runs, and what each share of them takes off."""
+    runs = [(", ".join(run["files"]), surface) for run in section["runs"] for surface in run["surfaces"]]
+    rows = [_row(files, surface) for files, surface in runs]
+    rows += [_row("sum", surface) for surface in section["systematic"]]
+    for correction in section["corrections"]:
+        motion, most = correction["motion"], f"{correction['greatest']:+.4g}"
+        files = f"{', '.join(correction['files'])}: {correction['correct']:g} of the sum"
+        rows.append((files, "", "", most, "", "", f"{correction['uncertainty']:.2g}", ""))
+        change = f"{motion['change']:+.4g}", f"{motion['at_deg']:.2f} deg"
+        rows.append((f"  so its motion changes, {motion['unit']}", "", "", *change, "", "", ""))
+    return rows
+
+
+def _row(name: str, surface: dict[str, Any]) -> tuple[str, ...]:
+    differ = surface.get("files_differ_by")
+    figures = f"{surface['greatest']:+.4g}", f"{surface['at_deg']:.2f} deg", f"{surface['rms']:.4g}"
+    points = str(surface.get("points", ""))
+    unsure = f"{surface['uncertainty']:.2g}"
+    return name, surface["name"], points, *figures, unsure, "" if differ is None else f"{differ:.2g}"
+
+
+def _section(report: dict[str, Any]) -> dict[str, Any] | None:
+    """The section of an export; None of a report without runs."""
+    section: dict[str, Any] = report.get("made", {})
+    return section if "runs" in section else None
+
+
+def lines(report: dict[str, Any]) -> str:
+    """The table for the terminal; empty without runs."""
+    section = _section(report)
+    if section is None:
+        return ""
+    rows = [tuple(map(escaped, row)) for row in _rows(section)]
+    return align([(f"{HEAD[0]}, {section['unit']}", *HEAD[1:]), *rows])
+
+
+def panel(report: dict[str, Any]) -> str:
+    """The table as a section of the page; empty without runs."""
+    from camgeo.report.page.tables import html_table
+
+    section = _section(report)
+    if section is None:
+        return ""
+    rows = [_html(row) for row in _rows(section)]
+    head = '<section aria-labelledby="runs-head"><h2 id="runs-head">Parts that were made</h2>'
+    return f"{head}<p>{NOTE} Lengths in {section['unit']}.</p>{html_table('Runs', HEAD, rows)}</section>"
+
+
+def _html(row: Sequence[str]) -> str:
+    name, *cells = (escape(cell.strip()) for cell in row)
+    return f'<tr><th scope="row">{name}</th>{"".join(f"<td>{cell}</td>" for cell in cells)}</tr>'

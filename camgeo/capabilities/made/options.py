@@ -1,0 +1,156 @@
+"""Options of `camgeo verify` for files of points, and which files these are."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.made.keys import ALIGN
+from camgeo.common.arguments import short_repr
+from camgeo.common.errors import CallError
+from camgeo.schema.quantity import read_quantity
+from camgeo.schema.scalars import Complaint
+from kin.judge.drive import is_drive
+from kin.made.motion import COVERAGE
+from kin.numeric.records import dataclass
+from kin.read.formats import FORMATS
+from kin.read.point_list import is_point_list
+from kin.read.points import heading_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from camgeo.recipe.recipe import Recipe
+    from kin.made.motion import Influence
+
+GRINDER = "c_deg"  # heading of the column of the work's angle in a grinder's table
+MOST_LENGTH = 1e3  # mm, of a probe and its errors
+
+
+def claims(path: Path, options: Mapping[str, object]) -> bool:
+    """Whether a file holds measured points, and not rows for a machine."""
+    if "as" in options:
+        return options["as"] == "measured"
+    if is_point_list(path) or is_drive(path):  # of a curve, which is judged as a contour, or of a motion
+        return False
+    if path.suffix.lower() not in FORMATS["csv"].suffixes:
+        return True
+    heading = [cell.strip().strip('"').lower() for cell in heading_of(path)]
+    return GRINDER not in heading
+
+
+@dataclass(frozen=True)
+class Probing:
+    """Way in which points were measured.
+
+    align   unknowns that are placed by least squares before all else: letters of "gxy", the turn and the shift
+    ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
+    face    width of an indicator's flat face, mm
+    units   mm in a unit of files whose headings state none; None for that of the recipe
+    turned  known turn, rad, of a cam on a shaft against the others; None for a part of its own
+    """
+
+    align: str = ""
+    ball: float | None = None
+    face: float | None = None
+    units: float | None = None
+    turned: float | None = None
+
+
+@dataclass(frozen=True)
+class PointOptions:
+    """Options of a call on files of points, mm and radians; None for an option that is not given.
+
+    error        expanded uncertainty (k = 2) of a point
+    axes         expanded uncertainty of the part's axes: shift, and turn
+    spans        number of spans of the smoothed deviation
+    out          folder for a page, a drawing and a table
+    """
+
+    probing: Probing = Probing()
+    error: float | None = None
+    axes: tuple[float, float] | None = None
+    spans: int | None = None
+    out: str | None = None
+
+    @property
+    def axes_shift(self) -> float:
+        """Expanded uncertainty of the place of the part's axes, mm; 0 where none is given."""
+        return 0.0 if self.axes is None else self.axes[0]
+
+    @property
+    def axes_turn(self) -> float:
+        """Expanded uncertainty of the turn of the part's axes, rad; 0 where none is given."""
+        return 0.0 if self.axes is None else self.axes[1]
+
+    @property
+    def systematic(self) -> float:
+        """Expanded uncertainty of the metal that does not average out, mm: of the probe and of the axes' shift."""
+        return math.hypot(self.error or 0.0, self.axes_shift)
+
+    def expanded(self, influence: Influence) -> float:
+        """Expanded uncertainty (k = 2) of a figure: root sum of squares of noise, probe and shift of the axes.
+
+        The probe's error acts at worst, as it is common to all points. The result is in the unit of the figure.
+        """
+        shifted = math.hypot(*influence.shifted.tolist())
+        return math.hypot(COVERAGE * influence.sd, influence.worst * (self.error or 0.0), shifted * self.axes_shift)
+
+
+def read_options(options: Mapping[str, object], recipe: Recipe, units: float | None = None) -> PointOptions:
+    """Read the options of a call, with the unit of its files, mm.
+
+    Raises CallError with a line for each that makes no sense.
+    """
+    faults: list[str] = []
+
+    def length(name: str) -> float | None:
+        if name not in options:
+            return None
+        try:
+            number = read_quantity(str(options[name]), recipe.units) * recipe.mm
+        except Complaint:
+            number = math.nan
+        if 0.0 <= number <= MOST_LENGTH:
+            return number
+        problem = f"a length such as 0.002 or 0.0001in is expected, not {short_repr(options[name])}"
+        faults.append(f"--{name.replace('_', '-')}: {problem}")
+        return None
+
+    align = str(options.get("align", "none"))
+    if align not in ALIGN:
+        faults.append(f"--align: one of {', '.join(ALIGN)}, not {short_repr(align)}")
+    ball, face = length("probe_radius"), length("probe_face")
+    if face is not None and ball is not None:
+        faults.append("--probe-face: a probe has a face or a radius: leave one of them out")
+    error = length("probe_error")
+    axes = _read_axes(options["axes_error"], recipe, faults) if "axes_error" in options else None
+    spans = None
+    if "spans" in options:
+        text = str(options["spans"])
+        if re.fullmatch(r"[0-9]{1,6}", text):
+            spans = int(text)
+        else:
+            faults.append(f"--spans: a whole number from 12 is expected, not {short_repr(text)}")
+    out = options.get("out")
+    if out is not None and not str(out):
+        faults.append("--out: an empty name")
+    if faults:
+        raise CallError(*faults)
+    return PointOptions(Probing(ALIGN[align], ball, face, units), error, axes, spans, None if out is None else str(out))
+
+
+def _read_axes(value: object, recipe: Recipe, faults: list[str]) -> tuple[float, float] | None:
+    """Shift, mm, and turn, rad, of an option `L,DEG`; None, and one more of `faults`, where it has not these two."""
+    cells = [str(cell) for cell in value] if isinstance(value, (tuple, list)) else str(value).split(",")
+    try:
+        shift = read_quantity(cells[0], recipe.units) * recipe.mm
+        (turn,) = [float(cell) for cell in cells[1:]]
+    except (Complaint, ValueError):
+        shift = turn = math.nan
+    if 0.0 <= shift <= MOST_LENGTH and 0.0 <= turn <= 180.0:
+        return shift, math.radians(turn)
+    faults.append(f"--axes-error: a length and an angle in degrees, such as 0.005,0.02, not {short_repr(value)}")
+    return None
