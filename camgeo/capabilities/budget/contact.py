@@ -47,7 +47,7 @@ class Metal(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Off:
+class SizeErrors:
     """Errors of the sizes at one contact, made less meant: mm, rad, and complex displacements in mm.
 
     `turned` is the turn of the metal on the shaft, `bore` the displacement of the metal in the cam's axes. `shaft` and
@@ -70,7 +70,7 @@ class Off:
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class ContactPlace:
     """Contact at shaft angles (n,): its record, the metal, and its intended position `own` (n,), mm or rad.
 
     `first` is the x axis of the follower's frame, `eccentric` the eccentricity of its stem, mm, and `middle` the
@@ -86,7 +86,7 @@ class Place:
     middle: float
 
 
-def positions(place: Place, off: Off) -> Array:
+def positions(place: ContactPlace, off: SizeErrors) -> Array:
     """Positions of the follower by one contact, mm or rad, (parts, angles); raises LostError where there is none."""
     contact = place.contact
     axis = np.exp(1j * (place.shaft + contact.turned))
@@ -107,7 +107,7 @@ def positions(place: Place, off: Off) -> Array:
     return contact.position(own - off.datum)
 
 
-def _own_on_stem(place: Place, off: Off, middle: Complexes, way: Complexes) -> Array:
+def _own_on_stem(place: ContactPlace, off: SizeErrors, middle: Complexes, way: Complexes) -> Array:
     """Distance, mm, along a stem's line from the middle of its guide at which the touch meets the metal."""
     touch = place.contact.touch
     if isinstance(touch, Flat):
@@ -118,7 +118,7 @@ def _own_on_stem(place: Place, off: Off, middle: Complexes, way: Complexes) -> A
     return place.metal.along(way, middle, touch.radius + off.grown)
 
 
-def _own_on_arm(place: Place, guide: Oscillating, off: Off, pivot: Complexes, axis: Complexes) -> Array:
+def _own_on_arm(place: ContactPlace, guide: Oscillating, off: SizeErrors, pivot: Complexes, axis: Complexes) -> Array:
     """Position of an arm, rad, at which its touch meets the metal: the solution nearest the intended position."""
     touch, hand = place.contact.touch, guide.side
     if isinstance(touch, Flat):

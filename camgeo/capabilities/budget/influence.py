@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.budget.words import BORE, PROFILE
-from kin.numeric.angles import TURN
+from camgeo.capabilities.budget.dimensions import BORE, PROFILE
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -96,7 +95,7 @@ class Influence:
         return np.stack([np.sqrt((row**2).sum(axis=0)) for row in rows])
 
 
-class Dimensions(NamedTuple):
+class SizeInfluences(NamedTuple):
     """Influences of a cam by the words of its dimensions: `rows` gives the (m, k, n) of each made size of a word.
 
     The other fields are those of `Influence`.
@@ -115,7 +114,10 @@ def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> I
     """
     zero = budget.zero
     places = shaft if zero is None else np.append(shaft, zero)
-    cam = _of_linkage(design, places) if recipe.linkage else _of_follower(design, places, budget.guide or 0.0)
+    if recipe.linkage:
+        cam = _linkage_influences(design, places)
+    else:
+        cam = _follower_influences(design, places, budget.guide or 0.0)
     contributions = []
     for name, tolerance in budget.tolerances:
         for rows in cam.rows(name):
@@ -149,17 +151,11 @@ def velocities(influence: Influence, waves: int) -> Influence:
     return replace(influence, contributions=tuple(contributions), play=None)
 
 
-def even(count: int) -> Array:
-    """Even shaft angles (count,) of one turn, from 0, rad."""
-    angles: Array = np.linspace(0.0, TURN, count, endpoint=False)
-    return angles
-
-
 # --- a follower -------------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class HeldFollower:
     """The contacts of a follower and where they bear at shaft angles (n,); `guide` as `Budget.guide`.
 
     Its methods give the rows (m, k, n) of each made size, from the change that the size makes to the position by a
@@ -222,16 +218,17 @@ class Held:
         return whole
 
 
-def _of_follower(design: Design, shaft: Array, guide: float) -> Dimensions:
+def _follower_influences(design: Design, shaft: Array, guide: float) -> SizeInfluences:
+    """Influences on a follower; `guide` as `Budget.guide`."""
     from kin.follower.influence import bearing
 
     follower = design.follower
     position = design.motion.travel(shaft, 1)
     sides = {surface.name: surface.side for surface in design.exact.surfaces}
     bearings = tuple(bearing(contact, sides[contact.surface], shaft, position) for contact in follower.contacts)
-    held = Held(follower.contacts, bearings, guide, follower.arrangement.discs)
+    held = HeldFollower(follower.contacts, bearings, guide, follower.arrangement.discs)
     if len(bearings) == 1:
-        return Dimensions(lambda name: FOLLOWER[name](held), ("follower",), None, None)
+        return SizeInfluences(lambda name: FOLLOWER[name](held), ("follower",), None, None)
     names = tuple(contact.surface or f"contact {i}" for i, contact in enumerate(follower.contacts, 1))
     (upper,) = (i for i, bearing in enumerate(bearings) if bearing.upper)
     # a gauge as wide as its flank stands off the other flank by what it is wider
@@ -240,7 +237,7 @@ def _of_follower(design: Design, shaft: Array, guide: float) -> Dimensions:
     if design.exact.preload is not None:
         overlaps = zip(bearings, design.exact.preload.overlaps, strict=True)
         play = play - np.sum([overlap * np.abs(bearing.grown) for bearing, overlap in overlaps], axis=0)
-    return Dimensions(lambda name: FOLLOWER[name](held), names, upper, play)
+    return SizeInfluences(lambda name: FOLLOWER[name](held), names, upper, play)
 
 
 def _datum(bearing: Bearing) -> Array:
@@ -248,7 +245,7 @@ def _datum(bearing: Bearing) -> Array:
     return np.full(bearing.gain.shape, -float(bearing.sense))
 
 
-FOLLOWER: Mapping[str, Callable[[Held], list[Array]]] = {
+FOLLOWER: Mapping[str, Callable[[HeldFollower], list[Array]]] = {
     PROFILE: lambda held: held.each(lambda b: b.grown),
     "angle": lambda held: held.shared(lambda b: b.metal_turned()),
     BORE: lambda held: held.bored(lambda b, v: b.metal(v)),
@@ -280,7 +277,7 @@ FOLLOWER: Mapping[str, Callable[[Held], list[Array]]] = {
 FRAME_CONTACTS = ("+y and -x", "-y and +x")  # faces of a square frame in its axes; face 1 is at +y, face 2 at -x
 
 
-def _of_linkage(design: Design, shaft: Array) -> Dimensions:
+def _linkage_influences(design: Design, shaft: Array) -> SizeInfluences:
     """Influences on the output of a linkage, whose frame bears with two faces, or with the two that are opposite.
 
     Either pair of opposite faces leaves play by itself. As errors are added by their size, those of the two contacts
@@ -294,7 +291,7 @@ def _of_linkage(design: Design, shaft: Array) -> Dimensions:
     frame = frame_bearing(mechanism, mechanism.relative(shaft))
     overlap = 0.0 if design.exact.preload is None else design.exact.preload.overlaps[0]
     play = -2.0 * overlap * (np.abs(frame.output(along=1.0)) + np.abs(frame.output(across=1.0)))
-    return Dimensions(lambda name: FRAME[name](frame), FRAME_CONTACTS, 0, play)
+    return SizeInfluences(lambda name: FRAME[name](frame), FRAME_CONTACTS, 0, play)
 
 
 def _both(row: Array) -> Array:
@@ -302,7 +299,8 @@ def _both(row: Array) -> Array:
     return np.stack([np.atleast_2d(row)] * 2)
 
 
-def _in_any(change: Callable[[complex], Array]) -> Array:
+def _in_any_direction(change: Callable[[complex], Array]) -> Array:
+    """Influence (2, 2, n) of a displacement in any direction that moves both contacts alike: its two components."""
     return _both(np.stack([change(component) for component in COMPONENTS]))
 
 
@@ -326,16 +324,19 @@ def _breadths(frame: FrameBearing) -> list[Array]:
 FRAME: Mapping[str, Callable[[FrameBearing], list[Array]]] = {
     PROFILE: _faces,
     "angle": lambda frame: [_both(frame.metal_turned())],
-    BORE: lambda frame: [_in_any(frame.metal)],
-    "shaft": lambda frame: [_in_any(frame.shaft)],
+    BORE: lambda frame: [_in_any_direction(frame.metal)],
+    "shaft": lambda frame: [_in_any_direction(frame.shaft)],
     "face": lambda frame: [_both(frame.squareness())],
-    "pivot": lambda frame: [_in_any(lambda v: frame.output(pivot=v))],
+    "pivot": lambda frame: [_in_any_direction(lambda v: frame.output(pivot=v))],
     "breadth": _breadths,
     "linkage.ground": lambda frame: [_both(frame.output(pivot=1.0))],
     "linkage.coupler": lambda frame: [_both(frame.output(along=1.0))],
     "linkage.rocker": lambda frame: [_both(frame.output(link=1.0))],
     "linkage.offset": lambda frame: [_both(frame.output(link=1.0))],
     "linkage.joint_offset": lambda frame: [_both(frame.output(across=1.0))],
-    "joints": lambda frame: [_in_any(lambda v: frame.output(joint=v)), _in_any(lambda v: frame.output(pivot=v))],
+    "joints": lambda frame: [
+        _in_any_direction(lambda v: frame.output(joint=v)),
+        _in_any_direction(lambda v: frame.output(pivot=v)),
+    ],
 }
 """Rows (2, k, n) of each made size of a linkage's dimension, by its word."""

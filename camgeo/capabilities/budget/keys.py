@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.capabilities.budget.fits import KEYWAYS, SHAFTS, UPPER_ENDS, Fit, fit_of
-from camgeo.capabilities.budget.words import (
+from camgeo.capabilities.budget.dimensions import (
     ANGLE,
     BORE,
     CONJUGATE,
+    DIMENSIONS,
     GUIDE,
     LINKAGE,
     PROFILE,
-    WORDS,
+    dimension_names,
     traits,
-    words_of,
 )
+from camgeo.capabilities.budget.fits import KEYWAYS, SHAFTS, UPPER_ENDS, Fit, fit_of
 from camgeo.part.din6885 import key_for
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
@@ -95,9 +95,9 @@ class Budget:
 
 
 def _tolerance(name: str) -> Field:
-    if WORDS[name].angle:
-        return Field(name, Kind.ANGLE, WORDS[name].about, at_least=0, at_most=MOST_OFF)
-    return Field(name, Kind.LENGTH, WORDS[name].about, at_least=0, at_most=MOST)
+    if DIMENSIONS[name].angle:
+        return Field(name, Kind.ANGLE, DIMENSIONS[name].about, at_least=0, at_most=MOST_OFF)
+    return Field(name, Kind.LENGTH, DIMENSIONS[name].about, at_least=0, at_most=MOST)
 
 
 def _traits(reader: Reader) -> frozenset[str]:
@@ -107,12 +107,12 @@ def _traits(reader: Reader) -> frozenset[str]:
 
 def _refuse(reader: Reader, name: str, node: Mapping, path: str) -> None:
     """Note a word that is no dimension of this cam, and say which it has."""
-    there, mark = words_of(_traits(reader)), keys(node)[name].mark
+    there, mark = dimension_names(_traits(reader)), keys(node)[name].mark
     first = name.removeprefix("cam.").partition(".")[0].partition("[")[0]
     if first in SHAPES:
         reader.fault(mark, path, "shapes the contour, which is made by it", None, "give profile: what that may be off")
         return
-    if name in WORDS:
+    if name in DIMENSIONS:
         remedy = f"those of this cam are {either(there, 'and')}"
         reader.fault(mark, path, "this cam has no such dimension", None, remedy)
         return
@@ -138,7 +138,7 @@ def _read_by_word(
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
         return None
-    there = words_of(_traits(reader))
+    there = dimension_names(_traits(reader))
     values: dict[str, float | None] = {}
     for name, value in entries(node).items():
         below = join(path, name)
@@ -159,7 +159,7 @@ def _read_zero(reader: Reader, _field: Field, node: Node, path: str) -> float | 
 
 
 def _schema_of_words(value: Schema) -> Schema:
-    return {"type": "object", "properties": dict.fromkeys(WORDS, value), "additionalProperties": False}
+    return {"type": "object", "properties": dict.fromkeys(DIMENSIONS, value), "additionalProperties": False}
 
 
 _ZERO_ANGLE = Field("zero", Kind.ANGLE, "shaft angle at which the machine is set", at_least=-360, at_most=360)
@@ -239,7 +239,9 @@ def check_budget(values: Values, reader: Reader) -> None:
         return
     budget = values["budget"]
     tolerances = budget.get("tolerances", {})
-    _check_linkage(values, reader)
+    if values.get("linkage", {}).get("dyads"):
+        what, remedy = "the influence of dyads is not known", "leave budget or linkage.dyads out"
+        reader.fault_at("budget", what, None, remedy)
     _check_costs(budget, tolerances, reader)
     _check_guide(budget, tolerances, reader)
     _check_play(values, reader)
@@ -247,12 +249,6 @@ def check_budget(values: Values, reader: Reader) -> None:
     _check_made(values, reader)
     if not tolerances and "budget.tolerances" in reader.marks and not reader.errors:
         reader.fault_at("budget.tolerances", "no tolerance is given", None, "give profile: 0.01 or another one")
-
-
-def _check_linkage(values: Values, reader: Reader) -> None:
-    if values.get("linkage", {}).get("dyads"):
-        what, remedy = "the influence of dyads is not known", "leave budget or linkage.dyads out"
-        reader.fault_at("budget", what, None, remedy)
 
 
 def _check_costs(budget: Values, tolerances: Values, reader: Reader) -> None:
@@ -282,7 +278,7 @@ def _check_guide(budget: Values, tolerances: Values, reader: Reader) -> None:
 
 def _check_play(values: Values, reader: Reader) -> None:
     cam, held = values.get("cam", {}), {"swings", "breadth", LINKAGE, CONJUGATE}
-    held_twice = held & {*_traits(reader), *words_of(_traits(reader))} or isinstance(cam.get("track"), dict)
+    held_twice = held & {*_traits(reader), *dimension_names(_traits(reader))} or isinstance(cam.get("track"), dict)
     if "play" in values["budget"] and not held_twice:
         reader.fault_at("budget.play", "the follower is not held from both sides", None, "leave it out")
 
@@ -342,7 +338,7 @@ def build_budget(values: Values) -> Budget | None:
     if fit is not None:
         tolerances[BORE] = fit.bore
         tolerances |= {} if fit.angle is None else {ANGLE: fit.angle}
-    stated = {name: tolerances[name] for name in WORDS if name in tolerances}
+    stated = {name: tolerances[name] for name in DIMENSIONS if name in tolerances}
     zero = budget.get("zero", NO_ZERO)
     optional = {name: budget[name] for name in ("exponent", "play", GUIDE, "waves", "runs", "seed") if name in budget}
     return Budget(

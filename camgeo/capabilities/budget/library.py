@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.budget.keys import Budget
-from camgeo.capabilities.budget.outcome import outcome
+from camgeo.capabilities.budget.outcome import motion_unit, outcome
 from camgeo.capabilities.budget.section import section
-from camgeo.capabilities.budget.units import motion_unit
 from camgeo.synthesis.design import designed
 from kin.numeric.angles import degrees
 
@@ -45,14 +44,14 @@ def budget(recipe: Recipe, *files: str | PathLike[str]) -> dict[str, Any]:
 def _parts(recipe: Recipe, design: Design, result: Outcome, files: list[Path]) -> dict[str, Any]:
     """Report entry of the simulation of made parts; `runs` 0 with the reason `why` where a part has no contact."""
     from camgeo.capabilities.budget.contact import LostError
-    from camgeo.capabilities.budget.parts import looked_at, simulate
+    from camgeo.capabilities.budget.parts import sample_angles, simulate
 
     read = None
     if files:
         from camgeo.capabilities.budget.read_contours import read_contours
 
         read = read_contours(recipe, design, files)
-    shaft = looked_at([worst.at for worst in result.sums.values()])
+    shaft = sample_angles([worst.at for worst in result.sums.values()])
     try:
         parts = simulate(recipe, design, result.budget, shaft, read)
     except LostError as error:

@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.budget.influence import even, influence
+from camgeo.capabilities.budget.dimensions import DIMENSIONS
+from camgeo.capabilities.budget.influence import influence
 from camgeo.capabilities.budget.inverse import Split, TakenError, left_for, widest
-from camgeo.capabilities.budget.sums import Sum, Worst, total, worst
-from camgeo.capabilities.budget.units import motion_unit
+from camgeo.capabilities.budget.sums import POWERS, Sum, Worst, total, worst
+from camgeo.measures.units import report_unit
+from camgeo.recipe.linkage import output_slides
 from kin.numeric.angles import degrees
+from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -21,7 +24,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 ROUNDING = 1e-9  # share of what is permitted by which a sum may exceed it: tolerances that were found just keep it
-SUMS: tuple[Sum, ...] = ("worst", "rss")
+SUMS: tuple[Sum, ...] = tuple(POWERS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +67,7 @@ def outcome(recipe: Recipe, design: Design, budget: Budget) -> Outcome:
 
 def _outcome(recipe: Recipe, design: Design, budget: Budget) -> Outcome:
     free, left, splits = budget.free, None, None
-    shaft = even(recipe.verify.angles)
+    shaft = equal_steps(recipe.verify.angles)
     rows = influence(recipe, design, budget, shaft)
     if free and not budget.cost:
         left = left_for(rows, budget.permitted, budget.sums)
@@ -98,3 +101,23 @@ def _taken(recipe: Recipe, budget: Budget, error: TakenError) -> RecipeErrors:
     path = next((path for path in paths if path in recipe.marks), elsewhere)
     problem = f"nothing is left for {budget.free[0]}: {error.name} alone takes {taken:.4g} of {permitted:.4g} {unit}"
     return recipe.error(path, f"{problem} at {degrees(error.at):.6g} degrees", None, "make it smaller, or permit more")
+
+
+# --- units of the report ----------------------------------------------------------------------------------------------
+
+
+def error_unit(recipe: Recipe) -> str:
+    """Unit of errors of the motion: deg of a follower that swings and of an output that turns, else mm."""
+    if recipe.linkage is not None:
+        return "mm" if output_slides(recipe.linkage) else "deg"
+    return recipe.cam.arrangement.unit
+
+
+def motion_unit(recipe: Recipe) -> tuple[float, str]:
+    """Factor from mm or rad of an error of the motion to its unit in the report, and that unit."""
+    return report_unit(recipe, error_unit(recipe))
+
+
+def size_unit(recipe: Recipe, name: str) -> tuple[float, str]:
+    """Factor from mm or rad of a dimension's tolerance to its unit in the report, and that unit."""
+    return report_unit(recipe, "deg" if DIMENSIONS[name].angle else "mm")

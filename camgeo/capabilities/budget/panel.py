@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.capabilities.budget.text import TITLES
-from camgeo.report.page.tables import html_table, number, place_button
+from camgeo.report.page.tables import html_table, named_row, number, place_button
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +25,7 @@ def panel(report: dict[str, Any]) -> str:
         return ""
     unit, permitted = escape(entry["unit"]), number(entry["permitted"])
     sums = [
-        _row(
+        named_row(
             TITLES[kind],
             f"{number(entry[kind]['value'])} {unit}",
             place_button(entry[kind]["at_deg"], "shaft"),
@@ -34,7 +34,7 @@ def panel(report: dict[str, Any]) -> str:
         for kind in TITLES
     ]
     rows = [
-        _row(
+        named_row(
             escape(row["name"]),
             f"{'radius ' if row['radius'] else '± '}{number(row['tolerance'])} {escape(row['unit'])}",
             f"{number(row['influence'])} {escape(row['influence_unit'])}",
@@ -48,10 +48,6 @@ def panel(report: dict[str, Any]) -> str:
     dimensions = html_table("Budget", ("dimension", "tolerance", "influence there", "share"), rows)
     totals = html_table("Sums", ("sum", "value", "at", "limit"), sums)
     return f"{head}{words}{totals}{dimensions}{_shares(entry)}</section>"
-
-
-def _row(name: str, *cells: str) -> str:
-    return f'<tr><th scope="row">{name}</th>{"".join(f"<td>{cell}</td>" for cell in cells)}</tr>'
 
 
 def _shares(entry: dict[str, Any]) -> str:

@@ -1,7 +1,7 @@
 """Made parts by chance, each size within its limits, and how far the follower or the output of each is off, by contact.
 
 Sizes are even within plus and minus, radii full and in any direction; the profile of a part is another one at each
-angle, the same about the contact. The influences have no say: that both agree is a check of both.
+angle, the same about the contact. The influences are not used here: that both agree is a check of both.
 """
 
 from __future__ import annotations
@@ -11,17 +11,18 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from camgeo.capabilities.budget.contact import LostError, Metal, Off, Place, positions
+from camgeo.capabilities.budget.contact import ContactPlace, LostError, Metal, SizeErrors, positions
+from camgeo.capabilities.budget.dimensions import BORE, DIMENSIONS, PROFILE
 from camgeo.capabilities.budget.exact_metal import MOST_STEPS, SETTLED, ExactMetal
+from camgeo.capabilities.budget.file_metal import read_metal
 from camgeo.capabilities.budget.influence import influence
 from camgeo.capabilities.budget.read_contours import trimmed_contours
-from camgeo.capabilities.budget.read_metal import read_metal
 from camgeo.capabilities.budget.sums import spread
-from camgeo.capabilities.budget.words import BORE, PROFILE, WORDS
 from kin.follower.influence import bearing
 from kin.law.contacts import eased_contact
 from kin.linkage.influence import QUARTER
 from kin.numeric.angles import TURN
+from kin.numeric.feet import equal_steps
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -76,9 +77,9 @@ class Parts(NamedTuple):
         return max(self.spreads, key=lambda spread: spread.foreseen)
 
 
-def looked_at(worst: Sequence[float]) -> Array:
+def sample_angles(worst: Sequence[float]) -> Array:
     """Shaft angles at which parts are looked at, rad: even ones, and the worst."""
-    return np.unique(np.append(np.linspace(0.0, TURN, EVEN, endpoint=False), worst))
+    return np.unique(np.append(equal_steps(EVEN), worst))
 
 
 def simulate(
@@ -94,7 +95,7 @@ def simulate(
     blocks = []
     for begin in range(0, budget.runs, AT_ONCE):
         count = min(AT_ONCE, budget.runs - begin)
-        errors = errors_of(Drawn(rng, budget, count, len(rows_at(budget, shaft))))
+        errors = errors_of(RandomSizes(rng, budget, count, len(angles_at(budget, shaft))))
         blocks.append(errors if budget.zero is None else errors[:, :, :-1] - errors[:, :, -1:])
     errors = np.concatenate(blocks, axis=1)
     within = (np.abs(errors) <= budget.permitted).all(axis=(0, 2)).mean()
@@ -113,11 +114,11 @@ def errors_by_contact(
         raise LostError("parts are not simulated, as no contour is made")
     if read is None and design.trimmed:
         read = trimmed_contours(design)
-    errors_of = _of_linkage if recipe.linkage else _of_follower
-    return errors_of(design, budget, rows_at(budget, shaft), read)
+    errors_of = _linkage_errors if recipe.linkage else _follower_errors
+    return errors_of(design, budget, angles_at(budget, shaft), read)
 
 
-def rows_at(budget: Budget, shaft: Array) -> Array:
+def angles_at(budget: Budget, shaft: Array) -> Array:
     """The angles (n,), and after them the one at which the machine is set, if any."""
     return shaft if budget.zero is None else np.append(shaft, budget.zero)
 
@@ -149,7 +150,7 @@ class Sizes(Protocol):
         """Displacement, mm, complex, by the word of its dimension; each call is for another made size."""
 
 
-class Drawn:
+class RandomSizes:
     """Sizes of parts drawn at random: each call of `size` or `radius` draws the errors of another made size."""
 
     def __init__(self, rng: np.random.Generator, budget: Budget, count: int, angles: int) -> None:
@@ -177,37 +178,33 @@ class Drawn:
 # --- a follower -------------------------------------------------------------------------------------------------------
 
 
-def _of_follower(
+def _follower_errors(
     design: Design, budget: Budget, angles: Array, read: Mapping[str, Contour] | None
 ) -> Callable[[Sizes], Array]:
-    places = places_of(design, budget, angles, read)
+    places = contact_places(design, budget, angles, read)
     nominal = design.motion.travel(angles, 0)[0]
-    several, discs = len(places), design.follower.arrangement.discs
-    on_one_arm = several > 1 and places[0].contact.apart != 0.0
+    count, discs = len(places), design.follower.arrangement.discs
+    on_one_arm = count > 1 and places[0].contact.apart != 0.0
 
-    def errors(drawn: Sizes) -> Array:
-        return np.stack(
-            [
-                positions(place, off) - nominal
-                for place, off in zip(places, amounts(drawn, several, discs, on_one_arm=on_one_arm), strict=True)
-            ]
-        )
+    def errors(sizes: Sizes) -> Array:
+        each = errors_at_contacts(sizes, count, discs, on_one_arm=on_one_arm)
+        return np.stack([positions(place, off) - nominal for place, off in zip(places, each, strict=True)])
 
     return errors
 
 
-def amounts(drawn: Sizes, several: int, discs: int, *, on_one_arm: bool) -> list[Off]:
-    """Errors of the sizes at each contact, one Off for each; an error that contacts share is drawn once."""
-    size, radius = drawn.size, drawn.radius
+def errors_at_contacts(sizes: Sizes, count: int, discs: int, *, on_one_arm: bool) -> list[SizeErrors]:
+    """Errors of the sizes at each of `count` contacts; an error that contacts share is drawn once."""
+    size, radius = sizes.size, sizes.radius
     turned, shaft, pivot = size("angle"), radius("shaft"), radius("pivot") + size("follower.arm.pivot")
     offset, guide = size("follower.offset"), size("guide")
     first_radius, first_arm = size("follower.radius") + size("follower.arm.face"), size("follower.arm.length")
     tilted, squared = size("follower.tilt"), size("face")
     bore = radius(BORE)
 
-    def about(rank: int) -> Off:
+    def at_contact(rank: int) -> SizeErrors:
         first = rank == 0 or discs == 1
-        return Off(
+        return SizeErrors(
             turned=turned + (size("index") if rank else 0.0),
             bore=radius(BORE) if discs > 1 else bore,
             shaft=shaft,
@@ -220,10 +217,12 @@ def amounts(drawn: Sizes, several: int, discs: int, *, on_one_arm: bool) -> list
             datum=size("breadth") + size("conjugate.distance") + size("conjugate.angle") if rank else 0.0 * turned,
         )
 
-    return [about(rank) for rank in range(several)]
+    return [at_contact(rank) for rank in range(count)]
 
 
-def places_of(design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None) -> list[Place]:
+def contact_places(
+    design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None
+) -> list[ContactPlace]:
     """Each contact of a follower at shaft angles (n,) on metal that is exact or `read`."""
     contacts, preload = design.follower.contacts, design.exact.preload
     if preload is not None:  # their errors are those beside what each overlaps the metal by
@@ -243,20 +242,20 @@ def places_of(design: Design, budget: Budget, shaft: Array, read: Mapping[str, C
             turned = contact.turned if contact.surface == contacts[0].surface else 0.0
             metal = ExactMetal(surface.curve, surface.side, shaft + turned)
         own = contact.own(position[0])
-        places.append(Place(contact, metal, shaft, own, first, design.follower.offset, budget.guide or 0.0))
+        places.append(ContactPlace(contact, metal, shaft, own, first, design.follower.offset, budget.guide or 0.0))
     return places
 
 
 def _wander(budget: Budget, intended: Complexes) -> float:
     """Estimate of how far a contact moves along the contour, mm: the sum of tolerances, angles times the size."""
     size = float(np.abs(intended).max())
-    return sum((tolerance or 0.0) * (size if WORDS[name].angle else 1.0) for name, tolerance in budget.tolerances)
+    return sum((tolerance or 0.0) * (size if DIMENSIONS[name].angle else 1.0) for name, tolerance in budget.tolerances)
 
 
 # --- a linkage --------------------------------------------------------------------------------------------------------
 
 
-def _of_linkage(
+def _linkage_errors(
     design: Design,
     budget: Budget,  # noqa: ARG001 - one call for followers and linkages
     angles: Array,
@@ -275,8 +274,8 @@ def _of_linkage(
     frame, nominal = motion.frame[0], motion.output[0]
     coupler = motion.solved.linkage.slide.c[0] - breadth + motion.faces[1][0]  # from the frame's side to the joint
 
-    def errors(drawn: Sizes) -> Array:
-        size, radius = drawn.size, drawn.radius
+    def errors(sizes: Sizes) -> Array:
+        size, radius = sizes.size, sizes.radius
         turned, bore, moved = size("angle"), radius(BORE), radius("shaft")
         wider, higher, squared = size("breadth"), size("breadth"), size("face")
         pivot = radius("pivot") + size("linkage.ground") + radius("joints")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from camgeo.capabilities.budget.dimensions import PROFILE
 from camgeo.capabilities.budget.keys import Budget, build_budget, check_budget, fields
-from camgeo.capabilities.budget.words import PROFILE
 from camgeo.measures.measured import Measured
 from camgeo.recipe.figures import Figure, Need
 from camgeo.registry.capability import Capability, Results
@@ -46,14 +46,14 @@ def _outcome(recipe: Recipe, design: Design) -> Outcome | None:
 def _measure(
     recipe: Recipe, design: Design, names: Sequence[str], _speeds: Mapping[str, float]
 ) -> Mapping[str, Measured]:
-    from camgeo.capabilities.budget.units import turns
+    from camgeo.capabilities.budget.outcome import error_unit
 
-    result, turned = _outcome(recipe, design), turns(recipe)
+    result, unit = _outcome(recipe, design), error_unit(recipe)
     if result is None:
         why = "budget is not given" if recipe.of(Budget) is None else "the mechanism does not turn"
         return {name: Measured(None, "mm", detail=why) for name in names}
     sums = {WORST: result.sums["worst"], RSS: result.sums["rss"]}
-    scale, unit = (math.degrees(1.0), "deg") if turned else (1.0, "mm")
+    scale = math.degrees(1.0) if unit == "deg" else 1.0
     return {name: Measured(scale * sums[name].value, unit, degrees(sums[name].at)) for name in names}
 
 
@@ -74,10 +74,10 @@ def _panel(report: dict[str, Any]) -> str:
 def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
     """Plot of both sums of errors over the turn at the worst contact, with the permitted error.
 
-    None without a budget.
+    Empty without a budget.
     """
+    from camgeo.capabilities.budget.outcome import motion_unit
     from camgeo.capabilities.budget.section import sums_over_turn
-    from camgeo.capabilities.budget.units import motion_unit
     from camgeo.report.page.curves import Plot, Series
     from camgeo.report.page.followers import SHAFT
 

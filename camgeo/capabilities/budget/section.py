@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.capabilities.budget.dimensions import DIMENSIONS
 from camgeo.capabilities.budget.influence import velocities
-from camgeo.capabilities.budget.outcome import SUMS
+from camgeo.capabilities.budget.outcome import SUMS, motion_unit, size_unit
 from camgeo.capabilities.budget.sums import Sum, Worst, by_name, powers, total, worst
-from camgeo.capabilities.budget.units import motion_unit, size_unit
-from camgeo.capabilities.budget.words import WORDS
 from camgeo.measures.units import UNIT_NAMES
 from kin.numeric.angles import TURN, degrees
 
@@ -96,7 +95,7 @@ def _dimension(recipe: Recipe, outcome: Outcome, name: str, tolerance: float | N
         "name": name,
         "tolerance": per * (tolerance or 0.0),
         "unit": unit,
-        "radius": WORDS[name].radius,
+        "radius": DIMENSIONS[name].radius,
         "free": name in outcome.free,
         "influence": scale / per * float(outcome.worst_output.weights[own, place].sum()),
         "greatest": scale / per * greatest,

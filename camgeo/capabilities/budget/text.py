@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.budget.outcome import SUMS
 from camgeo.common.rounding import downward
+from camgeo.report.document import align
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -15,7 +16,7 @@ HEAD = ("dimension", "plus and minus", "influence", "share")
 
 
 def table(recipe: Recipe, entry: dict[str, Any]) -> str:
-    """Give what `library.budget` says as lines of text."""
+    """Lines of text on a budget, from the plain data of `library.budget`."""
     unit, kind = entry["unit"], entry["sum"]
     chosen, other = entry[kind], "rss" if kind == "worst" else "worst"
     verdict = f"{recipe.name}: {entry['permitted']:.6g} {unit} {'kept' if entry['kept'] else 'NOT KEPT'}"
@@ -24,10 +25,7 @@ def table(recipe: Recipe, entry: dict[str, Any]) -> str:
         largest = max(chosen["shares"], key=lambda name: chosen["shares"][name])
         lines.append(f"  {largest} takes most of it, {chosen['shares'][largest]:.0%}")
     rows = [HEAD, *map(_row, entry["dimensions"])]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(HEAD))]
-    lines += [
-        f"  {'  '.join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))}".rstrip() for row in rows
-    ]
+    lines += [f"  {line}" for line in align(rows).splitlines()]
     if "left" in entry:
         left = entry["left"]
         lines.append(f"  left for {left['name']}: {downward(left['least'])} {left['unit']} at {left['at_deg']:.4g} deg")

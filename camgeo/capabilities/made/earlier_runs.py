@@ -20,7 +20,7 @@ from kin.numeric.angles import degrees
 from kin.numeric.feet import equal_steps
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from camgeo.capabilities.made.correction import RunMade
     from camgeo.common.clock import Clock
@@ -165,16 +165,11 @@ def lines(report: dict[str, Any]) -> str:
 
 def panel(report: dict[str, Any]) -> str:
     """The table as a section of the page; empty without runs."""
-    from camgeo.report.page.tables import html_table
+    from camgeo.report.page.tables import html_table, named_row
 
     section = _section(report)
     if section is None:
         return ""
-    rows = [_html(row) for row in _rows(section)]
+    rows = [named_row(*(escape(cell.strip()) for cell in row)) for row in _rows(section)]
     head = '<section aria-labelledby="runs-head"><h2 id="runs-head">Parts that were made</h2>'
     return f"{head}<p>{NOTE} Lengths in {section['unit']}.</p>{html_table('Runs', HEAD, rows)}</section>"
-
-
-def _html(row: Sequence[str]) -> str:
-    name, *cells = (escape(cell.strip()) for cell in row)
-    return f'<tr><th scope="row">{name}</th>{"".join(f"<td>{cell}</td>" for cell in cells)}</tr>'

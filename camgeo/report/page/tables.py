@@ -275,6 +275,11 @@ def _bytes(count: int) -> str:
     return f'<span title="{count} bytes">{count / 1000.0:.1f} kB</span>' if count >= 1000 else f"{count} B"
 
 
+def named_row(name: str, *cells: str) -> str:
+    """Return a row of a table that its first cell names, HTML each."""
+    return f'<tr><th scope="row">{name}</th>{"".join(f"<td>{cell}</td>" for cell in cells)}</tr>'
+
+
 def html_table(caption: str, head: Sequence[str], rows: Sequence[str], kind: str = "plain") -> str:
     """Return a table with its caption, the heads of its columns and its rows, HTML each."""
     cells = "".join(f'<th scope="col">{name}</th>' if name else "<td></td>" for name in head)

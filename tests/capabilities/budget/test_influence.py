@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from support.made_cases import CASES
 
-from camgeo.capabilities.budget.influence import Influence, even, influence, velocities
+from camgeo.capabilities.budget.dimensions import DIMENSIONS, dimension_names, traits_of
+from camgeo.capabilities.budget.influence import Influence, influence, velocities
 from camgeo.capabilities.budget.keys import Budget
 from camgeo.capabilities.budget.sums import by_name, powers, spread, total
-from camgeo.capabilities.budget.words import WORDS, traits_of, words_of
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
+from kin.numeric.feet import equal_steps
 from kin.numeric.records import replace
 
 COMPONENTS = {"x": 0, "y": 1}
@@ -25,7 +26,7 @@ def of_words(text: str, degrees: tuple[float, ...], guide: float = 0.0, *, relat
     shaft = np.radians(degrees)
     if relative and design.driven is not None:
         shaft = design.driven.mechanism.at(shaft, 0).shaft[0]
-    words = words_of(traits_of(recipe))
+    words = dimension_names(traits_of(recipe))
     return influence(recipe, design, Budget(1.0, tuple((word, 1.0) for word in words), guide=guide), shaft)
 
 
@@ -94,8 +95,8 @@ def test_the_error_where_the_machine_is_set_is_subtracted() -> None:
 
 
 def test_every_word_is_known_of_some_cam() -> None:
-    seen = {word for case in CASES.values() for word in words_of(traits_of(load_text(case.cam, "a.yaml")))}
-    assert set(WORDS) - seen == {
+    seen = {word for case in CASES.values() for word in dimension_names(traits_of(load_text(case.cam, "a.yaml")))}
+    assert set(DIMENSIONS) - seen == {
         "index",
         "conjugate.radius",
         "conjugate.distance",
@@ -170,7 +171,7 @@ def test_velocities_are_slopes_and_waves_of_the_profile() -> None:
     """Of a yoke the profile is the position's error: a wave t sin(n phi) has the velocity n t, an angle S'' t."""
     recipe = load_text(CASES["yoke"].cam, "a.yaml")
     stated = Budget(1.0, (("profile", 0.01), ("angle", 0.001)))
-    shaft = even(3600)
+    shaft = equal_steps(3600)
     rates = velocities(influence(recipe, designed(recipe), stated, shaft), 12)
     weights = by_name(rates, rates.outputs()[0].weights)
     assert np.abs(weights["profile"] - 12.0).max() < 1e-9

@@ -13,12 +13,12 @@ from support.made_cases import CASES
 from support.places import ROOT
 
 import camgeo
+from camgeo.capabilities.budget.dimensions import DIMENSIONS, dimension_names, traits_of
 from camgeo.capabilities.budget.influence import influence
 from camgeo.capabilities.budget.keys import Budget
 from camgeo.capabilities.budget.library import budget as split
-from camgeo.capabilities.budget.parts import errors_by_contact, looked_at, simulate
+from camgeo.capabilities.budget.parts import errors_by_contact, sample_angles, simulate
 from camgeo.capabilities.budget.read_contours import read_contours
-from camgeo.capabilities.budget.words import WORDS, traits_of, words_of
 from camgeo.cli.main import main
 from camgeo.common.errors import CallError
 from camgeo.recipe.loading import load_text
@@ -124,14 +124,14 @@ def design_of(name: str):
 def test_influences_are_differences_of_contact_with_the_metal_fixed(name: str) -> None:
     recipe = of_recipe(name)
     design = design_of(name)
-    words = words_of(traits_of(recipe))
+    words = dimension_names(traits_of(recipe))
     stated = Budget(1.0, tuple((word, 1.0) for word in words), guide=GUIDE)
     rows = influence(recipe, design, stated, SHAFT)
     errors_of = errors_by_contact(recipe, design, stated, SHAFT)
     for word in words:
-        components = (1.0, 1j) if WORDS[word].radius else (1.0,)
+        components = (1.0, 1j) if DIMENSIONS[word].radius else (1.0,)
         for k, component in enumerate(components):
-            step = 2e-4 if WORDS[word].angle else 5e-3
+            step = 2e-4 if DIMENSIONS[word].angle else 5e-3
             errors = errors_of(Stepped(word, step, component))
             measured = np.einsum("p,cpn->cn", SHARES, errors) / step
             # sizes that each contact has of its own are all off together
@@ -178,8 +178,8 @@ def test_finite_errors() -> None:
 @pytest.mark.parametrize("name", FAMILIES)
 def test_deviations_are_those_foreseen(name: str) -> None:
     recipe, design = of_recipe(name), design_of(name)
-    sizes = tuple((word, 1e-3) for word in words_of(traits_of(recipe)))
-    parts = simulate(recipe, design, Budget(1.0, sizes, guide=GUIDE, runs=1000, seed=3), looked_at([0.3]))
+    sizes = tuple((word, 1e-3) for word in dimension_names(traits_of(recipe)))
+    parts = simulate(recipe, design, Budget(1.0, sizes, guide=GUIDE, runs=1000, seed=3), sample_angles([0.3]))
     assert all(one.agrees for one in parts.spreads)
     assert parts.within == 1.0
     for one in parts.spreads:
@@ -190,7 +190,7 @@ def test_deviations_from_where_the_machine_is_set() -> None:
     recipe = of_recipe("disc-roller")
     sizes = (("profile", 0.01), ("angle", 1e-3), ("bore", 0.01))
     stated = Budget(0.05, sizes, zero=math.radians(300.0), runs=2000)
-    parts = simulate(recipe, designed(recipe), stated, looked_at([0.9]))
+    parts = simulate(recipe, designed(recipe), stated, sample_angles([0.9]))
     assert all(one.agrees for one in parts.spreads)
     assert 0.0 < parts.within < 1.0
 

@@ -55,10 +55,9 @@ def read_metal(
     """The metal of a contour under a contact, see `ReadMetal`; raises LostError for a contour that is too long."""
     guide, touch = contact.guide, contact.touch
     hand = guide.side if isinstance(guide, Oscillating) else 1
-    if isinstance(touch, Flat):
-        return ReadMetal(points_of(contour, np.inf), side, hand, intended, wander)
-    if touch.radius > 0.0:
-        return ReadMetal(points_of(contour, touch.radius), side, hand, intended, wander)
+    flat = isinstance(touch, Flat)
+    if flat or touch.radius > 0.0:
+        return ReadMetal(points_of(contour, np.inf if flat else touch.radius), side, hand, intended, wander)
     # the path of a knife edge is a line, or a circle about the pivot
     path = guide.arm if isinstance(guide, Oscillating) else np.inf
     return EdgeMetal(points_of(contour, path), side, hand, intended, wander)
