@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.camshaft.diagram import WIDTH, both, drawn, kind, line, sheet, text
+from camgeo.capabilities.camshaft.svg import WIDTH, colour_of, edged, line, sheet, stroked, text
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page.outline import exact
 
@@ -34,7 +34,7 @@ def shaft_drawing(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
     reach = max(0.5 * max(bar.diameter for bar in recipe.bars), *(float(np.hypot(*c.T).max()) for c in contours))
     scale = min((WIDTH - LEFT - 14.0) / (shaft.high - shaft.low), TALL / (2.0 * reach))
     labels = [(0.5 * (bar.low + bar.high), bar.name, "ink") for bar in recipe.bars[1:]]
-    labels += [(0.5 * (lobe.lobe.low + lobe.lobe.high), lobe.lobe.name, kind(lobe.lobe.valve)) for lobe in lobes]
+    labels += [(0.5 * (lobe.lobe.low + lobe.lobe.high), lobe.lobe.name, colour_of(lobe.lobe.valve)) for lobe in lobes]
     names = LETTER * max(len(name) for _, name, _ in labels) + 8.0
     left = max(LEFT, 0.5 * (WIDTH - scale * (shaft.high - shaft.low)))
     axis = TOP + names + scale * reach
@@ -47,9 +47,11 @@ def shaft_drawing(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
         place = f'x="{along(low):.2f}" y="{axis - scale * upper:.2f}" width="{scale * (high - low):.2f}"'
         return f'<rect {place} height="{scale * (upper - lower):.2f}" {look}/>'
 
-    parts += [box(bar.low, bar.high, -0.5 * bar.diameter, 0.5 * bar.diameter, both("ink", 0.12)) for bar in recipe.bars]
+    parts += [
+        box(bar.low, bar.high, -0.5 * bar.diameter, 0.5 * bar.diameter, edged("ink", 0.12)) for bar in recipe.bars
+    ]
     for lobe, contour in zip(lobes, contours, strict=True):
-        look = both(kind(lobe.lobe.valve), 0.45)
+        look = edged(colour_of(lobe.lobe.valve), 0.45)
         parts.append(box(lobe.lobe.low, lobe.lobe.high, contour[:, 0].min(), contour[:, 0].max(), look))
     if recipe.bore is not None:
         ends = (along(shaft.low), along(shaft.high))
@@ -80,16 +82,16 @@ def _from_the_end(
 ) -> list[str]:
     """Return the lobes one behind another about the shaft's axis, each named once where its nose points."""
     scale, (x, y) = ROUND / reach, middle
-    parts = [f'<circle cx="{x:g}" cy="{y:g}" r="{0.5 * scale * recipe.bars[0].diameter:.2f}" {both("ink", 0.12)}/>']
+    parts = [f'<circle cx="{x:g}" cy="{y:g}" r="{0.5 * scale * recipe.bars[0].diameter:.2f}" {edged("ink", 0.12)}/>']
     noses: dict[int, list[str]] = {}
     for lobe, contour in zip(lobes, contours, strict=True):
         points = " ".join(f"{x + scale * px:.2f},{y - scale * py:.2f}" for px, py in contour.tolist())
-        parts.append(f'<polygon points="{points}" {both(kind(lobe.lobe.valve), 0.08, 1.2)}/>')
+        parts.append(f'<polygon points="{points}" {edged(colour_of(lobe.lobe.valve), 0.08, 1.2)}/>')
         nose = contour[int(np.argmax(np.hypot(*contour.T)))]
         short = lobe.lobe.name if lobe.lobe.cylinder is None else f"{lobe.lobe.cylinder} {lobe.lobe.valve}"
         noses.setdefault(round(math.degrees(math.atan2(nose[1], nose[0]))), []).append(short)
     if recipe.bore is not None:
-        parts.append(f'<circle cx="{x:g}" cy="{y:g}" r="{0.5 * scale * recipe.bore:.2f}" {drawn("ink")}/>')
+        parts.append(f'<circle cx="{x:g}" cy="{y:g}" r="{0.5 * scale * recipe.bore:.2f}" {stroked("ink")}/>')
     parts += [line("ink", x - 6.0, y, x + 6.0, y, width=0.8), line("ink", x, y - 6.0, x, y + 6.0, width=0.8)]
     for degrees, names in noses.items():
         c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))

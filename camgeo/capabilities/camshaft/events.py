@@ -1,6 +1,6 @@
 """When lobes lift: crossings of a lift, lobe centres, an engine's valve events, and the stretches of a machine's chart.
 
-A lobe's centre is the middle between the two crossings of a lift, never its peak; events are told in crank degrees,
+A lobe's centre is the middle between the two crossings of a lift, never its peak; events are stated in crank degrees,
 twice the camshaft's.
 """
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from camgeo.cams.family import ExactCam
 
 WAVE = 1e-3  # of the stroke: a rise or a return by less counts as a dwell
-# crank degrees after a cylinder's firing dead centre of those that its valves' openings and closings are told by
+# crank degrees after a cylinder's firing dead centre of those from which its valves' opening and closing are counted
 DEAD_CENTRES = {"intake": ((360.0, "TDC"), (540.0, "BDC")), "exhaust": ((180.0, "BDC"), (360.0, "TDC"))}
-CRANK = 720.0  # degrees of one turn of the camshaft
+CYCLE = 720.0  # crank degrees of one turn of the camshaft
 Phase: TypeAlias = Literal["rise", "dwell", "return"]
 
 
@@ -129,9 +129,9 @@ def valves_of(intake: Event, exhaust: Event, fires: float) -> Valves:
 
 def crank_after(cam: float, fires: float) -> float:
     """Crank degrees in [0, 720) after a firing dead centre at which the camshaft stands at an angle, degrees."""
-    return (2.0 * cam - fires) % CRANK
+    return (2.0 * cam - fires) % CYCLE
 
 
 def signed(crank: float) -> float:
     """A crank angle, degrees, as the same place from -360 to below 360."""
-    return (crank + 360.0) % CRANK - 360.0
+    return (crank + 360.0) % CYCLE - 360.0

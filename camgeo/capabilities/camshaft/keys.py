@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -23,6 +22,7 @@ from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
 from camgeo.schema.yaml_source import Mapping, Scalar, entries, join, read_source
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -39,8 +39,7 @@ MOST_LOBES = 64
 MOST_CYLINDERS = 16
 DECIMALS = 9  # of a length in mm: what sums of heights are rounded by is cut off
 ROUNDING = 1e-9  # mm: far above what sums of heights are rounded by, far below any length that is made
-LIFT = 1.27  # mm of tappet lift, 0.050 in, at which events are told
-TURN = 2.0 * math.pi
+LIFT = 1.27  # mm of tappet lift, 0.050 in, at which events are stated
 
 
 @dataclass(frozen=True)
@@ -57,7 +56,7 @@ class Bar:
 class Engine:
     """Crank data, rad: lobe centres of intake after and of exhaust before dead centre, and when cylinders fire.
 
-    `firing` is by the number of the cylinder; `lift`, mm, at which events are told, is the tappet's, or the valve's.
+    `firing` is by the number of the cylinder; `lift`, mm, at which events are stated, is the tappet's, or the valve's.
     """
 
     intake: float
@@ -230,14 +229,13 @@ CAMSHAFT = Field(
 def _plain(name: str) -> Format:
     """Give the record of a format whose options are unit and tolerance alone."""
     record = FORMATS[name]
-    kept = tuple(item for item in record.options.fields if item.name in {"units", "tolerance"})
+    kept = tuple(field for field in record.options.fields if field.name in {"units", "tolerance"})
     return replace(record, options=Table(kept))
 
 
-def _only(item: Field, *names: str) -> Field:
+def _only(whole: Field, *names: str) -> Field:
     """Give a mapping with some of its keys."""
-    fields = () if item.table is None else item.table.fields
-    return replace(item, table=Table(tuple(each for each in fields if each.name in names)))
+    return replace(whole, table=Table(tuple(key for key in whole.inner.fields if key.name in names)))
 
 
 INSPECTION = "inspection"
@@ -247,16 +245,9 @@ OF_AN_ENGINE = frozenset({"cam-wheel", "crank-wheel"})
 
 def _own(name: str, *words: str, more: tuple[Field, ...] = ()) -> Format:
     """Give the record of a format whose forms are a camshaft's own, with more options."""
-    fields = (
-        Field(
-            "as",
-            Kind.CHOICE,
-            "which table it is" if name == "csv" else "what is drawn",
-            default=words[0],
-            choices=words,
-        ),
-    )
-    return replace(FORMATS[name], options=Table((*fields, *more) if words else ()))
+    about = "which table it is" if name == "csv" else "what is drawn"
+    form = Field("as", Kind.CHOICE, about, default=words[0], choices=words)
+    return replace(FORMATS[name], options=Table((form, *more)))
 
 
 DRAWN = "svg"
@@ -311,13 +302,7 @@ def read_camshaft(source: Source, path: Path) -> CamshaftRecipe:
         _check(values, reader)
     if reader.errors:
         raise RecipeErrors(reader.errors)
-    document = Document(
-        path=path,
-        text=source.text,
-        marks=reader.marks,
-        kinds=reader.kinds,
-    )
-    return _built(values, document)
+    return _built(values, Document(path=path, text=source.text, marks=reader.marks, kinds=reader.kinds))
 
 
 def _check(values: Values, reader: Reader) -> None:
@@ -428,10 +413,10 @@ class Levels:
             self(height)
 
     def __call__(self, height: float) -> float:
-        """Give the first height that was met within ROUNDING of this one; this one where there is none."""
-        met = next((other for other in self._heights if abs(other - height) <= ROUNDING), None)
-        if met is not None:
-            return met
+        """Give the first height within ROUNDING of this one; this one where there is none."""
+        for known in self._heights:
+            if abs(known - height) <= ROUNDING:
+                return known
         self._heights.append(height)
         return height
 

@@ -110,7 +110,7 @@ def designed(recipe: CamshaftRecipe) -> CamshaftDesign:
     return CamshaftDesign(recipe, placed(recipe, Clock(stage_reporter(recipe))))
 
 
-def failed(check: Entry, recipe: CamshaftRecipe, shown: str | None = None) -> str:
-    """Tell a failed check of a report over several lines, with the lobe's place in the recipe of the camshaft."""
+def failure_text(check: Entry, recipe: CamshaftRecipe, shown: str | None = None) -> str:
+    """Text of a failed check of a report, several lines, with the lobe's place in the recipe of the camshaft."""
     fields = {lobe.name: f"camshaft.lobes[{i}].recipe" for i, lobe in enumerate(recipe.lobes)}
     return failure.failure_at(check, recipe, fields.get(check.get("surface", ""), "camshaft"), "", shown)

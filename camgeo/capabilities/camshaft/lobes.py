@@ -18,6 +18,8 @@ from camgeo.part.part import THINNEST
 from camgeo.registry.capability import ShaftCam
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
+from kin.numeric.angles import TURN
+from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
     from kin.judge.check import Check
     from kin.numeric.arrays import Array
 
-TURN = 2.0 * math.pi
+STROKE_STEPS = 3600  # of a turn, over which the ends of a stroke are looked for
 
 
 @dataclass(frozen=True)
@@ -57,8 +59,7 @@ class PlacedLobe:
         Its event lift is None without an engine, or where it swings.
         """
         lobe = self.lobe
-        has_events = engine is not None and lobe.recipe.cam.arrangement.unit == "mm"
-        events = self.event_lift(engine) if has_events and engine is not None else None
+        events = None if engine is None or self.swings else self.event_lift(engine)
         return ShaftCam(lobe.name, lobe.recipe, self.design, self.at, self.zero, lobe.low, lobe.high, events)
 
     @property
@@ -77,8 +78,20 @@ class PlacedLobe:
         """Motion of the part that its follower drives, such as a valve; None without one."""
         return moved_by(self.lobe.recipe, self.design)
 
-    def event_lift(self, engine: Engine) -> float:
-        """Lift of the lobe's follower, mm, at which the engine's events are stated; a valve's lift is converted."""
+    @property
+    def swings(self) -> bool:
+        """Whether the lobe's follower swings, so that its lifts are angles."""
+        return self.lobe.recipe.cam.arrangement.unit == "deg"
+
+    def event_lift(self, engine: Engine | None) -> float:
+        """Lift of the lobe's follower, mm or rad, at which its events are stated.
+
+        It is the engine's, converted where that is of a valve; without an engine, or of a follower that swings, the
+        middle of the stroke.
+        """
+        if engine is None or self.swings:
+            lift = self.design.motion.rows(equal_steps(STROKE_STEPS), 0)[0]
+            return 0.5 * float(np.ptp(lift)) + float(lift.min())
         return self.moved.follower_lift(engine.lift) if engine.at_valve and self.moved is not None else engine.lift
 
     @property

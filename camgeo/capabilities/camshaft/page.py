@@ -6,8 +6,8 @@ import re
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from camgeo.capabilities.camshaft.diagram import SHEET
-from camgeo.capabilities.camshaft.diagrams import shown
+from camgeo.capabilities.camshaft.diagrams import page_diagrams
+from camgeo.capabilities.camshaft.svg import SHEET
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
 from camgeo.report.page.page import RELOAD, head
@@ -50,7 +50,7 @@ TURNING = re.compile(r"<button[^>]*>(.*?)</button>", re.DOTALL)
 def page(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], report: dict[str, Any]) -> str:
     """Return the HTML page of a camshaft, from its lobes and its report."""
     section = report["camshaft"]
-    figures = [f"<section><figure>{diagram}</figure></section>" for diagram in shown(recipe, lobes)]
+    figures = [f"<section><figure>{diagram}</figure></section>" for diagram in page_diagrams(recipe, lobes)]
     parts = [f'{head(recipe, report, SHEET)}</header>\n<main>\n<div class="diagrams">', *figures, "</div>"]
     parts.append(_section(f"Lobes: {UNIT_NAMES[recipe.units]} and degrees of the cam", _table(section["lobes"], LOBES)))
     if section.get("cylinders"):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.capabilities.camshaft.keys import DRAWN, SHAFT_FILES
 from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
 from camgeo.common.clock import Clock
-from camgeo.common.units import UNIT_MM
+from camgeo.common.units import INCH, UNIT_MM
 from camgeo.files.errors import MissingExtraError, RegionError
 from camgeo.files.mesh import Item
 from camgeo.fit.cache import Fits, formula_rounding
@@ -56,9 +56,6 @@ class _Job:
     def tolerance(self, request: FileRequest) -> float:
         return request.tolerance or self.recipe.export.tolerance
 
-    def unit(self, request: FileRequest) -> float:
-        return 25.4 if request.units == "inch" else 1.0
-
 
 def export(
     recipe: CamshaftRecipe, out: Path, *, only: tuple[str, ...] = (), progress: Callable[[str], None] | None = None
@@ -68,14 +65,14 @@ def export(
 
     requests = tuple(request for request in recipe.export.files if not only or request.kind in only)
     with RunFolder(out, recipe.name) as run:
-        findings = _produced(recipe, requests, run.folder, Clock(progress))
-        demand_any(recipe.path, findings.found)
+        findings, lobes = _produced(recipe, requests, run.folder, Clock(progress))
+        demand_any(recipe.path, findings)
         kept = run.kept_names() if only else ()
-        report = _report(recipe, replace(findings.found, kept=kept), findings.lobes)
+        report = _report(recipe, replace(findings, kept=kept), lobes)
         (run.folder / REPORT).write_text(as_json(report), encoding="utf-8", newline="\n")
-        names = [file.path.name for file in findings.found.files]
-        folder = run.commit(names, keep=kept) if findings.found.ok else run.reject()
-    return Outcome(report, findings.found.ok, folder)
+        names = [file.path.name for file in findings.files]
+        folder = run.commit(names, keep=kept) if findings.ok else run.reject()
+    return Outcome(report, findings.ok, folder)
 
 
 def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
@@ -84,9 +81,9 @@ def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = No
     from pathlib import Path
 
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-        findings = _produced(recipe, recipe.export.files, Path(folder), Clock(progress))
-        demand_any(recipe.path, findings.found)
-        return Outcome(_report(recipe, findings.found, findings.lobes), findings.found.ok, None)
+        findings, lobes = _produced(recipe, recipe.export.files, Path(folder), Clock(progress))
+        demand_any(recipe.path, findings)
+        return Outcome(_report(recipe, findings, lobes), findings.ok, None)
 
 
 def judged(
@@ -111,7 +108,7 @@ def judged(
         within = (request.tolerance or recipe.export.tolerance) if tolerance is None else tolerance
         stated = units
         if stated is None and not record.units and request.units == "inch":
-            stated = 25.4
+            stated = INCH
         with clock.stage("judge"):
             verdict = verify_camshaft(path, _intent(recipe, lobes, within), recipe.verify.angles, stated)
         files.append(FileResult.of(path, FileRequest(kind), within, verdict))
@@ -131,13 +128,10 @@ def judged_by(recipe: CamshaftRecipe, name: str, call: FileCall) -> dict[str, An
     return _report(recipe, replace(findings, sections=results.sections), lobes)
 
 
-@dataclass(frozen=True)
-class _Produced:
-    found: Findings
-    lobes: tuple[PlacedLobe, ...]
-
-
-def _produced(recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> _Produced:
+def _produced(
+    recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock
+) -> tuple[Findings, tuple[PlacedLobe, ...]]:
+    """Write and judge the requested files in a folder; returns what was found of them, and the lobes."""
     lobes = placed(recipe, clock)
     checks = lobe_checks(recipe, lobes)
     files: list[FileResult] = []
@@ -147,7 +141,7 @@ def _produced(recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder:
         job = _Job(recipe, lobes, clock)
         for request in requests:
             try:
-                _foresee(request)
+                _demand_packages(request)
             except MissingExtraError as error:
                 missing[request] = str(error)
         for request in requests:
@@ -166,10 +160,10 @@ def _produced(recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder:
         path = folder / request.filename(recipe.name, recipe.export.files)
         path.write_text(page(recipe, lobes, _report(recipe, findings, lobes)), encoding="utf-8", newline="\n")
         findings = replace(findings, files=(*findings.files, FileResult(path, request)))
-    return _Produced(findings, lobes)
+    return findings, lobes
 
 
-def _foresee(request: FileRequest) -> None:
+def _demand_packages(request: FileRequest) -> None:
     """Raise MissingExtraError where a package is missing that makes such a solid."""
     if not SHAFT_FILES[request.kind].solid:
         return
@@ -214,10 +208,15 @@ def _drawing(job: _Job, request: FileRequest, path: Path) -> FileResult:
 _UNJUDGED: Mapping[str, Callable[[_Job, FileRequest, Path], FileResult]] = {"csv": _table, DRAWN: _drawing}
 
 
+def _unit(request: FileRequest) -> float:
+    """Mm in the unit of a file's lengths."""
+    return INCH if request.units == "inch" else 1.0
+
+
 def _solid(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tuple[Check, ...]]:
     from kin.judge.camshaft import verify_camshaft
 
-    recipe, tolerance, mm = job.recipe, job.tolerance(request), job.unit(request)
+    recipe, tolerance, mm = job.recipe, job.tolerance(request), _unit(request)
     try:
         bound, pieces = _written(job, request, path)
     except ToleranceError as error:
@@ -235,7 +234,7 @@ def _solid(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tup
 
 def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
     """Write a solid; return the bound on the error of its lobes' contours, mm, and the number of their pieces."""
-    recipe, tolerance, mm, record = job.recipe, job.tolerance(request), job.unit(request), request.format
+    recipe, tolerance, mm, record = job.recipe, job.tolerance(request), _unit(request), request.format
     if record.numbers is None:
         from camgeo.capabilities.camshaft.body import camshaft_outlines, circle
         from camgeo.formats.step import write_stack

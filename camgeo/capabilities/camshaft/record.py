@@ -67,9 +67,9 @@ def _claimed(recipe: CamshaftRecipe, name: str, call: FileCall) -> dict[str, Any
 
 
 def _explain(check: dict[str, Any], _: dict[str, Any], recipe: CamshaftRecipe, shown: str | None) -> str:
-    from camgeo.capabilities.camshaft.library import failed
+    from camgeo.capabilities.camshaft.library import failure_text
 
-    return failed(check, recipe, shown)
+    return failure_text(check, recipe, shown)
 
 
 def _foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:

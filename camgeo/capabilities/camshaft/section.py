@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.camshaft.events import CRANK
+from camgeo.capabilities.camshaft.events import CYCLE
 from camgeo.capabilities.camshaft.lobes import valves
-from camgeo.capabilities.camshaft.tables import event_lift
 from camgeo.measures.balance import KG
 
 if TYPE_CHECKING:
@@ -17,8 +16,6 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.camshaft.keys import CamshaftRecipe
     from camgeo.capabilities.camshaft.lobes import PlacedLobe
-
-__all__ = ["camshaft_section"]
 
 
 def camshaft_section(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dict[str, Any]:
@@ -38,8 +35,7 @@ def camshaft_section(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dic
 
 
 def _lobe(recipe: CamshaftRecipe, lobe: PlacedLobe) -> dict[str, Any]:
-    lift = event_lift(recipe, lobe)
-    swings = lobe.lobe.recipe.cam.arrangement.unit == "deg"
+    lift = lobe.event_lift(recipe.engine)
     entry: dict[str, Any] = {
         "name": lobe.lobe.name,
         "recipe": lobe.lobe.recipe.path.name,
@@ -47,7 +43,7 @@ def _lobe(recipe: CamshaftRecipe, lobe: PlacedLobe) -> dict[str, Any]:
         "zero_deg": math.degrees(lobe.zero) % 360.0,
         "from": lobe.lobe.low / recipe.mm,
         "to": lobe.lobe.high / recipe.mm,
-        "lift": math.degrees(lift) if swings else lift / recipe.mm,
+        "lift": math.degrees(lift) if lobe.swings else lift / recipe.mm,
     }
     event = lobe.event(lift)
     if event is None:
@@ -55,8 +51,8 @@ def _lobe(recipe: CamshaftRecipe, lobe: PlacedLobe) -> dict[str, Any]:
     angles = {"opens_deg": event.opens, "closes_deg": event.closes, "centre_deg": event.centre}
     entry = {**entry, **angles, "duration_deg": event.duration}
     if recipe.engine is not None:
-        entry["opens_crank_deg"] = 2.0 * event.opens % CRANK
-        entry["closes_crank_deg"] = 2.0 * event.closes % CRANK
+        entry["opens_crank_deg"] = 2.0 * event.opens % CYCLE
+        entry["closes_crank_deg"] = 2.0 * event.closes % CYCLE
     return entry
 
 

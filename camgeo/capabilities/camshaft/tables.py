@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.camshaft import keys
-from camgeo.capabilities.camshaft.events import CRANK
+from camgeo.capabilities.camshaft.events import CYCLE
+from camgeo.capabilities.camshaft.keys import INSPECTION
 from camgeo.capabilities.camshaft.lobes import lifts, valves
 from camgeo.files.table import write_table
 from camgeo.measures.contact_points import contact_points
+from camgeo.measures.units import UNIT_NAMES, report_unit
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 
@@ -33,13 +34,12 @@ def column(name: str) -> str:
 
 def write_csv(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], request: FileRequest) -> None:
     """Write the table that a file is to be."""
-    match request.as_:
-        case "events":
-            write_events(path, recipe, lobes)
-        case keys.INSPECTION:
-            write_inspection(path, recipe, lobes, request.own.get("step"))
-        case _:
-            write_motion(path, recipe, lobes)
+    if request.as_ == "events":
+        write_events(path, recipe, lobes)
+    elif request.as_ == INSPECTION:
+        write_inspection(path, recipe, lobes, request.own.get("step"))
+    else:
+        write_motion(path, recipe, lobes)
 
 
 def write_motion(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> None:
@@ -49,10 +49,9 @@ def write_motion(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
     if recipe.engine is not None:
         heads, columns = [*heads, "crank_deg"], [*columns, 2.0 * angle]
     for lobe, lift in zip(lobes, lifts(lobes, np.radians(angle)), strict=True):
-        swings = lobe.lobe.recipe.cam.arrangement.unit == "deg"
-        unit = "deg" if swings else "mm" if recipe.mm == 1.0 else "in"
+        unit = "deg" if lobe.swings else UNIT_NAMES[recipe.units]
         heads.append(f"{column(lobe.lobe.name)}_{unit}")
-        columns.append(np.degrees(lift) if swings else lift / recipe.mm)
+        columns.append(np.degrees(lift) if lobe.swings else lift / recipe.mm)
         if (moved := lobe.moved) is not None:
             made = moved.rows(lobe.rows(np.radians(angle), 2)) / recipe.mm
             name = f"{column(lobe.lobe.name)}_{moved.name}"
@@ -72,16 +71,16 @@ def write_events(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
         heads += ["cylinder", "opens_crank_deg", "closes_crank_deg", "duration_crank_deg"]
         heads += ["ivo_btdc", "ivc_abdc", "evo_bbdc", "evc_atdc", "overlap_crank_deg", "separation_cam_deg"]
     for number, lobe in enumerate(lobes, 1):
-        lift = event_lift(recipe, lobe)
+        lift = lobe.event_lift(recipe.engine)
         event = lobe.event(lift)
         columns = [math.nan] * 4 if event is None else list(event)
-        scale = math.degrees(1.0) if lobe.lobe.recipe.cam.arrangement.unit == "deg" else 1.0 / recipe.mm
+        scale, _ = report_unit(recipe, lobe.lobe.recipe.cam.arrangement.unit)
         row = [number, math.degrees(lobe.at), *columns, lift * scale]
         if engine is not None:
             cylinder = lobe.lobe.cylinder
             crank = [math.nan] * 3
             if event is not None:
-                crank = [2.0 * event.opens % CRANK, 2.0 * event.closes % CRANK, 2.0 * event.duration]
+                crank = [2.0 * event.opens % CYCLE, 2.0 * event.closes % CYCLE, 2.0 * event.duration]
             own = None if cylinder is None else valves(lobes, engine, cylinder)
             row += [math.nan if cylinder is None else cylinder, *crank, *([math.nan] * 6 if own is None else own)]
         rows.append(row)
@@ -106,15 +105,7 @@ def write_inspection(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedL
             columns += list(drawn.normals.T)
             columns += [np.full(len(drawn.angles), sign * half) for sign in ((-1.0, 1.0) if limited else ())]
             rows.append(np.column_stack(columns))
-    unit = "in" if recipe.units == "inch" else "mm"
+    unit = UNIT_NAMES[recipe.units]
     heads = ["lobe", f"z_{unit}", "shaft_deg", f"x_{unit}", f"y_{unit}", "nx", "ny"]
     heads += [f"lower_{unit}", f"upper_{unit}"] if limited else []
     write_table(path, heads, np.concatenate(rows), gaps=True)
-
-
-def event_lift(recipe: CamshaftRecipe, lobe: PlacedLobe) -> float:
-    """Lift, mm or rad, at which a lobe's events are told: the engine's; of a machine's lobes half of the stroke."""
-    if recipe.engine is not None and lobe.lobe.recipe.cam.arrangement.unit == "mm":
-        return lobe.event_lift(recipe.engine)
-    lift = lobe.design.motion.rows(np.linspace(0.0, 2.0 * math.pi, 3600, endpoint=False), 0)[0]
-    return 0.5 * float(np.ptp(lift)) + float(lift.min())

@@ -34,6 +34,7 @@ READING = 0.01  # mm: by default, how flat a dwell is and how near a recipe's mo
 STEPS = 720
 LEAST_STEPS, MOST_STEPS = 36, 100_000
 LENGTHS = 2  # numbers of a place
+OPENINGS = "verify: {openings: ignore}  # those of the file are not made: name in part what is wanted of them"
 
 
 @dataclass(frozen=True)
@@ -225,11 +226,7 @@ class Followed:
             *(f"  {key}: {value}" for key, value in cam.items()),
             f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}, suspect: keep}}",
             *([f"part: {{{keys}}}"] if keys else []),
-            *(
-                ["verify: {openings: ignore}  # those of the file are not made: name in part what is wanted of them"]
-                if self.openings
-                else []
-            ),
+            *([OPENINGS] if self.openings else []),
             "export:",
             f"  tolerance: {self.reading:.6g}",
             "  files: [dxf, csv, html]",

@@ -82,9 +82,10 @@ def read_outline(path: Path, units: float | None, at: tuple[float, float], track
     within = [circle_about(other) for other in around if abs(other.area) < abs(contour.area)]
     beyond = [circle_about(other) for other in around if abs(other.area) > abs(contour.area)]
     bore, blank = (circles[0] if circles else None for circles in (within, beyond))
-    clockwise = [other if other is None or not mirrored else other.mirrored() for other in (contour, outer)]
     rest = len(others) - sum(circle is not None for circle in (bore, blank))
-    return Outline(clockwise[0] or contour, clockwise[1], bore, blank, rest)
+    if mirrored:
+        contour, outer = contour.mirrored(), None if outer is None else outer.mirrored()
+    return Outline(contour, outer, bore, blank, rest)
 
 
 def _read_drawing(path: Path, units: float | None, track: Track) -> Sequence[Chain]:

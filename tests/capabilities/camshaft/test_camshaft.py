@@ -15,10 +15,10 @@ import yaml
 from support.heavy import trimesh
 
 import camgeo
-from camgeo.capabilities.camshaft.diagram import WIDTH
+from camgeo.capabilities.camshaft.diagrams import LEFT, RIGHT
 from camgeo.capabilities.camshaft.events import stretches
 from camgeo.capabilities.camshaft.keys import DIAGRAMS, Levels
-from camgeo.capabilities.camshaft.timing import LEFT, RIGHT
+from camgeo.capabilities.camshaft.svg import WIDTH
 from camgeo.cli.exit_status import SURROUNDINGS
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock

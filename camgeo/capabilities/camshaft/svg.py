@@ -40,7 +40,7 @@ SHEET = """\
 )
 
 
-def kind(valve: str) -> str:
+def colour_of(valve: str) -> str:
     """Return the name of the colour of a lobe by the valve that it opens."""
     return valve or "other"
 
@@ -50,13 +50,13 @@ def filled(name: str, share: float = 1.0) -> str:
     return f'class="{name}" fill="{COLOURS[name]}"' + ("" if share == 1.0 else f' fill-opacity="{share:g}"')
 
 
-def drawn(name: str, width: float = 1.0, dashes: str = "") -> str:
+def stroked(name: str, width: float = 1.0, dashes: str = "") -> str:
     """Return the attributes of a line of a colour and a width, px; `dashes` are its and its gaps' lengths."""
     dashed = f' stroke-dasharray="{dashes}"' if dashes else ""
     return f'class="{name}-line" fill="none" stroke="{COLOURS[name]}" stroke-width="{width:.4g}"{dashed}'
 
 
-def both(name: str, share: float, width: float = 1.0) -> str:
+def edged(name: str, share: float, width: float = 1.0) -> str:
     """Return the attributes of what is filled, with an opacity, and edged in one colour."""
     edge = f'stroke="{COLOURS[name]}" stroke-width="{width:g}"'
     return f'class="{name} {name}-line" fill="{COLOURS[name]}" fill-opacity="{share:g}" {edge}'
@@ -82,7 +82,7 @@ def text(
 
 def line(name: str, x1: float, y1: float, x2: float, y2: float, *, width: float = 1.0, dashes: str = "") -> str:
     """Return a straight line."""
-    return f'<line x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" y2="{y2:.2f}" {drawn(name, width, dashes)}/>'
+    return f'<line x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" y2="{y2:.2f}" {stroked(name, width, dashes)}/>'
 
 
 def on_wheel(middle: tuple[float, float], radius: float, degrees: float) -> tuple[float, float]:
