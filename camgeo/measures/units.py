@@ -52,5 +52,5 @@ def displacement_unit(recipe: Recipe) -> tuple[float, str]:
 
 
 def report_unit(recipe: Order, unit: str) -> tuple[float, str]:
-    """Factor from mm to a recipe's unit, and that unit; where `unit` is deg, the factor from rad to degrees, and deg."""
+    """Factor from mm to a recipe's unit, and that unit; where `unit` is deg, from rad to degrees, and deg."""
     return (math.degrees(1.0), "deg") if unit == "deg" else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
