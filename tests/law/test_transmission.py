@@ -1,4 +1,7 @@
-"""Transmission laws: Wunderlich's equations on every route, mpmath as the oracle, and what must be refused."""
+"""Transmission laws: Wunderlich's equations on every route, mpmath as the oracle, and what must be refused.
+
+Holds: kin.law.feasibility, kin.law.transmission_law.
+"""
 
 import math
 from functools import cache

@@ -1,4 +1,7 @@
-"""Jets against mpmath's Taylor series at 50 digits; ball jets must hold the same series at every point inside them."""
+"""Jets against mpmath's Taylor series at 50 digits; ball jets must hold the same series at every point inside them.
+
+Holds: kin.numeric.taylor.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Contours corrected for what a machine made of earlier runs: by a simulated machine, by formulas, and bad input."""
+"""Contours corrected for what a machine made of earlier runs: by a simulated machine, by formulas, and bad input.
+
+Holds: kin.made.corrected.
+"""
 
 from __future__ import annotations
 

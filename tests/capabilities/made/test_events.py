@@ -1,4 +1,7 @@
-"""Lift, velocity and durations of a made cam against those intended: by brute force, and with their uncertainty."""
+"""Lift, velocity and durations of a made cam against those intended: by brute force, and with their uncertainty.
+
+Holds: kin.made.events, kin.made.lifts.
+"""
 
 from __future__ import annotations
 

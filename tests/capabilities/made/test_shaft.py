@@ -1,5 +1,8 @@
 # needs: camshaft
-"""Points of camshafts: each lobe by its own recipe, phases between lobes, and what is no point of a lobe."""
+"""Points of camshafts: each lobe by its own recipe, phases between lobes, and what is no point of a lobe.
+
+Holds: kin.made.shaft_alike.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Formulas: the grammar, its bounds and messages; values against Python, enclosures against mpmath; switches."""
+"""Formulas: the grammar, its bounds and messages; values against Python, enclosures against mpmath; switches.
+
+Holds: kin.law.formula.parser, kin.law.formula.roots, kin.law.formula.switches.
+"""
 
 from __future__ import annotations
 

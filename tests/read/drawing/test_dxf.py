@@ -1,4 +1,7 @@
-"""DXF files of every version and manner, made with ezdxf, read back; damaged and wrong ones refused with the place."""
+"""DXF files of every version and manner, made with ezdxf, read back; damaged and wrong ones refused with the place.
+
+Holds: kin.read.drawing.drawing, kin.read.drawing.dxf_entities.
+"""
 
 from __future__ import annotations
 

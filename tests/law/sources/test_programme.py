@@ -1,4 +1,7 @@
-"""Programmes of segments: strokes, matched segments, formulas; joints told with what jumps; motions by formula."""
+"""Programmes of segments: strokes, matched segments, formulas; joints told with what jumps; motions by formula.
+
+Holds: kin.law.joints.
+"""
 
 import math
 

@@ -1,4 +1,7 @@
-"""Parts read from STEP texts written by hand, as several CAD systems write them, and faults in them; no CAD kernel."""
+"""Parts read from STEP texts written by hand, as several CAD systems write them, and faults in them; no CAD kernel.
+
+Holds: kin.read.step.curves, kin.read.step.faces.
+"""
 
 import contextlib
 import math

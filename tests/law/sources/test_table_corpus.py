@@ -1,7 +1,7 @@
 """A corpus of tables: laws at rows of any step, rounded to any digits in any unit, are followed, spoilt ones refused.
 
-A thin diagonal runs quickly, all of it with the slow tests. `python tests/law/test_table_corpus.py` writes the figures
-of docs/accuracy.md.
+A thin diagonal runs quickly, all of it with the slow tests. `python tests/law/sources/test_table_corpus.py` writes the
+figures of docs/accuracy.md.
 """
 
 import sys
@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from support.table_corpus import LAWS, PLACES, SPOILT, STEPS, TURN, UNITS, drawn, tables
 
@@ -156,7 +156,7 @@ def page(errors):
 
 
 if __name__ == "__main__":
-    path = Path(__file__).parents[2] / "docs" / "accuracy.md"
+    path = Path(__file__).parents[3] / "docs" / "accuracy.md"
     text = path.read_text(encoding="utf-8")
     begin, end = text.index(MARK), text.index("<!-- end -->", text.index(MARK)) + len("<!-- end -->")
     path.write_text(text[:begin] + page(figures()) + text[end:], encoding="utf-8")

@@ -1,4 +1,7 @@
-"""Tables kept within their reading error, points, and lobes; what is no table is refused with its line."""
+"""Tables kept within their reading error; what is no table is refused with its line.
+
+Holds: kin.law.sources.dwells, kin.law.sources.suspects.
+"""
 
 import math
 import re
@@ -8,8 +11,7 @@ import pytest
 
 from kin.law.programme import IntentError
 from kin.law.sources.laws import named
-from kin.law.sources.lobe import coefficients, lobe
-from kin.law.sources.points import from_points
+from kin.law.sources.lobe import lobe
 from kin.law.sources.programme import Dwell, Move, programme
 from kin.law.sources.ring import Samples
 from kin.law.sources.table import from_table
@@ -42,55 +44,7 @@ def plate(count=360, places=3):
     return Samples(theta, np.round(PLATE.derivatives(theta, 0)[0], places), np.arange(count) + 1)
 
 
-# --- the lobe polynomial -----------------------------------------------------------------------------------------
-
-
-def test_the_lobe_has_the_coefficients_and_lifts_of_its_closed_form():
-    found = coefficients((2, 8, 14, 20, 26))
-    assert found == pytest.approx((-1.872427984, 1.872427984, -1.604938272, 0.748971193, -0.144032922), abs=5e-10)
-    p, q, r, s = 8, 14, 20, 26
-    assert found[0] == pytest.approx(-p * q * r * s / ((p - 2) * (q - 2) * (r - 2) * (s - 2)), rel=1e-15)
-    assert found[1] == pytest.approx(2 * q * r * s / ((p - 2) * (q - p) * (r - p) * (s - p)), rel=1e-15)
-    lifts = VALVE.derivatives(np.radians([0.0, 20.0, 45.0]), 0)[0]
-    assert lifts == pytest.approx([8, 6.705040433, 1.952853268], abs=5e-10)
-    assert VALVE.derivatives(np.radians([320.23336]), 1)[1] == pytest.approx([12.538158514], abs=5e-9)
-
-
-def test_a_lobe_ends_with_four_derivatives_at_rest():
-    assert VALVE.derivatives(rad(68), 4, -1)[:, 0].tolist() == [0, 0, 0, 0, 0]
-    assert VALVE.derivatives(TURN - rad(68), 4)[:, 0] == pytest.approx([0] * 5, abs=0)
-    assert VALVE.joints == ()
-    theta = np.linspace(0.01, rad(67.9), 50)
-    u = theta / rad(68)
-    powers = zip(coefficients((2, 8, 14, 20, 26)), (2, 8, 14, 20, 26), strict=True)
-    plain = 8 * (1 + sum(c * u**k for c, k in powers))
-    assert VALVE.derivatives(theta, 0)[0] == pytest.approx(plain, abs=1e-13)
-    assert VALVE.derivatives(TURN - theta, 0)[0] == pytest.approx(plain, abs=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("lift", "half", "powers", "message"),
-    [
-        (0.0, 1.0, (2, 4, 6, 8, 10), "the lift of a lobe must be above 0, not 0"),
-        (1.0, 3.2, (2, 4, 6, 8, 10), "half the event lies between 0 and 180 degrees, not 183.346"),
-        (
-            1.0,
-            1.0,
-            (2, 8, 8, 20, 26),
-            (
-                "the powers of a lobe are 2 and four more whole numbers that rise to 100 at most, "
-                "such as [2, 8, 14, 20, 26], not [2, 8, 8, 20, 26]"
-            ),
-        ),
-    ],
-)
-def test_what_is_no_lobe_is_refused(lift, half, powers, message):
-    with pytest.raises(IntentError) as caught:
-        lobe(lift, half, powers)
-    assert caught.value.message == message
-
-
-# --- tables ------------------------------------------------------------------------------------------------------
+# --- tables -----------------------------------------------------------------------------------------------------------
 
 
 def off(motion, rows, period=TURN):
@@ -201,7 +155,7 @@ def test_a_reading_is_above_0(reading):
         from_table(plate(), reading)
 
 
-# --- what rows leave out -----------------------------------------------------------------------------------------
+# --- what rows leave out ----------------------------------------------------------------------------------------------
 
 
 def test_what_an_event_leaves_out_of_a_turn_is_a_dwell():
@@ -249,7 +203,7 @@ def test_equal_rows_at_an_end_that_are_no_dwell_leave_the_end_itself():
     assert motion.derivatives([0.0, math.pi], 1)[1].tolist() == [0.0, 0.0]
 
 
-# --- what is no motion -------------------------------------------------------------------------------------------
+# --- what is no motion ------------------------------------------------------------------------------------------------
 
 
 def broken(change):
@@ -344,7 +298,7 @@ def test_a_gap_is_bridged():
     assert off(from_table(part, 0.0005), rows).max() < 1e-3
 
 
-# --- remarks -----------------------------------------------------------------------------------------------------
+# --- remarks ----------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.thin(2)
@@ -426,7 +380,7 @@ def test_angles_over_less_than_a_quarter_of_the_turn_are_remarked():
     assert from_table(event(), 0.0005).kept.remarks == ()
 
 
-# --- rounded angles ----------------------------------------------------------------------------------------------
+# --- rounded angles ---------------------------------------------------------------------------------------------------
 
 
 def test_angles_that_were_rounded_add_their_slope_to_the_reading():
@@ -451,171 +405,6 @@ def test_a_truncated_table_takes_a_whole_digit():
     assert np.abs(from_table(rows, 0.01).derivatives(x, 2)[2]).max() < 1.1 * peak
 
 
-# --- tables as text ----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "0;0,000\n1,5;0,25\n3;1\n",
-        "0,0.000\n1.5,0.25\n3,1\n",
-        "angle lift\n0 0,0\n1,5 0,25\n\n3 1,000\n",
-        "deg, mm\n0, 0.0\n1.5, 0.25\n# half way\n3, 1.000",
-        "\ufeff0\t0,0\n1,5\t0,25\n3\t1,000\n",
-        '"0";"0,000"\r\n"1,5";"0,25"\r\n"3";"1";\r\n',
-    ],
-)
-def test_columns_and_decimal_marks(text):
-    rows, unit = read_table(text)
-    assert np.degrees(rows.theta) == pytest.approx([0, 1.5, 3])
-    assert rows.s.tolist() == [0, 0.25, 1]
-    assert unit in {0.001, 0.01}
-
-
-def test_crank_degrees_inches_and_degrees():
-    text = "# inlet\ndeg;in\n0;0,0\n2;0,1\n4;0,25\n"
-    rows, unit = read_table(text, Sheet("length", angle="crank", unit="inch"))
-    assert np.degrees(rows.theta) == pytest.approx([0, 1, 2])
-    assert rows.s == pytest.approx([0, 2.54, 6.35])
-    assert rows.lines.tolist() == [3, 4, 5]
-    assert unit == pytest.approx(0.254)
-    plain = text.replace(";in", ";lift")
-    assert read_table(plain, Sheet("angle", instead="degrees"))[0].s == pytest.approx(np.radians([0, 0.1, 0.25]))
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (
-            "w;lift\n0;1\n1;x\n",
-            "line 3: 'x' is not a number, in '1;x'; an angle and a displacement are expected",
-        ),
-        (
-            "0,1,0,2\n1,5,0,3\n",
-            (
-                "line 1: the table's columns are 4 without a heading; give those of the angle and the value, such as "
-                "columns: [1, 2]: with decimal commas, separate the columns by semicolons"
-            ),
-        ),
-        (
-            "crank in ex\n0 1 2\n1 2 3\n",
-            (
-                "line 2: the table's columns are crank, in, ex; give those of the angle and the value, such as "
-                "columns: [crank, in]"
-            ),
-        ),
-        (
-            "0,1,2\n1.5,5,3\n2,1,4,5\n",
-            (
-                "line 1: the table's columns are 3 without a heading; give those of the angle and the value, such as "
-                "columns: [1, 2]: with decimal commas, separate the columns by semicolons"
-            ),
-        ),
-        (
-            "deg,lift\n0,0\n1,2,3\n",
-            (
-                "line 3: 3 columns, and 2 are expected, parted by commas: '1,2,3': with decimal commas, part the "
-                "columns by semicolons; an angle and a displacement are expected"
-            ),
-        ),
-        ("deg,lift\n0,0\n1,\n", "line 3: column 2 is empty, in '1,'; an angle and a displacement are expected"),
-        (
-            "deg,lift\n0,0\n1\n",
-            "line 3: 1 columns, and 2 are expected, parted by commas: '1'; an angle and a displacement are expected",
-        ),
-        ("deg;lift\n", "below its heading there is no row"),
-        ("# nothing\n", "no row of numbers is among its lines"),
-    ],
-)
-def test_what_is_no_row_is_refused_with_its_line(text, message):
-    with pytest.raises(IntentError) as caught:
-        read_table(text)
-    assert caught.value.message == message
-
-
-SEVERAL = "crank_deg;intake_thou;exhaust_thou\n0;0;1\n2;10;3\n4;20;5\n"
-
-
-@pytest.mark.parametrize("columns", [("crank", "exhaust"), ("crank_deg", "exhaust_thou"), (1, 3), ("Crank", 3)])
-def test_columns_are_chosen_by_heading_or_number_and_their_units_are_taken(columns):
-    rows, place = read_table(SEVERAL, Sheet("length", columns))
-    assert np.degrees(rows.theta) == pytest.approx([0, 1, 2])
-    assert rows.s == pytest.approx([0.0254, 0.0762, 0.127])
-    assert (rows.unit, place) == (0.0254, 0.0254)
-
-
-@pytest.mark.parametrize(
-    ("heading", "quantity", "s"),
-    [
-        ("phi;lift_in", "length", 25.4),
-        ("phi;Lift (inch)", "length", 25.4),
-        ("phi;lift / thou", "length", 0.0254),
-        ("phi;s [cm]", "length", 10.0),
-        ("phi;swing_deg", "angle", rad(1)),
-        ("phi;swing_rad", "angle", 1.0),
-        ("phi;load_lbf", "force", 4.4482216152605),
-        ("phi;load_kN", "force", 1000.0),
-        ("phi;load_Nm", "moment", 1.0),
-        ("phi;torque (lbf in)", "moment", 0.1129848290276167),
-    ],
-)
-def test_a_unit_in_a_heading_is_taken(heading, quantity, s):
-    rows, _ = read_table(f"{heading}\n0;0\n90;1\n", Sheet(quantity, instead="mm"))
-    assert rows.s[1] == pytest.approx(s, rel=1e-15)
-    assert rows.theta[1] == pytest.approx(rad(90))
-
-
-@pytest.mark.parametrize(
-    ("heading", "angle", "turn"),
-    [
-        ("deg", None, 360),
-        ("crank", None, 720),
-        ("crank_deg", None, 720),
-        ("angle_rad", None, 2 * math.pi),
-        ("turns", None, 1),
-        ("shaft %", None, 100),
-        ("deg", "crank", 720),
-        ("angle", "radians", 2 * math.pi),
-        ("angle", "turns", 1),
-        ("angle", "percent", 100),
-    ],
-)
-def test_angles_in_every_unit_are_of_the_cam_s_turn(heading, angle, turn):
-    rows, _ = read_table(f"{heading};lift\n0;0\n{turn!r};0\n", Sheet("length", angle=angle))
-    assert rows.theta[1] == pytest.approx(TURN, rel=1e-15)
-
-
-def test_scale_and_offset_come_before_the_reading():
-    rows, place = read_table("0;0,00\n90;1,25\n", Sheet("length", unit="inch", scale=1.6, offset=-0.2))
-    assert rows.s == pytest.approx([-0.2 * 25.4, 1.8 * 25.4])
-    assert place == pytest.approx(0.016 * 25.4)
-
-
-def test_displacement_stands_out_among_its_derivatives():
-    rows, _ = read_table("t, deg, s (mm), v (mm/deg), a\n1, 0, 0.0, 1, 2\n2, 10, 1.5, 3, 4\n")
-    assert rows.s.tolist() == [0, 1.5]
-    assert np.degrees(rows.theta) == pytest.approx([0, 10])
-
-
-@pytest.mark.parametrize(
-    ("sheet", "message", "field"),
-    [
-        (Sheet("length", ("crank", "valve")), "'valve' is no heading of the table: they are crank_deg, ", "columns"),
-        (Sheet("length", (1, 4)), "the table has columns 1 to 3, not 4", "columns"),
-        (Sheet("length", (1, "crank")), "column 1 cannot be both the angle and the value", "columns"),
-        (Sheet("length", (1, 2), "cam"), "the column 'crank_deg' is of the crank, not of the cam", "angle"),
-        (Sheet("length", (1, 2), "radians"), "the column 'crank_deg' is in degrees, not in radians", "angle"),
-        (Sheet("length", (1, 2), unit="mm"), "the column 'intake_thou' is in thou, not in mm", "units"),
-        (Sheet("angle", (1, 2)), "the column 'intake_thou' is in thou; an angle is meant here", ""),
-    ],
-)
-def test_what_contradicts_a_heading_is_refused(sheet, message, field):
-    with pytest.raises(IntentError) as caught:
-        read_table(SEVERAL, sheet)
-    assert caught.value.message.startswith(message)
-    assert caught.value.field == ".".join(filter(None, ("motion.table", field)))
-
-
 def test_a_table_goes_from_text_to_motion():
     rows = event()
     text = "\n".join(f"{2 * math.degrees(t):.1f};{s:.3f}" for t, s in zip(rows.theta, rows.s, strict=True))
@@ -624,88 +413,6 @@ def test_a_table_goes_from_text_to_motion():
     theta = np.mod(rows.theta, TURN)
     expected = from_table(rows, 0.0005).derivatives(theta, 2)
     assert from_table(found, 0.5 * unit).derivatives(theta, 2) == pytest.approx(expected, abs=1e-6)
-
-
-# --- points ------------------------------------------------------------------------------------------------------
-
-
-def test_points_without_a_dwell_are_periodic():
-    at = np.radians([0.0, 70.0, 120.0, 200.0, 290.0, 360.0])
-    motion = from_points(at, [0.0, 4.0, 6.0, 5.0, 1.0, 0.0])
-    assert motion.joints == ()
-    assert motion.derivatives(at, 0)[0] == pytest.approx([0, 4, 6, 5, 1, 0], abs=1e-13)
-    assert np.abs(motion.motion.jumps(4)[1]).max() < 1e-10  # C4
-    assert np.abs(motion.motion.jumps(5)[1][5]).max() > 1
-    theta = np.linspace(0, TURN, 100)
-    mid, radius = motion.enclosure(theta[:-1], theta[1:], 3)
-    assert (np.abs(motion.derivatives(0.5 * (theta[:-1] + theta[1:]), 3) - mid) <= radius).all()
-
-
-def test_points_rest_beside_dwells():
-    at = np.radians([0.0, 40.0, 100.0, 160.0, 200.0, 300.0])
-    values = [0.0, 3.0, 10.0, 10.0, 7.0, 0.0]
-    motion = from_points(at, values, dwells=[(at[2], at[3]), (at[5], TURN)])
-    assert [(r.begin, r.end, r.level) for r in motion.rests] == [
-        pytest.approx((at[2], at[3], 10)),
-        pytest.approx((at[5], TURN, 0)),
-    ]
-    assert motion.derivatives(at, 0)[0] == pytest.approx(values, abs=1e-14)
-    for joint in motion.joints:
-        assert [jump[0] for jump in joint.jumps] == [3]
-    assert motion.derivatives(at[2], 2, -1)[:, 0] == pytest.approx([10, 0, 0], abs=1e-13)
-
-
-def test_a_smooth_function_is_met_closer_by_more_points():
-    off = []
-    for count in (12, 24):
-        theta = np.arange(count) * (TURN / count)
-        motion = from_points(theta, np.sin(theta) + 0.2 * np.cos(3 * theta))
-        x = np.linspace(0, TURN, 500)
-        off.append(np.abs(motion.derivatives(x, 0)[0] - np.sin(x) - 0.2 * np.cos(3 * x)).max())
-    assert off[0] / off[1] > 2**5.5  # of the sixth order
-
-
-@pytest.mark.parametrize(
-    ("degrees", "values", "dwells", "message", "field"),
-    [
-        ([0, 90, 80], [0, 1, 2], [], "the angles must rise; 80 follows 90 degrees", "motion.points[2]"),
-        ([0, 90], [0, 1], [], "a motion needs 3 points, or two and a dwell", "motion.points"),
-        ([0, 90, 400], [0, 1, 0], [], "the angles lie between 0 and 360 degrees", "motion.points"),
-        (
-            [0, 90, 360],
-            [0, 1, 2],
-            [],
-            "the motion does not close: it is 0 at the first point, 2 a turn later; give both the same displacement",
-            "motion.points[2]",
-        ),
-        ([0, 90, 180], [0, 1, 2], [(90, 170)], "no point stands at 170 degrees, where a dwell ends", "motion.points"),
-        (
-            [0, 90, 180],
-            [0, 1, 2],
-            [(90, 180)],
-            "no dwell from 90 to 180 degrees: it would climb from 1 to 2",
-            "motion.points",
-        ),
-        (
-            [0, 90, 180],
-            [0, 1, 0],
-            [(0, 180)],
-            "a dwell runs from a point to the next; from 0 to 180 is none",
-            "motion.points",
-        ),
-    ],
-)
-def test_what_are_no_points_is_refused(degrees, values, dwells, message, field):
-    with pytest.raises(IntentError) as caught:
-        from_points(np.radians(degrees), values, dwells=[(rad(a), rad(b)) for a, b in dwells])
-    assert (caught.value.message, caught.value.field) == (message, field)
-
-
-def test_points_over_a_half_turn_go_on_upside_down():
-    theta = np.radians(np.arange(0.0, 181.0, 15.0))
-    motion = from_points(theta, 6 * (1 - np.cos(theta)) + 0.3 * (1 - np.cos(3 * theta)), math.pi, around=-1)
-    assert motion.joints == ()
-    assert lift_constant_breadth(40.0, motion).derivatives(0.0, 0)[0, 0] == pytest.approx(40, abs=1e-12)
 
 
 @pytest.mark.slow
