@@ -112,11 +112,17 @@ class Oscillator:
         p, q = self.weights
         return Propagator(cosine + p * other, other, -self.square * other, cosine - q * other)
 
+    def factors(self, states: Array, z: float, v: float) -> tuple[Array, Array]:
+        """Factors (n,) of the two motions of `basis` in z times place and v times rate, from states (2, n)."""
+        p, q = self.weights
+        place, rate = states
+        return z * place + v * rate, z * (p * place + rate) - v * (self.square * place + q * rate)
+
     def moved(self, states: Array, time: Array) -> Array:
         """States (2, n) of the free motion after times (n,), from states (2, n)."""
-        zz, zv, vz, vv = self.propagator(time)
-        z, v = states
-        return np.stack([zz * z + zv * v, vz * z + vv * v])
+        cosine, other = self.basis(time)
+        pairs = self.factors(states, 1.0, 0.0), self.factors(states, 0.0, 1.0)
+        return np.stack([first * cosine + second * other for first, second in pairs])
 
     def bound(self, states: Array) -> Array:
         """Bound (n,) of |z| over all later times, from states (2, n); it decays with `fading` where it swings."""

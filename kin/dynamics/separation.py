@@ -27,15 +27,14 @@ MOST_WORK = 6_000_000  # places that a search looks at, which bounds it to some 
 
 
 _LADDER = 1.08  # ratio of the speeds of the widest range
-_SURE_LADDER = 1.3  # the same up to a speed at which contact holds whatever the phases, as it does below it then
-_WIDE = 1.0  # in turns of the shaft: ranges wider are tried by the bound that knows no phase
-_DAMPED = 0.25  # of the decay in a radian, which may be wider
+_SURE_LADDER = 2.0  # the same up to a speed at which contact holds whatever the phases, as it does below it then
 _CLOSE = 0.25  # in turns of the shaft: narrower ranges are cut as their ends' forces suggest
+_LEAST_SHARE = 0.15  # of a wide range that is cut off at the end where the force is least
 _STRIDE = 1.02  # ratio of the speeds at which a floating one is looked for
 _BESIDE = 1e-9  # of a speed: so near a resonance, and not on it, where nothing may be steady
 _RESOLUTION = 1e-11
 _CORNER = 1e-9  # of the greatest velocity: a lesser leap is a tangent's rounding
-_BISECTIONS = 200  # of the logarithm of a speed: many times the bits of a number
+_BISECTIONS = 30  # of the logarithm of a speed, which leave 1e-7 of it
 _LEAST_RATIO = 0.5  # natural frequency in turns of the shaft, below which none is sought
 
 
@@ -119,40 +118,46 @@ class _Search:
             low, high = part.low, part.high
             if high.rpm - low.rpm <= _RESOLUTION * high.rpm:
                 return high.rpm
-            looks = [low, *(self._look(rpm) for rpm in self._cuts(part)), high]
+            looks = [low, *self._cuts(part), high]
             left += [Range(*ends) for ends in pairwise(looks)][::-1]
         return None
 
     def _is_past(self, part: Range) -> bool:
         if part.sure:
             return True
-        if part.high.swings and part.width > max(_WIDE, _DAMPED * part.high.fading):
-            return False
         if part.high.least < 0.0:
             self.floats = min(part.high.rpm, self.floats or math.inf)
             return False
         return part.holds
 
-    def _cuts(self, part: Range) -> list[float]:
-        """Speeds within a range, rising: close to where it floats, or to where what is above can be shown, or halfway.
+    def _cuts(self, part: Range) -> list[Look]:
+        """Looks within a range, rising: close to where it floats, or as far as can be shown from an end, or halfway.
 
         Halfway may be a resonance, or between two.
         """
         low, high = part.low, part.high
         middle = math.sqrt(low.rpm * high.rpm)
-        if part.width < _CLOSE and low.least > 0.0:
-            if high.least < 0.0:
-                width = 0.5 * _RESOLUTION
-                speeds = crossing(lambda rpm: self._look(rpm).least, low.rpm, high.rpm, 0.0, self.work, width=width)
-                return [rpm for rpm in (speeds * (1.0 - _RESOLUTION), speeds) if low.rpm < rpm < high.rpm] or [middle]
-            share = 0.9 * math.sqrt(high.reached / part.between)
-            return [high.rpm - share * (high.rpm - low.rpm) if share < 0.5 and high.reached < low.reached else middle]
+        if high.least < 0.0 < low.least and part.width < _CLOSE:
+            looks = {low.rpm: low, high.rpm: high}
+
+            def force(rpm: float) -> float:
+                if rpm not in looks:
+                    looks[rpm] = self._look(rpm)
+                return looks[rpm].reached
+
+            floats = crossing(force, low.rpm, high.rpm, 0.0, self.work, width=0.5 * _RESOLUTION)
+            between = [looks[rpm] for rpm in sorted(looks) if low.rpm < rpm <= floats < high.rpm]
+            return between or [self._look(middle)]
+        share = 0.9 * math.sqrt(max(min(low.reached, high.reached), 0.0) / part.between)
+        if share > (0.0 if part.width < _CLOSE else _LEAST_SHARE):
+            share = min(share, 0.5)
+            return [self._look(low.rpm + (share if low.reached < high.reached else 1.0 - share) * (high.rpm - low.rpm))]
         if part.width > 0.5 and high.swings:
             share = high.oscillator.split / high.b
             b = 0.5 * round(2.0 * share * self.train.ratio(middle)) / share
             if high.b + 0.1 < b < low.b - 0.1:
                 middle = self.train.natural / b * 60.0 / TURN
-        return [middle]
+        return [self._look(middle)]
 
 
 def _floats(train: Train, drive: Drive, rpm: float) -> float | None:

@@ -8,9 +8,11 @@ leaves of g. With w = exp(lambda 2 pi), lambda = -a + ib, and kicks c_j,
 
 so over b no phase in the sum moves by more than 2 pi, or pi to either side of the middle one: whatever the damping,
 its size is known between two speeds from those there, but for (width pi)^2/8 times the sum of the moduli. 1 - w has a
-closed form. So a resonance, however narrow, is not passed over. What goes with a power of the speed alone, q and the
-size of the kicks, is allowed for with the fourth (a leap of s'' gives a force that goes with the square, one of s'''
-with the third). Near critical damping and beyond there is no resonance, and all follows from how h fades.
+closed form. So a resonance, however narrow, is not passed over. Where a turn leaves little of a kick, the sum is over
+all kicks, faded: |d2/db2 exp(lambda t)| = t^2 exp(-at), each kick at its own age t. What goes with a power of the speed
+alone, q and the size of the kicks, is allowed for with the fourth (a leap of s'' gives a force that goes with the
+square, one of s''' with the third). Near critical damping and beyond there is no resonance, and all follows from how h
+fades.
 """
 
 from __future__ import annotations
@@ -40,9 +42,15 @@ _EACH = 50  # places that a stretch costs to solve
 _STEP = 0.25  # radians of free motion between samples
 _POWER = 4.0  # of the speed, with which kicks grow at most
 _PART = 8.0  # radians of free motion in a stretch that is not slow, at most: its kicks' own phase
+_WINDOW = 2.0 / PARTS  # half widths of a stretch
 _GRID = np.linspace(-1.0, 1.0, PARTS + 1)
 _ON_GRID = polynomials(_GRID)
+_AGES = np.linspace(0.0, 2.0, 9)  # half widths of a stretch, between which ages are bounded
 _BLUNT = 0.9  # damping ratio from which a free motion is bounded as one that does not swing
+_SUMS, _APART = (
+    np.where(orders % 2.0, np.inf, orders) for orders in (ORDERS[:, None] + ORDERS, ORDERS[:, None] - ORDERS)
+)
+_SQUARED = 1.0 / (1.0 - _SUMS**2) + 1.0 / (1.0 - _APART**2)  # integrals of the products of two Chebyshev polynomials
 _CURVED = ORDERS**2 * (ORDERS**2 - 1.0) / 3.0  # greatest second derivative of each Chebyshev polynomial
 
 
@@ -52,7 +60,7 @@ class Look:
     def __init__(self, train: Train, drive: Drive, rpm: float, work: Work) -> None:
         self.train, self.rpm, self.work = train, rpm, work
         self._running = running = train.at(rpm)
-        self.found = response = running.response(drive)
+        self.response = response = running.response(drive)
         work.take(_EACH * len(response))
         self.oscillator: Oscillator = response.oscillator
         self.b = train.ratio(rpm)  # natural frequency in turns of the shaft
@@ -60,28 +68,32 @@ class Look:
         self.swings = train.damping_ratio < _BLUNT
         self.fading = self.oscillator.fading if self.swings else 0.5 * self.oscillator.fading
         self.gain = self._gain()
-        q, rate, remainder = self._particular(running.forcing.series(response.drive))
+        q, rate, left = self._particular(running.forcing.series(response.drive))
         slow = response.slow[:, None]
         self._q, self._rate = np.where(slow, response.p, q), np.where(slow, response.v, rate)
         each = self._size(np.array([[0.0], [1.0]]))[0]
-        self.inner = np.where(response.slow, 0.0, 2.0 * response.half * remainder * each)
+        self.inner = np.where(response.slow, 0.0, left * each)
 
     def _particular(self, g: Array) -> tuple[Array, Array, Array]:
-        """Series of a q that a push g moves, those of q' (m, DEGREE + 1), and a bound (m,) of what q leaves of g.
+        """Series of a q that a push g moves, those of q' (m, DEGREE + 1), and a bound (m,) of all that q leaves of g.
 
-        g/r^2, or g/r^2 - 2 a g'/r^4 if that leaves less.
+        g/r^2, or g/r^2 - 2 a g'/r^4 if that leaves less: of the integral of its modulus over each stretch.
         """
-        a, square, half = self.oscillator.decay, self.oscillator.square, self.found.half[:, None]
+        a, square, half = self.oscillator.decay, self.oscillator.square, self.response.half[:, None]
         first = g @ DERIVATIVE.T / half
         second = first @ DERIVATIVE.T / half
         third = second @ DERIVATIVE.T / half
         drag = 2.0 * a / square
-        plain = np.abs(second / square + drag * first).sum(axis=1)
-        dragged = np.abs((1.0 - 2.0 * a * drag) / square * second - drag / square * third).sum(axis=1)
-        width = self.found.half
-        if float(plain @ width) <= float(dragged @ width):
+        plain = self._integral(second / square + drag * first)
+        dragged = self._integral((1.0 - 2.0 * a * drag) / square * second - drag / square * third)
+        if float(plain.sum()) <= float(dragged.sum()):
             return g / square, first / square, plain
         return (g - drag * first) / square, (first - drag * second) / square, dragged
+
+    def _integral(self, series: Array) -> Array:
+        """Bound (m,) of the integral of a series' modulus over each stretch, from that of its square (Schwarz)."""
+        integral: Array = self.response.half * np.sqrt(2.0 * np.maximum((series @ _SQUARED * series).sum(axis=1), 0.0))
+        return integral
 
     def _size(self, states: Array) -> Array:
         """Bound (n,) of |k z + c z'| over all later times, by `gain`, from states (2, n); it fades with `fading`."""
@@ -108,14 +120,13 @@ class Look:
         return abs(k + c * complex(-a, b)) if self.swings else k
 
     @cached_property
-    def kicks(self) -> Array:
-        """Sizes (m,) of the kicks at the starts of the stretches, with those on the stretches themselves."""
+    def leaps(self) -> Array:
+        """Sizes (m,) of the kicks at the starts of the stretches; those on the stretches themselves are `inner`."""
         start = np.stack([self._q @ AT_START, self._rate @ AT_START])
         end = np.roll(np.stack([self._q.sum(axis=1), self._rate.sum(axis=1)]), 1, axis=1)
         leap = end - start
-        leap[1] -= self.found.drive.jumps
-        bounds: Array = self._size(leap) + self.inner
-        return bounds
+        leap[1] -= self.response.drive.jumps
+        return self._size(leap)
 
     @cached_property
     def _series(self) -> Array:
@@ -126,7 +137,7 @@ class Look:
     @cached_property
     def inertial(self) -> float:
         """Greatest |force that belongs to q - force of the preload spring|, N or N m."""
-        series = self._series - self.train.rate * self.found.drive.position
+        series = self._series - self.train.rate * self.response.drive.position
         series[:, 0] -= self.train.preload
         return float(np.abs(series).sum(axis=1).max())
 
@@ -135,35 +146,50 @@ class Look:
         """Lower bound (m, 32) of the force that goes with q, on the windows of each stretch."""
         series = self._series
         at = series @ _ON_GRID
-        sag = np.abs(series) @ _CURVED * (_GRID[1] - _GRID[0]) ** 2 / 8.0
+        sag = _WINDOW**2 / 8.0 * np.abs(series) @ _CURVED
         lowest: Array = np.minimum(at[:, :-1], at[:, 1:]) - sag[:, None]
         return lowest
 
-    def summed(self, decay: float) -> tuple[Array, float]:
-        """Sums (m,) of the sizes of a turn's kicks, faded by `decay` per rad; and what a turn leaves of a kick of 1."""
-        kicks = self.kicks.tolist()
-        fade = np.exp(-decay * np.diff(self.found.drive.knots)).tolist()
-        left = math.exp(-decay * TURN)
-        size = 0.0
-        for kick, share in zip(kicks, fade, strict=True):
-            size = (size + kick) * share
-        sums = []
-        for kick, share in zip(kicks, fade, strict=True):
-            # the kick of a turn before goes out as this one comes in
-            size += kick * (1.0 - left)
-            sums.append(size + kick * left)
-            size *= share
-        return np.array(sums), left
+    def moments(self, decay: float) -> Array:
+        """Sums (3, m) of size * age^k, k = 0, 1, 2, of all kicks up to the start of each stretch, that one's included.
+
+        Their sizes fade by `decay` per rad. A kick on a stretch itself has the age of the stretch, and has not faded
+        before its end.
+        """
+        widths = np.diff(self.response.drive.knots).tolist()
+        kicks = list(zip(self.leaps.tolist(), self.inner.tolist(), widths, strict=True))
+        left, leaving = math.exp(-decay * TURN), -math.expm1(-decay * TURN) or 1e-300
+        size = first = second = 0.0
+        sums: list[tuple[float, float, float]] = []
+        for _ in range(2):  # the first turn begins from rest, the second from what all turns before it leave
+            sums.clear()
+            for leap, inner, width in kicks:
+                size += leap
+                sums.append((size, first, second))
+                share = math.exp(-decay * width)
+                second = share * (second + width * (2.0 * first + width * size)) + width**2 * inner
+                first = share * (first + width * size) + width * inner
+                size = share * size + inner
+            size /= leaving
+            first = (first + TURN * left * size) / leaving
+            second = (second + TURN * left * (2.0 * first + TURN * size)) / leaving
+        return np.array(sums).T
+
+    @cached_property
+    def ages(self) -> Array:
+        """Sums of `moments` (3, m), faded by `fading`."""
+        return self.moments(self.fading)
 
     @cached_property
     def turn(self) -> Array:
         """Sums (m,) of the sizes of the last turn's kicks, as they have faded at each stretch."""
-        return self.summed(self.fading)[0]
+        turn: Array = -math.expm1(-TURN * self.fading) * self.ages[0]
+        return turn
 
     @cached_property
     def states(self) -> Array:
         """States (z, z') (2, m) at the starts of all stretches."""
-        return self.found.starts(periodic(self._running, self.found), 0, len(self.found))
+        return self.response.starts(periodic(self._running, self.response), 0, len(self.response))
 
     @cached_property
     def rung(self) -> Array:
@@ -177,7 +203,7 @@ class Look:
         `rung` (m,) is the size of the free motion h at the start of each stretch, `driven` (m, 32) a lower bound of the
         force that belongs to q.
         """
-        fade = np.exp(-self.fading * 2.0 * self.found.half[:, None] * np.arange(PARTS) / PARTS)
+        fade = np.exp(-self.fading * 2.0 * self.response.half[:, None] * np.arange(PARTS) / PARTS)
         least: Array = driven - self.gain * (rung[:, None] * fade + self.inner[:, None])
         return least
 
@@ -187,13 +213,25 @@ class Look:
 
         It holds at this speed and at all lower ones.
         """
-        sizes = self.turn / max(-math.expm1(-TURN * self.fading), 1e-300)
-        return float(self.lower_bound(sizes, self.driven).min())
+        return float(self.lower_bound(self.ages[0], self.driven).min())
+
+    @cached_property
+    def _forces(self) -> Array:
+        """Contact force (m, 33), N or N m, at the ends of the windows of each stretch."""
+        return self._figure.together(self.states, _GRID, _ON_GRID)
 
     @cached_property
     def lowest(self) -> Array:
         """Lower bounds of the contact force at this speed, N or N m, on 32 windows of each stretch (m, 32)."""
-        return self.lower_bound(self.rung, self.driven)
+        response, oscillator = self.response, self.oscillator
+        free = self.states - response.ends[0].T
+        bend = -2.0 * oscillator.decay * free[1] - oscillator.square * free[0]
+        bends = np.stack([bend, -2.0 * oscillator.decay * bend - oscillator.square * free[1]])
+        sag = np.abs(self._figure.series) @ _CURVED + self.gain * self._size(bends) * response.half**2
+        lowest: Array = np.minimum(self._forces[:, :-1], self._forces[:, 1:]) - (_WINDOW**2 / 8.0 * sag)[:, None]
+        if response.slow.any():  # a window of theirs may hold many swings
+            lowest[response.slow] = self.lower_bound(self._size(free), self.driven)[response.slow]
+        return lowest
 
     @cached_property
     def least(self) -> float:
@@ -203,12 +241,9 @@ class Look:
 
     @cached_property
     def reached(self) -> float:
-        """Least contact force over the turn, N or N m; where that is below 0, a force below 0 that is reached."""
-        first = self._samples(np.array([int(np.argmin(self.lowest))]))
-        seen = float(self._figure.at(self.states, first).min())
-        if seen < 0.0:
-            return self._figure.least(self.states, first)
-        return self._figure.least(self.states, self._samples(np.flatnonzero(self.lowest.ravel() <= seen)))
+        """Least contact force over the turn, N or N m, which is reached."""
+        windows = np.flatnonzero(self.lowest.ravel() <= self._forces.min())
+        return self._figure.least(self.states, self._samples(windows))
 
     def _samples(self, windows: Indices) -> Samples:
         """Places on windows (n,), rising, of all stretches in their order, each with a swing to either side."""
@@ -217,7 +252,7 @@ class Look:
         begins = np.union1d(begins, np.flatnonzero(np.diff(stretch, prepend=-1)))
         ends = np.append(begins[1:], len(windows)) - 1
         owner = stretch[begins]
-        width = 2.0 * self.found.half[owner]
+        width = 2.0 * self.response.half[owner]
         step = np.minimum(width / PARTS, _STEP / self.oscillator.fast)
         low = np.maximum(width * part[begins] / PARTS - 4.0 * step, 0.0)
         high = np.minimum(width * (part[ends] + 1) / PARTS + 4.0 * step, width)
@@ -249,7 +284,7 @@ class Range:
     @property
     def holds(self) -> bool:
         """Whether contact is proved to hold at all speeds of the range, by the looks at both ends."""
-        if self.by_size > 0.0 or min(self.low.least, self.high.least) > self.between:
+        if min(self.low.least, self.high.least) > self.between or self.by_size > 0.0:
             return True
         return min(self.low.reached, self.high.reached) > self.between
 
@@ -274,7 +309,7 @@ class Range:
             return -math.inf
         sizes, driven = high.rung * high.oscillator.detuning, high.driven
         growth, power = self.width * (math.pi + _POWER / high.b), self.width * _POWER / high.b
-        if np.array_equal(low.found.slow, high.found.slow):
+        if np.array_equal(low.response.slow, high.response.slow):
             sizes = np.maximum(sizes, low.gain / high.gain * low.rung * low.oscillator.detuning)
             driven = np.minimum(driven, low.driven)
             growth, power = growth**2 / 8.0, power**2 / 4.0
@@ -286,14 +321,19 @@ class Range:
     def between(self) -> float:
         """Greatest drop, N or N m, of the force at any angle and speed between, below the lesser of both ends."""
         high = self.high
-        fading, power = high.fading, _POWER / high.b
-        # kicks of all turns; t^2 exp(-at/2) is at most (4/ea)^2, or lambda goes with b
-        sums, left = high.summed(0.5 * fading)
-        scale = (4.0 / fading if high.swings else 8.0 / high.b) / math.e + _PART / high.b + power
-        curved = float(sums.max()) / (1.0 - left) * scale**2 if left < 1.0 else math.inf
+        power = _POWER / high.b
         if high.swings:
-            # derivatives of exp(lambda t)/(1 - w)
-            share = math.exp(-TURN * fading) / self.detuning
+            # derivatives of exp(lambda t) by b, whose modulus is at most t exp(-at): each kick at its own age
+            fade = np.exp(-high.fading * high.response.half[:, None] * _AGES[:-1])
+            time = high.response.half[:, None] * _AGES[1:] + power
+            size, first, second = high.ages[:, :, None]
+            aged = fade * (second + time * (2.0 * first + time * size)) + high.inner[:, None] * time**2
+            # of a turn's kicks, by derivatives of exp(lambda t)/(1 - w)
+            share = math.exp(-TURN * high.fading) / self.detuning
             rate = (TURN + power) ** 2 * (1.0 + share) * (1.0 + 2.0 * share)
-            curved = min(curved, float(high.turn.max()) / self.detuning * rate)
+            curved = min(float(aged.max()), float((high.turn + high.inner).max()) / self.detuning * rate)
+        else:
+            # lambda goes with b, and t^2 exp(-gt/4) is at most (8/eg)^2
+            scale = 8.0 / (math.e * high.b) + _PART / high.b + power
+            curved = float((high.moments(0.5 * high.fading)[0] + high.inner).max()) * scale**2
         return self.width**2 / 8.0 * (high.gain * curved + 2.0 * power**2 * high.inertial)

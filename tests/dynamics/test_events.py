@@ -390,17 +390,43 @@ def test_no_dip_below_the_speed_at_which_float_begins_is_passed_over(ratio, zeta
     assert min(steady(train, drive, rpm).force.least for rpm in at) > 0.0
 
 
+def test_the_least_force_of_a_look_is_that_of_the_steady_state():
+    (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        train = stiff(10.0 ** rng.uniform(0.3, 2.0), 10.0 ** rng.uniform(-3.0, -0.1), preload=300.0)
+        rpm = rng.uniform(300.0, 900.0)
+        force, look = steady(train, drive, rpm).force, Look(train, drive, rpm, Work(10**6))
+        assert look.reached == pytest.approx(force.least, abs=1e-12 * force.greatest)
+        assert look.lowest.min() <= force.least + 1e-12 * force.greatest
+        assert look.lowest.min() >= force.least - 0.1 * force.greatest
+
+
+def test_ages_of_kicks_are_sums_over_all_turns():
+    (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
+    look = Look(stiff(12.3, 0.05, preload=300.0), drive, 500.0, Work(10**6))
+    knots, fading = look.response.drive.knots, look.fading
+    for i in (0, 3, len(look.response) - 1):
+        sums = np.zeros(3)
+        for turn in range(60):
+            since, ends = knots[i] - knots[:-1] + turn * TURN, knots[i] - knots[1:] + turn * TURN
+            for size, decay in ((look.leaps, since), (look.inner, ends)):
+                past = decay > -1e-12
+                sums += [(size * np.exp(-fading * decay) * since**k)[past].sum() for k in range(3)]
+        assert look.ages[:, i] == pytest.approx(sums, rel=1e-9)
+
+
 @pytest.mark.slow
 def test_what_is_said_of_a_range_holds_inside_it():
     """Force at speeds between two looks, at all resonances and damping: never below the bound from both ends."""
     (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
     rng = np.random.default_rng(5)
     tight = 0.0
-    for _ in range(30):
+    for _ in range(40):
         train = stiff(10.0 ** rng.uniform(0.2, 4.0), 10.0 ** rng.uniform(-4.0, 0.6), preload=300.0)
         rpm = rng.uniform(200.0, 1200.0)
         b = train.ratio(rpm)
-        other = b / (b - min(10.0 ** rng.uniform(-3.0, 0.0), 0.1 * b)) * rpm
+        other = b / (b - min(10.0 ** rng.uniform(-3.0, 1.0), 0.3 * b)) * rpm
         part = Range(*(Look(train, drive, speed, Work(10**9)) for speed in (rpm, other)))
         inside = np.concatenate([rng.uniform(rpm, other, 12), np.linspace(rpm, other, 4)])
         found = [steady(train, drive, speed).force for speed in inside]
@@ -447,6 +473,17 @@ def test_ordinary_and_stiff_trains_are_settled_within_the_budget(ratio, zeta):
     if found.rpm is not None:
         assert abs(steady(train, drive, found.rpm).force.least) < 1e-6 * train.preload
         assert steady(train, drive, 1.0001 * found.rpm).force.least < 0.0
+
+
+@pytest.mark.parametrize(("ratio", "zeta", "most"), [(60.0, 0.05, 50_000), (25.0, 0.1, 25_000), (55.0, 0.95, 45_000)])
+def test_a_damped_train_takes_few_places(ratio, zeta, most):
+    """A bound with each kick's own age, and of the integral of what is left over, proves wide ranges at once."""
+    (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
+    train = stiff(ratio, zeta, preload=150.0)
+    found = float_speed(train, drive)
+    assert found.places < most
+    beside = [steady(train, drive, found.rpm * (1.0 + share)).force.least for share in (-2e-11, 2e-11)]
+    assert beside[0] > 0.0 > beside[1]
 
 
 @pytest.mark.parametrize(
