@@ -22,11 +22,11 @@ INSIDE = np.array([0.07, 0.25, 0.43, 0.6, 0.78, 0.94])  # of a stretch: places a
 def dwells(lift: Lift) -> Iterator[tuple[float, float]]:
     """Dwells of a lift, over which p is constant: (from, to), rad, to > from."""
     ends = lift.breaks if len(lift.breaks) else np.zeros(1)
-    widths = np.diff(ends, append=ends[0] + TURN)
-    for begin, width, steady in zip(ends, widths, lift.steady, strict=True):
-        p, slope = lift.derivatives(begin + width * np.array([0.25, 0.6]), 1)
-        if steady and (np.abs(slope) <= 1e-12 * np.abs(p)).all():
-            yield float(begin), float(begin + width)
+    begin, width = ends[lift.steady], np.diff(ends, append=ends[0] + TURN)[lift.steady]
+    places = begin + width * np.array([[0.25], [0.6]])
+    p, slope = lift.derivatives(places.ravel(), 1).reshape(2, *places.shape)
+    still = (np.abs(slope) <= 1e-12 * np.abs(p)).all(axis=0)
+    return zip(begin[still].tolist(), (begin + width)[still].tolist(), strict=True)
 
 
 def dwells_of_law(law: Piecewise) -> Iterator[tuple[float, float]]:

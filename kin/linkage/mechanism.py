@@ -25,7 +25,7 @@ from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet
 from kin.numeric.jet import derivatives_by
 from kin.numeric.longest_window import Dwell, dwells
-from kin.numeric.monotone import between, cells, pieces
+from kin.numeric.monotone import between, cells, extremes
 from kin.numeric.records import dataclass, field
 from kin.numeric.taylor import factorials
 
@@ -138,8 +138,7 @@ class Mechanism:
         if not self.breadth > 0:
             raise IntentError(f"no frame has a breadth of {self.breadth:.6g} mm: it must be above 0", "p")
         object.__setattr__(self, "chain", Chain(self.linkage, self.breadth, self.dyads))
-        self._demand_constant_breadth()
-        self._demand_shaft_within()
+        self._demand_held()
         _ = self.about
 
     @property
@@ -342,30 +341,29 @@ class Mechanism:
                 what = "the linkage is so close to binding that the rate of the shaft is lost in rounding"
             raise PlaceError(what, place, np.zeros(0, dtype=np.intp))
 
-    def _demand_constant_breadth(self) -> None:
-        law, places = self.lift.law, between(0.0, math.pi, [*self.lift.breaks, *(self.lift.breaks - math.pi)])
-        off = pieces(
-            cells(
-                lambda x: (law.derivatives(x, 0) + law.derivatives(x + math.pi, 0)) - self.breadth,
-                places,
-                0.01 * _ROUNDED * self.breadth,
-            )
-        )
-        miss, at = max(off.greatest(), off.least(), key=lambda extreme: abs(extreme[0]))
-        if not abs(miss) <= _ROUNDED * self.breadth:
+    def _demand_held(self) -> None:
+        """Raise IntentError unless the frame touches the cam all round, and the shaft is within it."""
+        law, size = self.lift.law, self.breadth
+
+        def lifts(theta: Array) -> Array:
+            near, far = np.split(law.derivatives(np.concatenate([theta, theta + math.pi]), 0)[0], 2)
+            return np.stack([near, far, near + far - size])
+
+        places = between(0.0, math.pi, [*self.lift.breaks, *(self.lift.breaks - math.pi)])
+        within, breadth = 1e-3 * _EDGE * size, 0.01 * _ROUNDED * size
+        curves = cells(lifts, places, np.array([within, within, breadth]))
+        near, far, off = (extremes(curves, row) for row in range(3))
+        miss, at = max(*off[::-1], key=lambda extreme: abs(extreme[0]))
+        if not abs(miss) <= _ROUNDED * size:
             degrees = math.degrees(at) % 360
             raise IntentError(
-                f"a frame holds cams of constant breadth alone: p(t) + p(t + 180 deg) is {self.breadth + miss:.9g} mm "
-                f"at {degrees:.6g} degrees, the breadth of the frame {self.breadth:.9g} mm",
+                f"a frame holds cams of constant breadth alone: p(t) + p(t + 180 deg) is {size + miss:.9g} mm "
+                f"at {degrees:.6g} degrees, the breadth of the frame {size:.9g} mm",
                 "p",
                 degrees,
             )
-
-    def _demand_shaft_within(self) -> None:
-        places = between(0.0, TURN, self.lift.breaks)
-        curve = pieces(cells(lambda x: self.lift.derivatives(x, 0), places, 1e-3 * _EDGE * self.breadth))
-        least, at = curve.least()
-        if least < -_EDGE * self.breadth:
+        least, at = min(near[0], (far[0][0], far[0][1] + math.pi))
+        if least < -_EDGE * size:
             raise OutsideError(-least, math.degrees(at) % 360)
 
 

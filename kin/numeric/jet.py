@@ -277,10 +277,13 @@ Series = TypeVar("Series", Jet, BallJet)
 def derivatives_by(f: Series, parameter: Series) -> list[Series]:
     """F and its derivatives by another function of the same variable: series of f's order, one less, and so on to 0."""
     rows = [f]
-    if f.order:
-        rate = parameter.derivative()
+    if not f.order:
+        return rows
+    rate = parameter.derivative()
+    if isinstance(rate, BallJet):
+        rate = rate**-1  # balls are divided by their inverse, here the same each time
     while f.order:
-        f = f.derivative() / rate
+        f = f.derivative() * rate if isinstance(rate, BallJet) else f.derivative() / rate
         rate = rate.lower()
         rows.append(f)
     return rows
