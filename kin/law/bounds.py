@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _CELLS = 32  # a stretch is bounded in so many parts first
 _PARTS = 16  # and likewise for a cubic that is to stand for it
 _HALVINGS = 40
+_AT_ONCE = 3  # halvings of a cell that is known to need as many
 _MOST_CELLS = 20000  # open at a time; more than a few mean that the answer is no
 
 
@@ -133,17 +134,20 @@ def cubic_cells(law: Piecewise, breaks: Array, near: float) -> Array:
     low, high, settled = parts[:-1].ravel(), parts[1:].ravel(), [ends[:1]]
     for _ in range(_HALVINGS):
         mid, rad = law.enclosure(low, high, 4)
-        with np.errstate(invalid="ignore", over="ignore"):
+        with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
             strays = (high - low) ** 4 / 384.0 * (np.abs(mid[4]) + rad[4])
             open_ = ~((strays <= near) | (rad[0] <= near))
+            # as the fourth power of the width: so many halvings will do, where they are few
+            halvings = np.where(strays < math.inf, np.clip(np.ceil(np.log2(strays / near) / 4.0), 1, _AT_ONCE), 1)
         settled.append(high[~open_])
+        halvings = halvings[open_]
         low, high = low[open_], high[open_]
         if not len(low):
             break
         if len(low) > _MOST_CELLS:
             raise UnsettledError(f"the intended motion is too rough to be followed to {near:.3g}")
-        middle = 0.5 * (low + high)
-        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+        parted = [np.linspace(low[halvings == k], high[halvings == k], 2**k + 1) for k in range(1, _AT_ONCE + 1)]
+        low, high = (np.concatenate([parts[ends].ravel() for parts in parted]) for ends in (slice(-1), slice(1, None)))
     else:
         raise UnsettledError(f"the intended motion cannot be followed to {near:.3g} about {low[0]:.6g} rad")
     cells: Array = np.sort(np.concatenate(settled))

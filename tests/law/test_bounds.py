@@ -1,13 +1,15 @@
 """Proved bounds over stretches: what holds is proved, what does not is placed."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from kin.law.bounds import highest, unbounded, undecided
+from kin.law.bounds import cubic_cells, highest, unbounded, undecided
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Affine, Constant
+from kin.numeric.angles import TURN
 from kin.numeric.elementary import sin
 
 
@@ -65,3 +67,17 @@ def test_highest_is_found_by_weight_and_side():
     assert highest(law, [1.0, 1.0], 1) == (2.0, 3.0)
     falling = Piecewise(np.array([0.0, 1.0, 2.0]), (Affine(Constant(1.0)), Constant(0.5)))
     assert highest(falling, [1.0, 4.0], 0)[1] == 2.0
+
+
+def test_cells_of_a_cubic_are_halved_several_times_at_once():
+    asked = []
+
+    def enclosure(low, _high, order):
+        asked.append(len(low))
+        assert order == 4
+        return np.zeros((5, len(low))), np.ones((5, len(low)))
+
+    # of width h a cubic strays by h^4/384: 256 cells to the turn by 1e-9
+    cells = cubic_cells(SimpleNamespace(enclosure=enclosure), np.zeros(0), 1e-9)
+    assert cells == pytest.approx(np.linspace(0.0, TURN, 257), abs=1e-12)
+    assert asked == [16, 128, 256]
