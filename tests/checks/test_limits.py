@@ -16,7 +16,8 @@ from support.cases import examples, few
 from support.starters import OF_CAMS
 from support.sweepers import evaluate  # needs: sweep
 
-from camgeo.capabilities.sweep.figures import REASONS, figure_names  # needs: sweep
+from camgeo.capabilities.sweep.cams import REASONS  # needs: sweep
+from camgeo.capabilities.sweep.figures import figure_names  # needs: sweep
 from camgeo.checks.declared import CHECKS, LIMIT, declarations
 from camgeo.cli.main import main
 from camgeo.measures.figures import design_figures

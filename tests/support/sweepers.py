@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.sweep.chunks import Job
 from camgeo.capabilities.sweep.figures import Evaluator
 from camgeo.capabilities.sweep.gather import REASON
-from camgeo.capabilities.sweep.job import Job
-from camgeo.capabilities.sweep.keys import varied_fields
-from camgeo.capabilities.sweep.plan import Axis, Plan, steps
+from camgeo.capabilities.sweep.keys import Axis, varied_fields
+from camgeo.capabilities.sweep.plan import Plan
 from camgeo.capabilities.sweep.search import Procedures
 from camgeo.capabilities.sweep.task import Task
 from camgeo.recipe.loading import read
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 GRID = Plan(
-    (Axis("cam.shaft[0]", 10.0, 20.0, steps(10.0, 20.0, 25)), Axis("linkage.rocker", 95.0, 110.0, steps(95, 110, 33))),
+    (Axis("cam.shaft[0]", 10.0, 20.0, steps=25), Axis("linkage.rocker", 95.0, 110.0, steps=33)),
     "grid",
     825,
 )

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.sweep.ends import least
 from camgeo.capabilities.sweep.linkages import Support, angles
+from camgeo.capabilities.sweep.windows import least
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
 from kin.numeric.records import dataclass, replace
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     Codes = NDArray[np.uint8]
 
+# why a design has no figures, or not all
+REASONS = ("", "impossible", "undercut", "shaft-outside", "binds", "reverses", "limits")
 FINE, IMPOSSIBLE, UNDERCUT, OUTSIDE, BINDS, REVERSES, BROKEN = range(7)
 EDGE = 1e-12  # of the breadth: a shaft on the cam's edge may lie outside by so much, for rounding
 

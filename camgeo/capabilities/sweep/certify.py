@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.sweep.figures import REASONS
+from camgeo.capabilities.sweep.cams import REASONS
 from camgeo.capabilities.sweep.gather import Certificate, Nearest
 from camgeo.capabilities.sweep.screen import estimates
 from kin.numeric.records import replace
@@ -128,16 +128,13 @@ def _nearest(task: Task, selection: Selection, exact_designs: Mapping[int, Exact
 
     It is the nearest of the estimates where no exact design has figures.
     """
-    nearest, least = selection.nearest, np.inf
-    for place, design in exact_designs.items():
-        figures = {name: np.array([value]) for name, value in design.figures.items()}
-        misses = [float(task.ranking.miss(limit, figures)[0]) for limit in task.ranking.limits if figures]
-        if misses and max(misses) < least:
-            least = max(misses)
-            worst = task.ranking.limits[misses.index(least)]
-            index, values = int(selection.index[place]), selection.values[place]
-            nearest = Nearest(index, values, worst, design.figures[worst.figure])
-    return nearest
+    places = [place for place, design in exact_designs.items() if design.figures]
+    if not places or not task.ranking.limits:
+        return selection.nearest
+    figures = {name: np.array([exact_designs[place].figures[name] for place in places]) for name in selection.figures}
+    row, worst, _ = task.ranking.nearest(figures, np.ones(len(places), dtype=np.bool_))
+    place = places[row]
+    return Nearest(int(selection.index[place]), selection.values[place], worst, float(figures[worst.figure][row]))
 
 
 def _reorder(

@@ -14,12 +14,11 @@ from camgeo.files.errors import install
 if TYPE_CHECKING:
     import argparse
 
-    from camgeo.capabilities.sweep.run import Listener
-    from camgeo.capabilities.sweep.search import Outcome, Procedures
+    from camgeo.capabilities.sweep.chunks import Listener
+    from camgeo.capabilities.sweep.search import Outcome
     from camgeo.capabilities.sweep.task import Task
     from camgeo.checks.remedies import Entry
 
-EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
 _EVERY = 10.0  # seconds between lines of progress where there is no terminal
 _LISTED = 5  # best designs that -v lists
 
@@ -72,9 +71,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _search(task: Task, arguments: argparse.Namespace) -> tuple[Outcome | None, str, int]:
     """Outcome or None, a message of what went wrong, and the exit status."""
-    from camgeo.capabilities.sweep.engines import EngineError
-    from camgeo.capabilities.sweep.job import VersionsError
-    from camgeo.capabilities.sweep.run import Engine
+    from camgeo.capabilities.sweep.chunks import EngineError
+    from camgeo.capabilities.sweep.engines import Engine
     from camgeo.capabilities.sweep.search import search
     from camgeo.common.errors import SurroundingsError
 
@@ -83,13 +81,12 @@ def _search(task: Task, arguments: argparse.Namespace) -> tuple[Outcome | None, 
     resume = "what was computed is kept; the same command continues from there"
     try:
         out, listener = Path(arguments.out), _progress_listener(progress)
-        outcome = search(task, out, engine, procedures(), fresh=arguments.fresh, listener=listener)
+        outcome = search(task, out, engine, fresh=arguments.fresh, listener=listener)
     except KeyboardInterrupt:
         return None, f"interrupted; {resume}", INTERRUPTED
     except ModuleNotFoundError as error:
-        extra = EXTRAS.get(error.name or "", "sweep")
-        return None, f"the package {error.name} is missing: {install(extra)}", SURROUNDINGS
-    except (EngineError, VersionsError) as error:
+        return None, missing_package(error), SURROUNDINGS
+    except EngineError as error:
         return None, f"{error}; {resume}", SURROUNDINGS
     except SurroundingsError as error:
         return None, str(error), SURROUNDINGS
@@ -101,14 +98,9 @@ def _search(task: Task, arguments: argparse.Namespace) -> tuple[Outcome | None, 
     return outcome, "", OK if outcome.report["ok"] else FAILED
 
 
-def procedures() -> Procedures:
-    """Functions that compute, measure and polish designs of a recipe."""
-    from camgeo.capabilities.sweep.figures import REASONS, compute_figures
-    from camgeo.capabilities.sweep.refine import polish
-    from camgeo.capabilities.sweep.search import Procedures
-    from camgeo.capabilities.sweep.task import Task
-
-    return Procedures(compute_figures, Task.measure, polish, REASONS)
+def missing_package(error: ModuleNotFoundError) -> str:
+    """Message that names a missing package, and the command that installs it."""
+    return f"the package {error.name} is missing: {install('dask' if error.name == 'distributed' else 'sweep')}"
 
 
 def _complain(task: Task, text: str) -> None:

@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import time
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-from camgeo.capabilities.sweep.job import VersionsError, result, versions
+from camgeo.capabilities.sweep.chunks import EngineError, VersionsError, result, versions
 from camgeo.common import workers
-from kin.numeric.errors import CamgeoError
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 
-    from camgeo.capabilities.sweep.job import Job
+    from camgeo.capabilities.sweep.chunks import Job
 
 Results: TypeAlias = "Generator[tuple[int, bytes], None, None]"
 
@@ -32,8 +33,30 @@ _LOGGERS = frozenset({"distributed", "tornado", "asyncio"})  # which print error
 _MOST_TIMEOUTS = 6  # in a row, until the scheduler's first worker comes
 
 
-class EngineError(CamgeoError):
-    """Workers or a scheduler are missing or lost, so that chunks cannot be computed; those written stay."""
+@dataclass(frozen=True)
+class Engine:
+    """Who computes chunks: the scheduler at an address, else at most `jobs` processes, by default one a core."""
+
+    jobs: int | None = None
+    scheduler: str | None = None
+
+    def results(self, job: Job, numbers: Sequence[int]) -> Results:
+        """Numbers of chunks and bytes of their files, as they are done."""
+        if self.scheduler is not None:
+            return dask(job, numbers, self.scheduler)
+        return spread(partial(result, job, key=job.key), numbers, self.processes)
+
+    def __str__(self) -> str:
+        if self.scheduler is not None:
+            return f"dask at {self.scheduler}"
+        if self.jobs is None:
+            return "as many processes as pay"
+        return "1 process" if self.jobs == 1 else f"up to {self.jobs} processes"
+
+    @property
+    def processes(self) -> int:
+        """Greatest number of processes on this machine, also for the work after the chunks."""
+        return self.jobs or workers.available()
 
 
 def in_processes(function: Callable[[T], R], items: Iterable[T], count: int) -> Generator[tuple[T, R], None, None]:

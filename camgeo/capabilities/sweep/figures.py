@@ -16,11 +16,19 @@ import numpy as np
 
 from camgeo.capabilities.sweep import single_designs
 from camgeo.capabilities.sweep.cams import BINDS, BROKEN, FINE, IMPOSSIBLE, REVERSES, CamSampler
-from camgeo.capabilities.sweep.ends import Ends, cell_bounds, greatest, least, lengths, window_ends
 from camgeo.capabilities.sweep.gather import REASON
-from camgeo.capabilities.sweep.keys import Sweep, sweep_figures, varied_fields
+from camgeo.capabilities.sweep.keys import SAMPLES, Sweep, sweep_figures, varied_fields
 from camgeo.capabilities.sweep.linkages import Lengths, angles, loop_class
-from camgeo.capabilities.sweep.windows import Samples, longest_windows
+from camgeo.capabilities.sweep.windows import (
+    Ends,
+    Samples,
+    cell_bounds,
+    greatest,
+    least,
+    lengths,
+    longest_windows,
+    window_ends,
+)
 from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, RADIUS, SIZE
 from camgeo.recipe.linkage import output_slides
 from camgeo.schema.errors import RecipeErrors
@@ -42,10 +50,7 @@ if TYPE_CHECKING:
 
 Motion: TypeAlias = "Loop | MotionRows"
 
-# why a design has no figures, or not all, by the codes FINE to BROKEN
-REASONS = ("", "impossible", "undercut", "shaft-outside", "binds", "reverses", "limits")
 BLOCK = 11_520  # samples of a block: a dozen arrays of them stay in a cache of 1 MB
-_SAMPLES = 360
 DWELLS = (DWELL, "dwell-relative")
 _HEAP = 3 << 20  # numbers, 24 MB
 
@@ -53,7 +58,7 @@ _HEAP = 3 << 20  # numbers, 24 MB
 class FigureTable(NamedTuple):
     """Figures by name, (m,) each, in mm and degrees, rates by radian of shaft angle, and their reasons.
 
-    `reason` (m,) is an index into REASONS.
+    `reason` (m,) is an index into `cams.REASONS`.
     """
 
     figures: dict[str, Array]
@@ -136,7 +141,7 @@ class Evaluator:
         limits = sweep.limits if sweep else ()
         possible = estimable_figures if screened and recipe.linkage is None else figure_names
         names = tuple(dict.fromkeys((*(figures or possible(recipe)), *(limit.figure for limit in limits))))
-        count = samples or (sweep.angles if sweep else _SAMPLES)
+        count = samples or (sweep.angles if sweep else SAMPLES)
         words = single_designs.word_lists(recipe)
         recipe.text_with({path: 1.0 for path in paths if path not in words})  # raises where no number stands
         return Evaluator(recipe, tuple(paths), names, limits, -(-count // 4) * 4, screened)
@@ -389,7 +394,7 @@ def _acute_angle(sine: Array | None, count: int, smooth: Mask) -> Array:
 
 
 def compute_figures(scene: Scene, values: Array) -> dict[str, Array]:
-    """Figures (m,) of designs with the values (m, axes) of the scene's sweep; under REASON an index into REASONS."""
+    """Figures (m,) of designs with the values (m, axes) of a scene's sweep; under REASON an index into `REASONS`."""
     table = _evaluator(scene).evaluate(values)
     return {**table.figures, REASON: table.reason.astype(np.float64)}
 

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from camgeo.capabilities.sweep.plan import Axis, Plan
+    from camgeo.capabilities.sweep.keys import Axis
+    from camgeo.capabilities.sweep.plan import Plan
     from camgeo.recipe.limits import Limit
     from kin.numeric.arrays import Array, Mask
 
@@ -47,13 +48,20 @@ class Ranking:
         return (figures[limit.figure] >= least) & (figures[limit.figure] <= most)
 
     def miss(self, limit: Limit, figures: Mapping[str, Array]) -> Array:
-        """Excess (m,) of figures outside a limit, as a share of the bound that they break; 0 for figures within."""
+        """Excess (m,) of figures beyond a limit as a share of its bound, but where that is 0; 0 for figures within."""
         figure = figures[limit.figure]
         excess = np.zeros_like(figure)
         for bound, sign in ((limit.at_least, -1.0), (limit.at_most, 1.0)):
             if bound is not None:
                 excess = np.fmax(excess, sign * (figure - bound) / (abs(bound) or 1.0))
         return excess
+
+    def nearest(self, figures: Mapping[str, Array], rows: Mask) -> tuple[int, Limit, float]:
+        """Row, of those of a mask (m,), that misses the limits by least; the limit it misses most; that miss."""
+        misses = np.array([self.miss(limit, figures) for limit in self.limits])
+        row = int(np.argmin(np.where(rows, misses.max(axis=0), np.inf)))
+        worst = int(np.argmax(misses[:, row]))
+        return row, self.limits[worst], float(misses[worst, row])
 
     def score(self, figures: Mapping[str, Array]) -> Array:
         """Figure of the ranking (m,), with the sign by which more is better."""
@@ -162,7 +170,7 @@ def gather(
         table = np.stack([figures[name] for name in names], axis=1)
         last = first + len(table)
         values = plan.values(first, last)
-        turns = ~np.isnan(table).any(axis=1)
+        turns: Mask = np.logical_not(np.isnan(table).any(axis=1))
         kept_here, listed = turns.copy(), turns.copy()
         for limit in ranking.limits:
             within = ranking.held(limit, figures)
@@ -170,12 +178,10 @@ def gather(
             kept_here &= within
             listed &= within if slack is None else ranking.held(limit, figures, slack(limit))
         if not (kept or kept_here.any()) and turns.any():
-            misses = np.array([ranking.miss(limit, figures) for limit in ranking.limits])
-            near = int(np.argmin(np.where(turns, misses.max(axis=0), np.inf)))
-            if misses[:, near].max() < missed:
-                worst = ranking.limits[int(np.argmax(misses[:, near]))]
-                missed = float(misses[:, near].max())
-                nearest = Nearest(first + near, values[near], worst, float(figures[worst.figure][near]))
+            row, worst, miss = ranking.nearest(figures, turns)
+            if miss < missed:
+                missed = miss
+                nearest = Nearest(first + row, values[row], worst, float(figures[worst.figure][row]))
         stuck += int((~turns).sum())
         if REASON in figures:
             reasons.update(figures[REASON][~turns].astype(int).tolist())

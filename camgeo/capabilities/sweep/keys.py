@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.recipe.figures import FIGURES, Figure
@@ -30,18 +31,41 @@ _VARIABLE = ("cam.", "linkage.")  # sections that figures depend on
 
 
 @dataclass(frozen=True)
-class VariedField:
-    """One number or word that a sweep varies, by its path in the recipe; all values in the recipe's units.
+class Axis:
+    """Varied field of a sweep, by its path in the recipe; all values in the recipe's units.
 
-    It takes the listed `values` or `words`; without any it runs from `low` to `high`, in a grid in `steps` values.
+    It takes the `listed` values or `words`; without any it runs from `low` to `high`, in a grid in `steps` values.
     """
 
     path: str
-    low: float = 0.0
-    high: float = 0.0
-    steps: int | None = None
-    values: tuple[float, ...] = ()
+    low: float
+    high: float
+    listed: tuple[float, ...] = ()
     words: tuple[str, ...] = ()
+    steps: int | None = None
+
+    @cached_property
+    def values(self) -> tuple[float, ...]:
+        """Values that it takes, both ends exact; of words their indices; none of a range without steps."""
+        import numpy as np
+
+        if self.words:
+            return tuple(map(float, range(len(self.words))))
+        return self.listed or tuple(np.linspace(self.low, self.high, self.steps or 0).tolist())
+
+    @property
+    def is_range(self) -> bool:
+        """Whether the values between the ends are allowed too."""
+        return not (self.listed or self.words)
+
+    @property
+    def range(self) -> float:
+        """Difference of the ends, as the unit of distances between values; 1 for words, which so lie far apart."""
+        return 1.0 if self.words else abs(self.high - self.low)
+
+    def written(self, value: float) -> float | str:
+        """A value as the recipe writes it, a word by its index."""
+        return self.words[int(value)] if self.words else value
 
 
 @dataclass(frozen=True)
@@ -52,7 +76,7 @@ class Sweep:
     the number of angles at which a design is sampled, `refine` whether the best are polished.
     """
 
-    vary: tuple[VariedField, ...]
+    vary: tuple[Axis, ...]
     method: Literal["grid", "random", "sobol"]
     count: int | None
     seed: int
@@ -63,7 +87,7 @@ class Sweep:
     refine: bool
 
 
-def varied_fields(recipe: Recipe) -> tuple[VariedField, ...]:
+def varied_fields(recipe: Recipe) -> tuple[Axis, ...]:
     """Fields that the sweep of a recipe varies; none without a sweep."""
     sweep = recipe.of(Sweep)
     return () if sweep is None else sweep.vary
@@ -314,7 +338,7 @@ def build_sweep(values: Values) -> Sweep | None:
     if sweep is None:
         return None
     return Sweep(
-        vary=tuple(map(_varied_field, sweep["vary"])),
+        vary=tuple(map(_axis, sweep["vary"])),
         method=sweep.get("method", "grid"),
         count=sweep.get("count"),
         seed=sweep.get("seed", 0),
@@ -326,6 +350,9 @@ def build_sweep(values: Values) -> Sweep | None:
     )
 
 
-def _varied_field(axis: Values) -> VariedField:
-    lists = {name: axis[name] for name in ("values", "words") if name in axis}
-    return VariedField(axis["path"], axis.get("from", 0.0), axis.get("to", 0.0), axis.get("steps"), **lists)
+def _axis(axis: Values) -> Axis:
+    if words := axis.get("words"):
+        return Axis(axis["path"], 0.0, len(words) - 1.0, words=words)
+    if listed := axis.get("values"):
+        return Axis(axis["path"], min(listed), max(listed), listed)
+    return Axis(axis["path"], axis["from"], axis["to"], steps=axis.get("steps"))

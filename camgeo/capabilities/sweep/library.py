@@ -109,13 +109,11 @@ def search(
     RecipeErrors where the recipe has no sweep, or one that cannot be run, SurroundingsError where the disk, a package
     or a scheduler is not what it should be, CallError for a number of processes below 1.
     """
-    from camgeo.capabilities.sweep.command import EXTRAS, procedures
-    from camgeo.capabilities.sweep.engines import EngineError
-    from camgeo.capabilities.sweep.job import VersionsError
-    from camgeo.capabilities.sweep.run import Engine
+    from camgeo.capabilities.sweep.chunks import EngineError
+    from camgeo.capabilities.sweep.command import missing_package
+    from camgeo.capabilities.sweep.engines import Engine
     from camgeo.capabilities.sweep.search import search as run_search
     from camgeo.capabilities.sweep.task import Task
-    from camgeo.files.errors import install
 
     recipe, folder = recipe_of(recipe), path_of("out", out)
     demand_callable("progress", progress)
@@ -131,12 +129,10 @@ def search(
 
     try:
         task = Task.from_recipe(recipe)
-        outcome = run_search(task, folder, Engine(jobs, scheduler), procedures(), fresh=fresh, listener=listener)
+        outcome = run_search(task, folder, Engine(jobs, scheduler), fresh=fresh, listener=listener)
     except ModuleNotFoundError as error:
-        raise SurroundingsError(
-            f"the package {error.name} is missing: {install(EXTRAS.get(error.name or '', 'sweep'))}", folder
-        ) from error
-    except (EngineError, VersionsError) as error:
+        raise SurroundingsError(missing_package(error), folder) from error
+    except EngineError as error:
         raise SurroundingsError(str(error), folder) from error
     except OSError as error:
         raise SurroundingsError(f"cannot be written: {error.strerror or error}", folder) from error

@@ -1,7 +1,14 @@
-"""The files of a sweep as bytes by name, and those left out, with the reason."""
+"""The files of a sweep as bytes by name, and those left out, with the reason.
+
+They are the table of the designs kept, best first, as CSV and as Parquet; the best designs as complete recipes;
+pictures of the map and of the best designs' output over the shaft angle; and the report.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
+import json
 import math
 from typing import TYPE_CHECKING
 
@@ -9,30 +16,198 @@ import numpy as np
 
 from camgeo.capabilities.sweep.gather import MOST_ROWS
 from camgeo.capabilities.sweep.keys import sweep_figures
-from camgeo.capabilities.sweep.pictures import draw_best, draw_map
-from camgeo.capabilities.sweep.recipes import curve_of, recipe_text
-from camgeo.capabilities.sweep.table import as_csv, as_parquet, columns, with_polished
+from camgeo.capabilities.sweep.pictures import Curve, draw_best, draw_map
+from camgeo.capabilities.sweep.single_designs import mechanism_in, text_with
 from camgeo.files.errors import install
 from camgeo.recipe.figures import FIGURES, OF_DWELL
 from camgeo.recipe.loading import read
 from camgeo.report.document import as_json, file_entry
+from camgeo.schema.change import set_value
+from camgeo.schema.edit import remove_section
+from camgeo.schema.scalars import MOST_TEXT
+from camgeo.schema.yaml_source import Mapping, Source, scalars
 from camgeo.version import __version__
-from kin.numeric.records import dataclass, field
+from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.capabilities.sweep.gather import Certificate, Nearest, Selection
-    from camgeo.capabilities.sweep.plan import Axis
-    from camgeo.capabilities.sweep.recipes import Best
+    from numpy.typing import NDArray
+
+    from camgeo.capabilities.sweep.gather import Certificate, Nearest, Ranking, Selection
+    from camgeo.capabilities.sweep.keys import Axis
+    from camgeo.capabilities.sweep.plan import Plan
     from camgeo.capabilities.sweep.task import Task, Unit
     from camgeo.checks.remedies import Entry
+    from camgeo.recipe.recipe import Recipe
+    from kin.numeric.arrays import Array, Mask
+
+    Marks = dict[str, Mask]
+    Columns = dict[str, Array | NDArray[np.int64] | NDArray[np.str_]]
 
 REPORT = "sweep.json"
 TABLES = ("sweep.csv", "sweep.parquet")
 PICTURES = ("sweep-map.png", "sweep-map.svg", "sweep-best.png", "sweep-best.svg")
 EXTRA = install("sweep")
 _DRAWN = 10  # best designs in the picture of curves
+_POINTS = 720  # of a curve, over a turn
+
+
+@dataclass(frozen=True)
+class Best:
+    """A best design: its place from 1, its index in the plan, or that of the design it was polished from.
+
+    `values` by path, in the recipe's units, words by their index; `figures` by name, in mm and degrees; `why` it could
+    not be polished.
+    """
+
+    place: int
+    index: int
+    polished: bool
+    values: dict[str, float]
+    figures: dict[str, float]
+    why: str = ""
+
+    @property
+    def file(self) -> str:
+        """Name of its recipe's file."""
+        return f"best-{self.place}.yaml"
+
+
+def recipe_text(task: Task, best: Best) -> str:
+    """Text of the user's recipe with the design's values, a name of its own, its figures in `about`, and no sweep.
+
+    Raises RecipeErrors where the sweep cannot be cut out of the text.
+    """
+    text = text_with(task.recipe, best.values)
+    for section in ("sweep", "name", "about"):
+        text = remove_section(text, section)
+    for path in task.recipe.tables:
+        source = Source.of(text, str(task.recipe.path))  # as the best design's recipe is in another folder
+        file = dict(scalars(source.root))[path].text
+        text = set_value(source, path, (task.recipe.path.parent / file).resolve().as_posix())
+    name = f"{task.recipe.name}-best-{best.place}"
+    return _with_entries(text, {"name": name, "about": _about(task, best)})
+
+
+def _about(task: Task, best: Best) -> str:
+    """The design's origin and ranking figure, then as much of the recipe's own note as fits."""
+    origin = f"polished from design {best.index}" if best.polished else f"design {best.index}"
+    rank = task.sweep.rank
+    unit = task.units([rank])[rank]
+    figure = f"{rank} {best.figures[rank] / unit.divisor:.6g} {unit.name}".rstrip() if rank in best.figures else ""
+    text = f"{origin} of {task.plan.count} of the sweep of {task.recipe.name}: {figure}"
+    if task.recipe.about:
+        text += f". {task.recipe.about}"
+    return text if len(text) <= MOST_TEXT else text[: MOST_TEXT - 3] + "..."
+
+
+def _with_entries(text: str, entries: dict[str, str]) -> str:
+    """Text of a recipe with entries put first, in flow or block style as the recipe is."""
+    root = Source.of(text, "recipe").root
+    if not isinstance(root, Mapping):
+        raise TypeError("a recipe is a mapping")
+    line, column = root.mark
+    lines = text.splitlines(keepends=True)
+    index = sum(map(len, lines[: line - 1])) + column - 1
+    items = [f"{name}: {json.dumps(value, ensure_ascii=False)}" for name, value in entries.items()]
+    if root.flow:
+        return text[: index + 1] + ", ".join(items) + ", " + text[index + 1 :]
+    indent = " " * (column - 1)
+    return text[:index] + "".join(f"{item}\n{indent}" for item in items) + text[index:]
+
+
+def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
+    """Output of a recipe's linkage over the shaft angle, or without one its cam's lift or swing; name of that axis.
+
+    In degrees or the recipe's units. Raises PlaceError for a linkage that does not turn, TypeError for one on a cam
+    without a lift, which no recipe has, and IntentError as the intent does.
+    """
+    if recipe.linkage is None:
+        from camgeo.synthesis.motion_table import motion_table
+
+        at_points = replace(recipe, verify=replace(recipe.verify, angles=_POINTS))
+        (_, name, *_), rows = motion_table(at_points, recipe.cam.exact().motion)
+        word, _, unit = name.partition("_")
+        return Curve(label, rows[:, 0], rows[:, 1]), f"{word} ({unit})"
+    mechanism = mechanism_in(recipe)
+    shaft = np.linspace(0.0, 2.0 * math.pi, _POINTS + 1)
+    output = mechanism.at(mechanism.relative(shaft), 0).output[0]
+    swings = mechanism.unit == "deg"
+    scale = math.degrees(1.0) if swings else 1.0 / recipe.mm
+    unit = "deg" if swings else {"mm": "mm", "inch": "in"}[recipe.units]
+    dwell = None
+    if recipe.dwell is not None:
+        longest = mechanism.dwells(recipe.dwell.band, most=1)[0]
+        dwell = math.degrees(longest.start), math.degrees(longest.length)
+    return Curve(label, np.degrees(shaft), output * scale, dwell), f"output ({unit})"
+
+
+def with_polished(designs: Selection, best: Sequence[Best], ranking: Ranking) -> tuple[Selection, Marks]:
+    """The designs kept and the polished ones, best first, at most MOST_ROWS; and marks of each (n,) by their names.
+
+    `polished`: the design has the index of that from which it was polished, whose own row stays. `certified`, where
+    figures are estimates: those of this design are exact; such designs come first.
+    """
+    new = [design for design in best if design.polished]
+    index = np.append([design.index for design in new], designs.index).astype(np.int64)
+    values = np.vstack([*(list(design.values.values()) for design in new), designs.values])
+    figures = {
+        name: np.append([design.figures[name] for design in new], column) for name, column in designs.figures.items()
+    }
+    polished = np.arange(len(index)) < len(new)
+    certified = len(index) if designs.certificate is None else designs.certificate.designs
+    exact = np.arange(len(index)) < len(new) + certified
+    order = np.lexsort((index, ~polished, -ranking.score(figures), ~exact))[:MOST_ROWS]
+    rows = {name: column[order] for name, column in figures.items()}
+    marks = {"polished": polished[order]} | ({} if designs.certificate is None else {"certified": exact[order]})
+    return replace(designs, index=index[order], values=values[order], figures=rows), marks
+
+
+def columns(plan: Plan, designs: Selection, units: dict[str, Unit], marks: Marks | None = None) -> Columns:
+    """Columns (n,) by their heads: place from 1, index, the varied fields by their paths, figures with units.
+
+    Marks are the last, 0 or 1.
+    """
+    figures = {name: values / units[name].divisor for name, values in designs.figures.items()}
+    return {
+        "place": np.arange(1, designs.rows + 1),
+        "index": designs.index,
+        **{
+            axis.path: np.array(axis.words)[designs.values[:, i].astype(np.int64)]
+            if axis.words
+            else designs.values[:, i]
+            for i, axis in enumerate(plan.axes)
+        },
+        **{_head(name, units[name].name): values for name, values in figures.items()},
+        **{name: mark.astype(np.int64) for name, mark in (marks or {}).items()},
+    }
+
+
+def _head(figure: str, unit: str) -> str:
+    """Head of a figure's column: `dwell_deg`, `size_mm`; without a unit the figure's name."""
+    suffix = unit.replace("/", "_per_").replace("^", "")
+    return f"{figure}_{suffix}" if suffix else figure
+
+
+def as_csv(heads: Columns) -> bytes:
+    """The table as CSV, every number with as few digits as read back exactly."""
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(heads)
+    writer.writerows(zip(*(column.tolist() for column in heads.values()), strict=True))
+    return stream.getvalue().encode()
+
+
+def as_parquet(heads: Columns, about: dict[str, str]) -> bytes:
+    """The table as Parquet, with `about` in the metadata of its schema. Raises ModuleNotFoundError without pyarrow."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    table = pa.table({name: pa.array(column) for name, column in heads.items()})
+    sink = pa.BufferOutputStream()
+    parquet.write_table(table.replace_schema_metadata(dict(about)), sink, compression="zstd")
+    return bytes(sink.getvalue().to_pybytes())
 
 
 @dataclass()

@@ -18,6 +18,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from camgeo.capabilities.sweep.keys import Axis
     from kin.numeric.arrays import Array
 
 Method: TypeAlias = Literal["grid", "random", "sobol"]
@@ -27,35 +28,6 @@ SOBOL_BITS = 30  # its coordinates are whole multiples of 2^-30
 CHUNKS = 64  # about as many chunks make a sweep, so that a kill costs little and workers stay busy to the end
 SMALLEST, GREATEST = 64, 8192  # designs of a chunk: worth a file of its own; small enough to hold at 360 angles each
 _WORDS = 4  # random words that one step of Philox's counter gives
-
-
-@dataclass(frozen=True)
-class Axis:
-    """Varied field of a sweep, in the recipe's units: it takes the listed `values`, or without a list any in low..high.
-
-    The values of a field that takes `words` are their indices.
-    """
-
-    path: str
-    low: float
-    high: float
-    values: tuple[float, ...] = ()
-    words: tuple[str, ...] = ()
-
-    @property
-    def range(self) -> float:
-        """Difference of the ends, as the unit of distances between values; 1 for words, which so lie far apart."""
-        return 1.0 if self.words else abs(self.high - self.low)
-
-    def written(self, value: float) -> float | str:
-        """A value as the recipe writes it, a word by its index."""
-        return self.words[int(value)] if self.words else value
-
-    def spread(self, share: Array) -> Array:
-        """Values for shares in [0, 1): of a list each for an equal part, else even between the ends."""
-        if self.values:
-            return np.array(self.values)[(share * len(self.values)).astype(np.int64)]
-        return self.low * (1.0 - share) + self.high * share
 
 
 @dataclass(frozen=True)
@@ -106,12 +78,14 @@ class Plan:
             return np.stack(columns, axis=1)
         draw = _random if self.method == "random" else _sobol
         share = draw(first, last, len(self.axes), self.seed)
-        return np.stack([axis.spread(share[:, i]) for i, axis in enumerate(self.axes)], axis=1)
+        return np.stack([_spread(axis, share[:, i]) for i, axis in enumerate(self.axes)], axis=1)
 
 
-def steps(low: float, high: float, count: int) -> tuple[float, ...]:
-    """`count` values at equal distances from `low` to `high`, both ends exact."""
-    return tuple(float(value) for value in np.linspace(low, high, count))
+def _spread(axis: Axis, share: Array) -> Array:
+    """Values of an axis for shares in [0, 1): of a list each for an equal part, else even between the ends."""
+    if axis.values:
+        return np.array(axis.values)[(share * len(axis.values)).astype(np.int64)]
+    return axis.low * (1.0 - share) + axis.high * share
 
 
 def _random(first: int, last: int, width: int, seed: int) -> Array:

@@ -175,7 +175,7 @@ def _unlimited(task: Task) -> Recipe:
 def _goal(task: Task, paths: Sequence[str], start: Array) -> _Goal:
     """Goal of a task from a start (axes,), within the recipe's own band."""
     sweep = task.sweep
-    free = np.array([i for i, axis in enumerate(sweep.vary) if not axis.values and not axis.words], dtype=np.intp)
+    free = np.array([i for i, axis in enumerate(sweep.vary) if axis.is_range], dtype=np.intp)
     low = np.array([axis.low for axis in sweep.vary])[free]
     high = np.array([axis.high for axis in sweep.vary])[free]
     names = (sweep.rank, *(limit.figure for limit in sweep.limits))

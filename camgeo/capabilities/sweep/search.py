@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from camgeo.capabilities.sweep.cams import REASONS
 from camgeo.capabilities.sweep.certify import certify, slack
+from camgeo.capabilities.sweep.chunks import Job, chunks_of, compute, gather_chunks
 from camgeo.capabilities.sweep.engines import spread
-from camgeo.capabilities.sweep.job import Job
-from camgeo.capabilities.sweep.outputs import PICTURES, REPORT, TABLES, outputs
-from camgeo.capabilities.sweep.recipes import Best, recipe_text
-from camgeo.capabilities.sweep.refine import PolishError
-from camgeo.capabilities.sweep.run import chunks_of, compute, gather_chunks
+from camgeo.capabilities.sweep.figures import compute_figures
+from camgeo.capabilities.sweep.outputs import PICTURES, REPORT, TABLES, Best, outputs, recipe_text
+from camgeo.capabilities.sweep.refine import PolishError, polish
+from camgeo.capabilities.sweep.task import Task
 from camgeo.common.errors import BusyError, SurroundingsError
 from camgeo.output.output_folder import Family, RunFolder
 from kin.numeric.records import dataclass, replace
@@ -25,10 +26,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from camgeo.capabilities.sweep.chunks import Compute, Listener, Work
+    from camgeo.capabilities.sweep.engines import Engine
     from camgeo.capabilities.sweep.gather import Selection
-    from camgeo.capabilities.sweep.job import Compute
-    from camgeo.capabilities.sweep.run import Engine, Listener, Work
-    from camgeo.capabilities.sweep.task import Task
     from kin.numeric.arrays import Array, Mask
 
 FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
@@ -52,7 +52,10 @@ class Procedures:
     compute: Compute
     measure: Measure
     polish: Polish
-    reasons: Sequence[str] = ()
+    reasons: Sequence[str]
+
+
+COMPUTING = Procedures(compute_figures, Task.measure, polish, REASONS)
 
 
 @dataclass(frozen=True)
@@ -68,17 +71,18 @@ def search(
     task: Task,
     out: Path,
     engine: Engine,
-    procedures: Procedures,
+    procedures: Procedures | None = None,
     *,
     fresh: bool = False,
     listener: Listener | None = None,
 ) -> Outcome:
-    """Run the sweep of a recipe, and write its files below `out`.
+    """Run the sweep of a recipe, by COMPUTING or other procedures, and write its files below `out`.
 
     Raises RecipeErrors for a recipe whose sweep cannot be cut out; ModuleNotFoundError, EngineError, VersionsError and
     SurroundingsError for what is missing around the run; OSError for a disk that refuses.
     """
     started = time.perf_counter()
+    procedures = procedures or COMPUTING
     require_packages(task, engine)
     first = Best(1, 0, False, _by_path(task, task.plan.values(0, 1)[0]), {})
     recipe_text(task, first)  # at once rather than in the end, if it cannot be written

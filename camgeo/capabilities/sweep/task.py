@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from camgeo.capabilities.sweep.figures import Evaluator, Scene, estimable_figures, figure_names
 from camgeo.capabilities.sweep.gather import Ranking
 from camgeo.capabilities.sweep.keys import Sweep
-from camgeo.capabilities.sweep.plan import Axis, Plan, steps
+from camgeo.capabilities.sweep.plan import Plan
 from camgeo.part.part import Part
 from camgeo.recipe.export import Export
 from camgeo.recipe.figures import FIGURES
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from camgeo.capabilities.sweep.figures import FigureTable
-    from camgeo.capabilities.sweep.keys import VariedField
     from kin.numeric.arrays import Array
 
 EXACT = 100  # designs, up to which each is computed exactly, which takes seconds
@@ -58,10 +57,9 @@ class Task:
         sweep = recipe.of(Sweep)
         if sweep is None:
             raise recipe.error("sweep", "this recipe has no sweep", None, "add what to vary: `sweep: {vary: ...}`")
-        axes = tuple(map(_axis, sweep.vary))
-        count = math.prod(len(axis.values) for axis in axes) if sweep.count is None else sweep.count
+        count = math.prod(len(axis.values) for axis in sweep.vary) if sweep.count is None else sweep.count
         ranking = Ranking(sweep.rank, FIGURES[sweep.rank].best == "most", sweep.limits)
-        return Task(recipe, sweep, Plan(axes, sweep.method, count, sweep.seed), ranking, _variants(recipe, sweep))
+        return Task(recipe, sweep, Plan(sweep.vary, sweep.method, count, sweep.seed), ranking, _variants(recipe, sweep))
 
     @cached_property
     def figures(self) -> tuple[str, ...]:
@@ -188,14 +186,3 @@ def _variants(recipe: Recipe, sweep: Sweep) -> tuple[Recipe, ...]:
                 problem = f"with it {first.path}: {first.problem}"
                 raise recipe.error(place, problem, quote(word), first.remedy) from errors
     return tuple(variants)
-
-
-def _axis(field: VariedField) -> Axis:
-    """Axis of a plan for a varied field; of one with words the values are their indices."""
-    if field.words:
-        indices = tuple(map(float, range(len(field.words))))
-        return Axis(field.path, indices[0], indices[-1], indices, field.words)
-    if field.values:
-        return Axis(field.path, min(field.values), max(field.values), field.values)
-    values = steps(field.low, field.high, field.steps) if field.steps else ()
-    return Axis(field.path, field.low, field.high, values)

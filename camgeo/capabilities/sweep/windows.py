@@ -1,11 +1,14 @@
-"""The longest run of samples whose values stay within a band, as first sample and number of cells.
+"""Between the samples of periodic functions: extremes, and the longest window within a band.
 
-A function of period n samples is known by its nodes and by its greatest and least value over each cell; cell i lies
-between nodes i and i + 1. A window (start i, c cells) is a run of whole cells within the band that cannot be extended
-by a whole cell on either side. The window taken is the one that reaches farthest along the abscissa, when its ends are
-extended into the cells beside it as if the function were straight there. A straight line and a curve that begins level
-differ by at most a fourth of a cell where they leave it: of windows whose lengths differ by less than half a cell
-either may be taken.
+Rows (m, n) hold m functions at n even angles, with their derivatives by the angle. Between two samples the cubic
+through both values and slopes stands for the function, wrong by h^4/384 of its fourth derivative.
+
+A function is known by its nodes and by its greatest and least value over each cell; cell i lies between nodes i and
+i + 1. A window (start i, c cells) is a run of whole cells within the band that cannot be extended by a whole cell on
+either side. The window taken is the one that reaches farthest along the abscissa, when its ends are extended into the
+cells beside it as if the function were straight there. A straight line and a curve that begins level differ by at most
+a fourth of a cell where they leave it: of windows whose lengths differ by less than half a cell either may be taken.
+The ends of the window taken are then computed by the cubics.
 """
 
 from __future__ import annotations
@@ -15,14 +18,94 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.numeric.angles import TURN
+from kin.numeric.newton import zeros
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.numeric.arrays import Array, Indices, Mask
 
-
 _SLACK = 1e-9  # rad: windows shorter than the best by more than this are left out unmeasured
+_BISECTIONS = 12  # of a band's place; near the best one a window's length hardly changes
+_STEPS = 7  # of Newton's method, kept within a bracket
+_PRECISION = 1e-9  # of a cell: error of the place where a level is crossed
+
+
+def greatest(values: Array, smooth: Mask | bool = True) -> Array:
+    """Greatest value of each row (m,), in smooth rows that of the parabola through three samples."""
+    return _parabola_extreme(values, values.argmax(axis=1), smooth)
+
+
+def _parabola_extreme(values: Array, i: Indices, smooth: Mask | bool) -> Array:
+    """Extreme (m,) of the parabola through samples i - 1, i and i + 1 of each row; sample i where it is not smooth."""
+    rows = np.arange(len(values))
+    middle: Array = values[rows, i]
+    before, after = values[rows, i - 1], values[rows, (i + 1) % values.shape[1]]
+    # at the extreme of three the bend points one way, or all three are equal
+    bend = (middle - before) + (middle - after)
+    slope = after - before
+    bent = (bend != 0.0) & smooth
+    extreme: Array = middle + np.divide(slope * slope, 8.0 * bend, out=np.zeros_like(middle), where=bent)
+    return extreme
+
+
+def least(values: Array, smooth: Mask | bool = True) -> Array:
+    """Least value of each row (m,); see `greatest`."""
+    return _parabola_extreme(values, values.argmin(axis=1), smooth)
+
+
+def cell_bounds(value: Array, slope: Array) -> tuple[Array, Array]:
+    """Least and greatest value over each cell, (m, n) each; cell i lies between samples i and i + 1.
+
+    `slope` is the derivative by the angle. Where it changes sign the cubic's extreme counts.
+    """
+    m, n = value.shape
+    after = np.concatenate([value[:, 1:], value[:, :1]], axis=1)
+    low, high = np.minimum(value, after), np.maximum(value, after)
+    falls = slope < 0.0
+    turns = np.empty((m, n), dtype=np.bool_)
+    np.not_equal(falls[:, 1:], falls[:, :-1], out=turns[:, :-1])
+    np.not_equal(falls[:, :1], falls[:, -1:], out=turns[:, -1:])
+    row, i = np.nonzero(turns)
+    j = (i + 1) % n
+    h = TURN / n
+    f, g = value[row, i], h * slope[row, i]
+    cubic = _Cubic.between(f, g, value[row, j], h * slope[row, j])
+    x = cubic.turns()[0]
+    extreme = np.where(np.isnan(x), f, cubic(x))
+    low[row, i] = np.minimum(low[row, i], extreme)
+    high[row, i] = np.maximum(high[row, i], extreme)
+    return low, high
+
+
+class _Cubic(NamedTuple):
+    """A cubic over one cell, f + g x + c x^2 + d x^3, 0 <= x <= 1."""
+
+    f: Array
+    g: Array
+    c: Array
+    d: Array
+
+    @staticmethod
+    def between(f: Array, g: Array, f1: Array, g1: Array) -> _Cubic:
+        """The cubic with values f, f1 and slopes g, g1 at x = 0 and 1."""
+        rise = f1 - f
+        return _Cubic(f, g, 3.0 * rise - 2.0 * g - g1, g + g1 - 2.0 * rise)
+
+    def __call__(self, x: Array) -> Array:
+        return self.f + x * (self.g + x * (self.c + x * self.d))
+
+    def slope(self, x: Array) -> Array:
+        return self.g + x * (2.0 * self.c + x * (3.0 * self.d))
+
+    def turns(self) -> tuple[Array, Array]:
+        """Places in (0, 1) at which the slope is 0, the smaller and the greater, nan where there are fewer."""
+        g, c, d = self.g, self.c, self.d
+        with np.errstate(divide="ignore", invalid="ignore"):
+            q = -(c + np.copysign(np.sqrt(c * c - 3.0 * d * g), c))
+            roots = g / q, q / (3.0 * d)
+        first, second = (np.where((root > 0.0) & (root < 1.0), root, np.nan) for root in roots)
+        return np.fmin(first, second), np.where(np.isnan(first) | np.isnan(second), np.nan, np.maximum(first, second))
 
 
 class Samples(NamedTuple):
@@ -81,7 +164,7 @@ def longest_windows(samples: Samples, band: float) -> Windows:
     first = np.searchsorted(row, np.arange(m))  # every row has at least one
     windows = Windows(np.zeros(abscissae.shape[:2], dtype=np.intp), np.zeros(abscissae.shape[:2], dtype=np.intp))
     for k, abscissa in enumerate(abscissae if m else ()):
-        length = _lengths((value, abscissa), (row, i, cells), (bottom, top), band)
+        length = _straight_lengths((value, abscissa), (row, i, cells), (bottom, top), band)
         # the longest of each row, the first of equals
         ties = np.flatnonzero(length == np.maximum.reduceat(length, first)[row])
         chosen = ties[np.searchsorted(row[ties], np.arange(m))]
@@ -126,7 +209,7 @@ def _possible_starts(fits: list[Mask], abscissa: Array) -> Mask:
     return starts
 
 
-def _lengths(
+def _straight_lengths(
     rows: tuple[Array, Array], window: tuple[Indices, Indices, Indices], limits: tuple[Array, Array], band: float
 ) -> Array:
     """Lengths along the abscissa of windows (row, first node, cells), their ends extended into the next cells straight.
@@ -161,3 +244,160 @@ def _straight_share(inside: Array, outside: Array, lowest: Array, highest: Array
         share = np.where(up, (highest - inside) / (outside - inside), 1.0)
         share = np.where(down, (inside - lowest) / (inside - outside), share)
     return share, np.where(up, 1, np.where(down, -1, 0)).astype(np.int8)
+
+
+class Ends(NamedTuple):
+    """m windows: a core of whole cells, and the two cells on either side in which the window ends.
+
+    `low`, `high` (m,) are least and greatest value over the core, `core` (m,) its length along the abscissa. `behind`
+    and `ahead` (4, m, 3) have the three nodes outward from the core's two ends: value, its slope by the cell, distance
+    along the abscissa, its slope by the cell. `whole` (m,) says whether the window is the whole turn.
+    """
+
+    low: Array
+    high: Array
+    core: Array
+    behind: Array
+    ahead: Array
+    whole: Mask
+
+    @staticmethod
+    def concatenate(parts: list[Ends]) -> Ends:
+        """Windows of several blocks, one block behind another."""
+        low, high, core, behind, ahead, whole = zip(*parts, strict=True)
+        sides = np.concatenate(behind, axis=1), np.concatenate(ahead, axis=1)
+        return Ends(np.concatenate(low), np.concatenate(high), np.concatenate(core), *sides, np.concatenate(whole))
+
+    def part(self, rows: Mask) -> Ends:
+        """Windows of some rows (m,)."""
+        sides = self.behind[:, rows], self.ahead[:, rows]
+        return Ends(self.low[rows], self.high[rows], self.core[rows], *sides, self.whole[rows])
+
+
+def window_ends(
+    window: tuple[Indices, Indices],
+    output: tuple[Array, Array],
+    abscissa: tuple[Array, Array],
+    bounds: tuple[Array, Array],
+) -> Ends:
+    """Ends of windows, from which `lengths` measures them.
+
+    `window` are first node and number of whole cells, (m,) each. `output` and `abscissa` are values and slopes by the
+    angle, (m, n); the abscissa rises, by 2 pi a turn. `bounds` are those of the output over each cell. The first and
+    the last cell are no part of the core, as a window may lose less at one end than it gains at the other.
+    """
+    take = np.take_along_axis
+    start, cells = window
+    n = output[0].shape[1]
+    spare = cells >= 2
+    first, count = start + spare, cells - 2 * spare
+    first, last = first % n, (first + count) % n
+    inner = (first[:, None] + np.minimum(np.arange(max(int(count.max(initial=0)), 1)), count[:, None] - 1)) % n
+    at_first = take(output[0], first[:, None], axis=1)[:, 0]
+    # where there is no cell in the core it is a node; else its cells' bounds hold its nodes' values
+    low = np.where(count > 0, take(bounds[0], inner, axis=1).min(axis=1), at_first)
+    high = np.where(count > 0, take(bounds[1], inner, axis=1).max(axis=1), at_first)
+    sides = []
+    for node, step in ((first, -1), (last, 1)):
+        nodes = (node[:, None] + step * np.arange(3)) % n
+        along = take(abscissa[0], nodes, axis=1)
+        distance = np.mod((along - along[:, :1]) * step, TURN)
+        h = step * TURN / n
+        slopes = h * take(output[1], nodes, axis=1), abs(h) * take(abscissa[1], nodes, axis=1)
+        sides.append(np.stack([take(output[0], nodes, axis=1), slopes[0], distance, slopes[1]]))
+    core = take(abscissa[0], last[:, None], axis=1)[:, 0] - take(abscissa[0], first[:, None], axis=1)[:, 0]
+    return Ends(low, high, np.where(core < 0.0, core + TURN, core), sides[0], sides[1], cells == n)
+
+
+def lengths(ends: Ends, band: float) -> Array:
+    """Lengths of m windows along the abscissa (m,), each within the band of a height that makes it longest.
+
+    The band [y, y + band] contains the core; raising it moves ends at its lower limit inward and ends at its upper
+    limit outward, each by 1/slope. So the best y is the lowest, the highest, or where the two rates balance, which
+    bisection finds.
+    """
+    best, gain = _length(ends, ends.high - band, band)
+    rising = gain > 0.0  # most windows end at the lower limit on both sides, and the lowest band is the best
+    if rising.any():
+        part = ends.part(rising)
+        below, above = part.high - band, part.low
+        longest, _ = _length(part, above, band)
+        longest = np.maximum(longest, best[rising])
+        for _ in range(_BISECTIONS):
+            y = 0.5 * (below + above)
+            length, gain = _length(part, y, band)
+            longest = np.maximum(longest, length)
+            below, above = np.where(gain > 0.0, y, below), np.where(gain > 0.0, above, y)
+        best[rising] = longest
+    return np.where(ends.whole, TURN, np.minimum(best, TURN))
+
+
+def _length(ends: Ends, low: Array, band: float) -> tuple[Array, Array]:
+    """Length within [low, low + band], and its derivative by `low`."""
+    behind, slope_behind = _reach(ends.behind, low, low + band)
+    ahead, slope_ahead = _reach(ends.ahead, low, low + band)
+    return ends.core + behind + ahead, slope_behind + slope_ahead
+
+
+def _reach(side: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """Distance from the core's end outward over which the output stays within limits; its derivative by the limits."""
+    reach, gain, inside = np.zeros_like(low), np.zeros_like(low), np.ones(len(low), dtype=np.bool_)
+    for cell in (0, 1):
+        f, g, x, v = side[:, :, cell]
+        f1, g1, x1, v1 = side[:, :, cell + 1]
+        output, abscissa = _Cubic.between(f, g, f1, g1), _Cubic.between(x, v, x1, v1)
+        t, side_left = _first_exit(output, low, high)
+        reach = np.where(inside, abscissa(t), reach)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            more = np.abs(abscissa.slope(t) / output.slope(t)) * side_left
+        gain = np.where(inside, more, gain)
+        inside &= side_left == 0
+    return reach, gain
+
+
+def _first_exit(cell: _Cubic, lowest: Array, highest: Array) -> tuple[Array, NDArray[np.int8]]:
+    """First x where a cubic leaves [lowest, highest], else 1; and 1 where it leaves above, -1 below, else 0.
+
+    At x = 0 it is inside, but for rounding; between its turning places it is monotone.
+    """
+    begin, end = np.zeros_like(cell.f), np.ones_like(cell.f)
+    side = np.zeros(len(cell.f), dtype=np.int8)
+    inside = np.ones(len(cell.f), dtype=np.bool_)
+    for place in (*cell.turns(), end.copy()):
+        there = inside & ~np.isnan(place)
+        value = cell(np.where(there, place, 0.0))
+        out = np.where(value > highest, 1, np.where(value < lowest, -1, 0)).astype(np.int8)
+        out[~there] = 0
+        side = np.where(out != 0, out, side).astype(np.int8)
+        end = np.where(out != 0, place, end)
+        inside &= out == 0
+        begin = np.where(there & inside, place, begin)
+    x = np.ones_like(cell.f)
+    rows = np.flatnonzero(side)
+    part, sense = _Cubic(*(column[rows] for column in cell)), side[rows]
+    level = np.where(sense > 0, highest[rows], lowest[rows])
+    x[rows] = _crossing(part, sense, level, begin[rows], end[rows])
+    return x, side
+
+
+def _crossing(cell: _Cubic, sense: NDArray[np.int8], level: Array, low: Array, high: Array) -> Array:
+    """Place in [low, high] at which a monotone cubic crosses a level, (m,); upward where `sense` is 1, else downward.
+
+    Exact to `_PRECISION` of a cell. A few steps are made of all rows together; rows still open are solved alone.
+    """
+    x, moved = 0.5 * (low + high), np.zeros_like(low)
+    for step in range(_STEPS):
+        miss = (cell(x) - level) * sense
+        low, high = np.where(miss < 0.0, x, low), np.where(miss < 0.0, high, x)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            newton = x - miss / (cell.slope(x) * sense)
+        # a step beyond the bracket ends at the bracket's end or, every other time, in its middle
+        beyond = np.clip(newton, low, high) if step % 2 == 0 else 0.5 * (low + high)
+        following = np.where((newton >= low) & (newton <= high), newton, beyond)
+        x, moved = following, np.abs(following - x)
+    left = np.flatnonzero(~(moved <= _PRECISION))
+    if left.size:
+        part, target, way = _Cubic(*(column[left] for column in cell)), level[left], sense[left]
+        start = low[left], high[left], x[left]
+        x[left] = zeros(lambda x: ((part(x) - target) * way, part.slope(x) * way), *start, _PRECISION)
+    return x

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from camgeo.capabilities.sweep.keys import MOST_AXES, MOST_VALUES, Sweep, VariedField, sweep_figures, varied_fields
+from camgeo.capabilities.sweep.keys import MOST_AXES, MOST_VALUES, Axis, Sweep, sweep_figures, varied_fields
 from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_FOLLOWER, OF_LINKAGE, OF_ROLLER, OF_SWING
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import Limit
@@ -71,9 +71,9 @@ def test_everything_said() -> None:
 """
     assert sweep(body) == Sweep(
         vary=(
-            VariedField("cam.shaft[0]", -10.0, 20.0),
-            VariedField("linkage.rocker", 95.0, 110.0),
-            VariedField("linkage.dyads[0].point[1]", values=(1.0, -2.5, 0.25)),
+            Axis("cam.shaft[0]", -10.0, 20.0),
+            Axis("linkage.rocker", 95.0, 110.0),
+            Axis("linkage.dyads[0].point[1]", -2.5, 1.0, (1.0, -2.5, 0.25)),
         ),
         method="sobol",
         count=1024,
@@ -92,9 +92,7 @@ def test_everything_said() -> None:
 
 def test_defaults() -> None:
     found = sweep("  {vary: {linkage.rocker: {from: 95, to: 110, steps: 4}}, rank: dwell}")
-    assert found == Sweep(
-        (VariedField("linkage.rocker", 95.0, 110.0, 4),), "grid", None, 0, (), "dwell", 10, 360, False
-    )
+    assert found == Sweep((Axis("linkage.rocker", 95.0, 110.0, steps=4),), "grid", None, 0, (), "dwell", 10, 360, False)
 
 
 def test_values_stay_as_written_and_limits_come_in_the_units_of_figures() -> None:
@@ -104,7 +102,7 @@ def test_values_stay_as_written_and_limits_come_in_the_units_of_figures() -> Non
   rank: swing
 """
     inches = sweep(body, "units: inch\n" + BASE)
-    assert inches.vary == (VariedField("linkage.rocker", 95.0, 110.0, 4),)
+    assert inches.vary == (Axis("linkage.rocker", 95.0, 110.0, steps=4),)
     assert inches.limits == (
         Limit("size", None, 2 * 25.4),
         Limit("margin", 0.5 * 25.4),
@@ -133,7 +131,7 @@ def test_values_stay_as_written_and_limits_come_in_the_units_of_figures() -> Non
 )
 def test_any_number_of_the_cam_may_vary(cam: str, path: str) -> None:
     found = recipe(f"cam: {cam}\nsweep:\n  vary:\n    {path}: [1, 2.5]\n  rank: size")
-    assert varied_fields(found) == (VariedField(path, values=(1.0, 2.5)),)
+    assert varied_fields(found) == (Axis(path, 1.0, 2.5, (1.0, 2.5)),)
     assert "2.5" in with_values(found.text, {path: 2.5}).splitlines()[0]
 
 
@@ -141,7 +139,7 @@ def test_whole_numbers_vary_by_a_list() -> None:
     body = "cam: {kind: support, reuleaux: {sides: 3, breadth: 50, rounding: 5}}\nsweep: {rank: size, vary: {VARY}}"
     found = recipe(body.replace("VARY", "cam.reuleaux.sides: [3, 5, 7]")).of(Sweep)
     assert found
-    assert found.vary == (VariedField("cam.reuleaux.sides", values=(3.0, 5.0, 7.0)),)
+    assert found.vary == (Axis("cam.reuleaux.sides", 3.0, 7.0, (3.0, 5.0, 7.0)),)
     with pytest.raises(RecipeErrors) as caught:
         recipe(body.replace("VARY", "cam.reuleaux.sides: [3, 4, 5.5, 101]"))
     assert [str(error).split(": ", 1)[1].split("; ")[0] for error in caught.value.errors] == [

@@ -30,16 +30,16 @@ import sys
 from support.sweepers import PROCEDURES
 from camgeo.cli.main import main
 from camgeo.cli.progress import Progress
-from camgeo.capabilities.sweep import command as sweep
+from camgeo.capabilities.sweep import search
 if __name__ == "__main__":
-    sweep.procedures = lambda: PROCEDURES
+    search.COMPUTING = PROCEDURES
     sys.exit(main(sys.argv[1:]))
 """
 
 
 @pytest.fixture(autouse=True)
 def stand_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sweep, "procedures", lambda: PROCEDURES)
+    monkeypatch.setattr(search, "COMPUTING", PROCEDURES)
 
 
 def written(folder: Path, *, comment="", margin=1.0, rank="dwell", refine="false", old="", new="") -> Path:

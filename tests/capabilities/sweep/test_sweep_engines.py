@@ -24,12 +24,12 @@ from support.places import TESTS
 from support.sweepers import GRID, PROCEDURES, Aside, calls, hills, job, task, tree
 
 from camgeo.capabilities.sweep import engines
+from camgeo.capabilities.sweep.chunks import EngineError, Job, VersionsError, chunks_of, compute, decode, result
+from camgeo.capabilities.sweep.engines import Engine
 from camgeo.capabilities.sweep.figures import compute_figures
-from camgeo.capabilities.sweep.job import Job, VersionsError, result
-from camgeo.capabilities.sweep.plan import Axis, Plan
-from camgeo.capabilities.sweep.run import Engine, chunks_of, compute
+from camgeo.capabilities.sweep.keys import Axis
+from camgeo.capabilities.sweep.plan import Plan
 from camgeo.capabilities.sweep.search import search
-from camgeo.capabilities.sweep.store import decode
 from camgeo.capabilities.sweep.task import Task
 from camgeo.recipe.loading import read
 
@@ -45,7 +45,7 @@ import sys
 from pathlib import Path
 from support.sweepers import PROCEDURES, task
 from camgeo.capabilities.sweep import engines
-from camgeo.capabilities.sweep.run import Engine
+from camgeo.capabilities.sweep.engines import Engine
 from camgeo.capabilities.sweep.search import search
 if __name__ == "__main__":
     engines._TRIAL = engines._WORTHWHILE = 0.0  # processes after the first chunk
@@ -169,7 +169,7 @@ def test_a_fault_of_what_computes_comes_through(engine: str, cluster: LocalClust
 def test_workers_refuse_a_job_that_they_read_otherwise(
     engine: str, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("camgeo.capabilities.sweep.job.__version__", "99.0")
+    monkeypatch.setattr("camgeo.capabilities.sweep.chunks.__version__", "99.0")
     how = Engine(2) if engine == "processes" else Engine(scheduler=cluster.scheduler_address)
     with pytest.raises(VersionsError, match="a worker has other versions than this run") as caught:
         list(how.results(job(), [0, 1]))
@@ -186,7 +186,7 @@ def test_a_worker_without_camgeo_is_told(tmp_path: Path) -> None:
         command = [sys.executable, "-m", "distributed.cli.dask_worker", empty.scheduler_address, *options]
         with subprocess.Popen(command, stderr=subprocess.DEVNULL) as worker:
             empty.wait_for_workers(1, 30)
-            with pytest.raises(engines.EngineError, match=r"^the worker at tcp://.* cannot run camgeo: .*camgeo"):
+            with pytest.raises(EngineError, match=r"^the worker at tcp://.* cannot run camgeo: .*camgeo"):
                 next(engines.dask(job(), [0], empty.scheduler_address))
             worker.terminate()
 
@@ -203,7 +203,7 @@ def test_a_worker_without_camgeo_is_told(tmp_path: Path) -> None:
     ],
 )
 def test_a_scheduler_that_is_none_is_told_at_once(address: str, message: str) -> None:
-    with pytest.raises(engines.EngineError, match=f"^{message}"):
+    with pytest.raises(EngineError, match=f"^{message}"):
         next(engines.dask(job(), [0], address))
 
 
@@ -222,7 +222,7 @@ def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatc
     with socket.create_server(("127.0.0.1", 0)) as listener:
         threading.Thread(target=answer, daemon=True).start()
         address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
-        with pytest.raises(engines.EngineError, match=f"^the server at {address} (is not|does not|speaks)"):
+        with pytest.raises(EngineError, match=f"^the server at {address} (is not|does not|speaks)"):
             next(engines.dask(job(), [0], address))
         listener.shutdown(socket.SHUT_RDWR)
     for connection in accepted:
@@ -249,7 +249,7 @@ def test_distributed_prints_no_lines_of_its_own(caplog: pytest.LogCaptureFixture
 @pytest.mark.slow
 def test_a_worker_is_no_scheduler(cluster: LocalCluster) -> None:
     address = next(iter(cluster.scheduler_info["workers"]))
-    with pytest.raises(engines.EngineError, match=f"^the server at {address} is not a Dask scheduler, but a Worker$"):
+    with pytest.raises(EngineError, match=f"^the server at {address} is not a Dask scheduler, but a Worker$"):
         next(engines.dask(job(), [0], address))
 
 
@@ -259,7 +259,7 @@ def test_a_scheduler_without_workers_is_told(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(engines, "_MOST_TIMEOUTS", 2)
     with (
         distributed.LocalCluster(n_workers=0, dashboard_address=":0") as empty,
-        pytest.raises(engines.EngineError, match="has no workers"),
+        pytest.raises(EngineError, match="has no workers"),
     ):
         next(engines.dask(job(), [0], empty.scheduler_address))
 
@@ -323,7 +323,7 @@ def killed(scene, values):
 def test_a_worker_that_is_killed_ends_the_run_and_what_landed_stays(tmp_path: Path) -> None:
     deadly = Job(GRID, Aside(), killed)
     chunks = chunks_of(deadly, tmp_path)
-    with pytest.raises(engines.EngineError, match="a process was killed before it was done"):
+    with pytest.raises(EngineError, match="a process was killed before it was done"):
         compute(deadly, chunks, Engine(2))
     missing, damaged = chunks.missing_chunks()
     assert missing

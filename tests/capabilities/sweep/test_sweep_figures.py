@@ -12,7 +12,8 @@ from support.cases import examples, few
 from support.sweepers import compute, evaluate
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.capabilities.sweep.figures import REASONS, Evaluator
+from camgeo.capabilities.sweep.cams import REASONS
+from camgeo.capabilities.sweep.figures import Evaluator
 from camgeo.capabilities.sweep.figures import compute_figures as searched
 from camgeo.capabilities.sweep.keys import sweep_figures as known
 from camgeo.capabilities.sweep.linkages import LOOPS, Lengths, Support, angles, loop_class

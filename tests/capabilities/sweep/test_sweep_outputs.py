@@ -17,12 +17,13 @@ from support.sweepers import GRID, PROCEDURES, hills, task
 
 from camgeo.capabilities.sweep import gather as gathering
 from camgeo.capabilities.sweep import outputs
+from camgeo.capabilities.sweep.engines import Engine
 from camgeo.capabilities.sweep.gather import KEPT, OUTSIDE, STUCK, Ranking, gather
+from camgeo.capabilities.sweep.keys import Axis
+from camgeo.capabilities.sweep.outputs import Best, curve_of, recipe_text
 from camgeo.capabilities.sweep.pictures import draw_map
-from camgeo.capabilities.sweep.plan import Axis, Plan, steps
-from camgeo.capabilities.sweep.recipes import Best, curve_of, recipe_text
+from camgeo.capabilities.sweep.plan import Plan
 from camgeo.capabilities.sweep.refine import PolishError
-from camgeo.capabilities.sweep.run import Engine
 from camgeo.capabilities.sweep.search import search
 from camgeo.capabilities.sweep.task import Task
 from camgeo.common.errors import SurroundingsError
@@ -112,7 +113,7 @@ def test_a_grids_map_has_a_cell_for_each_design() -> None:
 
 @pytest.mark.parametrize("most", [True, False])
 def test_a_map_shows_the_best_over_the_other_axes(most: bool) -> None:
-    third = Axis("linkage.coupler", 60.0, 80.0, steps(60.0, 80.0, 5))
+    third = Axis("linkage.coupler", 60.0, 80.0, steps=5)
     plan = Plan((*GRID.axes, third), "grid", 825 * 5)
 
     def raised(scene, values):

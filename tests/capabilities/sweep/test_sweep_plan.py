@@ -12,13 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.heavy import qmc
 
-from camgeo.capabilities.sweep.plan import GREATEST, MOST, SMALLEST, Axis, Plan, steps
+from camgeo.capabilities.sweep.keys import Axis
+from camgeo.capabilities.sweep.plan import GREATEST, MOST, SMALLEST, Plan
 
 AXES = (Axis("a", -1.0, 3.0), Axis("b", 5.0, 5.5), Axis("c", 0.0, 2.0, (0.0, 1.5, 2.0)))
 
 
 def test_a_grid_is_every_combination_in_order_with_exact_ends() -> None:
-    axes = (Axis("a", 0.1, 0.7, steps(0.1, 0.7, 4)), Axis("b", 1.0, 2.0, (1.0, 2.0, 1.25)))
+    axes = (Axis("a", 0.1, 0.7, steps=4), Axis("b", 1.0, 2.0, (1.0, 2.0, 1.25)))
     plan = Plan(axes, "grid", 12)
     expected = list(itertools.product(axes[0].values, axes[1].values))
     assert plan.values(0, 12).tolist() == [list(pair) for pair in expected]

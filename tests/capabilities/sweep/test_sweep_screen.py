@@ -10,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
+from camgeo.capabilities.sweep.cams import REASONS
 from camgeo.capabilities.sweep.certify import error_of
-from camgeo.capabilities.sweep.figures import REASONS, Evaluator, estimable_figures
+from camgeo.capabilities.sweep.engines import Engine
+from camgeo.capabilities.sweep.figures import Evaluator, estimable_figures
 from camgeo.capabilities.sweep.keys import varied_fields
-from camgeo.capabilities.sweep.run import Engine
 from camgeo.capabilities.sweep.screen import estimates
-from camgeo.capabilities.sweep.search import Procedures, search
+from camgeo.capabilities.sweep.search import search
 from camgeo.capabilities.sweep.task import EXACT, Task
 from camgeo.recipe.loading import load, load_text
 from camgeo.schema.errors import RecipeErrors
@@ -221,10 +222,8 @@ def test_designs_with_words_have_the_figures_of_their_recipes():
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_files_tell_words(tmp_path):
-    from camgeo.capabilities.sweep.command import procedures
-
     asked = Task.from_recipe(worded(more="rank: peak-acceleration, keep: 1, limits: {size: {at_least: 64}}"))
-    outcome = search(asked, tmp_path, Engine(1), procedures())
+    outcome = search(asked, tmp_path, Engine(1))
     best = outcome.report["best"][0]["values"]
     assert best == {"cam.base_radius": 45.0, "cam.motion[0].law": "harmonic", "cam.follower.kind": "roller"}
     assert outcome.report["sweep"]["vary"]["cam.motion[0].law"] == {"words": ["cycloidal", "harmonic"], "values": 2}
@@ -319,11 +318,9 @@ def swept(tmp_path):
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(Task, "exact_figures", lost)
-            from camgeo.capabilities.sweep.command import procedures
 
             asked = Task.from_recipe(recipe(*CAMS["roller"], sweep=text))
-            computing: Procedures = procedures()
-            outcome = search(asked, tmp_path, Engine(1), computing)
+            outcome = search(asked, tmp_path, Engine(1))
         return outcome.report, outcome.folder
 
     return sweep

@@ -11,14 +11,24 @@ import numpy as np
 import pytest
 from support.sweepers import GRID, calls, fail, hills, job, task
 
-from camgeo.capabilities.sweep import job as jobs
-from camgeo.capabilities.sweep import store
+from camgeo.capabilities.sweep import chunks as storing
+from camgeo.capabilities.sweep.chunks import (
+    ChunkError,
+    Chunks,
+    Job,
+    VersionsError,
+    chunks_of,
+    compute,
+    decode,
+    encode,
+    gather_chunks,
+    result,
+)
+from camgeo.capabilities.sweep.engines import Engine
 from camgeo.capabilities.sweep.figures import Scene
 from camgeo.capabilities.sweep.gather import Ranking
-from camgeo.capabilities.sweep.job import Job, VersionsError, result
-from camgeo.capabilities.sweep.plan import Axis, Plan
-from camgeo.capabilities.sweep.run import Engine, chunks_of, compute, gather_chunks
-from camgeo.capabilities.sweep.store import ChunkError, Chunks, decode, encode
+from camgeo.capabilities.sweep.keys import Axis
+from camgeo.capabilities.sweep.plan import Plan
 from camgeo.capabilities.sweep.task import Task
 from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.loading import load_text, read
@@ -137,7 +147,7 @@ def test_of_a_large_file_no_more_is_read_than_a_chunk_may_have(filled: Chunks, m
         stream.truncate(1 << 27)
     work = compute(job(), filled, Engine(1))
     assert (work.damaged, work.computed) == (1, filled.plan.chunk)
-    monkeypatch.setattr(store, "_MOST_BYTES", 64)
+    monkeypatch.setattr(storing, "_MOST_BYTES", 64)
     with pytest.raises(ChunkError, match="torn or changed"):
         filled.read(1)
 
@@ -200,14 +210,14 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
         Job(GRID, "another", hills),
         job(compute=fail),
     ]
-    for package in (jobs, np):
+    for package in (storing, np):
         monkeypatch.setattr(package, "__version__", "99.0")
         others_key = job().key
         monkeypatch.undo()
         assert others_key != plain.key
     assert len({plain.key, *(other.key for other in others)}) == 6
     key = plain.key
-    monkeypatch.setattr(jobs, "REVISION", 99)
+    monkeypatch.setattr(storing, "REVISION", 99)
     assert job().key != key
 
 

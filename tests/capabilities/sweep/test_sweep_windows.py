@@ -11,9 +11,19 @@ from hypothesis import strategies as st
 from support.cases import examples
 from support.scanned import scanned
 
-from camgeo.capabilities.sweep.ends import Ends, _crossing, _Cubic, cell_bounds, greatest, least, lengths, window_ends
 from camgeo.capabilities.sweep.linkages import angles
-from camgeo.capabilities.sweep.windows import Samples, longest_windows
+from camgeo.capabilities.sweep.windows import (
+    Ends,
+    Samples,
+    _crossing,
+    _Cubic,
+    cell_bounds,
+    greatest,
+    least,
+    lengths,
+    longest_windows,
+    window_ends,
+)
 from kin.numeric.longest_window import dwells
 
 TURN = 2 * math.pi

@@ -1,8 +1,10 @@
-"""Results of chunks on disk: written as they land, whole or not at all, and checked when they are read.
+"""The chunks of a sweep: computed by any engine, kept on disk, and gathered in their order.
 
-A chunk's file begins with its key and designs and ends with a checksum, so a truncated one, a changed one and one of
-another sweep all count as missing. What is no regular file is refused, never opened. Any number of runs may write the
-same folder at once: under one name they write the same bytes, put there by a rename.
+The outcome of a sweep depends on its job alone, not on who computed its chunks, or when. Results are written as they
+land, whole or not at all, and checked when they are read. A chunk's file begins with its key and designs and ends with
+a checksum, so a truncated one, a changed one and one of another sweep all count as missing. What is no regular file is
+refused, never opened. Any number of runs may write the same folder at once: under one name they write the same bytes,
+put there by a rename.
 """
 
 from __future__ import annotations
@@ -13,32 +15,97 @@ import os
 import re
 import stat
 import time
-from contextlib import suppress
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from contextlib import closing, suppress
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from camgeo.capabilities.sweep.gather import gather
 from camgeo.common.errors import SurroundingsError
 from camgeo.common.system import retry
+from camgeo.version import __version__
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
 
+    from camgeo.capabilities.sweep.engines import Engine
+    from camgeo.capabilities.sweep.gather import Ranking, Selection
     from camgeo.capabilities.sweep.plan import Plan
+    from camgeo.recipe.limits import Limit
     from kin.numeric.arrays import Array
 
+REVISION = 3  # raised with every change of a figure's values, as the version is with every release
+
+FOLDER = "sweep"  # of a recipe's output folder, with a folder for each job in it
+_SHORT = 16  # digits of the key that name the folder
 _MAGIC = b"camgeo sweep chunk 1\n"
 _ABANDONED = 3600.0  # seconds after which a file still unfinished is a killed run's; writing one takes milliseconds
 _MOST_BYTES = 1 << 24  # of a chunk's file: its designs with a hundred figures and more take less
 _CHUNK = re.compile(r"chunk-[0-9]{7}\.bin")
 _UNFINISHED = re.compile(r"\.chunk-[0-9]{7}\.[0-9]+\.part")
 
+Compute = Callable[[Any, "Array"], Mapping[str, "Array"]]
+Listener: TypeAlias = "Callable[[str, int, int, float], None]"
+"""Called with what is counted, how many are done, of how many, and the seconds they took."""
+
+
+class EngineError(CamgeoError):
+    """Workers or a scheduler are missing or lost, so that chunks cannot be computed; those written stay."""
+
+
+class VersionsError(EngineError):
+    """A worker has other versions than the run, or reads the recipe otherwise, and so would compute other figures."""
+
 
 class ChunkError(CamgeoError, ValueError):
     """The bytes of a file are not the result of its chunk."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """A plan, and how the figures of its designs are computed; it travels to any worker.
+
+    `compute(scene, values (m, axes))` gives the figures of m designs, arrays (m,) of float64 by name; it is a function
+    of a module, so that a worker finds it by name. `scene` is plain data, all of which has a bearing on a figure.
+    """
+
+    plan: Plan
+    scene: Any
+    compute: Compute
+
+    @property
+    def key(self) -> str:
+        """SHA-256 of the plan, the scene, the function's name, and revision and versions of what computes."""
+        parts = {
+            "plan": repr(self.plan),
+            "scene": repr(self.scene),
+            "compute": f"{self.compute.__module__}.{self.compute.__qualname__}",
+            "revision": REVISION,
+            "versions": versions(self.plan),
+        }
+        return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+
+
+def versions(plan: Plan) -> dict[str, str]:
+    """Versions of the packages that figures depend on, by name; scipy's only where it makes the plan."""
+    packages = {"camgeo": __version__, "numpy": np.__version__}
+    if plan.method == "sobol":
+        import scipy
+
+        packages["scipy"] = scipy.__version__
+    return packages
+
+
+def result(job: Job, number: int, key: str) -> bytes:
+    """Bytes of a chunk's file, computed here. Raises VersionsError where the job has another key here than `key`."""
+    if job.key != key:
+        here = ", ".join(f"{name} {version}" for name, version in versions(job.plan).items())
+        raise VersionsError(f"a worker has other versions than this run, or reads the recipe otherwise: {here}")
+    first, last = job.plan.span(number)
+    return encode(key, first, last, job.compute(job.scene, job.plan.values(first, last)))
 
 
 def encode(key: str, first: int, last: int, figures: Mapping[str, Array]) -> bytes:
@@ -153,3 +220,60 @@ def _is_regular_file(path: Path) -> bool:
         return True
     kind = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
     raise SurroundingsError(f"{kind}, where the sweep keeps a file of its results: move it or remove it", path)
+
+
+def chunks_of(job: Job, folder: Path) -> Chunks:
+    """Chunks of a job, in a folder named by its key below the output folder of its recipe."""
+    key = job.key
+    return Chunks(folder / FOLDER / key[:_SHORT], key, job.plan)
+
+
+@dataclass(frozen=True)
+class Work:
+    """Counts of a run: designs computed, designs reused from disk, damaged chunk files, and seconds spent."""
+
+    computed: int
+    reused: int
+    damaged: int
+    seconds: float
+
+
+def compute(job: Job, chunks: Chunks, engine: Engine, *, fresh: bool = False, listener: Listener | None = None) -> Work:
+    """Compute every chunk that is not on disk, or all where `fresh`; each is written as soon as it is done.
+
+    Raises what the engine raises, and OSError; chunks written by then stay.
+    """
+    chunks.open(fresh=fresh)
+    missing, damaged = chunks.missing_chunks()
+    started = time.perf_counter()
+    sizes = {number: last - first for number in missing for first, last in (job.plan.span(number),)}
+    total, done = sum(sizes.values()), 0
+    if missing:
+        with closing(engine.results(job, missing)) as results:
+            for number, data in results:
+                chunks.write(number, data)
+                done += sizes[number]
+                if listener is not None:
+                    listener("designs", done, total, time.perf_counter() - started)
+    return Work(done, job.plan.count - total, damaged, time.perf_counter() - started)
+
+
+def gather_chunks(
+    job: Job, chunks: Chunks, ranking: Ranking, slack: Callable[[Limit], float] | None = None
+) -> Selection:
+    """The designs that a ranking selects, see `gather`. Chunks damaged or removed meanwhile are computed again."""
+    return gather(job.plan, ranking, (_figures(job, chunks, number) for number in range(job.plan.chunks)), slack)
+
+
+def _figures(job: Job, chunks: Chunks, number: int) -> Mapping[str, Array]:
+    """Figures (m,) by name of the designs of a chunk."""
+    try:
+        figures = chunks.read(number)
+    except ChunkError:
+        figures = None
+    if figures is None:
+        chunks.write(number, result(job, number, chunks.key))
+        figures = chunks.read(number)
+    if figures is None:
+        raise FileNotFoundError(2, "a chunk was taken away as soon as it was written", str(chunks.path(number)))
+    return figures
