@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from camgeo.synthesis.design import Design
     from kin.follower.base import Follower
-    from kin.read.drawing.dxf import Drawing
+    from kin.read.drawing.drawing import Drawing
 
 ROOT = Path(__file__).parents[1]
 INK, METAL, ACCENT = "#26323f", "#cfd8e3", "#c8442c"

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Beziers", "Unrolled"]
-
 # A hodograph vector below this part of the piece's longest one is rounding of a vanishing end derivative.
 VANISHING = 1e-12
 # A Bernstein coefficient below this part of its own terms' sizes is rounding, and has no sign.

@@ -13,8 +13,6 @@ from kin.numeric.bernstein import bernstein_product, restrict, rising_root, spli
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["arcs_along"]
-
 # Each halving divides the deviation by about eight; this many take any curve to below rounding.
 MOST_HALVINGS = 24
 # Rounding of the proof's own terms, in units of the curve's extent.

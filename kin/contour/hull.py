@@ -11,8 +11,6 @@ from kin.contour.arcs import cross
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["convex_hull", "is_convex_polygon"]
-
 # A pass over the whole chain pays while it removes more than this share of the points that are left.
 WORTHWHILE_SHARE = 0.02
 

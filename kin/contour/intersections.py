@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     Levels = list[tuple[Array, Array]]
 
-__all__ = ["Crossings", "crossings", "first_meeting", "meetings"]
-
 # Two pieces closer than this, mm, have a point in common.
 TOUCHING = 1e-9
 # A loop shorter than this, mm, is the rounding of a joint.

@@ -13,6 +13,8 @@ from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from kin.numeric.arrays import Array, Indices
@@ -175,31 +177,11 @@ class Pieces:
     def reflected(self) -> Pieces:
         """Return the mirror image in the x axis, each piece still from its start to its end."""
         flip = np.array([1.0, -1.0])
-        return Pieces(
-            kind=self.kind,
-            start=self.start * flip,
-            end=self.end * flip,
-            centre=self.centre * flip,
-            radius=self.radius,
-            angle=-self.angle,
-            sweep=-self.sweep,
-            curve=self.curve,
-            beziers=Beziers(self.beziers.control * flip, self.beziers.weight),
-        )
+        return self._mapped(lambda points: points * flip, self.radius, -self.angle, -self.sweep)
 
     def enlarged(self, factor: float) -> Pieces:
         """Return the pieces scaled about the origin by a positive factor."""
-        return Pieces(
-            kind=self.kind,
-            start=self.start * factor,
-            end=self.end * factor,
-            centre=self.centre * factor,
-            radius=self.radius * factor,
-            angle=self.angle,
-            sweep=self.sweep,
-            curve=self.curve,
-            beziers=Beziers(self.beziers.control * factor, self.beziers.weight),
-        )
+        return self._mapped(lambda points: points * factor, self.radius * factor, self.angle, self.sweep)
 
     def shifted(self, x: float, y: float) -> Pieces:
         """Return the pieces moved by a distance along x and along y, mm."""
@@ -215,17 +197,13 @@ class Pieces:
     def rotated(self, angle: float) -> Pieces:
         """Return the pieces turned counter-clockwise about the origin by an angle, rad."""
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        return Pieces(
-            kind=self.kind,
-            start=self.start @ turn,
-            end=self.end @ turn,
-            centre=self.centre @ turn,
-            radius=self.radius,
-            angle=self.angle + angle,
-            sweep=self.sweep,
-            curve=self.curve,
-            beziers=Beziers(self.beziers.control @ turn, self.beziers.weight),
-        )
+        return self._mapped(lambda points: points @ turn, self.radius, self.angle + angle, self.sweep)
+
+    def _mapped(self, moved: Callable[[Array], Array], radius: Array, angle: Array, sweep: Array) -> Pieces:
+        """The pieces under a map of points (..., 2) that leaves the origin where it is, their arcs as given."""
+        start, end, centre = moved(self.start), moved(self.end), moved(self.centre)
+        beziers = Beziers(moved(self.beziers.control), self.beziers.weight)
+        return Pieces(self.kind, start, end, centre, radius, angle, sweep, self.curve, beziers)
 
     @cached_property
     def directions(self) -> tuple[Array, Array]:

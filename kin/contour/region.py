@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Gaps", "Region", "farthest", "gaps", "moved"]
-
 SPLINE_TOLERANCE = 1e-5  # mm, at which arcs stand in for a spline
 MOST_TURN = 0.25  # rad, greatest turn of a piece
 PARTS = 8  # a piece is no longer than the region's extent over this

@@ -42,8 +42,6 @@ from kin.numeric.taylor import compose, compose_balls, factorials
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
-__all__ = ["FrameSwing", "frame_swing", "span_of"]
-
 _SAME = 1e-9  # rad, within which a law fills its angle, as segments do
 _JOIN = 1e-9  # of velocities that meet
 _ULPS = 4.0  # by which an enclosure of a shaft angle begins

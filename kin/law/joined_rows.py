@@ -12,6 +12,7 @@ import numpy as np
 
 from kin.numeric.angles import TURN
 from kin.numeric.monotone import between, cells, extremes
+from kin.numeric.quintics import coefficients, polynomial
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 Join = Literal["line", "quintic"]
-_DEGREE = 5
 _SHARE = 1e-12  # of the greatest position, to which the difference is followed
 
 
@@ -38,30 +38,17 @@ class JoinedRows:
 
     @property
     def coefficients(self) -> Array:
-        """Coefficients (6, n - 1) of each part's polynomial over 0 to 1, the constant first (Hermite, degree 5)."""
-        width, rise = np.diff(self.master), np.diff(self.slave[0])
-        rows = np.zeros((_DEGREE + 1, len(width)))
-        rows[0] = self.slave[0, :-1]
+        """Coefficients (2 or 6, n - 1) of each part's polynomial over 0 to 1, the constant first."""
         if self.join == "line":
-            rows[1] = rise
-            return rows
-        v, w = self.slave[1, :-1] * width, self.slave[1, 1:] * width
-        a, b = self.slave[2, :-1] * width**2, self.slave[2, 1:] * width**2
-        rows[1], rows[2] = v, 0.5 * a
-        rows[3] = 10.0 * rise - 6.0 * v - 4.0 * w - 1.5 * a + 0.5 * b
-        rows[4] = -15.0 * rise + 8.0 * v + 7.0 * w + 1.5 * a - b
-        rows[5] = 6.0 * rise - 3.0 * (v + w) - 0.5 * (a - b)
-        return rows
+            return np.stack([self.slave[0, :-1], np.diff(self.slave[0])])
+        return coefficients(self.slave[:, :-1], self.slave[:, 1:], np.diff(self.master))
 
     def position(self, angle: Array) -> Array:
         """The slave's position (n,), mm or rad, at angles of the master (n,), rad."""
-        coefficients, last = self.coefficients, len(self.master) - 2
-        part = np.clip(np.searchsorted(self.master, angle, side="right") - 1, 0, last)
-        x = (angle - self.master[part]) / (self.master[part + 1] - self.master[part])
-        value = np.zeros_like(angle)
-        for row in coefficients[::-1]:
-            value = value * x + row[part]
-        return value
+        part = np.clip(np.searchsorted(self.master, angle, side="right") - 1, 0, len(self.master) - 2)
+        width = np.diff(self.master)[part]
+        position: Array = polynomial(self.coefficients[:, part], width, angle - self.master[part], 0)[0]
+        return position
 
     def off(self, position: Callable[[Array], Array], breaks: Iterable[float]) -> tuple[float, float]:
         """Greatest |motion - joined rows| over a turn, mm or rad, and the master's angle where it is, rad.

@@ -29,18 +29,6 @@ if TYPE_CHECKING:
     from kin.law.sources.motion import Motion
     from kin.numeric.arrays import Array
 
-__all__ = [
-    "Circle",
-    "IntentError",
-    "Lift",
-    "about",
-    "joined",
-    "lift_constant_breadth",
-    "lift_from_fourier",
-    "lift_hypocycloid",
-    "lift_reuleaux",
-]
-
 
 _TURN = 2 * math.pi
 # A jump in p or p' below this, relative to the largest of p, p', p'', is the rounding of a formula.

@@ -145,6 +145,10 @@ class SurfacePoints:
         directions = None if self.directions is None else self.directions[chosen]
         return replace(self, places=self.places[chosen], directions=directions)
 
+    def thinned(self, most: int) -> SurfacePoints:
+        """At most so many of the points, evenly chosen."""
+        return self.part(np.linspace(0, len(self) - 1, min(most, len(self))).astype(np.intp))
+
 
 @dataclass(frozen=True, eq=False)
 class Profile:
@@ -238,9 +242,7 @@ def turned_at(surfaces: Sequence[SurfacePoints], free: str = "g") -> Placing:
 
     `free` names the unknowns of the fit: g, x, y.
     """
-    few = [
-        surface.part(np.linspace(0, len(surface) - 1, min(FEW, len(surface))).astype(np.intp)) for surface in surfaces
-    ]
+    few = [surface.thinned(FEW) for surface in surfaces]
     turns = np.arange(COARSE_TURNS) * (TURN / COARSE_TURNS)
     turn = min(turns.tolist(), key=lambda angle: _off(few, Placing(angle)))
     turn = math.remainder(turn, TURN)
@@ -274,9 +276,7 @@ def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool, shiftable:
         ball = f"{abs(middle):.4g} mm too {'large' if middle > 0.0 else 'small'} all round"
         remedy = "leave `--probe-radius` out, or give its own" if surfaces[0].ball else "`--probe-radius` of the ball?"
         raise UnlikePointsError(f"{how_far}: they look {ball}: {remedy}")
-    few = [
-        surface.part(np.linspace(0, len(surface) - 1, min(MANY, len(surface))).astype(np.intp)) for surface in surfaces
-    ]
+    few = [surface.thinned(MANY) for surface in surfaces]
     radius = float(np.mean([np.hypot(*surface.places.T).mean() for surface in few]))
     looks: list[tuple[float, str]] = []
     for factor in (1.0, *FACTORS):

@@ -13,18 +13,6 @@ from kin.numeric.newton import zeros
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
-__all__ = [
-    "bernstein_product",
-    "cross_product",
-    "derivative",
-    "halves",
-    "restrict",
-    "rising_root",
-    "roots",
-    "split",
-    "values",
-]
-
 # Roots closer to an end than this are taken for the end itself.
 END_MARGIN = 1e-12
 # An interval this narrow whose coefficients still change sign more than once holds a touching root, for our purposes.

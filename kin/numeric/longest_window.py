@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
     Flags = NDArray[np.bool_]
 
-__all__ = ["Dwell", "doubled", "dwells", "longest_of_each"]
-
 # Output that differs by less than this part of the band is resolved no further; ends are then found from f itself.
 _RESOLUTION = 1e-9
 _JUMP = 1e-6

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Cells", "Pieces", "RoughError", "between", "cells", "extremes", "pieces"]
-
 DEGREE = 10
 FIRST_CELLS = 32
 # Cells no wider than this part of the whole are taken as they are: a corner or step nobody declared lies in them.

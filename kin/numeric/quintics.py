@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
     from kin.numeric.extrema import Extremes
 
-__all__ = ["Quintics", "coefficients", "polynomial"]
-
 
 def coefficients(low: Array, high: Array, width: Array) -> Array:
     """Coefficients (6, n) of powers of the share of the width (n,), from f, f', f'' (3, n) at both ends."""

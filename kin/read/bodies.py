@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
 
-__all__ = ["MOST_BODIES", "Placed", "ReadSolid", "Section", "Sought", "beside", "missing"]
-
 MOST_BODIES = 5  # that are named in a message
 RIGID = 1e-9  # a place turns and shifts only if its axes are square and of length 1 within this
 

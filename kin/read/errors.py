@@ -9,8 +9,6 @@ from kin.numeric.errors import CamgeoError
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["REASONS", "ReadError", "xml_fault"]
-
 REASONS = {
     "syntax": "the file is damaged or not of this format",
     "truncated": "the file ends too early",

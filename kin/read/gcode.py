@@ -19,8 +19,6 @@ from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.formats import contents
 
-__all__ = ["ARC_MM", "Move", "Program", "arcs_of", "read_gcode"]
-
 ARC_MM = 0.002  # how far the ends of an arc may be from equally far from its centre (NIST IR 6556, 3.5.3)
 MOST_LINES = 1_000_000
 LARGEST = 1e6  # of a number as written

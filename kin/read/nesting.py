@@ -17,19 +17,6 @@ if TYPE_CHECKING:
 
     from kin.contour.contour import Contour
 
-__all__ = [
-    "MOST_PIECES",
-    "Chain",
-    "Nest",
-    "Place",
-    "counter_clockwise",
-    "demand_few",
-    "demand_few_pieces",
-    "met",
-    "nested",
-    "scaled",
-]
-
 MOST_CONTOURS = 2000
 MOST_PIECES = 1_000_000  # of all contours: a polygon within 1e-9 mm may have more than half of that
 

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Loop", "close_pairs", "loops"]
-
 # Ends closer than this, mm, are one point; only ends that find no partner here look farther, up to the permitted gap.
 SAME_POINT = 1e-9
 # A drawing smaller than 50 mm is read as closely for its size: what is one point, and what gap is permitted by default.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from kin.contour.bezier import Beziers
-from kin.contour.contour import Box, Contour
+from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
 from kin.contour.pieces import ARC, Pieces
 from kin.numeric.records import dataclass, replace
@@ -22,21 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.numeric.arrays import Array, Indices, Mask
-    from kin.read.drawing.chaining import Loop
     from kin.read.drawing.shapes import Shape
-
-__all__ = [
-    "BESIDE",
-    "BORE",
-    "CUT",
-    "ENGRAVED",
-    "REFERENCE",
-    "Aside",
-    "CutEntities",
-    "Drawing",
-    "Fault",
-    "drawing_of",
-]
 
 CUT, BORE = "CUT", "BORE"
 # Layers that are cut beside CUT: the bore's, holes, a mark that is cut through, the flanks of a groove.
@@ -85,8 +71,6 @@ class Drawing(Nest):
     short           pieces no longer than a gap that was asked for
     openings        what was said of ends that do not meet, though most could be read
     version         of DXF, such as "AC1024", or "SVG"
-    measurement     $MEASUREMENT: 0 English, 1 metric, None if not stated
-    extents         $EXTMIN and $EXTMAX, mm; None if not stated
     engraved        what is engraved, counter-clockwise, if it was asked for
     """
 
@@ -97,8 +81,6 @@ class Drawing(Nest):
     aside: tuple[Aside, ...]
     faults: tuple[Fault, ...]
     version: str
-    measurement: int | None
-    extents: Box | None
     engraved: tuple[Contour, ...] = ()
     short: tuple[Fault, ...] = ()
     openings: tuple[str, ...] = ()
@@ -121,8 +103,6 @@ def drawing_of(
     path: Path,
     *,
     version: str,
-    measurement: int | None = None,
-    extents: Box | None = None,
     deepest: int = 1,
     bridged: float = 0.0,
     unstated: float = 1.0,
@@ -178,8 +158,6 @@ def drawing_of(
         aside=tuple(Aside(*key, count) for key, count in sorted(curves.aside.items())),
         faults=tuple(faults),
         version=version,
-        measurement=measurement,
-        extents=extents,
         engraved=scratched,
         short=shorter,
         openings=openings,
@@ -326,7 +304,8 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
     made = []
     rings = loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path, some=some)
     demand_few(len(rings), path)
-    if some and not outermost_closed(pieces, np.isin(np.cumsum(np.diff(run, prepend=-1) > 0) - 1, runs_of(rings))):
+    closed = np.concatenate([np.empty(0, dtype=np.intp), *(loop.runs for loop in rings)])
+    if some and not outermost_closed(pieces, np.isin(np.cumsum(np.diff(run, prepend=-1) > 0) - 1, closed)):
         raise ReadError("open", "the outermost contour is open", path)
     for loop in rings:
         many, back = count[loop.runs], loop.backwards
@@ -337,11 +316,6 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
         contour = Contour.from_pieces(with_lines(closed_up(ordered, same), usual))
         made.append(Chained(contour, run[first[loop.runs]], loop.gap))
     return made
-
-
-def runs_of(rings: list[Loop]) -> Indices:
-    """Indices of the runs that belong to loops."""
-    return np.concatenate([np.empty(0, dtype=np.intp), *(loop.runs for loop in rings)])
 
 
 def outermost_closed(pieces: Pieces, closed: Mask) -> bool:

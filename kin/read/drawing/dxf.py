@@ -11,16 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from kin.contour.contour import Box
 from kin.read.drawing.drawing import (
     BESIDE,
     CUT,
     ENGRAVED,
     REFERENCE,
-    Aside,
     CutEntities,
     Drawing,
-    Fault,
     drawing_of,
 )
 from kin.read.drawing.dxf_entities import CURVES, NOTES, facing, shape_of
@@ -33,8 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ezdxf.document import Drawing as Document
-
-__all__ = ["Aside", "Drawing", "Fault", "read_dxf"]
 
 # Mm in a unit of $INSUNITS: inch, foot, mm, cm, m, microinch, mil, yard, micrometre, decimetre.
 UNIT_MM = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254, 10: 914.4, 13: 1e-3, 14: 100.0}
@@ -89,14 +84,9 @@ def read_dxf(
     document = parsed(raw, path)
     with damage_reported(path):
         unit = unit_of(document, raw[:COMMENT_BYTES], path)
-        scale = 1.0 if unit is None else unit
         drawn = everything(document, path)
         entities = entities_to_cut(document, drawn, path)
         marks = entities_engraved(drawn, path) if engraved else None
-        low, high = (document.header.get(name) for name in ("$EXTMIN", "$EXTMAX"))
-        stated = low is not None and high is not None and low[0] <= high[0] and low[1] <= high[1]
-        extents = Box(*(float(v) * scale for v in (*low[:2], *high[:2]))) if stated else None
-        measurement = document.header.get("$MEASUREMENT")
     return drawing_of(
         entities,
         marks,
@@ -104,8 +94,6 @@ def read_dxf(
         gap,
         path,
         version=document.dxfversion,
-        measurement=measurement,
-        extents=extents,
         deepest=deepest,
         bridged=bridged,
         unstated=unstated,

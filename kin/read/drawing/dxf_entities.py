@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
 
-__all__ = ["CURVES", "NOTES", "shape_of"]
-
 # Nothing of these is ever cut: they are listed, not refused.
 NOTES = frozenset({"TEXT", "MTEXT", "ATTDEF", "DIMENSION", "LEADER", "MULTILEADER", "POINT", "VIEWPORT", "TOLERANCE"})
 # Slope, and relative size, that is still rounding.

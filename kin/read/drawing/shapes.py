@@ -13,8 +13,6 @@ from kin.numeric.errors import CamgeoError
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
-__all__ = ["ALIKE", "Affine", "Shape", "UnfitError", "check", "check_degree", "check_spline", "shape"]
-
 # Beyond this, in drawing units, the squares of coordinates have no digits left for a contour.
 LARGEST = 1e7
 LARGEST_BULGE = 1e6

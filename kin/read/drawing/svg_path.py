@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from kin.read.drawing.shapes import Affine
 
-__all__ = ["NUMBER", "path_of"]
-
 NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 TOKEN = re.compile(rf"([A-Za-z])|({NUMBER})|[\s,]+|(.)", re.DOTALL)
 # Numbers that follow each letter that is read.

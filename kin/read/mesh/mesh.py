@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["EdgeFaults", "Mesh", "WordError", "doubles", "plan_welded", "weld", "welded"]
-
 Real = TypeVar("Real", bound=np.floating)
 
 # Odd multipliers that spread bits over a word of 64 (from the golden ratio, and from SplitMix64), and a shift to match.

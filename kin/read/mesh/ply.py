@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Indices
     from kin.read.mesh.prism import Corners
 
-__all__ = ["triangles_of"]
-
 TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"}
 TYPES |= {"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4"}
 TYPES |= {"float": "f4", "float32": "f4", "double": "f8", "float64": "f8"}

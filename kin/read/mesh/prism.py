@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     Corners = NDArray[np.float32] | NDArray[np.float64]
 
-__all__ = ["Evened", "Outline", "Upright", "Walls", "evened", "rounding", "upright", "walls"]
-
 SINGLE, DOUBLE = 2.0**-24, 2.0**-53  # greatest relative error of a number rounded to either precision
 FEW_DIGITS = 9  # tell any number of single precision; more are written of doubles
 SPLITS = 16  # passes in which places are separated; two or three will do for a part

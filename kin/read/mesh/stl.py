@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     Form = Literal["binary", "text", "3mf"]
 
-__all__ = ["Solid", "read_stl", "solid_of"]
-
 HEADER = 84
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 # What stands in the 21 words of a facet in text form, where it is not a number.

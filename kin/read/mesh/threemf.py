@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Placed", "read_3mf", "read_3mf_bodies", "read_placed"]
-
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02 "
 LINK = "http://schemas.openxmlformats.org/package/2006/relationships Relationship"
 MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"

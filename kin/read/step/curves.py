@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
     from kin.read.step.part21 import Exchange, Value
 
-__all__ = ["Edge", "Frame", "Space", "Spline", "edge_of", "spline_of"]
-
 # A circle's ends this close, rad, are one: the whole circle.
 WHOLE = 1e-9
 CLOSED = 1e-9  # mm between the ends of a closed spline

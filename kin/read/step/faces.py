@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
     from kin.read.step.curves import Edge, Space
 
-__all__ = ["Face", "Use", "face_of"]
-
 # Sine of an angle that is still rounding: of a plane against the horizontal, an axis against the vertical.
 LEVEL = 1e-9
 SURFACES = ("PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE", "SURFACE_OF_LINEAR_EXTRUSION")

@@ -14,8 +14,6 @@ from kin.read.errors import ReadError
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["Enumeration", "Exchange", "Reference", "Typed", "Value", "exchange"]
-
 BEGIN, END = "ISO-10303-21;", "END-ISO-10303-21;"
 TOKEN = re.compile(
     r"\s+|/\*.*?\*/|(?P<text>'(?:[^']|'')*')|#(?P<reference>\d+)|(?P<real>[-+]?\d+\.\d*(?:[Ee][-+]?\d+)?)"

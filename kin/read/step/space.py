@@ -17,8 +17,6 @@ from kin.read.step.part21 import Reference, Typed
 if TYPE_CHECKING:
     from kin.read.step.part21 import Exchange, Value
 
-__all__ = ["space_of"]
-
 # Mm in a metre under each prefix of an SI unit.
 PREFIXES = {
     "MICRO": 1e-3, "MILLI": 1.0, "CENTI": 10.0, "DECI": 100.0, "DECA": 1e4, "HECTO": 1e5, "KILO": 1e6, "NANO": 1e-6,

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     from kin.read.step.faces import Face
     from kin.read.step.part21 import Exchange
 
-__all__ = ["StepSolid", "read_step", "read_step_bodies"]
-
 SAME = 1e-9  # mm: heights this close are one
 GAUSS = 12  # nodes over the height of a level hole
 AREA_NODES, AREA_WEIGHTS = gauss(3)  # exact where a section is a cubic in the height
