@@ -27,7 +27,8 @@ GRID = 49  # points of the search each way
 STARTS = 12  # places from which the search climbs
 CENTRE, DIAMETER = 0.01, 0.1  # mm: steps of centres and diameters
 RINGS = 400  # radii of a ring that are tried
-SHRINK = 0.5  # of the step of a climb that finds nothing better
+SHORT = 0.25  # of the step of a climb: as far it looks too,
+SHRINK = 0.125  # and its step shrinks by this where it finds nothing better
 FAR = 1e-9  # mm: covers the rounding of a bound on a distance
 
 
@@ -118,9 +119,10 @@ def largest(space: Space, count: int, least: float) -> Circles:
 
 
 def _climbed(space: Space, points: Array, step: float) -> tuple[float, float]:
-    """Climb the space from points (n, 2) in eight directions, each by its own steps; the best place reached."""
-    turns = np.arange(8) * 0.25 * np.pi
-    ways = np.column_stack([np.cos(turns), np.sin(turns)])
+    """Climb the space from points (n, 2) in eight directions by long and short steps; the best place reached."""
+    turns = np.arange(16) * 0.25 * np.pi
+    share = np.repeat([1.0, SHORT], 8)
+    ways = share[:, None] * np.column_stack([np.cos(turns), np.sin(turns)])
     height, steps = space.about(points), np.full(len(points), step)
     while (left := np.flatnonzero(steps > 0.2 * CENTRE)).size:
         tried = points[left, None, :] + steps[left, None, None] * ways
@@ -129,6 +131,7 @@ def _climbed(space: Space, points: Array, step: float) -> tuple[float, float]:
         better = heights[best] > height[left]
         moved = left[better]
         points[moved], height[moved] = tried[best][better], heights[best][better]
+        steps[moved] *= share[best[1][better]]
         steps[left[~better]] *= SHRINK
     x, y = points[int(np.argmax(height))].tolist()
     return x, y

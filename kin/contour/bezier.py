@@ -200,8 +200,11 @@ class Beziers:
         """Return points (n, 2) of the pieces `rows` at t (n,); exact at both ends."""
         origin = self.control[rows, 0]
         relative = self.control[rows] - origin[:, None]
-        w = self.weight[rows]
-        x = values(relative * w[:, :, None], t) / values(w, t)[:, None]
+        if self.rational:
+            w = self.weight[rows]
+            x = values(relative * w[:, :, None], t) / values(w, t)[:, None]
+        else:
+            x = values(relative, t)
         out: Array = np.where((t == 1.0)[:, None], self.control[rows, -1], origin + x)
         return out
 

@@ -33,11 +33,12 @@ if TYPE_CHECKING:
     from kin.law.contacts import Contact
     from kin.numeric.arrays import Array, Indices
 
-CELLS = 8  # of a piece, in the table of shaft angles
+CELLS = 16  # of a piece, in the table of shaft angles
 PARTS = 2  # of a piece, from which its bounds are sought
 MOST_CUTS = 8  # in quarters, until the shaft angle is seen to rise
 STEPS = 12  # of Newton's method
-NEAR = 1e-8  # rad, or share of the roller: from here a step of first or second order is good to rounding
+NEAR = 1e-5  # rad: from here a step of second order is good to rounding
+ON_CONTOUR = 1e-8  # of the roller: how far along the contour the nearest point may be off
 MOST_PLAY = 0.1  # of the roller: beyond, its nearest point may be another one
 
 
@@ -115,28 +116,29 @@ class SplinePath:
         edges = phi[0, 0] + np.append(0.0, np.cumsum(width))
         return _Table(edges, width.ravel(), 1.0 / slope[:, :-1].ravel(), 1.0 / slope[:, 1:].ravel())
 
-    def places(self, phi: Array) -> tuple[Indices, Array, State, Array]:
-        """Contacts within NEAR of shaft angles phi (n,): pieces, parameters, states, and what the angles lack."""
+    def _about(self, phi: Array) -> tuple[Indices, Array]:
+        """Pieces and parameters about where the roller rests at shaft angles phi (n,), from the table: (n,) each."""
         table = self._table
         x = np.mod(phi - table.edges[0], TURN) + table.edges[0]
         cell = np.clip(np.searchsorted(table.edges, x, side="right") - 1, 0, len(table.width) - 1)
         u, width = (x - table.edges[cell]) / table.width[cell], table.width[cell]
         start = u * u * (3.0 - 2.0 * u) / CELLS
         start += width * (u * (1.0 - u) ** 2 * table.after[cell] - u * u * (1.0 - u) * table.before[cell])
-        row, t = cell // CELLS, np.clip(cell % CELLS / CELLS + start, 0.0, 1.0)
-        for _ in range(STEPS):
-            state, rate = self.at(row, t)
-            missing = np.mod(phi - state.phi + np.pi, TURN) - np.pi
-            if not (np.abs(missing) > NEAR).any():
-                return row, t, state, missing
-            t = np.clip(t + missing / (state.angle[0] * rate), 0.0, 1.0)
-        raise UnsettledError("a contact is not found")
+        return cell // CELLS, np.clip(cell % CELLS / CELLS + start, 0.0, 1.0)
 
     def reached(self, phi: Array) -> Array:
         """Position of the roller, mm or radians, at shaft angles phi (n,)."""
-        _, _, state, missing = self.places(phi)
-        position: Array = state.position[0] + state.position[1] / state.angle[0] * missing
-        return position
+        row, t = self._about(phi)
+        for _ in range(STEPS):
+            state, speed = self.at(row, t)
+            (place, q, q_1), (rate, bend) = state.position, state.angle
+            missing = np.mod(phi - state.phi + np.pi, TURN) - np.pi
+            ahead = missing / rate
+            if not (np.abs(missing) > NEAR).any():
+                position: Array = place + ahead * (q + 0.5 * ahead * (q_1 - q * bend / rate))
+                return position
+            t = np.clip(t + ahead / speed, 0.0, 1.0)
+        raise UnsettledError("a contact is not found")
 
     @cached_property
     def ends(self) -> Array:
@@ -145,7 +147,7 @@ class SplinePath:
 
     def gap(self, centres: Array, phi: Array) -> Array:
         """Gap (n,), mm, between the contour and a roller with its centre at (n, 2), near where it rests at phi (n,)."""
-        row, t, _, _ = self.places(phi)
+        row, t = self._about(phi)
         first, last = (np.hypot(*self.beziers.velocity[:, k].T) for k in (0, -1))
         side, radius = np.sign(self.offset), abs(self.offset)
         for _ in range(STEPS):
@@ -153,7 +155,7 @@ class SplinePath:
             away = centres - x
             step = dot(away, v) / (dot(v, v) - dot(away, w))
             speed = np.hypot(v[:, 0], v[:, 1])
-            if not (np.abs(step) * speed > NEAR * radius).any():
+            if not (np.abs(step) * speed > ON_CONTOUR * radius).any():
                 gap: Array = side * cross(v, away) / -speed - radius
                 if np.abs(gap).max() > MOST_PLAY * radius:
                     break

@@ -29,12 +29,13 @@ def dwells(lift: Lift) -> Iterator[tuple[float, float]]:
     return zip(begin[still].tolist(), (begin + width)[still].tolist(), strict=True)
 
 
-def dwells_of_law(law: Piecewise) -> Iterator[tuple[float, float]]:
+def dwells_of_law(law: Piecewise) -> Iterable[tuple[float, float]]:
     """Stretches of a constant law over the shaft angle: from, to, in radians, to > from."""
     ends = law.breaks if len(law.breaks) else np.zeros(1)
-    for begin, width in zip(ends, np.diff(ends, append=ends[0] + TURN), strict=True):
-        if not law.derivatives(begin + width * INSIDE, 2)[1:].any():
-            yield float(begin), float(begin + width)
+    width = np.diff(ends, append=ends[0] + TURN)
+    rates = law.derivatives((ends[:, None] + width[:, None] * INSIDE).ravel(), 2)[1:]
+    still = ~rates.reshape(2, len(ends), -1).any(axis=(0, 2))
+    return zip(ends[still].tolist(), (ends + width)[still].tolist(), strict=True)
 
 
 def dwells_of_transmission(transmission: Transmission) -> Iterator[tuple[float, float]]:

@@ -80,7 +80,8 @@ def steepness_of_law(law: Piecewise) -> Steepness:
     """Bounds of a law over the shaft angle itself."""
     edges, at_knot = _cells(law.knots)
     mid, rad = law.enclosure(edges[:-1], edges[1:], 3)
-    jumps = np.abs(law.derivatives(edges[:-1], 2) - law.derivatives(edges[:-1], 2, -1))
+    at = edges[:-1][at_knot]
+    jumps = np.abs(law.derivatives(at, 2) - law.derivatives(at, 2, -1))
     return _steepness(edges, (np.abs(mid) + rad)[1:], jumps, at_knot)
 
 
@@ -92,7 +93,8 @@ def steepness_of_transmission(transmission: Transmission) -> Steepness:
     most = [row.rows[0].magnitude for row in derivatives_by(psi, shaft)[1:]]
     phi = transmission.at(edges, 0)[0][0]
     phi[-1] = phi[0] + 2.0 * transmission.delta
-    jumps = np.abs(transmission.psi_of_shaft(phi[:-1], 2) - transmission.psi_of_shaft(phi[:-1], 2, -1))
+    at = phi[:-1][at_knot]
+    jumps = np.abs(transmission.psi_of_shaft(at, 2) - transmission.psi_of_shaft(at, 2, -1))
     return _steepness(phi, np.stack(most), jumps, at_knot)
 
 
@@ -140,7 +142,10 @@ def _cells(knots: Array, count: int = CELLS) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def _steepness(edges: Array, most: Array, jumps: Array, at_knot: NDArray[np.bool_]) -> Steepness:
+    """Steepness by bounds (3, m) over cells, and by the jumps (3, k) of position and two derivatives at the k knots."""
     most = np.where(np.isfinite(most), most, np.inf)
     size = np.append(1.0, np.where(np.isfinite(most[:2]), most[:2], 0.0).max(axis=1))[:, None]
-    real = (jumps > SMOOTH * (size + 1.0)) & at_knot
-    return Steepness(edges, most, np.where(real[:2].any(axis=0), 1, np.where(real[2], 2, 3)))
+    real = jumps > SMOOTH * (size + 1.0)
+    breaks = np.full(most.shape[1], 3)
+    breaks[at_knot] = np.where(real[:2].any(axis=0), 1, np.where(real[2], 2, 3))
+    return Steepness(edges, most, breaks)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.contour.arcs import left
 from kin.contour.contour import Contour
 from kin.contour.nearest import nearest
 from kin.judge.check import Check, at_most
@@ -163,10 +164,24 @@ def _size(contour: Contour) -> float:
 
 
 def apart(contour: Contour, other: Contour, fine: float) -> float:
-    """Two-sided distance of two closed contours, mm, to within `fine`."""
+    """Two-sided distance of two closed contours, mm, to within `fine`; of two circles in closed form."""
     first, second = contour.as_arcs()[0], other.as_arcs()[0]
+    circles = [circle for chain in (first, second) if (circle := _circle_of(chain)) is not None]
+    if len(circles) == 2:
+        (centre, radius), (place, size) = circles
+        return float(np.hypot(*(centre - place)) + abs(radius - size))
     bend = float(max(np.abs(first.curvature).max(), np.abs(second.curvature).max()))
     return max(_farthest(first, second, bend, fine), _farthest(second, first, bend, fine))
+
+
+def _circle_of(chain: Arcs) -> tuple[Array, float] | None:
+    """Centre (2,) and radius, mm, of the circle that a closed chain is; None of any other."""
+    if not chain.curvature.all():
+        return None
+    radius = 1.0 / chain.curvature
+    centre = chain.start + radius[:, None] * left(chain.tangent)
+    off = max(np.ptp(radius), np.ptp(centre, axis=0).max())
+    return (centre[0], abs(float(radius[0]))) if off <= ROUNDING * np.abs(radius).max() else None
 
 
 def _farthest(chain: Arcs, other: Arcs, bend: float, fine: float) -> float:
