@@ -398,18 +398,18 @@ class RollerEnvelope:
         return Frames(point - self.radius * normal, normal, speed - self.radius * turn, turn)
 
     @cached_property
-    def _table(self) -> tuple[Array, Array, Array]:
-        """Parameter, pitch point, radius of curvature of the contour there, of the right side at a break."""
+    def _table(self) -> tuple[Array, Array, Array, Array]:
+        """Parameter, pitch point, radius of curvature of the contour there, of the right side at a break, its point."""
         tau = grid(self.pitch.breaks)
         point, first, second = self.pitch.points(tau)
         speed = np.hypot(first[:, 0], first[:, 1])
         bend = cross(first, second) / speed**3
         radius = 1.0 / np.where(bend == 0.0, np.finfo(float).tiny, bend) - self.radius
-        return tau, point, radius
+        return tau, point, radius, point - self.radius * right(first) / speed[:, None]
 
     def radii(self) -> tuple[Array, Array]:
         """Parameters (m,) closely round the turn, and radii of curvature (m,), mm, negative where hollow."""
-        tau, _, radius = self._table
+        tau, _, radius, _ = self._table
         return tau, radius
 
     @property
@@ -419,7 +419,7 @@ class RollerEnvelope:
 
     @cached_property
     def _direction(self) -> Array:
-        return np.unwrap(_angle(self.points(self._table[0])))
+        return np.unwrap(_angle(self._table[3]))
 
     @cached_property
     def regular(self) -> bool:
@@ -438,7 +438,7 @@ class RollerEnvelope:
 
     def _search(self, points: Array) -> Feet:
         """Feet found from samples all round."""
-        tau, centre, _ = self._table
+        tau, centre, _, _ = self._table
         size = 0.5 * dot(centre, centre)
         first, second = two_best(lambda x: x @ centre.T - size, points, len(tau))
         feet = self._climb(points, tau[first]), self._climb(points, tau[second])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,6 +26,13 @@ if TYPE_CHECKING:
 NEAR = 1e-7  # rad; a step of third order is good to rounding
 
 
+def own_rows(contact: Contact[Any, Any], rows: Array) -> Array:
+    """Own position of a contact and its derivatives (m, n), mm or rad, of those of the follower (m, n)."""
+    own: Array = contact.sense * rows
+    own[0] += contact.zero
+    return own
+
+
 @dataclass(frozen=True, eq=False)
 class GuidedPitch:
     """Pitch curve of a guided roller, one contact of a follower, over the parameter of its motion.
@@ -42,8 +49,7 @@ class GuidedPitch:
     def _own(self, tau: Array) -> tuple[Array, Array]:
         """Rows of the angle at which the guide stands, and of the contact's own position, (3, n) each."""
         phi, position = self.over(tau)
-        own = self.contact.sense * position
-        own[0] += self.contact.zero
+        own = own_rows(self.contact, position)
         if self.contact.turned:
             phi = np.stack([phi[0] + self.contact.turned, *phi[1:]])
         return phi, own

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kin.contour.arcs import cross, dot, right
+from kin.follower.laws import own_rows
 from kin.follower.tracking import RESOLUTION, State, bounds_of_error
 from kin.numeric.angles import TURN
 from kin.numeric.bernstein import bernstein_product, cross_product, derivative, restrict
@@ -44,7 +45,7 @@ MOST_PLAY = 0.1  # of the roller: beyond, its nearest point may be another one
 
 @dataclass(frozen=True, eq=False)
 class SplinePath:
-    """Path of the roller's centre, `offset` mm to the right of polynomial pieces of degree 3 or more.
+    """Path of the centre of a roller in contact, `offset` mm to the right of polynomial pieces of degree 3 or more.
 
     The pieces follow one another counter-clockwise, smoothly.
     """
@@ -52,17 +53,18 @@ class SplinePath:
     beziers: Beziers
     offset: float
     guide: Guide
+    contact: Contact[Any, Any]
 
     @staticmethod
-    def of(contour: Contour, offset: float, guide: Guide, turned: float) -> SplinePath:
-        """Path of the centre of a roller whose guide stands `turned` ahead, rad.
+    def of(contour: Contour, offset: float, guide: Guide, contact: Contact[Any, Any]) -> SplinePath:
+        """Path beside a contour, which for a guide that stands turned ahead is turned back.
 
         UnsettledError where it is not smooth and one turn round, or not all of polynomials.
         """
         if not contour.is_spline:
             raise UnsettledError("not all of the contour are polynomials")
-        beziers = (contour.turned(-turned) if turned else contour).beziers
-        path = SplinePath(beziers.elevated(3), offset, guide)
+        beziers = (contour.turned(-contact.turned) if contact.turned else contour).beziers
+        path = SplinePath(beziers.elevated(3), offset, guide, contact)
         path.demand_smooth()
         return path
 
@@ -167,6 +169,14 @@ class SplinePath:
             t = np.where(over, beyond / first[row], np.where(under, 1.0 + beyond / last[row], t))
         raise UnsettledError("the play is too large to be told from one place")
 
+    def spans(self) -> BezierSpans:
+        """Stretches of the path all round."""
+        return BezierSpans.over(self, *self.parts())
+
+    def looked_at_about(self, phi: Array) -> SplinePath:  # noqa: ARG002 - nothing is hidden
+        """Give the path itself: no contacts need to be known."""
+        return self
+
     def parts(self) -> tuple[Indices, Array, Array]:
         """Equal parts of all pieces: their rows, and the parameters at both ends, (n,) each."""
         part = np.tile(np.arange(PARTS), self.beziers.count)
@@ -219,59 +229,23 @@ class Shape(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class OnSpline:
-    """A roller held on a path; it is meant to be at zero + sense * law, as the contact has it."""
-
-    path: SplinePath
-    contact: Contact[Any, Any]
-
-    @property
-    def guide(self) -> Guide:
-        """Guide of the roller's centre: an arm or a line of travel."""
-        return self.path.guide
-
-    @property
-    def resolution(self) -> float:
-        """See `SplinePath`."""
-        return self.path.resolution
-
-    def meant(self, rows: Array) -> Array:
-        """Intended own position and its derivatives (m, n), mm or rad, from the law's rows (m, n)."""
-        meant = self.contact.sense * rows
-        meant[0] += self.contact.zero
-        return meant
-
-    def reached(self, phi: Array) -> Array:
-        """See `SplinePath`."""
-        return self.path.reached(phi)
-
-    def looked_at_about(self, phi: Array) -> OnSpline:  # noqa: ARG002 - nothing is hidden
-        """Give the roller itself: on a spline no contacts need to be known."""
-        return self
-
-    def spans(self) -> BezierSpans:
-        """Stretches of the path all round."""
-        return BezierSpans.over(self, *self.path.parts())
-
-
-@dataclass(frozen=True, eq=False)
 class BezierSpans:
     """Stretches (n,) of Bezier pieces from parameter `low` to `high`, (n,) each.
 
     Errors of both signs are sought at once.
     """
 
-    held: OnSpline
+    path: SplinePath
     piece: Indices
     low: Array
     high: Array
     shape: Shape
 
     @staticmethod
-    def over(held: OnSpline, row: Indices, low: Array, high: Array) -> BezierSpans:
+    def over(path: SplinePath, row: Indices, low: Array, high: Array) -> BezierSpans:
         """Make the stretches of pieces `row` (n,) from parameter `low` to `high`, (n,) each."""
-        shape = Shape.of(restrict(held.path.beziers.control[row], low, high), held.path.offset)
-        return BezierSpans(held, row, low, high, shape)
+        shape = Shape.of(restrict(path.beziers.control[row], low, high), path.offset)
+        return BezierSpans(path, row, low, high, shape)
 
     @property
     def middle(self) -> Array:
@@ -285,26 +259,26 @@ class BezierSpans:
 
     def quarters(self, which: NDArray[np.bool_]) -> BezierSpans:
         """Four equal parts, by the parameter, of each stretch that the mask (n,) marks."""
-        return BezierSpans.over(self.held, *quartered(self.piece, self.low, self.high, which))
+        return BezierSpans.over(self.path, *quartered(self.piece, self.low, self.high, which))
 
     def one(self, i: int) -> BezierSpans:
         """Stretch i alone."""
-        return BezierSpans.over(self.held, self.piece[[i]], self.low[[i]], self.high[[i]])
+        return BezierSpans.over(self.path, self.piece[[i]], self.low[[i]], self.high[[i]])
 
     def summit(self, law: Law, where: float) -> Array:
         """Shaft angles, (2,): `where` off the middle of a single span, and a Newton step on to its greatest error."""
-        path = self.held.path
+        path = self.path
         _, rate = path.at(self.piece, self.middle)
         t = np.clip(self.middle + where / rate, self.low, self.high)
         state, rate = path.at(self.piece, t)
-        _, slope, bend = state.error(self.held.meant(law.rows(state.phi)))
+        _, slope, bend = state.error(own_rows(path.contact, law.rows(state.phi)))
         step = np.where(bend * slope != 0.0, -slope / bend, 0.0)
         near, _ = path.at(self.piece, np.clip(t + step / rate, self.low, self.high))
         return np.concatenate([state.phi, near.phi])
 
     def state(self) -> State:
         """Roller centre and its derivatives at the middles of the stretches."""
-        return self.held.path.at(self.piece, self.middle)[0]
+        return self.path.at(self.piece, self.middle)[0]
 
     def limits(self, state: State) -> Limits:
         """Bounds of the derivatives over the stretches."""
@@ -312,7 +286,7 @@ class BezierSpans:
 
     def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
         """Upper bounds of the absolute error, one reached in each span, and where, off the middle: (n,) each."""
-        error = state.error(self.held.meant(rows))
+        error = state.error(own_rows(self.path.contact, rows))
         (up, high, at), (down, low, other) = (
             bounds_of_error(sign * error, most, self.half, self.shape.inner) for sign in (1.0, -1.0)
         )

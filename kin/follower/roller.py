@@ -26,7 +26,7 @@ from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.guide import led
 from kin.follower.laws import GuidedPitch, leeway
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
-from kin.follower.on_spline import OnSpline, SplinePath
+from kin.follower.on_spline import SplinePath
 from kin.follower.rests import dwell_angles
 from kin.follower.tracking import Greatest, Held, greatest, greatest_error, outward
 from kin.numeric.angles import TURN, degrees
@@ -222,14 +222,13 @@ class _Rollers(Moved):
 
     def _judged_on_spline(self, contour: Contour, phi: Array) -> Judged:
         """Judge on the contour's own Bezier pieces, if these are smooth. UnsettledError where they are not."""
-        each = list(zip(self.contacts, self.guides, strict=True))
-        paths = [SplinePath.of(contour, self.side * self.radius, guide, contact.turned) for contact, guide in each]
-        steps, held = with_steps(phi), [OnSpline(path, contact) for path, (contact, _) in zip(paths, each, strict=True)]
-        counted = held[: self.judged]
+        each = zip(self.contacts, self.guides, strict=True)
+        paths = [SplinePath.of(contour, self.side * self.radius, guide, contact) for contact, guide in each]
+        steps, counted = with_steps(phi), paths[: self.judged]
         angles = np.concatenate(
             [steps, *(path.ends for path in paths), *(rests := list(dwell_angles(self.rests, phi)))]
         )
-        place = np.stack([contact.contact.position(contact.reached(angles)) for contact in held])
+        place = np.stack([path.contact.position(path.reached(angles)) for path in paths])
         errors = place[: self.judged, : len(steps)] - self.course.rows(steps)[0]
         sampled = Greatest(*greatest(np.abs(errors).max(axis=0), steps), 0.0)
         proved = greatest_error(counted, self.course, sampled)
@@ -373,7 +372,7 @@ def hold_roller(obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[An
     if few:
         pieces, _ = shortened(obstacle, guide)
         phi = np.concatenate([looked, end_angles(pieces, guide, looked)])
-    return Held(pieces, guide, phi, *touched(Search.of(pieces, guide), phi), contact.zero, contact.sense)
+    return Held(pieces, guide, phi, *touched(Search.of(pieces, guide), phi), contact)
 
 
 def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
@@ -410,7 +409,7 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
     for _ in range(ROUNDS):
         intended = law.rows(looked)
         errors = [
-            np.abs(roller.guide.position(touched(search, looked)[0]) - roller.meant(intended.copy())[0])
+            np.abs(roller.guide.position(touched(search, looked)[0]) - roller.contact.own(intended[0]))
             for roller, search in zip(rollers, searches, strict=True)
         ]
         error = np.max(errors, axis=0)

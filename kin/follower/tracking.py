@@ -18,12 +18,13 @@ error found so far are cut in four. The roller's position is the greatest that a
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, nearest_on
 from kin.follower.contact import angles_of, extent, first_contact, meet, within_reach
+from kin.follower.laws import own_rows
 from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass, replace
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.follower.guide import Guide
+    from kin.law.contacts import Contact
     from kin.numeric.arrays import Array, Indices
 
 SHARE = 1e-6  # of the error, to which it is found
@@ -105,8 +107,9 @@ class Tracked(Protocol):
     def resolution(self) -> float:
         """Greatest motion error, mm or rad, that rounding may feign."""
 
-    def meant(self, rows: Array) -> Array:
-        """Intended own position and its derivatives (m, n), mm or rad, from the law's rows (m, n)."""
+    @property
+    def contact(self) -> Contact[Any, Any]:
+        """Contact of the follower, which says where the roller is meant to be."""
 
     def reached(self, phi: Array) -> Array:
         """Own position (n,), mm or rad, of the roller in contact at shaft angles phi (n,), rad."""
@@ -134,7 +137,7 @@ class Held:
     """A guided roller held on `pieces`, short ones (`kin.follower.contact.shortened`), that bound its centre.
 
     At shaft angles phi (n,) it touches pieces `piece` (n,) at distances r (n,) from the shaft; among them are the ends
-    of all pieces. It is meant to be at offset + sense * law.
+    of all pieces. `contact` says where it is meant to be.
     """
 
     pieces: Arcs
@@ -142,19 +145,12 @@ class Held:
     phi: Array
     r: Array
     piece: Indices
-    offset: float = 0.0
-    sense: int = 1
+    contact: Contact[Any, Any]
 
     @cached_property
     def position(self) -> Array:
         """Position (n,) of the guide, mm or rad, in the contacts known."""
         return self.guide.position(self.r)
-
-    def meant(self, rows: Array) -> Array:
-        """Intended own position and its derivatives (m, n), mm or rad, from the law's rows (m, n)."""
-        meant = self.sense * rows
-        meant[0] += self.offset
-        return meant
 
     def reached(self, phi: Array) -> Array:
         """Own position (n,), mm or rad, of the roller in contact at shaft angles phi (n,), rad."""
@@ -320,7 +316,7 @@ class Spans:
     def summit(self, law: Law, where: float) -> Array:
         """Shaft angles, (2,): `where` off the middle of a single span, and a Newton step on to its greatest error."""
         state = replace(self, middle=self.middle + where).state()
-        _, slope, bend = self.sign * state.error(self.held.meant(law.rows(state.phi)))
+        _, slope, bend = self.sign * state.error(own_rows(self.held.contact, law.rows(state.phi)))
         step = -slope / bend if bend[0] < 0.0 else np.zeros(1)
         near = replace(self, middle=self.middle + np.clip(where + step, -self.half, self.half))
         return np.concatenate([state.phi, near.state().phi])
@@ -336,7 +332,7 @@ class Spans:
 
     def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
         """See `Stretches`; bounds of sign * error."""
-        return bounds_of_error(self.sign * state.error(self.held.meant(rows)), most, self.half, self.half)
+        return bounds_of_error(self.sign * state.error(own_rows(self.held.contact, rows)), most, self.half, self.half)
 
 
 def greatest(error: Array, phi: Array) -> tuple[float, float]:
@@ -384,7 +380,7 @@ def greatest_error(rollers: Sequence[Tracked], law: Law, sampled: Greatest, trie
         # a piece may stand back behind another one there: what counts is where the roller is
         number, span, off = best
         on, phi = rollers[number], span.summit(law, off)
-        errors = np.abs(on.reached(phi) - on.meant(law.rows(phi))[0])
+        errors = np.abs(on.reached(phi) - on.contact.own(law.rows(phi)[0]))
         claimed, (error, at) = error, greatest(errors, phi)
         if tries and not claimed <= error + SHARE * claimed + resolution:
             looked = [roller.looked_at_about(np.array([at])) if roller is on else roller for roller in rollers]
@@ -400,7 +396,7 @@ def outward(roller: Held, law: Law) -> tuple[Array, Array]:
     """Error (n,) by which each of n pieces, touched or not, puts the roller out midway along it, and shaft angle."""
     spans = Spans(roller, np.ones(0), np.arange(len(roller.pieces)), 0.5 * roller.pieces.length, np.zeros(0))
     state = spans.state()
-    error = state.error(roller.meant(law.rows(state.phi)))[0]
+    error = state.error(own_rows(roller.contact, law.rows(state.phi)))[0]
     return np.where(within_reach(roller.pieces, roller.guide, roller.slack), error, -np.inf), state.phi
 
 

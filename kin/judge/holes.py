@@ -1,17 +1,18 @@
 """Openings that are meant to be in a part, each found once at its place: matched with what a file holds, and measured.
 
 Distances between two closed chains of lines and arcs are taken at points so close that nothing between them is farther
-off by more than `FINE` of the tolerance; ends and middles of all pieces are among them.
+off by more than `FINE` of the tolerance. Ends and middles of all pieces are among them, and are enough where both
+chains are the same pieces within so much.
 """
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.contour.arcs import left
 from kin.contour.contour import Contour
 from kin.contour.nearest import nearest
 from kin.judge.check import Check, at_most
@@ -164,24 +165,23 @@ def _size(contour: Contour) -> float:
 
 
 def apart(contour: Contour, other: Contour, fine: float) -> float:
-    """Two-sided distance of two closed contours, mm, to within `fine`; of two circles in closed form."""
+    """Two-sided distance of two closed contours, mm, to within `fine`."""
     first, second = contour.as_arcs()[0], other.as_arcs()[0]
-    circles = [circle for chain in (first, second) if (circle := _circle_of(chain)) is not None]
-    if len(circles) == 2:
-        (centre, radius), (place, size) = circles
-        return float(np.hypot(*(centre - place)) + abs(radius - size))
     bend = float(max(np.abs(first.curvature).max(), np.abs(second.curvature).max()))
+    if _piece_by_piece(first, second) <= fine:
+        fine = math.inf
     return max(_farthest(first, second, bend, fine), _farthest(second, first, bend, fine))
 
 
-def _circle_of(chain: Arcs) -> tuple[Array, float] | None:
-    """Centre (2,) and radius, mm, of the circle that a closed chain is; None of any other."""
-    if not chain.curvature.all():
-        return None
-    radius = 1.0 / chain.curvature
-    centre = chain.start + radius[:, None] * left(chain.tangent)
-    off = max(np.ptp(radius), np.ptp(centre, axis=0).max())
-    return (centre[0], abs(float(radius[0]))) if off <= ROUNDING * np.abs(radius).max() else None
+def _piece_by_piece(first: Arcs, second: Arcs) -> float:
+    """Bound of how far two chains lie apart, mm, each piece from that of its number; infinite for other numbers."""
+    if len(first) != len(second):
+        return math.inf
+    turn = np.hypot(*(first.tangent - second.tangent).T) + 0.5 * first.length * np.abs(
+        first.curvature - second.curvature
+    )
+    off = np.hypot(*(first.start - second.start).T) + first.length * turn + np.abs(first.length - second.length)
+    return float(off.max())
 
 
 def _farthest(chain: Arcs, other: Arcs, bend: float, fine: float) -> float:

@@ -155,7 +155,7 @@ def test_splines_and_the_arcs_in_their_place_agree(name: str, monkeypatch: pytes
 def test_a_spline_with_a_corner_is_followed_by_arcs_and_proved(corner: float, monkeypatch: pytest.MonkeyPatch) -> None:
     contour = closed(ROLLER, 60, corner)
     with pytest.raises(UnsettledError, match="the contour has corners"):
-        SplinePath.of(contour, RADIUS, Line(0.0), 0.0)
+        SplinePath.of(contour, RADIUS, Line(0.0), ROLLER.contacts[0])
     motion = ROLLER.judge(contour, FEW).motion
     dense = np.linspace(-0.05, 0.05, 4001)
     true = np.abs(followers.resting(ROLLER, contour.within(1e-9), dense) - ROLLER.intended(dense)).max()
@@ -177,6 +177,8 @@ def test_paths_that_are_no_graph_of_a_position_are_left_to_arcs() -> None:
             Pieces.from_unrolled(Beziers(control, np.ones(control.shape[:2])).unrolled().pieces)
         )
         with pytest.raises(UnsettledError, match=why):
-            SplinePath.of(contour, RADIUS, Line(0.0), 0.0)
+            SplinePath.of(contour, RADIUS, Line(0.0), ROLLER.contacts[0])
     with pytest.raises(UnsettledError, match="not all of the contour are polynomials"):
-        SplinePath.of(Contour.from_bulges(np.array([[5.0, 0.0], [-5.0, 0.0]]), np.ones(2)), RADIUS, Line(0.0), 0.0)
+        SplinePath.of(
+            Contour.from_bulges(np.array([[5.0, 0.0], [-5.0, 0.0]]), np.ones(2)), RADIUS, Line(0.0), ROLLER.contacts[0]
+        )
