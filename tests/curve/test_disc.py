@@ -1,4 +1,7 @@
-"""Disc cams: the moving frame against mpmath, its bounds against dense samples, the contour against its follower."""
+"""Disc cams: the moving frame against mpmath, its bounds against dense samples, the contour against its follower.
+
+Holds: camgeo.curve.face.
+"""
 
 from __future__ import annotations
 

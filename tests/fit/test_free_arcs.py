@@ -1,6 +1,6 @@
 """Arcs with free joints: how few they are, that they join in tangent, and that their bound holds.
 
-The curves of `test_fit` and `test_fit_wunderlich` measure the same fits against oracles of their own; here the counts
+The curves of `test_arcs` and `test_fit_wunderlich` measure the same fits against oracles of their own; here the counts
 are held to the theory and the parts of the method are made to fail.
 """
 

@@ -1,4 +1,7 @@
-"""Tables for electronic cams: what a drive makes of them is within what they say, and a row that is off is refused."""
+"""Tables for electronic cams: what a drive makes of them is within what they say, and a row that is off is refused.
+
+Holds: kin.judge.drive.
+"""
 
 import csv
 import math

@@ -8,7 +8,7 @@ import pytest
 from kin.contour.contour import Contour
 from kin.judge.holes import Tally, apart, round_hole, tally
 
-FINE = 1e-5
+FINE, TOLERANCE = 1e-5, 0.01  # mm
 SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
 
 
@@ -47,3 +47,25 @@ def test_a_hole_that_is_missing_and_one_too_many_are_named_at_their_places() -> 
     assert "hole 2 at (-20, 0) is missing" in check.detail
     assert "about (0, 20), where none is expected" in check.detail
     assert tallies["holes"].worst == pytest.approx(2e-4, abs=FINE)
+
+
+def test_distance_sees_what_only_one_side_has() -> None:
+    square = np.array([[5, -5], [5, 5], [-5, 5], [-5, -5]], dtype=float)
+    notched = np.insert(square, 1, [[5, -0.01], [3, 0.0], [5, 0.01]], axis=0)
+    one, two = Contour.from_vertices(square), Contour.from_vertices(notched)
+    assert apart(one, two, 1e-4) == pytest.approx(2.0, abs=1e-6)
+    assert apart(two, one, 1e-4) == pytest.approx(2.0, abs=1e-6)
+
+
+def test_openings_are_matched_one_to_one() -> None:
+    meant = [round_hole(f"hole {k}", "holes", (4.0 * k, 0.0), 3.0) for k in range(3)]
+    contours = [hole.contour for hole in meant]
+    tallies: dict[str, Tally] = {}
+    tally(tallies, [contours[2], contours[0], contours[1]], meant, TOLERANCE)
+    assert tallies["holes"].faults == []
+    assert tallies["holes"].worst == pytest.approx(0.0, abs=1e-12)
+    tallies = {}
+    tally(tallies, [contours[0], contours[0], contours[1]], meant, TOLERANCE)
+    assert len(tallies["holes"].faults) == 2  # one is missing, one is there twice
+    assert not Tally(worst=0.011).check("holes", TOLERANCE).ok
+    assert Tally(worst=0.0099).check("holes", TOLERANCE).ok

@@ -2,6 +2,8 @@
 
 The sound files come from formulas by numpy alone (`camfiles`); what drives the output falsely must be reported by the
 output's own error, from DXF and from STL.
+
+Holds: kin.judge.linkage_checks.
 """
 
 import dataclasses

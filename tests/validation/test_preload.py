@@ -2,6 +2,8 @@
 
 The cases are f01, f03, f04, f05 and f26 of the sheet on forces. Their forces are of first order in the interference:
 springs on the true contours differ by up to 2e-4 of them.
+
+Holds: camgeo.cams.preload.
 """
 
 import json

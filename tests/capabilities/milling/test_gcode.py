@@ -1,4 +1,7 @@
-"""Milling programs: what they leave, by a simulation of its own; what the reader refuses; planted faults."""
+"""Milling programs: what they leave, by a simulation of its own; what the reader refuses; planted faults.
+
+Holds: kin.judge.cuts.
+"""
 
 import math
 import re

@@ -10,9 +10,8 @@ from support.heavy import ezdxf
 from support.parts import failures, files_of, recipe_of
 
 from camgeo.synthesis.intent import intended
-from kin.contour.contour import Contour
 from kin.follower.envelope import FlatEnvelope
-from kin.judge.holes import Hole, Tally, apart, round_hole, tally
+from kin.judge.holes import Hole, round_hole
 from kin.judge.layers import CrossHole, Layer, faces, heights, slotted, volume
 from kin.law.support_function import lift_from_fourier
 from kin.read.drawing.dxf import read_dxf
@@ -266,35 +265,6 @@ def test_section_that_is_not_there_is_told(solid):
 
 
 # --- parts of the judge, against closed forms -----------------------------------------------------------------------
-
-
-def test_distance_of_two_circles_is_exact():
-    one, two = (round_hole("", "holes", (x, 0.0), 10.0).contour for x in (0.0, 0.02))
-    assert apart(one, two, 1e-6) == pytest.approx(0.02, abs=2e-6)
-    smaller = round_hole("", "holes", (0.0, 0.0), 9.9).contour
-    assert apart(one, smaller, 1e-6) == pytest.approx(0.05, abs=1e-9)
-
-
-def test_distance_sees_what_only_one_side_has():
-    square = np.array([[5, -5], [5, 5], [-5, 5], [-5, -5]], dtype=float)
-    notched = np.insert(square, 1, [[5, -0.01], [3, 0.0], [5, 0.01]], axis=0)
-    one, two = Contour.from_vertices(square), Contour.from_vertices(notched)
-    assert apart(one, two, 1e-4) == pytest.approx(2.0, abs=1e-6)
-    assert apart(two, one, 1e-4) == pytest.approx(2.0, abs=1e-6)
-
-
-def test_openings_are_matched_one_to_one():
-    meant = [round_hole(f"hole {k}", "holes", (4.0 * k, 0.0), 3.0) for k in range(3)]
-    found = [hole.contour for hole in meant]
-    tallies = {}
-    tally(tallies, [found[2], found[0], found[1]], meant, E)
-    assert tallies["holes"].faults == []
-    assert tallies["holes"].worst == pytest.approx(0.0, abs=1e-12)
-    tallies = {}
-    tally(tallies, [found[0], found[0], found[1]], meant, E)
-    assert len(tallies["holes"].faults) == 2  # one is missing, one is there twice
-    assert not Tally(worst=0.011).check("holes", E).ok
-    assert Tally(worst=0.0099).check("holes", E).ok
 
 
 def test_ring_cut_open_by_a_slot():

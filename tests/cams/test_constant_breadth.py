@@ -1,4 +1,7 @@
-"""Sharp and irregular Reuleaux polygons from recipe to file: corners that are points, and faults that are seen."""
+"""Sharp and irregular Reuleaux polygons from recipe to file: corners that are points, and faults that are seen.
+
+Holds: camgeo.cams.family, camgeo.cams.follower, camgeo.fit.cache.
+"""
 
 import json
 import math

@@ -1,4 +1,7 @@
-"""Disc cams as recipes write them: tables on stems and arms, long strokes, hollows of a knife edge, sizes that fail."""
+"""Disc cams as recipes write them: tables on stems and arms, long strokes, hollows of a knife edge, sizes that fail.
+
+Holds: camgeo.cams.guided.
+"""
 
 import math
 

@@ -1,4 +1,7 @@
-"""Necks of pitch curves, against closed forms and against all pairs of many points."""
+"""Necks of pitch curves, against closed forms and against all pairs of many points.
+
+Holds: camgeo.curve.undercut.tangents.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""What would help a groove: remedies of undercut on either flank, tried; a size that both flanks obey."""
+"""What would help a groove: remedies of undercut on either flank, tried; a size that both flanks obey.
+
+Holds: camgeo.cams.sizing, camgeo.cams.surface.
+"""
 
 import math
 import re
