@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kin.numeric.chebyshev import DEGREE, evaluated, split, together, value
+from kin.numeric.chebyshev import DEGREE, DERIVATIVE, INTEGRAL, NODES, evaluated, fitted, split, together, value
 
 
 @given(st.integers(1, 3000), st.integers(0, 2**32 - 1))
@@ -30,3 +30,27 @@ def test_on_parts_a_series_is_the_same_function(parts: int, seed: int) -> None:
     for part in range(parts):
         whole = together(series, (2.0 * part + 1.0 + x) / parts - 1.0)
         assert np.abs(together(cut[:, :, part], x) - whole).max() < 1e-11
+
+
+def test_a_polynomial_of_the_degree_is_its_own_series() -> None:
+    rng = np.random.default_rng(1)
+    power = rng.normal(size=9)
+    series = fitted(np.polynomial.polynomial.polyval(NODES, power))
+    assert series[:9] == pytest.approx(np.polynomial.chebyshev.poly2cheb(power), abs=1e-14)
+    assert np.abs(series[9:]).max() < 1e-14
+
+
+@pytest.mark.parametrize("count", [7, 5000])  # either way of summing
+def test_values_derivative_and_integral_of_an_exponential(count: int) -> None:
+    x = np.linspace(-1.0, 1.0, count)
+    series = fitted(np.exp(NODES))[None]
+    row = np.zeros(count, dtype=np.intp)
+    assert evaluated(series, row, x) == pytest.approx(np.exp(x), rel=1e-14)
+    assert evaluated(series @ DERIVATIVE.T, row, x) == pytest.approx(np.exp(x), abs=1e-11)
+    assert evaluated(series @ INTEGRAL.T, row, x) == pytest.approx(np.exp(x) - np.exp(-1.0), abs=1e-14)
+
+
+def test_the_degree_holds_four_radians() -> None:
+    series = fitted(np.cos(4.0 * NODES))
+    assert np.abs(series[-2:]).max() < 1e-15
+    assert np.abs(fitted(np.cos(16.0 * NODES))[-2:]).max() > 1e-4

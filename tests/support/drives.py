@@ -30,3 +30,16 @@ class Saw:
     def rows(self, phi):
         up = phi < np.pi
         return np.stack([np.where(up, phi, TURN - phi), np.where(up, 1.0, -1.0), np.zeros_like(phi)])
+
+
+class Still:
+    """A face that does not move."""
+
+    breaks = np.empty(0)
+    smooth = True
+
+    def __init__(self, position=0.0):
+        self.position = position
+
+    def rows(self, phi):
+        return np.stack([np.full_like(phi, self.position), np.zeros_like(phi), np.zeros_like(phi)])

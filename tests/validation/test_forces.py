@@ -243,9 +243,9 @@ def test_the_table_of_two_surfaces(text, contacts, tmp_path):
 
 def test_contact_that_a_weak_spring_loses():
     recipe = read((LOBE + "dynamics: {mass: 1.2, rate: 8000, rpm: 900, preload: 100}\n").encode(), Path("lobe.yaml"))
-    from camgeo.capabilities.dynamics.force_figures import found_forces
+    from camgeo.capabilities.dynamics.force_figures import rigid_forces
 
-    (check,) = found_forces(recipe, designed(recipe)).checks
+    (check,) = rigid_forces(recipe, designed(recipe)).checks
     assert not check.ok
     assert check.value == pytest.approx(100.0 - 161.057194334, abs=1e-8)  # 20 N are left with 181.06
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from camgeo.capabilities.dynamics.force_figures import extremes_of, found_forces
+from camgeo.capabilities.dynamics.force_figures import extremes_of, rigid_forces
 from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
@@ -193,7 +193,7 @@ def test_a_flat_face_needs_more_than_without_friction():
     rubbing, slippery = (extremes_of(running(text(**free, friction=mu))) for mu in (0.3, 1e-12))
     assert rubbing.contacts[0][1].value > 1.01 * slippery.contacts[0][1].value
     assert rubbing.along == slippery.along
-    assert found_forces(running(text(**free)).recipe, running(text(**free)).design).section["guide"]
+    assert rigid_forces(running(text(**free)).recipe, running(text(**free)).design).section["guide"]
 
 
 @pytest.mark.parametrize(
