@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.chebyshev import AT_START, DEGREE, NODES, evaluated, fitted, split
+from kin.numeric.chebyshev import AT_START, DEGREE, NODES, fitted, split
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
@@ -70,12 +70,6 @@ class Drive:
     def find(self, phi: float) -> int:
         """Stretch of a shaft angle in [0, 2 pi]; at a knot the one that begins there."""
         return min(max(int(np.searchsorted(self.knots, phi, side="right")) - 1, 0), len(self) - 1)
-
-    def rows(self, stretch: Indices, phi: Array) -> Array:
-        """Position, velocity and acceleration, (3, n), at shaft angles phi (n,) in the given stretches (n,)."""
-        half = self.half[stretch]
-        x = (phi - self.knots[stretch]) / half - 1.0
-        return np.stack([evaluated(part, stretch, x) for part in (self.position, self.velocity, self.acceleration)])
 
     def split(self, parts: Indices) -> Drive:
         """Cut each stretch into `parts` (m,) equal ones; for shaft speeds close to one another that is done once."""

@@ -21,10 +21,11 @@ import numpy as np
 from kin.dynamics.cycle import ContactSamples, Log, Turn
 from kin.dynamics.events import FREE, LOWER, UPPER, Driven, Pressed, SpentError, Work, dips, first, windows
 from kin.dynamics.flight import Flight, Path
+from kin.dynamics.peaks import ResponseFigure
 from kin.dynamics.response import Response, Samples, response
 from kin.dynamics.train import DynamicsError, Running, Train
 from kin.numeric.arrays import Array
-from kin.numeric.chebyshev import DERIVATIVE, evaluated
+from kin.numeric.chebyshev import AT_START, DERIVATIVE, evaluated, together
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -87,11 +88,10 @@ def course(
 
 def least_gap(lower: Drive, upper: Drive) -> tuple[float, float]:
     """Least distance from the lower to the upper face, at the best of nine angles a stretch, and where."""
-    every = np.repeat(np.arange(len(lower)), 9)
-    phi = lower.knots[every] + np.tile(np.linspace(0.0, 2.0, 9), len(lower)) * lower.half[every]
-    gap = upper.rows(every, phi)[0] - lower.rows(every, phi)[0]
-    worst = int(np.argmin(gap))
-    return float(gap[worst]), float(phi[worst])
+    x = np.linspace(-1.0, 1.0, 9)
+    gap = together(upper.position - lower.position, x)
+    stretch, place = np.unravel_index(np.argmin(gap), gap.shape)
+    return float(gap[stretch, place]), float(lower.knots[stretch] + (1.0 + x[place]) * lower.half[stretch])
 
 
 class _Course:
@@ -143,14 +143,12 @@ class _Course:
         )
 
     def _rest(self) -> State:
-        start = np.array([0])
-        position, velocity, _ = self.lower.rows(start, np.zeros(1))[:, 0]
+        position = float(self.lower.position[0] @ AT_START)
         # before the jump at 0, which belongs to the first stretch
-        velocity -= self.lower.jumps[0]
+        velocity = float(self.lower.velocity[0] @ AT_START - self.lower.jumps[0])
         if self.upper is None:
             return State(LOWER, self.running.static(position), -velocity)
-        above = self.upper.rows(start, np.zeros(1))[0, 0]
-        return State(FREE, 0.5 * (above - position), -velocity)
+        return State(FREE, 0.5 * float(self.upper.position[0] @ AT_START - position), -velocity)
 
     def _alike(self, state: State, other: State) -> bool:
         natural = self.running.bound.natural
@@ -303,7 +301,7 @@ class _Course:
         knots = here.drive.knots
         first_, last = int(samples.stretch[0]), int(samples.stretch[-1])
         begin = float(knots[first_])
-        z = here.states(starts, samples)[0]
+        z = ResponseFigure.of(here, 1.0, 0.0).at(starts, samples)
         deep, bend = -z, self._bends(starts)
         if self.gap is not None:
             deep = np.maximum(deep, z - self._gaps(knots[samples.stretch] + samples.time)[0])

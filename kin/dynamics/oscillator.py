@@ -118,12 +118,6 @@ class Oscillator:
         place, rate = states
         return z * place + v * rate, z * (p * place + rate) - v * (self.square * place + q * rate)
 
-    def moved(self, states: Array, time: Array) -> Array:
-        """States (2, n) of the free motion after times (n,), from states (2, n)."""
-        cosine, other = self.basis(time)
-        pairs = self.factors(states, 1.0, 0.0), self.factors(states, 0.0, 1.0)
-        return np.stack([first * cosine + second * other for first, second in pairs])
-
     def bound(self, states: Array) -> Array:
         """Bound (n,) of |z| over all later times, from states (2, n); it decays with `fading` where it swings."""
         z, v = states

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.dynamics.oscillator import Free
-from kin.numeric.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, evaluated, value
+from kin.numeric.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, value
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
@@ -155,17 +155,6 @@ class Response:
         for _ in range(_PASSES):
             state = state + self.oscillator.periodic(self.end(state, 0, len(self)) - state)
         return state
-
-    def states(self, starts: Array, samples: Samples) -> Array:
-        """Values z and z' (2, n) at the samples, from the states (2, m) at the starts of all stretches."""
-        x = samples.time / self.half[samples.stretch] - 1.0
-        driven = np.stack([evaluated(self.p, samples.stretch, x), evaluated(self.v, samples.stretch, x)])
-        states: Array = driven + self.rung(starts, samples)
-        return states
-
-    def rung(self, starts: Array, samples: Samples) -> Array:
-        """Free part h of z and z' (2, n) at the samples, from the states (2, m) at the starts of all stretches."""
-        return self.oscillator.moved((starts - self._steps[0].T)[:, samples.stretch], samples.time)
 
     def lasting(self, bound: Array, stretches: Indices) -> Array:
         """Time (n,), rad of shaft, after which a free motion of size `bound` (n,) has faded to nothing beside p.

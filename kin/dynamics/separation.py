@@ -17,6 +17,7 @@ from kin.dynamics.events import SpentError, Work, crossing
 from kin.dynamics.separation_bounds import Look, Range
 from kin.dynamics.train import DynamicsError, Train, steady
 from kin.numeric.angles import TURN
+from kin.numeric.chebyshev import together
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ def float_speed(train: Train, drive: Drive, *, most: int = MOST_WORK) -> FloatSp
         raise DynamicsError("without preload contact is lost at any speed")
     if train.damping <= 0.0:
         raise DynamicsError("without damping contact is lost wherever a harmonic resonates, at however low a speed")
-    rigid = _rigid(train, drive)
+    rigid = _rigid_float_rpm(train, drive)
     search = _Search(train, drive, Work(most))
     try:
         begins = search.run()
@@ -198,13 +199,11 @@ def _resonances(train: Train, rpm: float) -> list[float]:
     return [(1.0 + _BESIDE) * rpm * order / near for near in orders if near > 0]
 
 
-def _rigid(train: Train, drive: Drive) -> float | None:
-    """Speed at which F + k_p s + m W^2 s'' first falls to 0, on a grid of 33 points a stretch; None with corners."""
+def _rigid_float_rpm(train: Train, drive: Drive) -> float | None:
+    """Speed, rpm, at which F + k_p s + m W^2 s'' first falls to 0, by 33 points a stretch; None with corners."""
     if (np.abs(drive.jumps) > _CORNER * float(np.abs(drive.velocity).sum(axis=1).max())).any():
         return None
-    every = np.repeat(np.arange(len(drive)), 33)
-    phi = drive.knots[every] + np.tile(np.linspace(0.0, 2.0, 33), len(drive)) * drive.half[every]
-    position, _, bend = drive.rows(every, phi)
+    position, bend = together(np.stack([drive.position, drive.acceleration]), np.linspace(-1.0, 1.0, 33))
     falling = bend < 0.0
     if not falling.any():
         return None

@@ -203,11 +203,10 @@ def _lowest(motion: Excitation) -> float:
     import numpy as np
 
     from kin.dynamics.drive import drives
+    from kin.numeric.chebyshev import together
 
     (drive,) = drives([motion])
-    every = np.repeat(np.arange(len(drive)), 65)
-    phi = drive.knots[every] + np.tile(np.linspace(0.0, 2.0, 65), len(drive)) * drive.half[every]
-    return float(drive.rows(every, phi)[0].min())
+    return float(together(drive.position, np.linspace(-1.0, 1.0, 65)).min())
 
 
 def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[dict[str, Any], Check]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.figures import ON_RETURN, PEAKS, PRELOAD_GREATEST, Figure, Need
@@ -58,6 +59,9 @@ def _is_rigid(paths: AbstractSet[str]) -> bool:
     return "dynamics" in paths and _STIFF not in paths
 
 
+_force = partial(Figure, dear=True, after=PRELOAD_GREATEST)
+_of_run = partial(Figure, of="run", swept=False)
+
 FIGURES: dict[str, Figure] = {
     **{
         name: Figure(
@@ -82,65 +86,18 @@ FIGURES: dict[str, Figure] = {
         dear=True,
         after=ON_RETURN,
     ),
-    FORCE_LEAST: Figure(
-        "least normal force of any contact at the speed, N",
-        Kind.FORCE,
-        "most",
-        OF_FORCES,
-        dear=True,
-        after=PRELOAD_GREATEST,
+    FORCE_LEAST: _force("least normal force of any contact at the speed, N", Kind.FORCE, "most", OF_FORCES),
+    FORCE_GREATEST: _force("greatest normal force of any contact at the speed, N", Kind.FORCE, "least", OF_FORCES),
+    TORQUE: _force("greatest torque of the shaft at the speed, either way, N m", Kind.MOMENT, "least", OF_FORCES),
+    PRESSURE: _force(
+        "greatest pressure of the contacts (Hertz), N/mm²", Kind.PRESSURE, "least", OF_MATERIAL, per="N/mm^2"
     ),
-    FORCE_GREATEST: Figure(
-        "greatest normal force of any contact at the speed, N",
-        Kind.FORCE,
-        "least",
-        OF_FORCES,
-        dear=True,
-        after=PRELOAD_GREATEST,
-    ),
-    TORQUE: Figure(
-        "greatest torque of the shaft at the speed, either way, N m",
-        Kind.MOMENT,
-        "least",
-        OF_FORCES,
-        dear=True,
-        after=PRELOAD_GREATEST,
-    ),
-    PRESSURE: Figure(
-        "greatest pressure of the contacts (Hertz), N/mm²",
-        Kind.PRESSURE,
-        "least",
-        OF_MATERIAL,
-        per="N/mm^2",
-        dear=True,
-        after=PRELOAD_GREATEST,
-    ),
-    GUIDE_FORCE: Figure(
-        "greatest reaction of the stem's guide, N", Kind.FORCE, "least", OF_REACTION, dear=True, after=PRELOAD_GREATEST
-    ),
-    MEAN_FORCE: Figure(
-        "mean force of a roller over its own turns, exponent 10/3, N",
-        Kind.FORCE,
-        "least",
-        OF_BEARING,
-        dear=True,
-        after=PRELOAD_GREATEST,
-    ),
+    GUIDE_FORCE: _force("greatest reaction of the stem's guide, N", Kind.FORCE, "least", OF_REACTION),
+    MEAN_FORCE: _force("mean force of a roller over its own turns, exponent 10/3, N", Kind.FORCE, "least", OF_BEARING),
     SEAT_LOAD: Figure("force of the spring where the follower is lowest, N", Kind.FORCE, "most", OF_COIL),
     OPEN_LOAD: Figure("force of the spring where it is highest, N", Kind.FORCE, "least", OF_COIL),
     COIL_BIND: Figure("what is left to the spring's coils where it is highest", Kind.LENGTH, "most", OF_SOLID),
-    LEAST_FORCE: Figure(
-        "least contact force, N; N m where it turns", Kind.THRUST, "most", OF_SPRING, of="run", swept=False
-    ),
-    PEAK_FORCE: Figure(
-        "greatest contact force, N; N m where it turns", Kind.THRUST, "least", OF_SPRING, of="run", swept=False
-    ),
-    BACKLASH_LEFT: Figure(
-        "least backlash that the dynamics leave between the faces",
-        Kind.ERROR,
-        "most",
-        OF_BACKLASH,
-        of="run",
-        swept=False,
-    ),
+    LEAST_FORCE: _of_run("least contact force, N; N m where it turns", Kind.THRUST, "most", OF_SPRING),
+    PEAK_FORCE: _of_run("greatest contact force, N; N m where it turns", Kind.THRUST, "least", OF_SPRING),
+    BACKLASH_LEFT: _of_run("least backlash that the dynamics leave between the faces", Kind.ERROR, "most", OF_BACKLASH),
 }

@@ -116,7 +116,7 @@ class Forces(NamedTuple):
     checks: tuple[Check, ...]
 
 
-def found_forces(recipe: Recipe, design: Design) -> Forces | None:
+def rigid_forces(recipe: Recipe, design: Design) -> Forces | None:
     """Find the forces of a rigid follower; None where there is none. Raises RecipeErrors for too abrupt a motion."""
     running = running_of(recipe, design)
     if running is None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.dynamics.figures import FIGURES
 from camgeo.capabilities.dynamics.keys import Dynamics, build, check, fields
-from camgeo.registry.capability import Capability
+from camgeo.registry.capability import Capability, Results
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.measures.measured import Measured
     from camgeo.measures.remarks import Remark
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import Estimate, MadeFigures, MadeMotion, Results
+    from camgeo.registry.capability import Estimate, MadeFigures, MadeMotion
     from camgeo.registry.formats import Form
     from camgeo.report.page.curves import Plot
     from camgeo.synthesis.design import Design
@@ -65,9 +65,29 @@ def _exact(recipe: Recipe, exact: ExactCam, _contours: Sequence[tuple[Surface, C
 
 
 def _examine(recipe: Recipe, design: Design, files: Sequence[FileResult], clock: Clock) -> Results:
-    from camgeo.capabilities.dynamics.examine import examine
+    """Dynamics of an elastic train as intended and with each file that shows the cam, and forces of a rigid one."""
+    from camgeo.capabilities.dynamics.force_figures import rigid_forces
 
-    return examine(recipe, design, files, clock)
+    train, sections = recipe.of(Dynamics), dict[str, Any]()
+    checks: Sequence[Check] = ()
+    runs: Mapping[str, Mapping[str | None, Measured]] = {}
+    if train is None:
+        return Results()
+    if train.stiffness is not None:
+        from camgeo.capabilities.dynamics.elastic import dynamics_of
+        from camgeo.capabilities.dynamics.measure import of_runs
+
+        with clock.stage("dynamics"):
+            results = dynamics_of(recipe, design, files)
+        sections["dynamics"], checks = results.section, results.checks
+        runs = of_runs(results.section, checks)
+    with clock.stage("forces"):
+        forces = rigid_forces(recipe, design)
+    if forces is not None:
+        sections["forces"] = forces.section
+        if train.stiffness is None:  # float and what is lost of an elastic train are judged by its own run
+            checks = [*checks, *forces.checks]
+    return Results(sections, checks, runs)
 
 
 def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
@@ -77,9 +97,22 @@ def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
 
 
 def _lost(recipe: Recipe, design: Design) -> Sequence[Remark]:
-    from camgeo.capabilities.dynamics.remarks import lost_contact
+    """Remark on a preloaded contact that inertia and load lift off at the train's speed, which leaves play there."""
+    from camgeo.capabilities.dynamics.running_forces import running_of
+    from camgeo.measures.remarks import Remark
 
-    return lost_contact(recipe, design)
+    if design.exact.preload is None:
+        return []
+    running = running_of(recipe, design)
+    if running is None or running.jam_deg is not None:
+        return []
+    losses = [(loss.rpm, loss) for loss in running.lost_rpm() if loss.rpm is not None]
+    if not losses or min(losses)[0] > running.train.rpm:
+        return []
+    rpm, loss = min(losses)
+    begins = f"from {rpm:.6g} rpm" if rpm > 0.0 else "by its load alone"
+    remark = f"the preload does not hold {loss.contact} at {running.train.rpm:.6g} rpm: it is lost {begins}"
+    return [Remark("lost-contact", rpm, running.train.rpm, "rpm", remark, loss.at_deg)]
 
 
 def _panel(report: dict[str, Any]) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from camgeo.recipe.figures import Figure, Need, lift_key
 from camgeo.schema.fields import Kind
 
@@ -10,40 +12,26 @@ VELOCITY, ACCELERATION = "valve-velocity", "valve-acceleration"
 OF_VALVE = Need("valve", lambda _, paths: "valve" in paths)
 AT, SEAT = 1.0, 0.0  # mm of valve lift at which durations are told, and of the seat
 
+_of_valve = partial(Figure, needs=OF_VALVE, dear=True)
+
 FIGURES: dict[str, Figure] = {
-    LIFT: Figure("greatest lift of the valve", Kind.LENGTH, "most", OF_VALVE, dear=True),
-    DURATION: Figure(
+    LIFT: _of_valve("greatest lift of the valve", Kind.LENGTH, "most"),
+    DURATION: _of_valve(
         "crank degrees for which the valve is above a lift of 1 mm",
         Kind.ANGLE,
         "most",
-        OF_VALVE,
-        dear=True,
         at_lift=AT,
         keys=lift_key(AT),
     ),
-    VELOCITY: Figure(
-        "greatest velocity of the open valve, per radian of the cam",
-        Kind.LENGTH,
-        "least",
-        OF_VALVE,
-        "/rad",
-        dear=True,
+    VELOCITY: _of_valve("greatest velocity of the open valve, per radian of the cam", Kind.LENGTH, "least", per="/rad"),
+    ACCELERATION: _of_valve(
+        "greatest acceleration of the open valve, per radian squared", Kind.LENGTH, "least", per="/rad^2"
     ),
-    ACCELERATION: Figure(
-        "greatest acceleration of the open valve, per radian squared",
-        Kind.LENGTH,
-        "least",
-        OF_VALVE,
-        "/rad^2",
-        dear=True,
-    ),
-    SEATING: Figure(
+    SEATING: _of_valve(
         "velocity with which the valve leaves or meets its seat, the greater, a cam degree",
         Kind.LENGTH,
         "least",
-        OF_VALVE,
-        "/deg",
-        dear=True,
+        per="/deg",
         at_lift=SEAT,
         keys=lift_key(SEAT),
     ),
