@@ -11,18 +11,18 @@ if TYPE_CHECKING:
     from camgeo import capabilities
     from camgeo.api.check import Check, Figure, Figures
     from camgeo.api.design import Design
-    from camgeo.api.designing import design
     from camgeo.api.edges import Arc, Edges, Line, Spline
-    from camgeo.api.errors import BusyError, CallError, CamgeoError, SurroundingsError
     from camgeo.api.laws import Law, laws
     from camgeo.api.loading import load
     from camgeo.api.report import File, Remark, Report
-    from camgeo.api.run import check, export, verify
+    from camgeo.api.run import check, design, export, verify
     from camgeo.capabilities import *  # noqa: F403 - their folder says which names these are
+    from camgeo.common.errors import BusyError, CallError, SurroundingsError
     from camgeo.fit.nodes import ToleranceError
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
+    from kin.numeric.errors import CamgeoError
 
     __all__ = [  # noqa: RUF022 - a list of literals, for whoever reads this file without running it
         "__version__",
@@ -58,9 +58,9 @@ if TYPE_CHECKING:
 if not TYPE_CHECKING:  # a type checker then knows the names above, and no others
     _CORE = {
         "Arc": "camgeo.api.edges",
-        "BusyError": "camgeo.api.errors",
-        "CallError": "camgeo.api.errors",
-        "CamgeoError": "camgeo.api.errors",
+        "BusyError": "camgeo.common.errors",
+        "CallError": "camgeo.common.errors",
+        "CamgeoError": "kin.numeric.errors",
         "Check": "camgeo.api.check",
         "Design": "camgeo.api.design",
         "Edges": "camgeo.api.edges",
@@ -74,11 +74,11 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
         "Remark": "camgeo.api.report",
         "Report": "camgeo.api.report",
         "Spline": "camgeo.api.edges",
-        "SurroundingsError": "camgeo.api.errors",
+        "SurroundingsError": "camgeo.common.errors",
         "ToleranceError": "camgeo.fit.nodes",
         "UnitsError": "kin.judge.verify",
         "check": "camgeo.api.run",
-        "design": "camgeo.api.designing",
+        "design": "camgeo.api.run",
         "export": "camgeo.api.run",
         "laws": "camgeo.api.laws",
         "load": "camgeo.api.loading",
@@ -87,9 +87,9 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
 
     def _homes() -> dict[str, str]:
         """Module of each name: the core's, and those that the labels of capabilities add."""
-        from camgeo.registry.registry import names
+        from camgeo.registry.registry import library_names
 
-        return {**_CORE, **names()}
+        return {**_CORE, **library_names()}
 
     def __getattr__(name: str) -> object:
         """Import a name of the library when it is first asked for."""

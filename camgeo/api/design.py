@@ -10,8 +10,8 @@ import numpy as np
 from camgeo.api import notebook
 from camgeo.api.check import Check, Figure, Figures
 from camgeo.api.edges import FORMS, Edges, Form
-from camgeo.api.errors import CallError
 from camgeo.common.arguments import number_of, numbers_of, short_repr, text_of, whole_of
+from camgeo.common.errors import CallError
 from camgeo.schema.fields import MOST
 from kin.numeric.records import dataclass, field
 

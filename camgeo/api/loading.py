@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from camgeo.common.arguments import is_a, path_of
+from camgeo.common.arguments import demand_type, path_of
 from camgeo.common.errors import with_packages
 from camgeo.recipe.loading import load as load_file
 from camgeo.recipe.loading import load_order, load_order_text
@@ -33,7 +33,7 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
     without `name` is called recipe. Raises RecipeErrors with every fault, its line, column and remedy, and TypeError
     for another type.
     """
-    is_a("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
+    demand_type("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
     if isinstance(source, Mapping):
         from camgeo.schema.change import yaml_text
 
@@ -44,14 +44,14 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
 
 
 def order_of(recipe: OrderSource) -> Order:
-    """Recipe of any kind, read from its file if the argument is a path; raises as `load` does."""
+    """Recipe of any kind, read from its file if the argument is a path; raises RecipeErrors, TypeError."""
     if isinstance(recipe, (str, PathLike)):
         return load_order(path_of("recipe", recipe))
-    is_a("recipe", recipe, Order, "a Recipe or the path of one")
+    demand_type("recipe", recipe, Order, "a Recipe or the path of one")
     return recipe
 
 
 def recipe_of(recipe: RecipeSource) -> Recipe:
-    """Recipe of one cam, read from its file if the argument is a path; raises as `load` does."""
-    is_a("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
+    """Recipe of one cam, read from its file if the argument is a path; raises RecipeErrors, TypeError."""
+    demand_type("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
     return recipe if isinstance(recipe, Recipe) else load_file(path_of("recipe", recipe))

@@ -8,9 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from camgeo.api.check import Check
-from camgeo.api.errors import CallError
 from camgeo.api.json_value import JSON
-from camgeo.common.arguments import is_a
+from camgeo.common.arguments import demand_type
+from camgeo.common.errors import CallError
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.api.check import Figures
-    from camgeo.api.designing import Designed
+    from camgeo.api.run import Designed
     from camgeo.recipe.recipe import Order
 
 
@@ -120,7 +120,7 @@ class Report(Mapping[str, JSON]):
     @cached_property
     def design(self) -> Designed:
         """Design of the recipe, computed at first use, as of `camgeo.design`."""
-        from camgeo.api.designing import design
+        from camgeo.api.run import design
 
         return design(self.recipe)
 
@@ -135,7 +135,7 @@ class Report(Mapping[str, JSON]):
 
         Raises CallError for a check that is not among `checks`, TypeError for what is no Check.
         """
-        is_a("check", check, Check, "a Check")
+        demand_type("check", check, Check, "a Check")
         if check not in self.checks:
             raise CallError(f"{self.recipe.name}: {check.name} is none of this report's checks; give one of .checks")
         return explanation(self._document["checks"][self.checks.index(check)], self._document, self.recipe)

@@ -1,15 +1,14 @@
-"""Functions that write and judge the files of a recipe, or judge files of any origin by it."""
+"""Functions that design the cam of a recipe, write and judge its files, or judge files of any origin by it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
-from camgeo.api.errors import CallError
 from camgeo.api.loading import order_of
 from camgeo.api.log import library_log, log_failures, stage_reporter
 from camgeo.api.report import Report
-from camgeo.common.arguments import demand_callable, is_a, number_of, path_of, short_repr, texts_of
-from camgeo.common.errors import with_packages
+from camgeo.common.arguments import demand_callable, demand_type, number_of, path_of, short_repr, texts_of
+from camgeo.common.errors import CallError, with_packages
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.registry import registry
@@ -22,9 +21,34 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
+    from camgeo.api.design import Design
     from camgeo.api.loading import OrderSource
     from camgeo.common.units import Units
-    from camgeo.recipe.recipe import Order
+    from camgeo.recipe.recipe import Order, Recipe
+
+
+Designed: TypeAlias = "Design | Any"
+"""A Design, or what a recipe of another kind has: Any to a type checker, as what a path leads to is seen when read."""
+
+
+@overload
+def design(recipe: Recipe) -> Design: ...
+
+
+@overload
+def design(recipe: Order | str | PathLike[str]) -> Designed: ...
+
+
+@with_packages()
+def design(recipe: OrderSource) -> Designed:
+    """Design the cam of a recipe, or all cams of one of another kind: no file is made, and no contour fitted.
+
+    Raises RecipeErrors where there is no such motion or curve. A check that fails raises nothing: see `Design.ok`.
+    """
+    recipe = order_of(recipe)
+    result = root_of(recipe).design(recipe)
+    log_failures(recipe.name, result.checks)
+    return result
 
 
 @with_packages()
@@ -60,7 +84,7 @@ def export(
 
 @with_packages()
 def check(recipe: OrderSource, *, progress: Callable[[str], None] | None = None, **options: bool) -> Report:
-    """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
+    """Make and judge all of a recipe's files, and keep none of them; raises the errors of `export` but CallError."""
     recipe = order_of(recipe)
     demand_callable("progress", progress)
     used = _with_options("check", recipe, options)
@@ -98,8 +122,8 @@ def verify(
     within = None if tolerance is None else number_of("tolerance", tolerance)
     gap_width = None if gap is None else number_of("gap", gap)
     if units is not None:
-        is_a("units", units, str, "a str")
-    is_a("page", page, bool, "a bool")
+        demand_type("units", units, str, "a str")
+    demand_type("page", page, bool, "a bool")
     known_options = {name for judge in registry.judges().values() for name in judge.options}
     judge_options = {name: value for name, value in options.items() if name in known_options}
     used = _with_options(
@@ -185,7 +209,7 @@ def _with_options(function: str, recipe: Order, options: Mapping[str, object]) -
     for name, value in options.items():
         if name not in known_options:
             raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
-        is_a(name, value, bool, "a bool")
+        demand_type(name, value, bool, "a bool")
     return recipe.using(*(name for name, value in options.items() if value))
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from dataclasses import asdict
 from functools import partial
 from typing import TYPE_CHECKING
 
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
 from camgeo.common import workers
+from camgeo.common.terminal import escaped
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -57,7 +59,7 @@ def results(recipes: Sequence[Order], task: Task, jobs: int | None) -> Iterator[
         seconds_each = (spent - warm) / (number - 1) if number > 1 else max(spent - started - IMPORTS, 0.0)
         remaining = recipes[number:]
         count = workers.needed(workers.available() if jobs is None else jobs, len(remaining))
-        fork = workers.alone()
+        fork = workers.may_fork()
         if count > 1 and number and seconds_each * len(remaining) > (FORKED if fork else PAYS):
             yield from _in_parallel(remaining, task, count, fork=fork)
             return
@@ -107,3 +109,21 @@ def result(recipe: Order, task: Task, progress: Progress | None = None) -> Resul
             progress.clear()
     left_out = "\n".join(f"camgeo: {recipe.name}: {name} is left out: {why}" for name, why in report.missing.items())
     return Result(report, left_out, FAILED if not report.ok else SURROUNDINGS if left_out else OK)
+
+
+def folder_conflicts(recipes: Sequence[Order]) -> list[str]:
+    """Faults of recipes that would write into the same folder: a file named twice, or a name used twice."""
+    paths = [recipe.path.resolve() for recipe in recipes]
+    again = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]
+    if again:
+        text = "the same recipe is named twice in this call; name it once"
+        return [f"{escaped(str(recipe.path))}: {text}" for recipe in again]
+    names = [recipe.name.casefold() for recipe in recipes]
+    twice = [recipe for recipe in recipes if names.count(recipe.name.casefold()) > 1]
+    text = "the name {} is used by several recipes of this call; give each its own `name:`"
+    return [f"{escaped(str(recipe.path))}: {text.format(recipe.name)}" for recipe in twice]
+
+
+def failed_entry(recipe: str, message: str, errors: Sequence[RecipeError]) -> dict[str, object]:
+    """Entry in place of a report for a recipe that has none, with its errors."""
+    return {"recipe": recipe, "ok": False, "errors": [asdict(error) for error in errors] or [{"problem": message}]}

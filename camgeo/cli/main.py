@@ -218,7 +218,7 @@ def _complain(text: str) -> None:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from camgeo.cli.recipes import folder_conflicts
+    from camgeo.cli.batch import folder_conflicts
 
     if arguments.watch:
         return _watch(arguments)
@@ -287,7 +287,7 @@ def _load_recipes(
 
     The faults of the others are written to the terminal.
     """
-    from camgeo.cli.recipes import failed_entry
+    from camgeo.cli.batch import failed_entry
     from camgeo.recipe.loading import load_order
     from camgeo.schema.errors import RecipeErrors
 
@@ -316,7 +316,7 @@ def _with_tolerance(recipe: O, tolerance: str | None) -> O:
 
 def _run_recipes(recipes: Sequence[Order], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace) -> int:
     """Run recipes and write their reports, in JSON with the entries `refused` in their places; the highest status."""
-    from camgeo.cli.recipes import failed_entry
+    from camgeo.cli.batch import failed_entry
 
     status = WRONG if refused else OK
     entries: list[Entry] = []
@@ -325,7 +325,7 @@ def _run_recipes(recipes: Sequence[Order], refused: dict[int, Entry], task: Task
         if outcome.report is not None:
             report: Entry = dict(outcome.report)
             if task.out is None:
-                _mention(report, mixtures(Path(arguments.out) / outcome.report.recipe.name))
+                _tell_of_mixture(report, mixtures(Path(arguments.out) / outcome.report.recipe.name))
             entries.append(report)
             if not arguments.json:
                 if arguments.verbose and len(entries) > 1:
@@ -344,7 +344,7 @@ def _run_recipes(recipes: Sequence[Order], refused: dict[int, Entry], task: Task
     return status
 
 
-def _mention(report: Entry, mixed: Sequence[str]) -> None:
+def _tell_of_mixture(report: Entry, mixed: Sequence[str]) -> None:
     """Write messages on files that differ from their reports, and add them to the report; the verdict stays."""
     if mixed:
         report["mixed"] = [*report.get("mixed", ()), *mixed]
@@ -392,7 +392,7 @@ def _verify(arguments: argparse.Namespace) -> int:
         if verdict.page is not None:
             write_new({arguments.page: verdict.page})
         for folder in dict.fromkeys(path.parent for path in paths):
-            _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
+            _tell_of_mixture(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except UnitsError as error:
         _complain(f"{error}; leave --units out")
         return WRONG

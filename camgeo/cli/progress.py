@@ -21,8 +21,8 @@ class Progress:
 
     def __init__(self, name: str, every: float | None = None) -> None:
         self._name = name
-        self._every = every
-        self._said = time.perf_counter()
+        self._interval = every
+        self._last_line_at = time.perf_counter()
         self._start = time.perf_counter()
         self._shown = False
         self._timer: threading.Timer | None = None
@@ -32,14 +32,14 @@ class Progress:
         self._stop()
         passed = time.perf_counter() - self._start
         if sys.stderr.isatty() and passed > PATIENCE:
-            self._show(stage)
-        elif self._every is None:
-            wait, say = (PATIENCE - passed, self._show) if sys.stderr.isatty() else (LONG, self._say)
-            self._timer = threading.Timer(wait, say, (stage,))
+            self._overwrite_line(stage)
+        elif self._interval is None:
+            wait, write = (PATIENCE - passed, self._overwrite_line) if sys.stderr.isatty() else (LONG, self._write_line)
+            self._timer = threading.Timer(wait, write, (stage,))
             self._timer.daemon = True
             self._timer.start()
-        elif not sys.stderr.isatty() and time.perf_counter() - self._said >= self._every:
-            self._said = time.perf_counter()
+        elif not sys.stderr.isatty() and time.perf_counter() - self._last_line_at >= self._interval:
+            self._last_line_at = time.perf_counter()
             complain(f"{self._name}: {stage}")
 
     def clear(self) -> None:
@@ -49,11 +49,11 @@ class Progress:
             whisper("\r\x1b[K")
             self._shown = False
 
-    def _show(self, stage: str) -> None:
+    def _overwrite_line(self, stage: str) -> None:
         self._shown = True
         whisper(f"\r\x1b[K{escaped(self._name)}: {stage} ...")
 
-    def _say(self, stage: str) -> None:
+    def _write_line(self, stage: str) -> None:
         complain(f"{self._name}: {stage} takes more than {LONG:g} s ...")
 
     def _stop(self) -> None:

@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     With `--json` one recipe prints its page.json, several a list of theirs.
     """
-    from camgeo.cli.recipes import folder_conflicts
+    from camgeo.cli.batch import folder_conflicts
     from camgeo.recipe.loading import load
     from camgeo.report.document import as_json
     from camgeo.schema.errors import RecipeErrors
@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespace) -> tuple[int, Entry]:
     """Write the page of one recipe; its exit status, and page.json or the errors in its place."""
-    from camgeo.cli.recipes import failed_entry
+    from camgeo.cli.batch import failed_entry
     from camgeo.common.errors import SurroundingsError
     from camgeo.output.pipeline import check_and_show
     from camgeo.report.page.page import page

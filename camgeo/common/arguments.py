@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _SHOWN = 60  # characters of a value that a message repeats
 
 
-def is_a(name: str, value: object, kind: type | tuple[type, ...], must: str, remedy: str = "") -> None:
+def demand_type(name: str, value: object, kind: type | tuple[type, ...], must: str, remedy: str = "") -> None:
     """Raise TypeError for an argument that is of none of the types `kind`; `must` names them in the message."""
     if not isinstance(value, kind):
         raise TypeError(f"{name} must be {must}, not {type(value).__name__}{f'; {remedy}' if remedy else ''}")
@@ -33,9 +33,9 @@ def is_a(name: str, value: object, kind: type | tuple[type, ...], must: str, rem
 
 def path_of(name: str, value: object) -> Path:
     """Path of an argument; raises TypeError, and CallError for a path that no file can have."""
-    is_a(name, value, (str, PathLike), "a str or a path")
+    demand_type(name, value, (str, PathLike), "a str or a path")
     text = os.fspath(value)  # type: ignore[call-overload]
-    is_a(name, text, str, "a str or a path of a str")
+    demand_type(name, text, str, "a str or a path of a str")
     if not text:
         raise CallError(f"{name} is no path: it is empty")
     if "\0" in text:
@@ -51,7 +51,7 @@ def number_of(name: str, value: object) -> float:
     """Argument as a float, infinite beyond all floats; raises TypeError for one that is no number."""
     if isinstance(value, bool):
         raise TypeError(f"{name} must be a number, not bool")
-    is_a(name, value, Real, "a number")
+    demand_type(name, value, Real, "a number")
     try:
         return float(value)  # type: ignore[arg-type]
     except OverflowError:
@@ -101,7 +101,7 @@ def text_of(name: str, value: object, choices: Sequence[str], subject: str) -> s
 
     Raises TypeError for what is no str, CallError, whose message begins with `subject`, for another word.
     """
-    is_a(name, value, str, "a str")
+    demand_type(name, value, str, "a str")
     if value not in choices:
         raise CallError(f"{subject} is one of {', '.join(choices)}, not {short_repr(value)}")
     return str(value)
@@ -116,7 +116,7 @@ def texts_of(name: str, value: object) -> tuple[str, ...]:
     except TypeError:
         raise TypeError(f"{name} must be a str or a sequence of str, not {type(value).__name__}") from None
     for i, text in enumerate(texts):
-        is_a(f"{name}[{i}]", text, str, "a str")
+        demand_type(f"{name}[{i}]", text, str, "a str")
     return tuple(map(str, texts))
 
 

@@ -63,7 +63,7 @@ def lock_file(path: Path) -> int | None:
 
 
 def unlock(lock: int, path: Path) -> None:
-    """Remove a lock's file while it is held, then close it.
+    """Remove the file of a lock, an open descriptor, while it is held, then close it.
 
     On Windows it is closed first, as that system removes no open file.
     """

@@ -59,7 +59,7 @@ def available() -> int:
     return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
-def alone() -> bool:
+def may_fork() -> bool:
     """Whether this process may be forked: no thread runs beside this one, of a library neither."""
     return FORKS and len(list(Path("/proc/self/task").iterdir())) == 1
 

@@ -109,7 +109,10 @@ def _demand_long(length: Array) -> None:
 
 
 def inset(outline: ArcSpline, distance: float) -> ArcSpline:
-    """Parallel inside a smooth outline: of each arc an arc about the same centre."""
+    """Parallel `distance` mm inside a smooth outline: of each arc an arc about the same centre.
+
+    Raises RegionError where pieces meet at an angle, or an arc is sharper than that.
+    """
     length, radius, flat = measures(outline)
     half = 2.0 * np.arctan(np.where(flat, 0.0, outline.bulges))
     c, s = np.cos(half), np.sin(half)

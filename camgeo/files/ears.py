@@ -34,31 +34,31 @@ def clip_ears(points: Array, loops: Sequence[Indices]) -> Indices:
     place = points[way]
     turn = np.zeros(len(way), dtype=np.intp)
     blocker = np.full(len(way), UNKNOWN)
-    remaining = fresh = np.arange(len(way))
+    remaining = changed = np.arange(len(way))
     cut: list[Indices] = []
     while remaining.size > 2:
         before, after = np.empty((2, len(way)), dtype=np.intp)
         before[remaining], after[remaining] = np.roll(remaining, 1), np.roll(remaining, -1)
-        turn[fresh] = sides(place[before[fresh]], place[fresh], place[after[fresh]])
-        blocker[fresh] = UNKNOWN
+        turn[changed] = sides(place[before[changed]], place[changed], place[after[changed]])
+        blocker[changed] = UNKNOWN
         blocked = remaining[blocker[remaining] >= 0]
         blocker[blocked[turn[blocker[blocked]] > 0]] = UNKNOWN  # what was in the way is cut, or has become an ear's tip
         tips = remaining[turn[remaining] > 0]
-        look = tips[blocker[tips] == UNKNOWN]
-        triangles = np.stack((before[look], look, after[look]), axis=1)
-        blocker[look] = _blockers(way, place, triangles, remaining[turn[remaining] <= 0])
+        untested = tips[blocker[tips] == UNKNOWN]
+        triangles = np.stack((before[untested], untested, after[untested]), axis=1)
+        blocker[untested] = _blockers(way, place, triangles, remaining[turn[remaining] <= 0])
         chosen = alternate((turn[remaining] > 0) & (blocker[remaining] == FREE), remaining.size - 2)
-        gone = remaining[chosen]
-        cut.append(way[np.stack((before[gone], gone, after[gone]), axis=1)])
-        if not gone.size:  # the way may run back on itself from a vertex: its two neighbours are the same point
+        clipped = remaining[chosen]
+        cut.append(way[np.stack((before[clipped], clipped, after[clipped]), axis=1)])
+        if not clipped.size:  # the way may run back on itself from a vertex: its two neighbours are the same point
             spikes = remaining[way[before[remaining]] == way[after[remaining]]]
             if not spikes.size:
                 break
-            gone = np.array([spikes[0], after[spikes[0]]])
-        turn[gone] = 1  # they are in nobody's way
-        stays = np.isin(remaining, gone, invert=True)
-        touched = stays & (np.roll(~stays, 1) | np.roll(~stays, -1))
-        remaining, fresh = remaining[stays], remaining[touched]
+            clipped = np.array([spikes[0], after[spikes[0]]])
+        turn[clipped] = 1  # ears that they blocked are looked at again
+        stays = np.isin(remaining, clipped, invert=True)
+        beside = stays & (np.roll(~stays, 1) | np.roll(~stays, -1))
+        remaining, changed = remaining[stays], remaining[beside]
     return np.concatenate(cut)
 
 

@@ -56,7 +56,8 @@ def pocketed_mesh(
     """Closed solid within the first outline, with a pocket between its two contours; lengths in mm.
 
     The pocket has a depth from the top face. All other outlines are holes through the solid and lie within the inner
-    contour or beyond the outer one. Raises as `extruded_mesh`.
+    contour or beyond the outer one. Raises ToleranceError where the tolerance cannot be held in the precision,
+    RegionError where outlines cross.
     """
     for name, height in (("the thickness", thickness), ("the floor", thickness - depth)):
         precision.within(name, abs(precision.number(height) - height), tolerance)

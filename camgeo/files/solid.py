@@ -33,7 +33,7 @@ BEYOND = 1.0  # mm by which what cuts reaches out of what is cut
 
 @dataclass(frozen=True)
 class Cut:
-    """A closed outline cut from z `low` to `high`, mm; `island` as of openings of a part with a pocket."""
+    """A closed outline cut from z `low` to `high`, mm; `island`: it lies within the inner contour round a pocket."""
 
     outline: ArcSpline
     low: float
@@ -96,7 +96,10 @@ def completed_mesh(
     tolerance: float,
     precision: Precision,
 ) -> tuple[Mesh, MeshFacts]:
-    """Closed, oriented mesh of a manifold3d disc joined with its boss, openings cut out; raises as `joined_mesh`."""
+    """Closed, oriented mesh of a manifold3d disc joined with its boss, its openings cut out.
+
+    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where a body is not sound.
+    """
     moved, bound = facts.displacement, facts.bound
     for height in (solid.thickness, solid.low, solid.high, solid.chamfer):
         precision.within("a height", abs(precision.number(height) - height), tolerance)

@@ -173,7 +173,10 @@ def steady_turn(rotation: str) -> Array:
 
 
 def make_view(job: Job, request: FileRequest, path: Path) -> Made:
-    """Fit and write the cam, turning once, for viewers; raises as `camgeo.output.dispatch.make` does."""
+    """Fit and write the cam, turning once, for viewers.
+
+    Raises RecipeErrors for a tolerance that cannot be held, SurroundingsError for the disk or a missing package.
+    """
     from camgeo.output.job import unjudged
     from camgeo.output.solid import cam_meshes
 

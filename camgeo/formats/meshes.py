@@ -49,14 +49,17 @@ def mesh_format(
 
 
 def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
-    """Fit, write, read back and judge the meshes of a file; raises as `camgeo.output.dispatch.make` does."""
+    """Fit, write, read back and judge the meshes of a file.
+
+    Raises RecipeErrors for a tolerance that cannot be held, SurroundingsError for the disk or a missing package.
+    """
     from camgeo.output.solid import make_mesh as make
 
     return make(job, request, path)
 
 
 def foresee_mesh(job: Job, request: FileRequest) -> None:
-    """Raise the errors that are certain, as `camgeo.output.solid.foresee` does."""
+    """Raise RecipeErrors for a tolerance that the precision cannot hold, MissingExtraError for a missing package."""
     from camgeo.output.solid import foresee
 
     foresee(job, request)

@@ -44,5 +44,5 @@ def shaft_of_file(
 
 
 def intent_of_file(recipe: Recipe, design: Design, kind: str) -> PartIntent:
-    """Intent of a file with one disc; raises as `shaft_of_file` does, ValueError for a design of several discs."""
+    """Intent of a file with one disc; raises ValueError for several, RecipeErrors for what the recipe does not say."""
     return FORMATS[kind].intent(recipe, design)

@@ -109,7 +109,10 @@ class Job:
 
     @property
     def body(self) -> Body:
-        """Body of the one disc, mirrored for a counter-clockwise shaft unless the part is plain; raises ValueError."""
+        """Body of the one disc, mirrored for a counter-clockwise shaft unless the part is plain.
+
+        Raises ValueError for a cam of several discs, and where a failed check prevents the body.
+        """
         (disc,) = self.design.discs
         if disc.body is None:
             raise ValueError(f"{self.recipe.name}: there is no part to be made")

@@ -62,7 +62,8 @@ def part_mesh(
 ) -> tuple[Mesh, MeshFacts]:
     """Mesh of a body in its outlines, outermost first: a prism, or prisms joined by manifold3d.
 
-    Raises as `extruded_mesh` and `joined_mesh` do.
+    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where outlines cross or a
+    chamfer is too wide, ValueError without a thickness, TypeError for an outermost outline that is no polygon.
     """
     if body.thickness is None:
         raise ValueError("a solid needs a thickness")

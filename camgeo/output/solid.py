@@ -87,7 +87,7 @@ class DiscMesh(NamedTuple):
 def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
     """Mesh of every disc of the cam, within a request's tolerance, in the precision of its file.
 
-    Raises as `cam_mesh` does.
+    Raises RecipeErrors for a tolerance that cannot be held, SurroundingsError for a missing package.
     """
     discs = job.design.discs
     if len(discs) == 1:

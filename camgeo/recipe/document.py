@@ -5,7 +5,7 @@ from __future__ import annotations
 import collections.abc
 from typing import TYPE_CHECKING
 
-from camgeo.common.arguments import is_a, number_of, path_of
+from camgeo.common.arguments import demand_type, number_of, path_of
 from camgeo.common.errors import SurroundingsError
 from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.yaml_source import Source
@@ -51,7 +51,7 @@ class Document:
 
     def locate(self, path: str) -> tuple[int, int]:
         """Line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
-        is_a("path", path, str, "a str")
+        demand_type("path", path, str, "a str")
         while path and path not in self.marks:
             path = path[: max(path.rfind("."), path.rfind("["), 0)]
         return self.marks.get(path, (1, 1))
@@ -69,9 +69,9 @@ class Document:
         """
         from camgeo.schema.edit import with_values
 
-        is_a("values", values, collections.abc.Mapping, "a mapping from paths to numbers")
+        demand_type("values", values, collections.abc.Mapping, "a mapping from paths to numbers")
         for path in values:
-            is_a("values: a path", path, str, "a str")
+            demand_type("values: a path", path, str, "a str")
         numbers = {path: number_of(f"values[{path!r}]", value) for path, value in values.items()}
         return with_values(self.text, numbers)
 
@@ -85,6 +85,6 @@ class Document:
 
         text = self.text
         for path, value in values.items():
-            is_a("path", path, str, "a str")
+            demand_type("path", path, str, "a str")
             text = set_value(Source.of(text, str(self.path)), path, value)
         return text

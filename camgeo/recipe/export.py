@@ -55,7 +55,7 @@ class FileRequest:
 
     @property
     def form(self) -> FileForm:
-        """Record of the form."""
+        """What is known of the form that `as` chooses of the format, such as arcs or a spline."""
         return self.format.form(self.as_)
 
     @property
@@ -101,7 +101,10 @@ class FileRequest:
         return f"{'-'.join(parts)}.{self.own.get('suffix', self.format.ending)}"
 
     def filenames(self, name: str, requests: collections.abc.Sequence[FileRequest], discs: int = 1) -> tuple[str, ...]:
-        """Names of the files of a cam with that many discs: one for all, or one for each disc."""
+        """Names of the files of a cam with that many discs: one for all, or one for each disc.
+
+        `name` is that of the recipe, `requests` are all of it: two of one format are told apart, see `filename`.
+        """
         whole = self.filename(name, requests)
         if discs == 1 or not self.format.by_disc:
             return (whole,)

@@ -170,9 +170,9 @@ def check_limits(limits: list[Values], reader: Reader) -> None:
     for limit in limits:
         name, figure = limit["figure"], FIGURES[limit["figure"]]
         for bound in ("at_least", "at_most"):
-            key = name, bound, limit.get("at_lift", figure.at_lift)
-            if bound in limit and bounded.setdefault(key, limit["at"]) != limit["at"]:
-                general, path = sorted((bounded[key], limit["at"]), key=len)
+            bound_id = name, bound, limit.get("at_lift", figure.at_lift)
+            if bound in limit and bounded.setdefault(bound_id, limit["at"]) != limit["at"]:
+                general, path = sorted((bounded[bound_id], limit["at"]), key=len)
                 reason = "at the same lift" if "place" in limit else "with on_return"
                 reader.fault_at(path, f"{general} {reason} bounds it too", None, "leave one of the two out")
         # a key of a limit stands for the field that it takes the place of: rpm for that of the train

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeVar, overload
 
-from camgeo.common.arguments import is_a
+from camgeo.common.arguments import demand_type
 from camgeo.common.errors import CallError
 from camgeo.part.part import build_part
 from camgeo.recipe.cam import build_cam
@@ -67,7 +67,7 @@ class Verify:
 
 
 class Angle(NamedTuple):
-    """An angle chosen in place of a word: the path of its field, and degrees."""
+    """An angle that stands for a word of the recipe, such as `least`: the path of its field, and degrees."""
 
     path: str
     degrees: float
@@ -127,7 +127,7 @@ class Order(Document):
         return self
 
     def filenames(self, request: FileRequest) -> tuple[str, ...]:
-        """Names of the files of a request that hold the recipe's subject."""
+        """Names of the files that a request makes: one, or one for each disc of a cam."""
         return (request.filename(self.name, self.export.files),)
 
     def request_of(self, filename: str) -> FileRequest | None:
@@ -213,7 +213,7 @@ class Recipe(Order):
         in the text stays, comments included. Raises RecipeErrors for a path that leads nowhere, and
         where the new recipe has faults; TypeError for a path that is no text.
         """
-        is_a("path", path, (str, collections.abc.Mapping), "a str or a mapping from such")
+        demand_type("path", path, (str, collections.abc.Mapping), "a str or a mapping from such")
         if not isinstance(path, str) and value is not None:
             raise TypeError("value must be left out where path is a mapping")
         text = self.changed({path: value} if isinstance(path, str) else path)

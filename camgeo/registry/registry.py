@@ -74,7 +74,7 @@ def judge_of(path: Path, options: Mapping[str, object]) -> str:
     return next((name for name in named if judges()[name].claims(path, options)), "")
 
 
-def names() -> dict[str, str]:
+def library_names() -> dict[str, str]:
     """Full name of the module of each name that capabilities add to the library."""
     return {
         name: f"{PACKAGE}.{folder}.{module}"

@@ -51,7 +51,10 @@ class Scalar:
 
 @dataclass(frozen=True)
 class Sequence:
-    """A list; `end` is the place behind its bracket, or behind its last entry where it has none."""
+    """A list; `end` is the place behind its bracket, or behind its last entry where it has none.
+
+    `tag` is its YAML tag as written, None without one; `size` the number of nodes in it, also those of aliases.
+    """
 
     items: tuple[Node, ...]
     mark: Mark
@@ -62,7 +65,10 @@ class Sequence:
 
 @dataclass(frozen=True)
 class Mapping:
-    """A mapping as written, keys that stand twice included; `end` as of a list, `flow` where it stands in braces."""
+    """A mapping as written, keys that stand twice included; `flow`: it stands in braces.
+
+    `end` is the place behind its brace, or behind its last entry where it has none; `tag` and `size` are as of a list.
+    """
 
     entries: tuple[tuple[Node, Node], ...]
     flow: bool

@@ -32,9 +32,8 @@ from camgeo.report.document import ROUNDING
 from camgeo.report.page import curves, svg, tables
 from camgeo.report.page.asset import asset
 from camgeo.report.page.content import content
-from camgeo.report.page.outline import MEASURED, read
-from camgeo.report.page.pack import pack_numbers
-from camgeo.report.page.page import LOCAL, RELOAD, page, scene, script_json
+from camgeo.report.page.outline import MEASURED, contours_of
+from camgeo.report.page.page import LOCAL, RELOAD, pack_numbers, page, scene, script_json
 from camgeo.report.page.scene import STEPS
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
@@ -437,7 +436,7 @@ def test_an_unreadable_file_is_left_out(tmp_path: Path) -> None:
     path = tmp_path / "reuleaux.stl"
     path.write_bytes(b"solid nothing\nendsolid nothing\n")
     file = judged(recipe, path)
-    assert read(recipe, file) is None
+    assert contours_of(recipe, file) is None
     found = content(recipe, designed(recipe), [file])
     assert found.errors == ()
     parsed(page(recipe, found, {**of("w-ellipse").outcome.report, "files": []}))

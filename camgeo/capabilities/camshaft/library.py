@@ -10,11 +10,11 @@ import numpy as np
 from camgeo.api import notebook
 from camgeo.api.check import Check, Figures
 from camgeo.api.design import Design
-from camgeo.api.errors import CallError
 from camgeo.api.log import stage_reporter
 from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
 from camgeo.common.arguments import numbers_of, short_repr, whole_of
 from camgeo.common.clock import Clock
+from camgeo.common.errors import CallError
 from camgeo.report import failure
 from kin.numeric.records import dataclass, field
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.capabilities.follow.follower import TRACKS, describe_follower
 from camgeo.capabilities.follow.outline import read_outline
-from camgeo.common.arguments import is_a, number_of, path_of, short_repr, text_of, whole_of
+from camgeo.common.arguments import demand_type, number_of, path_of, short_repr, text_of, whole_of
 from camgeo.common.errors import CallError, with_packages
 from camgeo.common.rounding import upward
 from camgeo.common.terminal import escaped
@@ -211,7 +211,7 @@ class Followed:
         breadth varies by more than two readings, or with an odd number of steps, and for a ring without a round
         outline.
         """
-        is_a("table", table, str, "a str")
+        demand_type("table", table, str, "a str")
         if not table.isprintable() or not table:
             raise CallError(f"table is the name of a file of lifts, not {short_repr(table)}")
         reading = self.reading if self.unit == "mm" else math.degrees(self._reading)
@@ -307,7 +307,7 @@ def follow(
     """
     path = path_of("file", file)
     for name, value in (("flat", flat), ("leading", leading), ("yoke", yoke)):
-        is_a(name, value, bool, "a bool")
+        demand_type(name, value, bool, "a bool")
     lengths = {"roller": roller, "shoe": shoe, "width": width}
     touch = {name: None if value is None else number_of(name, value) for name, value in lengths.items()}
     text_of("track", track, tuple(TRACKS), "a track")
@@ -369,7 +369,7 @@ def _require_groove(name: str, motion: MeasuredMotion, follower: FollowerDescrip
 
 def _numbers(name: str, values: object) -> tuple[float, ...]:
     """Numbers of an argument; raises CallError for anything but a tuple of numbers."""
-    is_a(name, values, tuple, "a tuple of numbers")
+    demand_type(name, values, tuple, "a tuple of numbers")
     return tuple(number_of(name, value) for value in values) if isinstance(values, tuple) else ()
 
 

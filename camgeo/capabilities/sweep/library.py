@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.api.check import Figure, Figures
 from camgeo.api.loading import recipe_of
 from camgeo.api.log import library_log
-from camgeo.common.arguments import demand_callable, is_a, path_of, short_repr, whole_of
+from camgeo.common.arguments import demand_callable, demand_type, path_of, short_repr, whole_of
 from camgeo.common.errors import CallError, SurroundingsError
 from kin.numeric.records import dataclass, field
 
@@ -117,9 +117,9 @@ def search(
 
     recipe, folder = recipe_of(recipe), path_of("out", out)
     demand_callable("progress", progress)
-    is_a("fresh", fresh, bool, "a bool")
+    demand_type("fresh", fresh, bool, "a bool")
     if scheduler is not None:
-        is_a("scheduler", scheduler, str, "a str")
+        demand_type("scheduler", scheduler, str, "a str")
     if jobs is not None and (jobs := whole_of("jobs", jobs)) < 1:
         raise CallError(f"jobs is a number of processes from 1, not {short_repr(jobs)}")
 

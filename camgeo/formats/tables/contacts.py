@@ -32,7 +32,8 @@ def contact_table(
 
     They are the radius of curvature of the metal, below 0 in a hollow and nan where it is straight, the pressure angle
     in degrees, above 0 where the cam pushes the follower out, and the place of contact. nan where a trimmed cam is not
-    touched. At a break the radius is the one that follows, at the end of the turn the one that precedes.
+    touched. At a break the radius is the one that follows, at the end of the turn the one that precedes. Raises
+    ValueError where a failed check prevents the contour.
     """
     from camgeo.curve.measures import touched
 

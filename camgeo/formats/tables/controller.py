@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.common.rounding import upward
-from camgeo.files.curve_points import fixed, write_curve_points
 from camgeo.files.table import DIGITS, write_table
 from camgeo.formats.tables.tabled import check_step, fewest_rows
 from camgeo.measures.file_result import FileResult
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 SHARE = 1e-12  # of the stroke, to which the lowest place is found
+PLACES = 9  # decimals of a curve point: of a millimetre the last is 1e-6 micrometres
 NOTHING = 1e-13  # of the greatest value: rounding about 0
 
 
@@ -42,11 +42,27 @@ def _write(path: Path, columns: Sequence[str], rows: Array, head: Sequence[str])
     write_table(path, columns, rows, head=head)
 
 
-class Controller(NamedTuple):
-    """Interpolation of a controller between the rows of its table, the name of the layout, and the source of both.
+def fixed(value: float) -> str:
+    """Text of a number without an exponent, which the manual does not mention, to nine decimals."""
+    text = f"{value:.{PLACES}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
 
-    `finest` is the least step between rows, degrees, as the controller takes no more rows. `number` writes a position
-    or a rate, `write` the table with the names of its columns and the lines of its head.
+
+def write_curve_points(path: Path, _columns: Sequence[str], rows: Array, _head: Sequence[str]) -> None:
+    """Write a curve point table of SEW-EURODRIVE's MOVI-C, in the layout of `kin.read.curve_points`.
+
+    The number of rows, then master and slave of each (n, 2); the layout has no heading and no remarks.
+    """
+    lines = [str(len(rows)), *(f"{fixed(master)};{fixed(slave)}" for master, slave in rows.tolist())]
+    path.write_bytes("".join(f"{line}\n" for line in lines).encode("ascii"))
+
+
+class Controller(NamedTuple):
+    """A controller: how it interpolates between the rows of its table, and the layout of that.
+
+    `join` is the interpolation, `layout` the layout's name, `word` what the maker's document says of `join`. `finest`
+    is the least step between rows, degrees, as the controller takes no more rows. `number` writes a position or a rate,
+    `write` the table with the names of its columns and the lines of its head.
     """
 
     join: Join

@@ -55,7 +55,7 @@ def fewest_rows(error: Callable[[int], float], most: float, finest: float = FINE
 def table_maker(
     stage: str, columns: Callable[[Job, FileRequest], Columns], *, gaps: bool = False
 ) -> Callable[[Job, FileRequest, Path], Made]:
-    """Function that writes a table of these columns in a stage of the run; `gaps` as of `write_table`."""
+    """Function that writes a table of these columns in a stage of the run; with `gaps` nan is an empty cell."""
 
     def make(job: Job, request: FileRequest, path: Path) -> Made:
         from camgeo.output.job import unjudged

@@ -78,7 +78,7 @@ class Content:
 
 def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Content:
     """Content of a page; `results` are the judged files, of which those with a contour are drawn."""
-    files = [file for result in results if (file := outline.read(recipe, result)) is not None]
+    files = [file for result in results if (file := outline.contours_of(recipe, result)) is not None]
     per = outline.Exact.looks(files)
     exacts = {profile.surface.name: outline.Exact.of(design, profile, per) for profile in design.surfaces}
     groups = outline.group_files(files, len(design.discs))
@@ -124,7 +124,7 @@ Drawn: TypeAlias = "tuple[str, tuple[tuple[Ring, ...], ...]]"
 """Drawing of a contour: its name, and the rings of each disc."""
 
 
-def _drawing_of(group: Sequence[outline.Read]) -> Drawn:
+def _drawing_of(group: Sequence[outline.FileContours]) -> Drawn:
     return ", ".join(file.name for file in group), tuple(rings for file in group for rings in file.rings)
 
 
@@ -308,7 +308,7 @@ def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Dr
     bodies = guided.roller_frame(touches, x, first.datum + second.datum, hole, size)
     contacts, angles = [], {}
     for name, ahead in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
-        contacts.append(guided.contact_body(view.surface(first), f"contact of {name}", size, radius, on=ahead))
+        contacts.append(guided.contact_body(view.surface(first), f"contact of {name}", size, radius, ahead=ahead))
         angles[name] = view.pressure(SHAFT + ahead)
     return [*bodies, *contacts], [curves.pressure(view.recipe, angles, SIGN)]
 

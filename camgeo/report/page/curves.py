@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.linked import Driven
-    from camgeo.report.page.outline import Exact, Read
+    from camgeo.report.page.outline import Exact, FileContours
     from camgeo.synthesis.design import Design, SurfaceDesign
     from kin.numeric.arrays import Array
 
@@ -334,7 +334,7 @@ def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exa
     return Plot(f"Radius of curvature{name}", unit, series, over, ((0.0, ""), *bounds), note=margin, axis="radius")
 
 
-def backlash(recipe: Recipe, design: Design, files: Sequence[Read]) -> list[Plot]:
+def backlash(recipe: Recipe, design: Design, files: Sequence[FileContours]) -> list[Plot]:
     """Return plots of the follower's backlash between two contours of files: sides of a groove, or discs of a pair."""
     from camgeo.synthesis.intent import closures_between, intents
     from kin.follower.motion_error import ContactError

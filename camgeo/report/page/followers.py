@@ -57,7 +57,7 @@ def dashes(start: float, end: float, size: float) -> tuple[Ring, ...]:
 
 
 def edge_ahead(ring: Ring) -> float:
-    """Return the x at which a contour about the shaft crosses the x axis ahead of the shaft, mm."""
+    """Return the x, mm, of the vertex nearest to the x axis ahead of the shaft; the greatest |x|, |y| without one."""
     beyond = ring.flattened()
     ahead = beyond[beyond[:, 0] > 0.0]
     return float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(np.abs(beyond).max())

@@ -132,17 +132,17 @@ def on_arm(
     ]
 
 
-def contact_body(surface: Surface, name: str, size: float, within: float = 0.0, *, on: float = 0.0) -> Body:
+def contact_body(surface: Surface, name: str, size: float, roller_radius: float = 0.0, *, ahead: float = 0.0) -> Body:
     """Return the contact at each shaft angle, with the direction in which the cam pushes: inwards for a ring.
 
-    The follower stands `on` rad ahead of the x axis; the arrow is longer by the length `within` the roller, mm.
+    The follower stands `ahead` rad of the x axis; the arrow is longer by the radius of the roller within, mm.
     """
-    frame = surface.curve.sample(np.mod(SHAFT + on, TURN))
+    frame = surface.curve.sample(np.mod(SHAFT + ahead, TURN))
     back = np.exp(-1j * SHAFT)
     point, normal = ((row[:, 0] + 1j * row[:, 1]) * back for row in (frame.point, frame.normal))
     push = normal if surface.side > 0 else -normal
     direction = np.unwrap(np.angle(push))
-    return contact(name, point.real, point.imag, direction, size, within=within)
+    return contact(name, point.real, point.imag, direction, size, within=roller_radius)
 
 
 def roller_frame(

@@ -48,7 +48,7 @@ def exact(curve: Curve, *, whole: bool = False) -> Ring:
 
 
 @dataclass(frozen=True, eq=False)
-class Read:
+class FileContours:
     """Contours read from a file, mm, for a shaft that turns clockwise.
 
     `contours` and `arcs` are by the names of the surfaces, `pieces` is the number of all pieces. `rings` are for
@@ -65,7 +65,7 @@ class Read:
     disc: int | None = None
 
 
-def read(recipe: Recipe, file: FileResult) -> Read | None:
+def contours_of(recipe: Recipe, file: FileResult) -> FileContours | None:
     """Contours that the judge read from a drawing or a solid; None where it read none, which a check reports."""
     contours = {surface.name: surface.contour for surface in file.surfaces if surface.contour is not None}
     if not contours:
@@ -75,12 +75,12 @@ def read(recipe: Recipe, file: FileResult) -> Read | None:
     arcs = {name: contour.as_arcs(fine)[0] for name, contour in contours.items()}
     rings = tuple(tuple(_drawing_ring(arcs_read.as_arcs(FINE * size)[0]) for arcs_read in body) for body in file.bodies)
     tolerance = recipe.export.tolerance if file.tolerance is None else file.tolerance
-    return Read(file.path.name, contours, arcs, sum(map(len, contours.values())), rings, tolerance, file.disc)
+    return FileContours(file.path.name, contours, arcs, sum(map(len, contours.values())), rings, tolerance, file.disc)
 
 
-def group_files(files: Sequence[Read], discs: int) -> list[list[Read]]:
+def group_files(files: Sequence[FileContours], discs: int) -> list[list[FileContours]]:
     """Groups of files that show the whole cam: one file with all discs, or one file for each of `discs` discs."""
-    groups: list[list[Read]] = []
+    groups: list[list[FileContours]] = []
     for file in files:
         if file.disc and groups and groups[-1][-1].disc == file.disc - 1:
             groups[-1].append(file)
@@ -127,7 +127,7 @@ class Exact:
         return Exact(per, frame.point, frame.normal, radius, base.curvature, is_kept)
 
     @staticmethod
-    def looks(files: list[Read]) -> int:
+    def looks(files: list[FileContours]) -> int:
         """Number of places in each step at which the errors of these files are measured, 1 to `MOST_LOOKS`."""
         pieces = max((file.pieces for file in files), default=0)
         return min(MOST_LOOKS, max(1, math.ceil(PER_PIECE * pieces / STEPS)))

@@ -14,8 +14,7 @@ from camgeo.report.document import finite
 from camgeo.report.failure import headline
 from camgeo.report.page import looks, svg, tables
 from camgeo.report.page.asset import asset
-from camgeo.report.page.pack import pack_numbers
-from camgeo.report.page.scene import STEPS
+from camgeo.report.page.scene import STEPS, digits_for
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order, Recipe
@@ -25,6 +24,8 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 RELOAD = "<!-- reload -->"  # where a page that is watched gets the script that reloads it
+WHOLE = 2.0**52  # of a script's numbers, up to which differences of whole ones are exact
+SHARE = 1e-5  # of its range: to this a row of numbers is rounded
 LOCAL = "connect-src 'none'"  # a page may connect to nothing; one that is watched to where it came from
 
 
@@ -81,8 +82,8 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
     """Return the data of the page's script; angles in degrees, lengths in the recipe's unit.
 
     `drawing` is the mechanism at shaft angle 0 as SVG, the group of body k with the id `body-k`; `bodies` has the
-    motion of each: rows of x, y and angle at equal steps of a turn, packed (`camgeo.report.page.pack`). `marks` are the
-    places on the contour, in the axes of the cam, of failed checks and remarks of `report`.
+    motion of each: rows of x, y and angle at equal steps of a turn, packed (`pack_numbers`). `marks` are the places on
+    the contour, in the axes of the cam, of failed checks and remarks of `report`.
     """
     return {
         **picture(recipe, content.scene, content.relative),
@@ -166,3 +167,25 @@ def _plot(plot: Plot) -> dict[str, Any]:
     if plot.dwells:
         entry["rests"] = 1
     return entry
+
+
+def pack_numbers(values: Array, extent: float | None = None) -> dict[str, Any]:
+    """Return values (n,) as `{"d": digits, "v": [first, step, step, ...]}` in units of the last digit.
+
+    Rounded to `SHARE` of the extent, by default of the range of the values, but to no more than sixteen places. A row
+    with values that are not finite is `{"n": [...]}`, null where they are not; an empty one `{"n": []}`, a constant one
+    `{"c": value}`.
+    """
+    good = values[np.isfinite(values)]
+    spread = float(np.ptp(good)) if good.size else 0.0
+    extent = spread if extent is None else extent
+    largest = float(np.abs(good).max(initial=0.0))
+    if good.size == values.size and spread <= 1e-13 * largest:
+        return {"c": float(f"{values[0]:.12g}")} if values.size else {"n": []}
+    digits = digits_for(extent, SHARE)
+    if good.size < values.size:
+        return {"n": [round(v, digits) if np.isfinite(v) else None for v in values.tolist()]}
+    if largest > WHOLE / 10.0**digits:
+        digits = math.floor(math.log10(WHOLE) - math.log10(largest))
+    whole = np.round(values * 10.0**digits).astype(np.int64)
+    return {"d": digits, "v": [int(whole[0]), *np.diff(whole).tolist()]}
