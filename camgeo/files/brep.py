@@ -63,58 +63,58 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     stack = _Stack()
     top = solid.thickness
     outermost, *inner_outlines = (layered.outline for layered in outlines)
-    first, last = _contour(stack, outermost, solid)
+    contour_foot, contour_head = _contour(stack, outermost, solid)
     through = [cut for cut in solid.cuts if cut.low <= solid.low]
     within = [cut for cut in through if solid.boss is not None and _is_within(cut.outline, solid.boss)]
-    low_boss, high_boss = solid.low < 0.0, solid.high > top
+    boss_below, boss_above = solid.low < 0.0, solid.high > top
     # wires in the disc's lower and upper face, and in those of the boss
-    under: list[Shape] = []
-    above: list[Shape] = []
-    inner_low: list[Shape] = []
-    inner_high: list[Shape] = []
-    island: list[Shape] = []  # in the upper face within a pocket
+    in_disc_bottom: list[Shape] = []
+    in_disc_top: list[Shape] = []
+    in_boss_bottom: list[Shape] = []
+    in_boss_top: list[Shape] = []
+    in_island_top: list[Shape] = []  # in the upper face within a pocket
     if solid.floor is not None:
         ledge, rim = sorted(inner_outlines, key=lambda outline: outline.box()[2])
         (island_foot, island_head), (foot, head) = (stack.wall(outline, solid.floor, top) for outline in (ledge, rim))
         stack.lid(solid.floor, foot.wire, [island_foot.wire])
-        above.append(head.wire)
+        in_disc_top.append(head.wire)
         inner_outlines = []
     for outline in inner_outlines:
         foot, head = stack.wall(outline, 0.0, top)
-        under.append(foot.wire)
-        above.append(head.wire)
+        in_disc_bottom.append(foot.wire)
+        in_disc_top.append(head.wire)
     for cut in solid.cuts:
         inside = any(cut is other for other in within)
         if not any(cut is other for other in through):
             foot, head = stack.wall(cut.outline, cut.low, cut.high)
             stack.lid(cut.low, foot.wire, [])
-            (island if cut.island else above).append(head.wire)
+            (in_island_top if cut.island else in_disc_top).append(head.wire)
             continue
         foot, head = stack.wall(cut.outline, solid.low if inside else 0.0, solid.high if inside else top)
-        (inner_low if inside and low_boss else under).append(foot.wire)
-        (inner_high if inside and high_boss else island if cut.island else above).append(head.wire)
+        (in_boss_bottom if inside and boss_below else in_disc_bottom).append(foot.wire)
+        (in_boss_top if inside and boss_above else in_island_top if cut.island else in_disc_top).append(head.wire)
     if solid.boss is not None:
         ring = _disc(0.5 * solid.boss)
-        if low_boss:
+        if boss_below:
             foot, head = stack.wall(ring, solid.low, 0.0)
-            stack.lid(solid.low, foot.wire, inner_low)
-            under.append(head.wire)
-        if high_boss:
+            stack.lid(solid.low, foot.wire, in_boss_bottom)
+            in_disc_bottom.append(head.wire)
+        if boss_above:
             foot, head = stack.wall(ring, top, solid.high)
-            stack.lid(solid.high, head.wire, inner_high)
-            above.append(foot.wire)
+            stack.lid(solid.high, head.wire, in_boss_top)
+            in_disc_top.append(foot.wire)
     if solid.floor is not None:
-        stack.lid(top, island_head.wire, island)
-    stack.lid(0.0, first.wire, under)
-    stack.lid(top, last.wire, above)
-    shape = stack.solid()
-    return reduce(_drill, solid.drills, shape)
+        stack.lid(top, island_head.wire, in_island_top)
+    stack.lid(0.0, contour_foot.wire, in_disc_bottom)
+    stack.lid(top, contour_head.wire, in_disc_top)
+    return reduce(_drill, solid.drills, stack.solid())
 
 
 def stack_shape(stretches: Sequence[tuple[Outline, float, float]], bore: Outline | None) -> Shape:
     """Return the kernel's solid of outlines one above the other, each from z to z, with a hole all through it; mm.
 
-    Of two neighbours one has to lie within the other. Raises RegionError as `solid_shape` does.
+    Of two neighbours one has to lie within the other. Raises RegionError where a piece is too short for the kernel, or
+    the kernel finds the solid unsound.
     """
     stack = _Stack()
     low, high = stretches[0][1], stretches[-1][2]

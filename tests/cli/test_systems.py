@@ -179,7 +179,7 @@ def test_recipes_are_made_here_until_more_processes_pay(
         assert not fork
         return begin(count, fork=fork)
 
-    monkeypatch.setattr(workers, "alone", lambda: False)
+    monkeypatch.setattr(workers, "may_fork", lambda: False)
     monkeypatch.setattr(workers, "pool", counted)
     monkeypatch.setattr(workers, "available", lambda: 2)
     monkeypatch.setattr(batch, "PAYS", pays)
