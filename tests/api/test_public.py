@@ -51,7 +51,7 @@ def test_every_name_is_there_and_listed() -> None:
         typed |= {
             a.name: node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for a in node.names
         }
-    inner = {"import_module", "__version__", "names", "capabilities", "*"}
+    inner = {"import_module", "__version__", "library_names", "capabilities", "*"}
     assert {name: module for name, module in typed.items() if name not in inner} == homes
     with pytest.raises(AttributeError, match="module 'camgeo' has no attribute 'lode'"):
         getattr(camgeo, "lode")  # noqa: B009 - mypy would see it, as a user's does
