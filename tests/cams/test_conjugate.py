@@ -1,4 +1,7 @@
-"""Conjugate discs in a recipe: what is refused and helps, sizes that keep both discs' limits, figures by disc."""
+"""Conjugate discs in a recipe: what is refused and helps, sizes that keep both discs' limits, figures by disc.
+
+Holds: camgeo.recipe.discs.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The command line: exit status, what is printed where, what is left on disk."""
+"""The command line: exit status, what is printed where, what is left on disk.
+
+Holds: camgeo.cli.exit_status, camgeo.common.errors, camgeo.recipe.loading.
+"""
 
 from __future__ import annotations
 

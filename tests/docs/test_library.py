@@ -1,4 +1,7 @@
-"""docs/library.md: its blocks run in their order, as a reader would paste them; what comments say is printed."""
+"""docs/library.md: its blocks run in their order, as a reader would paste them; what comments say is printed.
+
+Holds: camgeo.api.loading, camgeo.api.report, camgeo.api.run.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""What a part's features become in DXF and STL files: by second readers, closed forms, and kin's verdict."""
+"""What a part's features become in DXF and STL files: by second readers, closed forms, and kin's verdict.
+
+Holds: camgeo.files.errors, camgeo.output.part_geometry, camgeo.formats.three_mf.
+"""
 
 import math
 

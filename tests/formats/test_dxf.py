@@ -1,4 +1,7 @@
-"""DXF drawings read back by ezdxf: units, layers, exact numbers, extents, same bytes in any process and time zone."""
+"""DXF drawings read back by ezdxf: units, layers, exact numbers, extents, same bytes in any process and time zone.
+
+Holds: camgeo.formats.drawings, camgeo.output.drawing, camgeo.files.layer_outline.
+"""
 
 import os
 import subprocess

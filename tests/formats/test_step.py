@@ -1,4 +1,7 @@
-"""STEP files written by Open CASCADE: read back by kin and by the kernel itself, judged, and with faults planted."""
+"""STEP files written by Open CASCADE: read back by kin and by the kernel itself, judged, and with faults planted.
+
+Holds: camgeo.files.brep.
+"""
 
 import builtins
 import math

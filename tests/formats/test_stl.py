@@ -1,4 +1,7 @@
-"""STL files read back: closed and oriented by counting edges, exact volume, tolerances, second readers."""
+"""STL files read back: closed and oriented by counting edges, exact volume, tolerances, second readers.
+
+Holds: camgeo.files.mesh, camgeo.files.precision, camgeo.files.triangulate, camgeo.output.solid.
+"""
 
 import math
 from collections import Counter

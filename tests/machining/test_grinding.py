@@ -1,4 +1,7 @@
-"""The grinder's table: worked cases, an own simulation of the wheel, planted faults, and what is refused."""
+"""The grinder's table: worked cases, an own simulation of the wheel, planted faults, and what is refused.
+
+Holds: camgeo.formats.tables.grinding, camgeo.formats.tables.ground, camgeo.formats.tables.lift.
+"""
 
 import json
 import re

@@ -1,4 +1,7 @@
-"""The inspection table against high precision, the geometry of the followers, and kin's own envelope."""
+"""The inspection table against high precision, the geometry of the followers, and kin's own envelope.
+
+Holds: camgeo.formats.tables.inspection.
+"""
 
 import csv
 from pathlib import Path

@@ -1,4 +1,7 @@
-"""Recipes with a linkage from their text to judged files: checks, report, table, and what is refused."""
+"""Recipes with a linkage from their text to judged files: checks, report, table, and what is refused.
+
+Holds: camgeo.report.linkage, camgeo.report.page.linked.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Files in a unit of their own: the same cam in mm and in inch, by camgeo's readers and by others, and with faults."""
+"""Files in a unit of their own: the same cam in mm and in inch, by camgeo's readers and by others, and with faults.
+
+Holds: camgeo.common.units.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Paths of points of links in files: on REFERENCE in a DXF as ezdxf reads it, in a table, and what is refused."""
+"""Paths of points of links in files: on REFERENCE in a DXF as ezdxf reads it, in a table, and what is refused.
+
+Holds: camgeo.formats.tables.trace.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Parts from recipes: what places itself, the least walls with the names of their edges, and what is refused."""
+"""Parts from recipes: what places itself, the least walls with the names of their edges, and what is refused.
+
+Holds: camgeo.part.bolts, camgeo.part.checks, camgeo.part.dowel, camgeo.part.feature, camgeo.part.largest_holes,
+camgeo.part.lightening, camgeo.part.mark.
+"""
 
 import math
 import re

@@ -1,4 +1,7 @@
-"""Shapes cut into a part and the walls between them, against closed forms; the keyways of DIN 6885."""
+"""Shapes cut into a part and the walls between them, against closed forms; the keyways of DIN 6885.
+
+Holds: camgeo.part.flat, camgeo.part.keyway.
+"""
 
 import math
 

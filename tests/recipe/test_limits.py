@@ -1,4 +1,7 @@
-"""Limits of a recipe's own: each figure's check, its failure, what would do, and what a recipe may not limit."""
+"""Limits of a recipe's own: each figure's check, its failure, what would do, and what a recipe may not limit.
+
+Holds: camgeo.recipe.figures.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Records of formats: a made-up one is asked for, written, read and judged; one that is taken out is unknown."""
+"""Records of formats: a made-up one is asked for, written, read and judged; one that is taken out is unknown.
+
+Holds: camgeo.formats.csv, camgeo.formats.meshes, camgeo.formats.options.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""What a faulty recipe is answered: whole messages, with file, line, column, field, fault, value and remedy."""
+"""What a faulty recipe is answered: whole messages, with file, line, column, field, fault, value and remedy.
+
+Holds: camgeo.schema.fields, camgeo.schema.read_scalar, camgeo.schema.reader, camgeo.schema.readers,
+camgeo.schema.yaml_source.
+"""
 
 from __future__ import annotations
 

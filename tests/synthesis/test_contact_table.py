@@ -1,4 +1,7 @@
-"""Tables of contacts and over the polar angle, as files hold them: against differences and the drawing."""
+"""Tables of contacts and over the polar angle, as files hold them: against differences and the drawing.
+
+Holds: camgeo.formats.tables.contacts, camgeo.formats.tables.motion, camgeo.formats.tables.polar.
+"""
 
 from __future__ import annotations
 

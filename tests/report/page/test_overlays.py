@@ -1,4 +1,7 @@
-"""Overlays of the page: each construction against its equation at every step of the turn, and what is refused."""
+"""Overlays of the page: each construction against its equation at every step of the turn, and what is refused.
+
+Holds: camgeo.formats.html.
+"""
 
 from __future__ import annotations
 
