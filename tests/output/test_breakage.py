@@ -147,7 +147,7 @@ def test_a_killed_process_is_told_for_each_recipe(
     here, check = os.getpid(), pipeline.check
     monkeypatch.setattr(pipeline, "check", lambda *a, **k: check(*a, **k) if os.getpid() == here else os._exit(9))
     monkeypatch.setattr(batch, "FORKED", -1.0)
-    monkeypatch.setattr(workers, "alone", lambda: True)
+    monkeypatch.setattr(workers, "may_fork", lambda: True)
     assert main(["check", *map(str, paths), "--jobs", "2"]) == SURROUNDINGS
     said = capsys.readouterr().err.splitlines()
     assert [line.split(": ")[:2] for line in said] == [["camgeo", "one"], ["camgeo", "two"]]
