@@ -13,11 +13,12 @@ import numpy as np
 
 from camgeo.capabilities.sweep.chunks import Job
 from camgeo.capabilities.sweep.figures import Evaluator
-from camgeo.capabilities.sweep.gather import REASON
+from camgeo.capabilities.sweep.gather import REASON, Ranking
 from camgeo.capabilities.sweep.keys import Axis, varied_fields
 from camgeo.capabilities.sweep.plan import Plan
 from camgeo.capabilities.sweep.search import Procedures
 from camgeo.capabilities.sweep.task import Task
+from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
@@ -90,6 +91,28 @@ def measured(_task, values):
     """What `hills` says, and a figure that it goes without."""
     figures = hills("", values)
     return {"dwell": figures["dwell"] + 1.0, "dwell-relative": 0.5 * figures["dwell"], "margin": figures["margin"]}
+
+
+RANKING = Ranking("dwell", most=True, limits=(Limit("margin", at_least=1.0),))
+
+
+def gather_inputs(plan: Plan, compute=hills) -> list[dict[str, np.ndarray]]:
+    """Figures of each chunk of a plan."""
+    return [compute("", plan.values(*plan.span(number))) for number in range(plan.chunks)]
+
+
+def by_hand(ranking: Ranking, plan: Plan = GRID) -> list[tuple[float, int]]:
+    """Rank and index of each design kept, one by one."""
+    found = []
+    for index in range(plan.count):
+        figures = hills("", plan.values(index, index + 1))
+        if not np.isnan(figures["dwell"][0]) and all(
+            (limit.at_least is None or figures[limit.figure][0] >= limit.at_least)
+            and (limit.at_most is None or figures[limit.figure][0] <= limit.at_most)
+            for limit in ranking.limits
+        ):
+            found.append((figures[ranking.rank][0], index))
+    return sorted(found, key=lambda pair: (-pair[0] if ranking.most else pair[0], pair[1]))
 
 
 PROCEDURES = Procedures(hills, measured, sink, ("", "binds"))

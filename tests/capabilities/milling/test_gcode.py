@@ -1,6 +1,7 @@
 """Milling programs: what they leave, by a simulation of its own; what the reader refuses; planted faults.
 
-Holds: kin.judge.cuts.
+Holds: camgeo.capabilities.milling.checks, camgeo.capabilities.milling.format, camgeo.capabilities.milling.keys,
+camgeo.capabilities.milling.program, camgeo.capabilities.milling.record, kin.judge.cuts.
 """
 
 import math

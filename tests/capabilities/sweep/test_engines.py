@@ -303,7 +303,7 @@ def test_an_interrupt_while_workers_start_is_said_once(tmp_path: Path) -> None:
 STARTING = """\
 import signal
 from camgeo.capabilities.sweep.engines import in_processes
-from test_sweep_engines import slowly
+from test_engines import slowly
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, lambda *_: None)
     print("begun", flush=True)

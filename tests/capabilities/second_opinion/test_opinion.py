@@ -1,4 +1,7 @@
-"""A second opinion: each row catches the fault it is for, sound files of every kind pass, nothing else imports it."""
+"""A second opinion: each row catches the fault it is for, sound files of every kind pass, nothing else imports it.
+
+Holds: camgeo.capabilities.second_opinion.record.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The sweep of a recipe: what it comes to, and what is said about faults."""
+"""The sweep of a recipe: what it comes to, and what is said about faults.
+
+Holds: camgeo.capabilities.sweep.starter.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from camgeo.capabilities.sweep.keys import MOST_AXES, MOST_VALUES, Axis, Sweep, sweep_figures, varied_fields
+from camgeo.capabilities.sweep.record import CAPABILITY
 from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_FOLLOWER, OF_LINKAGE, OF_ROLLER, OF_SWING
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import Limit
@@ -436,3 +440,39 @@ def test_a_sweep_may_stand_before_what_it_varies() -> None:
 def test_fields_of_the_schema_are_known_by_their_paths(path: str, known: bool) -> None:
     kinds = {"cam": "support", "linkage": "four-bar"}
     assert (field_at(recipe_table(), path, kinds) is not None) == known
+
+
+# --- units ------------------------------------------------------------------------------------------------------------
+
+
+def refusal(text: str) -> str:
+    with pytest.raises(RecipeErrors) as caught:
+        load_text(text, "unit.yaml")
+    return str(caught.value)
+
+
+def support(text: str, units: str = "mm") -> str:
+    return f"units: {units}\ncam: {{kind: support, p: 25 + 2*cos(3*t), shaft: [{text}, 4]}}\n"
+
+
+def test_a_sweep_varies_in_the_unit_of_its_field() -> None:
+    sweep = "sweep:\n  vary: {{{}}}\n  rank: size\n"
+    at = "'cam.shaft[0]': "
+    found = load_text(support("1 cm") + sweep.format(at + "{from: 1 cm, to: 0.75 in, steps: 4}"), "a.yaml").of(Sweep)
+    assert found is not None
+    assert (found.vary[0].low, found.vary[0].high) == (10.0, 19.05)
+    listed = load_text(support("1", "inch") + sweep.format(at + "[12.7 mm, 1]"), "a.yaml").of(Sweep)
+    assert listed is not None
+    assert listed.vary[0].values == (0.5, 1.0)
+    assert "'kg' is no unit of a length" in refusal(support("1") + sweep.format(at + "[1 kg]"))
+    unknown = refusal(support("1") + sweep.format("cam.shoft: [1 mm]"))
+    assert "unknown field" in unknown
+    assert "no unit" not in unknown
+
+
+def test_the_starter_is_a_search_of_its_own() -> None:
+    assert sorted(CAPABILITY.starters()) == ["sweep"]
+    search = CAPABILITY.starters()["sweep"].more["sweep"]
+    assert isinstance(search, dict)
+    assert search["rank"] == "dwell"
+    assert str(search["vary"]).count("steps") == 2

@@ -1,4 +1,9 @@
-"""Shop drawings: every size once, nothing over anything else, the contour judged, faults with remedies."""
+"""Shop drawings: every size once, nothing over anything else, the contour judged, faults with remedies.
+
+Holds: camgeo.capabilities.sheet.dxf, camgeo.capabilities.sheet.format, camgeo.capabilities.sheet.frame,
+camgeo.capabilities.sheet.options, camgeo.capabilities.sheet.pages, camgeo.capabilities.sheet.part,
+camgeo.capabilities.sheet.pdf, camgeo.capabilities.sheet.views.
+"""
 
 from __future__ import annotations
 

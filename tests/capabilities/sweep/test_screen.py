@@ -1,4 +1,7 @@
-"""Estimates of cams without a linkage against their exact designs; and that no design is kept by an estimate alone."""
+"""Estimates of cams without a linkage against their exact designs; and that no design is kept by an estimate alone.
+
+Holds: camgeo.capabilities.sweep.samples.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""`camgeo study`: the rungs of its ladders against the files' own figures, where they end, and the margins."""
+"""`camgeo study`: the rungs of its ladders against the files' own figures, where they end, and the margins.
+
+Holds: camgeo.capabilities.study.picture.
+"""
 
 from __future__ import annotations
 
