@@ -122,7 +122,6 @@ def measured_motion(
     *,
     opposed: bool = False,
     lag: float = 0.5,
-    spans: int | None = None,
 ) -> PointMotion:
     """Let a follower run on the metal of each of its surfaces, and give its motion over a span from angle 0.
 
@@ -137,7 +136,7 @@ def measured_motion(
     each: list[tuple[int, Array, Array]] = []  # sense, position, standard deviation
     for gauge, side, places, directions in runs:
         deviations = SurfacePoints(gauge, side, places, 0.0, directions).deviations
-        smooth = fit(deviations.parameter, deviations.e, spans)
+        smooth = fit(deviations.parameter, deviations.e)
         still = gauge.intended(shaft) - gauge.intended(np.zeros(1))
         for contact, errors in zip(gauge.contacts, contact_errors(gauge, side, smooth.curve, shaft), strict=True):
             each.append((contact.sense, errors.rows[0] + still, errors.sds[0]))

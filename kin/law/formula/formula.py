@@ -61,45 +61,30 @@ class Formula:
         """Apply to jets or ball jets, one for each variable."""
         return self.expression.on(*series)
 
-    def breaks(self, lower: float, upper: float) -> Array:
-        """Return the parameters in [lower, upper] at which abs, sign, min or max switch, or atan2 jumps, rising (k,).
-
-        They are isolated with balls, none is missed, and found to the last places. An end belongs to them if the
-        switch lies on it. Raises FormulaError where a switch cannot be told from a near miss, or there are too many.
-        """
-        knots, _, ends = self._take_apart(lower, upper)
-        return np.array([*([lower] if ends[0] else []), *knots[1:-1], *([upper] if ends[1] else [])])
-
     def pieces(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...]]:
         """Return knots (k + 1,) from lower to upper and k expressions without switches, one between each two knots.
 
-        Of switches that lie within rounding of each other, one found twice, only one is a knot.
+        Inside are the parameters at which abs, sign, min or max switch, or atan2 jumps: isolated with balls, none is
+        missed, and found to the last places. Of switches within rounding of each other, one found twice, only one is a
+        knot. Raises FormulaError where a switch cannot be told from a near miss, or there are too many.
         """
-        knots, expressions, _ = self._take_apart(lower, upper)
-        wide = np.flatnonzero(np.diff(knots) > _SLIVER)
-        return np.array([lower, *knots[wide[1:]], upper]), tuple(expressions[i] for i in wide)
-
-    def _take_apart(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...], tuple[bool, bool]]:
-        """Settle the innermost switches over the whole interval, then what is left over each part."""
         if not lower < upper:
             raise ValueError(f"no interval from {lower} to {upper}")
-        waiting, knots, done = [(lower, upper, self.expression)], [lower], []
-        at_lower = at_upper = False
+        waiting, ends, done = [(lower, upper, self.expression)], [lower], []
         count = 0
-        while waiting:
+        while waiting:  # the innermost switches are settled over the whole interval, then what is left over each part
             count += 1
             a, b, expression = waiting.pop()
             places = innermost(expression)
             if not places:
-                knots.append(b)
+                ends.append(b)
                 done.append(expression)
                 continue
-            pieces = branches(expression, places, a, b)
-            at_lower |= pieces.at_start and a == lower
-            at_upper |= pieces.at_end and b == upper
-            ends = pairwise((a, *pieces.inside, b))
-            waiting += [(*end, part) for end, part in zip(ends, pieces.expressions, strict=True)][::-1]
+            inside, parts = branches(expression, places, a, b)
+            waiting += [(*end, part) for end, part in zip(pairwise((a, *inside, b)), parts, strict=True)][::-1]
             if count + len(waiting) > _MOST_STRETCHES:
                 message = f"the formula switches too often to be taken apart: more than {_MOST_STRETCHES} stretches"
                 raise FormulaError(message, expression.steps[places[0]].column)
-        return np.array(knots, dtype=float), tuple(done), (at_lower, at_upper)
+        wide = np.flatnonzero(np.diff(ends) > _SLIVER)
+        knots = [lower, *(ends[i] for i in wide[1:]), upper]
+        return np.array(knots, dtype=float), tuple(done[i] for i in wide)

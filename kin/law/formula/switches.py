@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from bisect import bisect
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from kin.law.formula.expression import ANGLE, Builder, Expression, FormulaError, Instruction
 from kin.law.formula.roots import Signs, signs, snap
 from kin.numeric.errors import UnsettledError
-from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -21,28 +20,11 @@ if TYPE_CHECKING:
 _SWITCHES = ("abs", "sign", "min", "max", "atan2")
 
 
-@dataclass(frozen=True)
-class Branches:
-    """Expressions that replace one with switches, on each stretch of an interval; the innermost switches are gone.
-
-    `inside` are the parameters between the stretches; `at_start` and `at_end` say that a switch also lies on the
-    interval's ends.
-    """
-
-    inside: tuple[float, ...]
-    expressions: tuple[Expression, ...]
-    at_start: bool
-    at_end: bool
-
-
-@dataclass(frozen=True)
-class _Settled:
+class _Settled(NamedTuple):
     """One switch over an interval: its changes, and what it amounts to on each stretch between them."""
 
     changes: tuple[float, ...]
     builds: tuple[Build, ...]
-    at_start: bool
-    at_end: bool
 
 
 def innermost(expression: Expression) -> list[int]:
@@ -58,9 +40,12 @@ def innermost(expression: Expression) -> list[int]:
     return steps
 
 
-def branches(expression: Expression, places: list[int], lower: float, upper: float) -> Branches:
+def branches(
+    expression: Expression, places: list[int], lower: float, upper: float
+) -> tuple[list[float], list[Expression]]:
     """Settle the innermost switches at the given places over [lower, upper].
 
+    Returns the parameters inside at which one changes, rising (k,), and k + 1 expressions in which they are gone.
     Raises FormulaError where a sign that decides cannot be settled.
     """
     settled = {place: _settle(expression, place, lower, upper) for place in places}
@@ -73,9 +58,9 @@ def branches(expression: Expression, places: list[int], lower: float, upper: flo
     for a, b in pairwise((lower, *inside, upper)):
         middle = a + 0.5 * (b - a)
         builds = {place: switch.builds[bisect(switch.changes, middle)] for place, switch in settled.items()}
-        expressions.append(_with_steps(expression, builds))
-    at_start = any(switch.at_start for switch in settled.values())
-    return Branches(tuple(inside), tuple(expressions), at_start, any(switch.at_end for switch in settled.values()))
+        builder, steps = _copy(expression, builds)
+        expressions.append(builder.expression(steps[-1]))
+    return inside, expressions
 
 
 def _settle(expression: Expression, place: int, lower: float, upper: float) -> _Settled:
@@ -92,7 +77,7 @@ def _settle(expression: Expression, place: int, lower: float, upper: float) -> _
 
 
 def _settled(signs: Signs, build: Callable[[int], Build]) -> _Settled:
-    return _Settled(signs.changes, tuple(build(sign) for sign in signs.signs), signs.at_start, signs.at_end)
+    return _Settled(signs.changes, tuple(build(sign) for sign in signs.signs))
 
 
 def _deciding(expression: Expression, step: Instruction) -> Expression:
@@ -155,8 +140,3 @@ def _copy(expression: Expression, builds: Mapping[int, Build]) -> tuple[Builder,
         args = tuple(places[j] for j in step.args)
         places.append(builds[i](builder, args) if i in builds else builder.copy(step, args))
     return builder, places
-
-
-def _with_steps(expression: Expression, builds: Mapping[int, Build]) -> Expression:
-    builder, places = _copy(expression, builds)
-    return builder.expression(places[-1])

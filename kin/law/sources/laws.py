@@ -1,8 +1,8 @@
-"""The catalogue of motion laws, and laws made to measure: SCCA, trapezoids, boundary values, an unequal split.
+"""The catalogue of motion laws, and laws made to measure: SCCA, blends, points, rows, an unequal split.
 
 SCCA (sine, constant, cosine acceleration): R. L. Norton, Cam Design and Manufacturing Handbook, chapter 4. Harmonics:
 F. Freudenstein, On the dynamics of high-speed cam profiles, 1960; A. S. Gutman, 1961. Cubics, harmonics, trapezoids:
-H. A. Rothbart, Cam Design Handbook, chapters 2 and 3. Polynomials by boundary values: VDI 2143.
+H. A. Rothbart, Cam Design Handbook, chapters 2 and 3.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from kin.law.piecewise import Piecewise
 from kin.law.programme import LAWS, IntentError, Law, Polynomial, mirrored, symmetric
 from kin.law.segment import Affine, Stretch
-from kin.law.sources.functions import Cosines, FromRest, Sines, TwoPoint
+from kin.law.sources.functions import Cosines, FromRest, Sines
 from kin.law.sources.peaks import peaks
 from kin.numeric.records import dataclass
 
@@ -97,19 +97,13 @@ _MEMBERS: dict[str, tuple[float, float, float]] = {
 }
 
 
-def trapezoid(ramp: float = 0.125, field: str = "law") -> Law:
-    """Make the law of trapezoidal acceleration: straight ramps over `ramp` of the segment, constant between them.
-
-    The ramp of 1/4 is a triangle. IntentError unless it is above 0 and at most 1/4.
-    """
-    if not _LEAST_SHARE <= ramp <= 0.25:
-        raise IntentError(f"a ramp takes at most a quarter of the segment, not {ramp:.9g}", field)
+def _trapezoid() -> Law:
+    """Law of trapezoidal acceleration: straight ramps over an eighth of the segment, constant between them."""
+    ramp = 0.125
     # velocity at the middle 2 = A (1/2 - ramp)
     peak = 2 / (0.5 - ramp)
     ramps = [(0.0, peak / ramp), (peak, 0.0), (peak, -peak / ramp)]
     knots = [0.0, ramp, 0.5 - ramp, 0.5]
-    if ramp == 0.25:
-        del ramps[1], knots[1]
     half: list[Stretch] = []
     s = v = 0.0
     for (begin, end), (a, j) in zip(pairwise(knots), ramps, strict=True):
@@ -179,11 +173,6 @@ def from_rows(samples: Samples, reading: float, field: str = "law") -> Law:
     rise = made.at_end(0)[0] - made.at_start(0)[0]
     functions = tuple(Affine.of(f, offset=-made.at_start(0)[0] / rise, scale=1.0 / rise) for f in made.motion.functions)
     return _of(f"table ({len(u)} rows)", Piecewise(made.motion.knots, functions), reverses=True)
-
-
-def boundary(start: Sequence[float], end: Sequence[float], name: str = "boundary") -> Law:
-    """Make the polynomial from 0 to 1 with given v, a (and j) at u = 0 and at u = 1, each by u; degree 2 n + 1."""
-    return _single(name, TwoPoint.of((0.0, *start), (1.0, *end)), reverses=True)
 
 
 def split(law: Law, share: float, field: str = "law") -> Law:
@@ -264,7 +253,7 @@ def _catalogue() -> dict[str, _Entry]:
         "double-harmonic": _Entry(
             lambda: _single("double-harmonic", double, reverses=True), "(1 - cos pi u)/2 - (1 - cos 2 pi u)/8"
         ),
-        "trapezoid": _Entry(trapezoid, "acceleration a trapezoid, ramps of 1/8"),
+        "trapezoid": _Entry(_trapezoid, "acceleration a trapezoid, ramps of 1/8"),
         "sine-squared": _Entry(
             lambda: _of("sine-squared", _symmetric(half, [square])), "acceleration 8 sin^2 2 pi u, and its image"
         ),

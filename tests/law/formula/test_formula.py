@@ -239,7 +239,7 @@ def test_wrong_calls_are_refused() -> None:
     with pytest.raises(TypeError, match="the formula is in u, x; 1 series were given"):
         Formula("u*x", ("u", "x")).jet(1.0, 2)
     with pytest.raises(ValueError, match="no interval from 1 to 1"):
-        Formula("t").breaks(1, 1)
+        Formula("t").pieces(1, 1)
 
 
 def test_equal_parts_are_computed_once_and_constants_beforehand() -> None:
@@ -342,9 +342,10 @@ ROOT_OF_COS_T_IS_T = 0.7390851332151606416553120876738734
     ],
 )
 def test_breaks_are_found_to_the_last_places(text: str, breaks: list[float]) -> None:
-    found = Formula(text).breaks(0, TURN)
-    assert len(found) == len(breaks)
-    np.testing.assert_allclose(found, breaks, rtol=4e-16, atol=4e-16)
+    knots, parts = Formula(text).pieces(0, TURN)
+    expected = [0, *(x for x in breaks if 0 < x < TURN), TURN]
+    assert len(parts) == len(expected) - 1
+    np.testing.assert_allclose(knots, expected, rtol=4e-16, atol=4e-16)
 
 
 @given(st.floats(-0.999999, 0.999999), st.integers(1, 9), st.floats(-3, 3))
@@ -352,7 +353,7 @@ def test_breaks_are_found_to_the_last_places(text: str, breaks: list[float]) -> 
 @settings(deadline=None)
 def test_every_switch_is_found(level: float, factor: int, shift: float) -> None:
     """sin(k t + c) = d has its roots in closed form."""
-    found = Formula(f"abs(sin({factor}*t + ({shift!r})) - ({level!r}))").breaks(0, TURN)
+    found = Formula(f"abs(sin({factor}*t + ({shift!r})) - ({level!r}))").pieces(0, TURN)[0]
     first = [mpmath.asin(level), mpmath.pi - mpmath.asin(level)]
     roots = sorted(
         root for x in first for turn in range(-12, 12) if (root := (x - shift + 2 * mpmath.pi * turn) / factor) > -1e-12
@@ -370,10 +371,10 @@ ENDING = "cannot be bounded, as acos, asin or a root has no slope where it ends,
 
 
 def test_two_switches_close_together_are_both_found() -> None:
-    found = Formula("abs((t - 1)*(t - 1.0000001))").breaks(0, 3)
-    np.testing.assert_allclose(found, [1, 1.0000001], atol=1e-9)
-    near = Formula("sign(cos(t) - 1 + 1e-9)").breaks(0, TURN)
-    np.testing.assert_allclose(near, [math.acos(1 - 1e-9), TURN - math.acos(1 - 1e-9)], atol=1e-10)
+    knots, _ = Formula("abs((t - 1)*(t - 1.0000001))").pieces(0, 3)
+    np.testing.assert_allclose(knots[1:-1], [1, 1.0000001], atol=1e-9)
+    near, _ = Formula("sign(cos(t) - 1 + 1e-9)").pieces(0, TURN)
+    np.testing.assert_allclose(near[1:-1], [math.acos(1 - 1e-9), TURN - math.acos(1 - 1e-9)], atol=1e-10)
 
 
 @pytest.mark.parametrize(
@@ -399,16 +400,16 @@ def test_two_switches_close_together_are_both_found() -> None:
 )
 def test_a_switch_that_cannot_be_settled_is_refused(text: str, message: str, column: int) -> None:
     with pytest.raises(FormulaError) as caught:
-        Formula(text).breaks(0, TURN)
+        Formula(text).pieces(0, TURN)
     assert (caught.value.message, caught.value.column) == (message, column)
 
 
 def test_too_many_switches_are_refused() -> None:
-    assert len(Formula("abs(sin(200*t))").breaks(0.001, TURN)) == 400
+    assert len(Formula("abs(sin(200*t))").pieces(0.001, TURN)[1]) == 400
     with pytest.raises(FormulaError, match="switches too often to be taken apart: more than 500 stretches"):
-        Formula("abs(sin(1100*t))").breaks(0, TURN)
+        Formula("abs(sin(1100*t))").pieces(0, TURN)
     with pytest.raises(FormulaError, match="too often near"):
-        Formula("abs(sin(1e6*t))").breaks(0, TURN)
+        Formula("abs(sin(1e6*t))").pieces(0, TURN)
 
 
 @pytest.mark.parametrize(

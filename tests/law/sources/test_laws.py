@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from kin.law.programme import LAWS, IntentError
-from kin.law.sources.laws import _MEMBERS, NAMES, boundary, named, scca, scca_motion, sines, split, trapezoid
+from kin.law.sources.functions import TwoPoint
+from kin.law.sources.laws import _MEMBERS, NAMES, named, scca, scca_motion, sines, split
 from kin.law.sources.peaks import peaks
+from kin.numeric.elementary import Jet
 
 INF = math.inf
 
@@ -265,14 +267,6 @@ def test_a_law_that_is_not_symmetric_is_not_split():
         split(named("cycloidal"), 1.0)
 
 
-def test_trapezoids_of_any_ramp():
-    assert trapezoid(0.25).peaks.acceleration == pytest.approx(8)  # a triangle
-    assert trapezoid(0.25).peaks.jerk == pytest.approx(32)
-    assert trapezoid(0.2).motion.derivatives(1.0, 2, -1)[:, 0] == pytest.approx([1, 0, 0], abs=1e-14)
-    with pytest.raises(IntentError, match=r"a ramp takes at most a quarter of the segment, not 0.3"):
-        trapezoid(0.3)
-
-
 def test_harmonics_with_free_weights():
     assert sines({1: 1.0}, "one").peaks.acceleration == pytest.approx(2 * math.pi, rel=1e-15)
     law = sines({1: 0.9, 2: 0.06, 3: 0.04}, "three")
@@ -283,18 +277,21 @@ def test_harmonics_with_free_weights():
 @given(st.lists(st.floats(-5, 5), min_size=6, max_size=6))
 def test_polynomials_take_their_values_at_both_ends(values):
     start, end = values[:3], values[3:]
-    law = boundary(start, end)
-    assert law.motion.derivatives(0.0, 3)[:, 0].tolist() == pytest.approx([0, *start], abs=1e-13)
-    assert law.motion.derivatives(1.0, 3, -1)[:, 0].tolist() == pytest.approx([1, *end], abs=1e-13)
+    polynomial = TwoPoint.of((0.0, *start), (1.0, *end))
+    assert polynomial(Jet.variable(0.0, 3)).derivatives()[:, 0].tolist() == pytest.approx([0, *start], abs=1e-13)
+    assert polynomial(Jet.variable(1.0, 3)).derivatives()[:, 0].tolist() == pytest.approx([1, *end], abs=1e-13)
     # degree 7: the eighth derivative is none
-    assert np.abs(law.motion.derivatives(np.linspace(0, 1, 5), 8)[8]).max() < 1e-7
+    assert np.abs(polynomial(Jet.variable(np.linspace(0, 1, 5), 8)).derivatives()[8]).max() < 1e-7
 
 
 def test_boundary_values_at_rest_are_the_named_polynomials():
     u = np.linspace(0, 1, 33)
     for name, zeros in (("polynomial-23", 1), ("polynomial-345", 2), ("polynomial-4567", 3)):
-        law = boundary((0.0,) * zeros, (0.0,) * zeros)
-        assert law.motion.derivatives(u, 2) == pytest.approx(named(name).motion.derivatives(u, 2), abs=1e-13)
+        rest = (0.0,) * zeros
+        polynomial = TwoPoint.of((0.0, *rest), (1.0, *rest))
+        assert polynomial(Jet.variable(u, 2)).derivatives() == pytest.approx(
+            named(name).motion.derivatives(u, 2), abs=1e-13
+        )
 
 
 def test_an_unknown_law_is_refused_with_the_nearest():
