@@ -98,7 +98,7 @@ class Corrected(Follower):
 
     @staticmethod
     def of(gauge: Follower, side: Side, curve: Smooth) -> Corrected:
-        """Make it of a gauge, the side of its contour on which the metal lies, and how far that lies beyond it."""
+        """A gauge on metal on one side of its contour, which lies by `curve`, mm, beyond that."""
         contour = gauge.envelope.displaced(curve.times(side))
 
         def skin(parameter: Array, height: float) -> tuple[Array, Array]:
@@ -163,7 +163,7 @@ class Corrected(Follower):
         return [_Beyond(drive, self, k) for k, drive in enumerate(self.exact.drives(contour))]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """Of the follower on its own contour, as `Follower.pressed` has it."""
+        """Pressure angle, rad, and radius of curvature, mm, (n,) each, of the follower without the correction."""
         return self.exact.pressed(contour, phi)
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:

@@ -53,10 +53,10 @@ class Stroke(NamedTuple):
 
 
 class Hidden(NamedTuple):
-    """The form deviation of few waves a turn that a programme takes for motion with the greatest share.
+    """How much of a form deviation a fitted programme takes for motion, at the number of waves where that is the most.
 
-    waves       of that form
-    share       of it that the programme takes for motion, at the phase that hides the most; the rest is left over
+    waves       number of its waves in a turn
+    share       of its height that is taken for motion, at the phase where that is the most; the rest is in the residual
     boundaries  (m,), rad, how far a form of height 1 (mm or rad) moves each, at its worst phase
     levels      (k,), the same of levels
     """

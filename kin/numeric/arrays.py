@@ -1,4 +1,4 @@
-"""The kinds of array that every room passes on."""
+"""Types of the arrays that functions take and give, and one number for a pair of indices."""
 
 from __future__ import annotations
 

@@ -190,15 +190,18 @@ class Builder:
         self._known: dict[tuple[str, tuple[int, ...], float, float], int] = {}
 
     def constant(self, value: float, error: float, column: int) -> int:
-        """Return the place of a constant known to within `error`."""
+        """Add a constant known to within `error`, and give its number; `column` is as for `variable`."""
         return self._place(Instruction("constant", (), value, error, column))
 
     def variable(self, index: int, column: int) -> int:
-        """Return the place of a variable, named by its index."""
+        """Add the instruction that reads variable `index`, and give its number among the instructions.
+
+        `column`, from 0, is where it stands in the text, for messages.
+        """
         return self._place(Instruction("variable", (), index, 0.0, column))
 
     def apply(self, op: str, args: tuple[int, ...], column: int) -> int:
-        """Return the place of an operation on earlier places, folded where that is safe.
+        """Add an operation on earlier instructions, by their numbers `args`, and give its number; constants are folded.
 
         Raises FormulaError for a constant that does not exist and for an exponent out of bounds.
         """

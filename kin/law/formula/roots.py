@@ -66,8 +66,8 @@ def signs(g: Expression, lower: float, upper: float) -> Signs:
     if whole.zero[0] or _sign(whole)[0]:
         return Signs((), (int(_sign(whole)[0]),), at_start=False, at_end=False)
     zeros = _merged(_zeros(g, lower, upper))
-    room = snap(lower, upper)
-    changes = tuple(zero for zero in zeros if lower + room < zero < upper - room)
+    snapped = snap(lower, upper)
+    changes = tuple(zero for zero in zeros if lower + snapped < zero < upper - snapped)
     edges = np.array([lower, *changes, upper])
     places = []
     for a, b in pairwise(edges.tolist()):
@@ -78,7 +78,7 @@ def signs(g: Expression, lower: float, upper: float) -> Signs:
     for place, (before, after) in enumerate(pairwise(places)):
         if before == after:
             raise UnsettledError("stays too close to zero", changes[place])
-    at_start, at_end = any(z <= lower + room for z in zeros), any(z >= upper - room for z in zeros)
+    at_start, at_end = any(z <= lower + snapped for z in zeros), any(z >= upper - snapped for z in zeros)
     return Signs(changes, tuple(places), at_start, at_end)
 
 
@@ -136,43 +136,43 @@ def _simple(g: Expression, low: Array, high: Array, lower: float, upper: float) 
         _Zero(float(z), float(a), float(b))
         for z, a, b in zip(_refine(g, 1, low[cross], high[cross]), low[cross], high[cross], strict=True)
     ]
-    room = snap(lower, upper)
-    zeros += [_Zero(lower, lower, float(b)) for b in high[low == lower] if _on_end(g, 1, lower, room)]
-    zeros += [_Zero(upper, float(a), upper) for a in low[high == upper] if _on_end(g, 1, upper, room)]
+    snapped = snap(lower, upper)
+    zeros += [_Zero(lower, lower, float(b)) for b in high[low == lower] if _on_end(g, 1, lower, snapped)]
+    zeros += [_Zero(upper, float(a), upper) for a in low[high == upper] if _on_end(g, 1, upper, snapped)]
     return zeros
 
 
-def _on_end(g: Expression, m: int, end: float, room: float) -> bool:
+def _on_end(g: Expression, m: int, end: float, snapped: float) -> bool:
     """Whether the (m - 1)-th derivative is 0 at an end to within rounding, of itself or of the end."""
     at = np.array([end])
     c = g.jet(at, m).c[m - 1 :, 0]
-    return not _sign(g.ball(at, at, m - 1).rows[m - 1]).any() or bool(abs(c[0]) <= room * m * abs(c[1]))
+    return not _sign(g.ball(at, at, m - 1).rows[m - 1]).any() or bool(abs(c[0]) <= snapped * m * abs(c[1]))
 
 
 def _multiple(
     g: Expression, low: Array, high: Array, lower: float, upper: float
 ) -> tuple[list[_Zero], NDArray[np.bool_]]:
     """Multiple zeros in small cells, the odd ones of them, and the cells that are settled by it."""
-    settled, zeros, room = np.zeros(len(low), dtype=bool), [], snap(lower, upper)
+    settled, zeros, snapped = np.zeros(len(low), dtype=bool), [], snap(lower, upper)
     if not len(low):
         return [], settled
     certain = _sign(g.ball(low, high, _MOST_MULTIPLE).rows) != 0
     for i in np.flatnonzero(certain[2:].any(axis=0)):
-        # The least m whose derivative keeps its sign; the one below it has at most one zero.
-        m = 2 + int(np.argmax(certain[2:, i]))
+        # the least order whose derivative keeps its sign; the derivative below it has at most one zero
+        order = 2 + int(np.argmax(certain[2:, i]))
         a, b = low[i : i + 1], high[i : i + 1]
-        ends = [_sign(g.ball(x, x, m - 1).rows[m - 1])[0] for x in (a, b)]
-        if ends[0] * ends[1] < 0:
-            zero = _refine(g, m, a, b)
-        elif a[0] == lower and _on_end(g, m, lower, room):
+        signs_at_ends = [_sign(g.ball(x, x, order - 1).rows[order - 1])[0] for x in (a, b)]
+        if signs_at_ends[0] * signs_at_ends[1] < 0:  # inside the cell
+            zero = _refine(g, order, a, b)
+        elif a[0] == lower and _on_end(g, order, lower, snapped):  # at the lower end of all cells
             zero = a
-        elif b[0] == upper and _on_end(g, m, upper, room):
+        elif b[0] == upper and _on_end(g, order, upper, snapped):  # at the upper one
             zero = b
         else:
             continue
-        if not _sign(g.ball(zero - room, zero + room, m - 2).rows).any():
+        if not _sign(g.ball(zero - snapped, zero + snapped, order - 2).rows).any():
             settled[i] = True
-            if m % 2:
+            if order % 2:
                 zeros.append(_Zero(float(zero[0]), float(a[0]), float(b[0])))
     return zeros, settled
 

@@ -141,12 +141,18 @@ def _between_stretches(kept: Sequence[Run], between: Sequence[Stretch], period: 
 def _stretch(
     rows: Tabled, pair: tuple[Run, Run], plain: Least, bounds: Bounds, limit: LowerLimit | None
 ) -> tuple[Stretch | None, int]:
-    """The motion between two runs; or None, with 0 where the first one is no dwell, and 1 where the second one is."""
+    """The motion between two runs; or None, with 0 where the first one is no dwell, and 1 where the second one is none.
+
+    The ends of both runs are moved in until the motion between them is about as calm as that without dwells, `plain`.
+    """
     before, after = pair
     middle = 0.5 * (before.end + after.begin)
-    allowed = plain.curve.peak(before.end - before.limit, middle), plain.curve.peak(middle, after.begin + after.limit)
-    limits = before.limit, after.limit
-    moved = [_quiet(plain, run, way, small) for run, way, small in zip(pair, (-1, 1), allowed, strict=True)]
+    plain_peaks = (
+        plain.curve.peak(before.end - before.limit, middle),
+        plain.curve.peak(middle, after.begin + after.limit),
+    )
+    most_moved = before.limit, after.limit
+    moved = [_quiet(plain, run, way, small) for run, way, small in zip(pair, (-1, 1), plain_peaks, strict=True)]
     steps = [max(0.5 * run.step, _STEP * (run.end - run.begin)) for run in pair]
     touch = plain.touch
     while True:
@@ -159,21 +165,22 @@ def _stretch(
         if moving is not None:
             touch = moving.touch
             peaks = moving.curve.peak(begin, middle), moving.curve.peak(middle, end)
-            rough = moving.curve.square(begin, middle), moving.curve.square(middle, end)
-            calm = plain.curve.square(begin, middle), plain.curve.square(middle, end)
+            squares = moving.curve.square(begin, middle), moving.curve.square(middle, end)
+            plain_squares = plain.curve.square(begin, middle), plain.curve.square(middle, end)
             wild = [
                 side
                 for side in (0, 1)
-                if limits[side] > 0.0 and (peaks[side] > _PEAK * allowed[side] or rough[side] > _SQUARE * calm[side])
+                if most_moved[side] > 0.0
+                and (peaks[side] > _PEAK * plain_peaks[side] or squares[side] > _SQUARE * plain_squares[side])
             ]
             if not wild:
                 return Stretch(begin, end, moving), 0
         else:
-            wild = [side for side in (0, 1) if limits[side] > 0.0]
+            wild = [side for side in (0, 1) if most_moved[side] > 0.0]
         for side in wild:
-            if moved[side] >= limits[side]:
+            if moved[side] >= most_moved[side]:
                 return None, side
-            moved[side] = min(limits[side], moved[side] + steps[side])
+            moved[side] = min(most_moved[side], moved[side] + steps[side])
             steps[side] *= _FASTER
         if not wild:
             raise UnsolvedError

@@ -116,7 +116,10 @@ def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some
 
 
 def join(free: Indices, ends: Array, tolerance: float, partner: Indices, path: Path) -> None:
-    """Make partners of the `free` ends that lie within `tolerance` of one other free end."""
+    """Write into `partner` (m,), for each of the `free` ends (k,), the one other free end within `tolerance` of it, mm.
+
+    `ends` are (m, 2), mm. Raises ReadError "branch" where more than two of them meet.
+    """
     i, j = close_pairs(ends[free], tolerance, path)
     met = np.bincount(np.concatenate([i, j]), minlength=len(free))
     crowded = np.flatnonzero(met > 1)
