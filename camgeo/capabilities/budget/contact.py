@@ -42,7 +42,7 @@ class Metal(Protocol):
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
         """Unit direction from a pivot to the centre of a round touch on the metal, at the end of an arm of a length."""
 
-    def leaning(self, pivot: Complexes, nearer: Array) -> Complexes:
+    def face_normal(self, pivot: Complexes, nearer: Array) -> Complexes:
         """Unit normal of a flat face on the metal, nearer the shaft than its parallel through a pivot by `nearer`."""
 
 
@@ -122,7 +122,7 @@ def _own_on_arm(place: ContactPlace, guide: Oscillating, off: SizeErrors, pivot:
     """Position of an arm, rad, at which its touch meets the metal: the solution nearest the intended position."""
     touch, hand = place.contact.touch, guide.side
     if isinstance(touch, Flat):
-        normal = place.metal.leaning(pivot, touch.nearer + off.grown)
+        normal = place.metal.face_normal(pivot, touch.nearer + off.grown)
         turn = hand * np.angle(normal * np.conj(axis)) + 0.5 * math.pi
     else:
         arm = place.metal.arm(pivot, guide.arm + off.length, touch.radius + off.grown)

@@ -68,8 +68,8 @@ class ExactMetal:
         arm = self._centre(point, tangent, radius) - pivot
         return arm / np.abs(arm)
 
-    def leaning(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """Unit normal of a flat face on an arm, (parts, angles); raises LostError, as `Metal.leaning`."""
+    def face_normal(self, pivot: Complexes, nearer: Array) -> Complexes:
+        """Unit normal of a flat face on an arm, (parts, angles); raises LostError, as `Metal.face_normal`."""
 
         def residual(point: Complexes, tangent: Complexes, _: Array, turn: Array) -> tuple[Array, Array]:
             arm = point - pivot

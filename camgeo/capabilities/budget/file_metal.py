@@ -109,12 +109,12 @@ class ReadMetal:
 
         return self._swung(bound, pivot, length, radius)
 
-    def leaning(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """Unit normal of a flat face on an arm, (parts, angles); raises LostError, as `Metal.leaning`."""
+    def face_normal(self, pivot: Complexes, nearer: Array) -> Complexes:
+        """Unit normal of a flat face on an arm, (parts, angles); raises LostError, as `Metal.face_normal`."""
 
-        def bound(within: Indices, a: Complexes, f: Array, start: Complexes) -> Array:
-            opening = np.arccos(-f / np.abs(self.points[within] - a))
-            return self._turn(self.points[within], a, start) + opening
+        def bound(within: Indices, axis: Complexes, near: Array, start: Complexes) -> Array:
+            opening = np.arccos(-near / np.abs(self.points[within] - axis))
+            return self._turn(self.points[within], axis, start) + opening
 
         return self._swung(bound, pivot, nearer)
 

@@ -179,7 +179,7 @@ class HeldFollower:
         return self.axis * (self.guide + 1j * offset)
 
     def shared(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """Influence of a dimension that all contacts share: one entry, `change` of each contact, stacked."""
+        """Influence of a dimension that all contacts share: one entry (m, 1, n), `change` at each contact."""
         return [np.stack([change(bearing)[None] for bearing in self.bearings])]
 
     def each(self, change: Callable[[Bearing], Array]) -> list[Array]:
@@ -195,7 +195,10 @@ class HeldFollower:
         return self.only(0, change) if self.discs > 1 else self.shared(change)
 
     def shifted(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:
-        """Influence of a displacement in any direction that acts at every contact: one entry of two components."""
+        """Influence of a displacement in any direction that acts at every contact: one entry (m, 2, n).
+
+        `change` of a contact and a unit direction, complex, is the change (n,) of the position by that displacement.
+        """
         return [np.stack([self._components(bearing, change) for bearing in self.bearings])]
 
     def bored(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:

@@ -80,7 +80,7 @@ class Budget:
     seed: int = 1
 
     @property
-    def free(self) -> tuple[str, ...]:
+    def to_be_found(self) -> tuple[str, ...]:
         """Words of the dimensions whose tolerances are to be found."""
         return tuple(name for name, tolerance in self.tolerances if tolerance is None)
 

@@ -66,7 +66,7 @@ def outcome(recipe: Recipe, design: Design, budget: Budget) -> Outcome:
 
 
 def _outcome(recipe: Recipe, design: Design, budget: Budget) -> Outcome:
-    free, left, splits = budget.free, None, None
+    free, left, splits = budget.to_be_found, None, None
     shaft = equal_steps(recipe.verify.angles)
     rows = influence(recipe, design, budget, shaft)
     if free and not budget.cost:
@@ -99,8 +99,9 @@ def _taken(recipe: Recipe, budget: Budget, error: TakenError) -> RecipeErrors:
     paths = (f"budget.tolerances.{error.name}", f"budget.tolerances.{error.name!r}")
     elsewhere = "budget.tolerances" if budget.fit is None else "budget.fit"
     path = next((path for path in paths if path in recipe.marks), elsewhere)
-    problem = f"nothing is left for {budget.free[0]}: {error.name} alone takes {taken:.4g} of {permitted:.4g} {unit}"
-    return recipe.error(path, f"{problem} at {degrees(error.at):.6g} degrees", None, "make it smaller, or permit more")
+    takes = f"{error.name} alone takes {taken:.4g} of {permitted:.4g} {unit} at {degrees(error.at):.6g} degrees"
+    problem = f"nothing is left for {budget.to_be_found[0]}: {takes}"
+    return recipe.error(path, problem, None, "make it smaller, or permit more")
 
 
 # --- units of the report ----------------------------------------------------------------------------------------------

@@ -23,8 +23,8 @@ TRIMMED_WITHIN = 1e-6  # mm: arcs that stand for a trimmed contour
 def read_contours(recipe: Recipe, design: Design, paths: Sequence[Path]) -> dict[str, Contour]:
     """Contour of each surface of a cam, by its name, from a drawing or solid of each disc, or one of all of them.
 
-    Raises CallError for a file that is none, has another suffix, is made for a kerf or the like, or lacks a contour,
-    and where the files do not go together.
+    Raises CallError for a file that is no drawing or solid, is made for a kerf or the like, or lacks a contour, and for
+    files that do not go together.
     """
     from camgeo.output.file_intent import shaft_of_file
     from camgeo.output.sets import sets_of

@@ -135,7 +135,10 @@ def _over_turn(recipe: Recipe, outcome: Outcome) -> dict[str, Any]:
 
 
 def sums_over_turn(recipe: Recipe, outcome: Outcome, shaft: Array) -> dict[Sum, Array]:
-    """Both sums at shaft angles (n,), rad, at the contact that is worst of all, linear between the angles looked at."""
+    """Worst case and root of the sum of squares (n,) at shaft angles (n,), rad, in the unit of `motion_unit`.
+
+    They are those at the contact that is worst of all, linear between the angles of the outcome.
+    """
     rows, (scale, _) = outcome.influence, motion_unit(recipe)
     sums = {kind: total(rows, outcome.worst_output, kind) for kind in SUMS}
     return {kind: scale * np.interp(shaft, rows.shaft, values, period=TURN) for kind, values in sums.items()}

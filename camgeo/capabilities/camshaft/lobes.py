@@ -56,7 +56,7 @@ class PlacedLobe:
     def on_shaft(self, engine: Engine | None) -> ShaftCam:
         """Lobe as a ShaftCam for capabilities that judge files.
 
-        Its event lift is None without an engine, or where it swings.
+        Its event lift is None without an engine, or where its follower swings.
         """
         lobe = self.lobe
         events = None if engine is None or self.swings else self.event_lift(engine)

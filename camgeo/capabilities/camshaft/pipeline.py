@@ -60,7 +60,11 @@ class _Job:
 def export(
     recipe: CamshaftRecipe, out: Path, *, only: tuple[str, ...] = (), progress: Callable[[str], None] | None = None
 ) -> Outcome:
-    """Write and judge a camshaft's files under `out`/<name>; raises as `camgeo.output.pipeline.export` does."""
+    """Write and judge a camshaft's files under `out`/<name>; those of a failed check go to `out`/<name>.rejected.
+
+    Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held, SurroundingsError where the file
+    system refuses or none of the files can be made.
+    """
     from camgeo.output.output_folder import RunFolder
 
     requests = tuple(request for request in recipe.export.files if not only or request.kind in only)
@@ -89,7 +93,10 @@ def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = No
 def judged(
     recipe: CamshaftRecipe, paths: list[Path], *, tolerance: float | None = None, units: float | None = None
 ) -> dict[str, Any]:
-    """Report on solids of any origin, held against a camshaft's lobes; raises as `camgeo.output.pipeline.judged`."""
+    """Report on solids of any origin, held against a camshaft's lobes.
+
+    Raises RecipeErrors for a lobe without a curve and for a file that is no solid, ValueError for an unknown suffix.
+    """
     from camgeo.recipe.export import FileRequest
     from kin.judge.camshaft import verify_camshaft
     from kin.read.formats import FORMATS, format_of
@@ -118,7 +125,10 @@ def judged(
 
 
 def judged_by(recipe: CamshaftRecipe, name: str, call: FileCall) -> dict[str, Any]:
-    """Report on files that a capability claims, see `FileJudge.judge_shaft`; raises as it does."""
+    """Report on files that the capability `name` claims, such as points: `call` has their paths and options.
+
+    Raises CallError for files that cannot be judged, RecipeErrors for a lobe without a curve.
+    """
     clock = Clock()
     lobes = placed(recipe, clock)
     with clock.stage(name):

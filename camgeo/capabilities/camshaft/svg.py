@@ -45,21 +45,21 @@ def colour_of(valve: str) -> str:
     return valve or "other"
 
 
-def filled(name: str, share: float = 1.0) -> str:
-    """Return the SVG attributes of a filled shape: class and fill colour by name, and its opacity where it is not 1."""
-    return f'class="{name}" fill="{COLOURS[name]}"' + ("" if share == 1.0 else f' fill-opacity="{share:g}"')
+def filled(name: str) -> str:
+    """Return the SVG attributes of a filled shape: class and colour by name."""
+    return f'class="{name}" fill="{COLOURS[name]}"'
 
 
 def stroked(name: str, width: float = 1.0, dashes: str = "") -> str:
-    """Return the attributes of a line of a colour and a width, px; `dashes` are its and its gaps' lengths."""
+    """Return the attributes of a line: class and colour by name, width, px, and lengths of dashes and gaps."""
     dashed = f' stroke-dasharray="{dashes}"' if dashes else ""
     return f'class="{name}-line" fill="none" stroke="{COLOURS[name]}" stroke-width="{width:.4g}"{dashed}'
 
 
-def edged(name: str, share: float, width: float = 1.0) -> str:
-    """Return the attributes of what is filled, with an opacity, and edged in one colour."""
+def edged(name: str, opacity: float, width: float = 1.0) -> str:
+    """Return the attributes of a shape filled at an opacity and edged, px wide, in the colour of a name."""
     edge = f'stroke="{COLOURS[name]}" stroke-width="{width:g}"'
-    return f'class="{name} {name}-line" fill="{COLOURS[name]}" fill-opacity="{share:g}" {edge}'
+    return f'class="{name} {name}-line" fill="{COLOURS[name]}" fill-opacity="{opacity:g}" {edge}'
 
 
 def text(
@@ -81,7 +81,7 @@ def text(
 
 
 def line(name: str, x1: float, y1: float, x2: float, y2: float, *, width: float = 1.0, dashes: str = "") -> str:
-    """Return a straight line."""
+    """Return a straight line, px, in the colour of a name."""
     return f'<line x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" y2="{y2:.2f}" {stroked(name, width, dashes)}/>'
 
 

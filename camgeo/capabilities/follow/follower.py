@@ -52,8 +52,8 @@ class FollowerDescription:
         return -1 if self.track == "internal" else 1
 
     @property
-    def lever(self) -> float:
-        """Length, mm, by which a motion in rad becomes one in mm: the arm's, or the pivot's distance; 1 on a stem."""
+    def motion_to_mm(self) -> float:
+        """Factor from the motion's unit to mm at the touch: the arm's length, or its pivot's distance; 1 on a stem."""
         return 1.0 if self.arm is None else self.arm.length or self.arm.pivot
 
     @property

@@ -164,8 +164,8 @@ class Followed:
 
     @property
     def _reading(self) -> float:
-        """Accuracy of the reading in the motion's unit: mm, or on an arm its angle at the lever, rad."""
-        return self.reading if self.unit == "mm" else self.reading / self.follower.lever
+        """Accuracy of the reading in the motion's unit: mm, or on an arm its angle at the motion_to_mm, rad."""
+        return self.reading if self.unit == "mm" else self.reading / self.follower.motion_to_mm
 
     def table(self) -> str:
         """The motion over the turn as CSV: a header, then a row a step; lengths in mm, angles in degrees."""
@@ -244,7 +244,7 @@ class Followed:
                 )
             keys["track"] = "internal"
         if self.follower.track == "groove" and self._motion.second is not None:
-            play = self.follower.lever * (self._motion.second - self.position)
+            play = self.follower.motion_to_mm * (self._motion.second - self.position)
             clearance = max(float(np.median(play * np.cos(self.pressure_angle))), 0.0)
             keys["track"] = f"{{groove: {{clearance: {clearance:.6g}}}}}"
         return keys
@@ -359,7 +359,7 @@ def _require_groove(name: str, motion: MeasuredMotion, follower: FollowerDescrip
     """Raise CallError where a roller has more play between two flanks, or overlaps them by more, than its diameter."""
     if follower.track != "groove" or motion.apart is None:
         return
-    low, high = (follower.lever * value for value in motion.apart)
+    low, high = (follower.motion_to_mm * value for value in motion.apart)
     if max(-low, high) > 2.0 * follower.touch.radius:
         raise CallError(
             f"{name}: no groove for this roller, whose play between the two outermost contours round the shaft would "

@@ -181,7 +181,7 @@ class CorrectedCam(AlteredCam):
 
 
 def corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:
-    """A cam less a share of what the runs of a recipe show too much, drawn at a scale; see `Alteration`.
+    """A cam less a share of what the runs of a recipe show too much, drawn at a scale.
 
     Raises CallError where there are sharp corners, or the follower would not reach into a hollow.
     """

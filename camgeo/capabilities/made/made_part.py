@@ -108,7 +108,7 @@ class PartMade:
 def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], options: PointOptions) -> PartMade:
     """Judge a part by its measured points; give deviations, errors of the motion, and remarks.
 
-    Raises CallError for points that cannot be judged, and the errors of kin.
+    Raises CallError for files without points, UnlikePointsError for points of something else, and as `part_of_points`.
     """
     datum = datum_of(recipe.of(Made), recipe.part)
     points = part_points(recipe, design, read_tables(paths), options.probing)
@@ -116,7 +116,11 @@ def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], options: Po
 
 
 def part_of_points(recipe: Recipe, design: Design, points: PartPoints, options: PointOptions, datum: Datum) -> PartMade:
-    """Judge a part by its points, with the profile's datum given; raises as `made_part`."""
+    """Judge a part by its points, with the datum of its profile; give deviations, errors of the motion, and remarks.
+
+    Raises CallError where a disc has no points, UnsettledError and GapError for points that are too few or too far
+    apart, ContactError and FrameError where the follower does not run on the metal that they show.
+    """
     demand_points(points.missing)
     discs = [_disc(recipe, disc, options, datum) for disc in points.discs]
     each = {surface.measured.intent.name: (surface.errors, surface.play) for disc in discs for surface in disc.surfaces}

@@ -57,7 +57,10 @@ def write_part(recipe: Recipe, result: PartMade, section: dict[str, Any], option
 
 
 def write_shaft(recipe: Order, result: ShaftMade, section: dict[str, Any], options: PointOptions) -> list[str]:
-    """Write the page of a shaft and the files of each cam; returns their paths. Raises as `write_part`."""
+    """Write the page of a shaft and the files of each cam; returns their paths.
+
+    Raises SurroundingsError where the file system refuses.
+    """
     written, pages = [], []
     for lobe, entry in zip(result.cams, section["lobes"], strict=True):
         cam = lobe.points.cam
@@ -190,7 +193,7 @@ def _findings(section: dict[str, Any], rows: Sequence[tuple[str, str]]) -> str:
 
 
 def _document(name: str, body: str) -> str:
-    """HTML page on the part that was made of a recipe, by its name."""
+    """Whole HTML page round a body, titled with the recipe's name."""
     return (
         '<!doctype html>\n<html lang="en"><meta charset="utf-8">'
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">"

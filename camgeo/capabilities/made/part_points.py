@@ -128,9 +128,11 @@ def read_tables(paths: Sequence[Path]) -> list[tuple[Path, PointTable]]:
 def part_points(
     recipe: Recipe, design: Design, files: Sequence[tuple[Path, PointTable]], probing: Probing, first: int = 0
 ) -> PartPoints:
-    """Points of a part, out of files and their tables, of which the first is the `first` of several calls, from 0.
+    """Points of a part, out of files and their tables, by disc and surface, and placed as `probing` says.
 
-    Raises CallError for what is no file of points, and as kin does for points that are not on its contours.
+    `first` is the rank of the first file among those of a run, from 0: a file with no number in its name is of the disc
+    of its rank. Raises CallError for files that do not go together or with the part, UnlikePointsError for points that
+    are not on its contours.
     """
     parts, tables = intents(recipe, design), [table for _, table in files]
     scale, remarks = scale_of(recipe, tables, probing.units)
@@ -293,7 +295,7 @@ def _surface_of_each(part: PartIntent, table: PointTable, places: Array) -> Indi
 
 def _placed_disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[MeasuredSurface], probing: Probing) -> DiscPoints:
     """Place the points of a disc by the unknowns of `align`, and average those that were measured again."""
-    _demand_outside_bore(recipe, surfaces)
+    _demand_not_on_bore(recipe, surfaces)
     align = probing.align
     placing, turned = Placing(), probing.turned or 0.0
     points = [surface.points.placed(Placing(turned)) for surface in surfaces]
@@ -308,7 +310,7 @@ def _placed_disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[MeasuredSu
     return DiscPoints(part, tuple(averages), placing, turned)
 
 
-def _demand_outside_bore(recipe: Recipe, surfaces: Sequence[MeasuredSurface]) -> None:
+def _demand_not_on_bore(recipe: Recipe, surfaces: Sequence[MeasuredSurface]) -> None:
     """Raise UnlikePointsError for points of the bore."""
     bore = recipe.part.bore
     radius = np.concatenate([np.hypot(*surface.points.places.T) for surface in surfaces])
@@ -361,7 +363,11 @@ def _lift_points(
 
 
 def readings_of(parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, probing: Probing) -> Readings:
-    """Lifts of an indicator as tables have them; raises CallError where there are others among them."""
+    """Readings of an indicator, from tables of lifts.
+
+    Raises CallError for a cam of several contacts or with a linkage, for places among the lifts, `align` of shifts,
+    lifts in degrees of a follower on a stem, and a flat indicator elsewhere than on a stem outside the cam.
+    """
     from kin.made.lifts import Readings
 
     surface = parts[0].surfaces[0]

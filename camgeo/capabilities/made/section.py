@@ -204,7 +204,10 @@ def _surface(recipe: Recipe, paths: Sequence[Path], surface: SurfaceMade) -> dic
 
 
 def _motion(recipe: Recipe, result: PartMade, options: PointOptions) -> dict[str, Any]:
-    """Errors of the motion with their uncertainties."""
+    """Entry on the follower's motion: offset, greatest errors of position, velocity and acceleration, phase, peaks.
+
+    Each error and the phase have their expanded uncertainty; lengths in the recipe's unit, angles in degrees.
+    """
     scale, unit = report_unit(recipe, result.motion_unit)
     errors = result.motion
     uncertain = motion_uncertainty(result, options)

@@ -10,7 +10,7 @@ PER = {"error": "motion, error", "velocity": "  velocity", "acceleration": "  ac
 
 
 def shown(report: dict[str, Any], *, everything: bool) -> str:
-    """Text of the table; with `everything` also spans, multipliers and each outlier."""
+    """Report on measured points in lines of text; with `everything` also spans, multipliers and each outlier."""
     section, verdict = report["made"], "ok" if report["ok"] else "FAILED"
     if not report["ok"] and "failed" not in section["verdicts"].values():
         if any(not check["ok"] and not check["name"].startswith("made-") for check in report["checks"]):
@@ -21,7 +21,10 @@ def shown(report: dict[str, Any], *, everything: bool) -> str:
     rows = (shaft_rows if "lobes" in section else table_rows)(section, everything=everything)
     lines += [f"  {label:<30}{value}" for label, value in rows]
     lines += [f"  remark: {text}" for text in section["remarks"]]
-    lines += [f"  {_named(check)}: {escaped(check['detail'])}" for check in report["checks"] if not check["ok"]]
+    for check in report["checks"]:
+        if not check["ok"]:
+            name = f"{check['name']}, {check['surface']}" if "surface" in check else check["name"]
+            lines.append(f"  {name}: {escaped(check['detail'])}")
     lines += [f"  wrote {escaped(path)}" for path in section.get("written", ())]
     return "\n".join(lines)
 
@@ -35,18 +38,10 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
         words += f", noise {surface['noise']:.3g} {unit}" if surface["noise"] else ""
         rows.append(("points", words))
         if everything:
-            rows.append(
-                (
-                    "  smoothed over",
-                    (
-                        f"{surface['spans']} spans of {surface['span_deg']:.3g} degrees, "
-                        f"+- {surface['smoothing']:.2g} {unit}"
-                    ),
-                )
-            )
-            rows += [
-                (f"  outlier, line {each['line']}", f"{each['residual']:+.4g} {unit}") for each in surface["outliers"]
-            ]
+            spans = f"{surface['spans']} spans of {surface['span_deg']:.3g} degrees"
+            rows.append(("  smoothed over", f"{spans}, +- {surface['smoothing']:.2g} {unit}"))
+            outliers = surface["outliers"]
+            rows += [(f"  outlier, line {point['line']}", f"{point['residual']:+.4g} {unit}") for point in outliers]
         point, wave, over = surface["least_fault_point"], surface["least_fault_span"], 2.0 * surface["span_deg"]
         faults = f"{point:.2g} at one point, {wave:.2g} over {over:.3g} degrees"
         rows.append(("  least fault that is found", f"{faults} {unit}"))
@@ -57,9 +52,9 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
         rows.append((f"profile{ending}, datum {disc['datum']}", f"{value}; {where}"))
         rows.append(("  smoothed", f"{disc['smoothed']:.4g} {unit}"))
         if disc["datum"] != "part":
-            rows.append(("  placed by minimax", _placed(disc, unit)))
+            rows.append(("  placed by minimax", _placing_words(disc, unit)))
             least = disc["least_squares"]
-            rows.append(("  placed by least squares", f"{_placed(least, unit)}: {least['profile']:.4g} {unit}"))
+            rows.append(("  placed by least squares", f"{_placing_words(least, unit)}: {least['profile']:.4g} {unit}"))
         if everything and "multipliers" in disc:
             weights = ", ".join(f"{weight:.4f}" for weight in disc["multipliers"])
             rows.append(("  certified by", f"{disc['certificate']:.6g} {unit}, multipliers {weights}"))
@@ -74,20 +69,17 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
             rows.append(("  good if smaller all round by", f"{words}, within {cure['change']:.2g} of that"))
     motion = section["motion"]
     for name, label in PER.items():
-        own = motion[name]
-        rows.append(
-            (label, f"{own['max']:+.4g} +- {own['uncertainty']:.2g} {own['unit']} at {own['at_deg']:.2f} degrees")
-        )
+        error = motion[name]
+        words = f"{error['max']:+.4g} +- {error['uncertainty']:.2g} {error['unit']}"
+        rows.append((label, f"{words} at {error['at_deg']:.2f} degrees"))
     rows.append(("  constant offset", f"{motion['offset']:+.4g} {motion['unit']}, set on assembly"))
     phase = f"{motion['phase_deg']:+.4g} +- {motion['phase_uncertainty_deg']:.2g} degrees"
     rows.append(("  phase", f"{phase}; {motion['without_phase']:.4g} {motion['unit']} remain without it"))
     peak = motion["peak_acceleration"]
     rows.append(("  peak acceleration", f"{peak['made']:.4g}, intended {peak['intended']:.4g} {peak['unit']}"))
     for figure in section.get("figures", ()):
-        words = (
-            f"{figure['made']:.4g} +- {figure['uncertainty']:.2g}, intended {figure['intended']:.4g} {figure['unit']}"
-        )
-        rows.append((f"  {figure['name']}", f"{words}, at {figure['at_deg']:.2f} degrees"))
+        intended = f"intended {figure['intended']:.4g} {figure['unit']}, at {figure['at_deg']:.2f} degrees"
+        rows.append((f"  {figure['name']}", f"{figure['made']:.4g} +- {figure['uncertainty']:.2g}, {intended}"))
     rows += _events(section.get("events", {}))
     if "play" in section:
         play = section["play"]
@@ -120,6 +112,7 @@ def _events(events: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _against(own: dict[str, Any], unit: str) -> str:
+    """A figure as made, its uncertainty, the intended one, and the difference."""
     made, off = f"{own['made']:.6g} +- {own['uncertainty']:.2g} {unit}", own["made"] - own["intended"]
     return f"{made}, intended {own['intended']:.6g}: {off:+.2g}"
 
@@ -149,34 +142,25 @@ def _axis(axis: dict[str, Any]) -> list[tuple[str, str]]:
     """Rows of text (label, value): lean and shift of the shaft's axis, and cams certainly eccentric to it."""
     x, y = axis["shifted"]
     unit = axis["unit"]
-    leans = (
-        f"leans by {axis['leans_deg']:.3g} +- {axis['uncertainty_deg']:.2g} degrees towards {axis['towards_deg']:.0f}"
-    )
+    lean = f"{axis['leans_deg']:.3g} +- {axis['uncertainty_deg']:.2g} degrees towards {axis['towards_deg']:.0f}"
     shifted = f"shifted by ({x:+.3g}, {y:+.3g}) +- {axis['shift_uncertainty']:.2g} {unit} at z {axis['z']:.6g}"
-    rows = [("axis of the shaft", f"{leans}; {shifted}")]
+    rows = [("axis of the shaft", f"leans by {lean}; {shifted}")]
     for cam in axis["eccentricity"]:
         if cam["value"] > cam["uncertainty"]:
-            value = f"{cam['value']:.3g} +- {cam['uncertainty']:.2g} {unit}"
-            rows.append(
-                (
-                    f"  {cam['name']}, eccentric",
-                    f"{value} about it, by ({cam['shifted'][0]:+.3g}, {cam['shifted'][1]:+.3g})",
-                )
-            )
+            (x, y), value = cam["shifted"], f"{cam['value']:.3g} +- {cam['uncertainty']:.2g} {unit}"
+            rows.append((f"  {cam['name']}, eccentric", f"{value} about it, by ({x:+.3g}, {y:+.3g})"))
     return rows
 
 
 def _late(degrees: float) -> str:
+    """Lateness in words, above 0 for late."""
     return f"{'early' if degrees < 0.0 else 'late'} by {abs(degrees):.4g}"
 
 
-def _placed(placing: dict[str, Any], unit: str) -> str:
+def _placing_words(placing: dict[str, Any], unit: str) -> str:
+    """Turn and shift of a placing in words."""
     x, y = placing["shifted"]
     words = f"turned by {placing['turned_deg']:+.4g} degrees"
     if "turned_from_deg" in placing:
         words += f" ({placing['turned_from_deg']:.4g} to {placing['turned_to_deg']:.4g})"
     return words + (f", shifted by ({x:+.4g}, {y:+.4g}) {unit}" if x or y else "")
-
-
-def _named(check: dict[str, Any]) -> str:
-    return f"{check['name']}, {check['surface']}" if "surface" in check else str(check["name"])

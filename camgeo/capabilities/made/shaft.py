@@ -179,22 +179,22 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOp
             late = _shaft_turn([measured[rank] for rank in together], scale, probing)
         measured = [points.turned(-late) for points in measured]
     with as_call_errors(paths):
-        turns = lone_turns(rows(), aligned=late is not None)
-    alone = [turns.get(rank, 0.0) for rank in range(len(measured))]
+        lone = lone_turns(rows(), aligned=late is not None)
+    turns = [lone.get(rank, 0.0) for rank in range(len(measured))]
     leaning = None
     if without_lean and late is not None:
-        measured, leaning = _without_lean(measured, alone, scale, probing)
+        measured, leaning = _without_lean(measured, turns, scale, probing)
         with as_call_errors(paths):
             left = _shaft_turn([measured[rank] for rank in together], scale, probing)  # a shift looks like some turn
         measured, late = [points.turned(-left) for points in measured], late + left
     results = [
         _judge_cam(points, replace(options, probing=replace(probing, align="", turned=turn)))
-        for points, turn in zip(measured, alone, strict=True)
+        for points, turn in zip(measured, turns, strict=True)
     ]
     if not lifts and not without_lean:
         firsts = [result.surfaces[0] for result in results]
         shifts = [shift_of([first.measured.deviations], [first.fit.curve]) for first in firsts]
-        leaning = _leaning(measured, alone, shifts, scale)
+        leaning = _leaning(measured, turns, shifts, scale)
     phases = _phases(measured, [result.motion for result in results], options)
     names = {points.cam.name for points in measured}
     missing = tuple(cam.name for cam in cams if cam.name not in names)
@@ -271,12 +271,12 @@ def _owners(cams: Sequence[ShaftCam], path: Path, table: PointTable, scale: floa
         met = " and ".join(cam.name for cam, there in zip(cams, on[:, at].tolist(), strict=True) if there)
         raise CallError(f"{here}, where {met} meet: give a column lobe too")
     nearest = min(cams, key=lambda cam: max(cam.low - height[at], height[at] - cam.high))
-    looks = _heights_alike(cams, height) if by_label is None else ""
+    looks = _height_advice(cams, height) if by_label is None else ""
     raise CallError(f"{here}, which is on no lobe; the nearest is {span(nearest)}{looks}")
 
 
-def _heights_alike(cams: Sequence[ShaftCam], height: Array) -> str:
-    """Sentence on heights (n,), mm, of which some are on no cam: how all would be on one, scaled, turned or shifted."""
+def _height_advice(cams: Sequence[ShaftCam], height: Array) -> str:
+    """End of a message on heights (n,), mm, off the cams: how all would be on one, scaled, turned or shifted."""
     levels = np.unique(np.round(height, 3))
     low, high = np.array([[cam.low, cam.high] for cam in cams]).T
 
@@ -364,8 +364,8 @@ def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float
         rows.append(radii(turned(places, np.array(points.cam.at))) - (probing.ball or 0.0))
     own, nominal, names = np.stack(rows), np.stack(contours), [cam.name for cam in cams]
     order = np.argsort([cam.low for cam in cams])
-    other_end = np.empty_like(order)
-    other_end[order] = order[::-1]
+    rank_if_reversed = np.empty_like(order)  # which cam stands at the place of each if the shaft is turned end for end
+    rank_if_reversed[order] = order[::-1]
     return Rows(
         own,
         nominal,
@@ -373,7 +373,7 @@ def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float
         names,
         nominal.mean(axis=1),
         own.mean(axis=1),
-        other_end,
+        rank_if_reversed,
         OF_POINTS,
     )
 
@@ -424,22 +424,22 @@ def _at_cam_degrees(measured: Sequence[CamPoints], scale: float, probing: Probin
 
 
 def _without_lean(
-    measured: Sequence[CamPoints], alone: Sequence[float], scale: float, probing: Probing
+    measured: Sequence[CamPoints], turns: Sequence[float], scale: float, probing: Probing
 ) -> tuple[list[CamPoints], Leaning]:
     """Points with the lean and the shift of the shaft's axis taken out, and that axis.
 
-    Raises CallError for lifts, and for cams at fewer than three heights.
+    `turns`, rad, are those of each cam by itself. Raises CallError for lifts, and for cams at fewer than three heights.
     """
     if measured[0].tables[0].measured == "lift":
         raise CallError(NO_SHIFT)
     moved, total = list(measured), None
     for _ in range(ROUNDS):
         shifts = []
-        for points, turn in zip(moved, alone, strict=True):
+        for points, turn in zip(moved, turns, strict=True):
             with as_call_errors(points.paths, points.cam.name):
                 deviations = _on_surface(points, scale, probing).points.placed(Placing(turn)).deviations
                 shifts.append(shift_of([deviations], [fit(deviations.parameter, deviations.e).curve]))
-        leaning = _leaning(moved, alone, shifts, scale, removed=True)
+        leaning = _leaning(moved, turns, shifts, scale, removed=True)
         if leaning is None:
             problem = f"lean and shift of a shaft need lobes at {LEAST_CAMS} heights or more"
             raise CallError(f"--align: {problem}: give --align rotation, or none")
@@ -451,7 +451,7 @@ def _without_lean(
 
 def _leaning(
     measured: Sequence[CamPoints],
-    alone: Sequence[float],
+    turns: Sequence[float],
     shifts: Sequence[tuple[Array, Array]],
     scale: float,
     *,
@@ -460,7 +460,7 @@ def _leaning(
     """The axis of the shaft by the shift of each cam, in the axes of its own points."""
     rows = [
         (float(points.heights(scale).mean()), points.cam.at + turn, shift)
-        for points, turn, shift in zip(measured, alone, shifts, strict=True)
+        for points, turn, shift in zip(measured, turns, shifts, strict=True)
     ]
     return leaning_of([points.cam.name for points in measured], rows, removed=removed)
 

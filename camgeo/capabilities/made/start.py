@@ -69,7 +69,7 @@ BESIDE = 8  # points about one by their polar angle, among which the flanks of a
 
 
 class Started(NamedTuple):
-    """A new recipe, other files beside it by their names, and what there is to say of it, a line each."""
+    """Text of a new recipe; `beside` has the texts of further files by name, `lines` remarks for the terminal."""
 
     text: str
     beside: collections.abc.Mapping[str, str]
@@ -78,19 +78,20 @@ class Started(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _MeasuredCam:
-    """A measured cam: base radius and its uncertainty (k = 2), mm, its motion, and its strokes where it has any.
+    """A measured cam: its motion, its strokes where it has any, base radius and its expanded uncertainty (k = 2), mm.
 
-    `base` is None where other lengths fix the size, `wave` what the form that hides the most adds to it, of height 1.
+    `reading`, mm or rad, is how near the motion's rows are held. `base` is None where other lengths fix the size.
+    `base_by_wave`, mm, is what a form as high as the reading adds to it, of the waves that are most taken for motion.
     """
 
     recipe: Recipe
     keys: ByMotion
     motion: PointMotion
-    base: float | None
-    unsure: float
-    wave: float
     reading: float
     programme: Programme | None
+    base: float | None = None
+    base_uncertainty: float = 0.0
+    base_by_wave: float = 0.0
 
 
 def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
@@ -116,11 +117,10 @@ def _by_strokes(measured: _MeasuredCam, source: Source, name: str) -> tuple[Sour
     keys, made, lines = measured.keys, source, []
     if measured.base is not None:
         mm, unit = measured.recipe.mm, UNIT_NAMES[measured.recipe.units]
-        base = _number(measured.base / mm, measured.unsure / mm)
+        base = _number(measured.base / mm, measured.base_uncertainty / mm)
         made = _with(made, f"cam.{keys.base}", base)
-        lines.append(
-            f"base radius {measured.base / mm:.6g} +- {measured.unsure / mm:.2g} {unit}; {base:.9g} is written"
-        )
+        measured_base = f"{measured.base / mm:.6g} +- {measured.base_uncertainty / mm:.2g} {unit}"
+        lines.append(f"base radius {measured_base}; {base:.9g} is written")
     segments, why = None, "there are no strokes between dwells or turning points"
     if measured.programme is not None:
         segments, why = _segments(measured, measured.programme)
@@ -283,18 +283,20 @@ def _measured_cam(rough: _Rough) -> _MeasuredCam:
     unit = motion.gauge.unit
     reading = motion.gauge.moved_by(reading) if unit == "deg" else reading
     programme = None if keys.series else recognised(motion, reading, unit)
-    lowest = float(motion.position.min() if motion.closed else motion.position[0])
-    unsure, wave = COVERAGE * motion.sd, 1.0
-    if programme is not None:
-        at = int(np.argmin(programme.levels)) if motion.closed else 0
-        lowest, unsure = float(programme.levels[at]), float(programme.uncertainty[1][at])
-        wave = float(programme.hidden.levels[at])
+    cam = _MeasuredCam(recipe, keys, motion, reading, programme)
     if keys.series or not keys.base:
-        return _MeasuredCam(recipe, keys, motion, None, 0.0, 0.0, reading, programme)
-    circle, more, high = (motion.lifted_circle(level) for level in (lowest, lowest + unsure, lowest + wave * reading))
-    return _MeasuredCam(
-        recipe, keys, motion, rough.base + circle, abs(more - circle), abs(high - circle), reading, programme
+        return cam
+    lowest = float(motion.position.min() if motion.closed else motion.position[0])
+    uncertainty, wave = COVERAGE * motion.sd, 1.0
+    if programme is not None:
+        rank = int(np.argmin(programme.levels)) if motion.closed else 0
+        lowest, uncertainty = float(programme.levels[rank]), float(programme.uncertainty[1][rank])
+        wave = float(programme.hidden.levels[rank])
+    lengthened = motion.lifted_circle(lowest)
+    base_uncertainty, base_by_wave = (
+        abs(motion.lifted_circle(lowest + change) - lengthened) for change in (uncertainty, wave * reading)
     )
+    return replace(cam, base=rough.base + lengthened, base_uncertainty=base_uncertainty, base_by_wave=base_by_wave)
 
 
 def _demand_symmetry(recipe: Recipe, motion: PointMotion) -> None:
@@ -424,7 +426,7 @@ def _hidden(measured: _MeasuredCam, programme: Programme) -> str:
     moved.append(f"ends of strokes by {math.degrees(boundaries.max() * measured.reading):.2g} degrees")
     all_round = ""
     if measured.base is not None:
-        length, name = measured.wave / measured.recipe.mm, UNIT_NAMES[measured.recipe.units]
+        length, name = measured.base_by_wave / measured.recipe.mm, UNIT_NAMES[measured.recipe.units]
         moved.insert(0, f"the base radius by {length:.2g} {name}")
         all_round = "a deviation that is the same all round is all taken for base radius; "
     form = f"a form of {waves} wave{'s' * (waves > 1)} a turn, {high:.3g} {unit} high"

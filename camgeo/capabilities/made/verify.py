@@ -24,7 +24,11 @@ if TYPE_CHECKING:
 
 
 def judge(recipe: Recipe, design: Design, call: FileCall, clock: Clock) -> Results:
-    """Judge points; see `FileJudge`."""
+    """Checks and the section `made` of a report on points of a part.
+
+    Raises CallError for points that cannot be judged, RecipeErrors of capabilities that have figures of the motion, and
+    SurroundingsError where the folder of the call cannot be written.
+    """
     paths, options = call.paths, read_options(call.options, recipe, call.units)
     name = escaped(str(paths[0]))
     if not design.contours:
@@ -45,7 +49,7 @@ def judge(recipe: Recipe, design: Design, call: FileCall, clock: Clock) -> Resul
 
 
 def judge_shaft(recipe: Order, cams: Sequence[ShaftCam], call: FileCall, clock: Clock) -> Results:
-    """Judge points of several cams on one shaft; see `FileJudge`."""
+    """Checks and the section `made` of a report on points of several cams on one shaft; raises as `judge`."""
     from camgeo.capabilities.made.shaft import made_shaft
 
     paths, options = call.paths, read_options(call.options, cams[0].recipe, call.units)
