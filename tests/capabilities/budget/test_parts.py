@@ -1,4 +1,7 @@
-"""Made parts by contact: influences against their differences, finite errors, what chance leaves of a budget."""
+"""Made parts by contact: influences against their differences, finite errors, what chance leaves of a budget.
+
+Holds: camgeo.capabilities.budget.exact_metal, camgeo.capabilities.budget.file_metal.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Contours corrected for what a machine made of earlier runs: by a simulated machine, by formulas, and bad input.
 
-Holds: kin.made.corrected.
+Holds: camgeo.capabilities.made.earlier_runs, kin.made.corrected.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Measured points held against recipes: planted faults of every kind of follower, placings, verdicts, bad input."""
+"""Measured points held against recipes: planted faults of every kind of follower, placings, verdicts, bad input.
+
+Holds: camgeo.capabilities.made, camgeo.capabilities.made.checks, camgeo.capabilities.made.record,
+camgeo.capabilities.made.refusal, camgeo.capabilities.made.section, camgeo.capabilities.made.verify.
+"""
 
 from __future__ import annotations
 
@@ -254,24 +258,6 @@ def test_other_files_and_tolerances_are_refused_beside_points(tmp_path, capsys):
     assert "give it in a call of its own" in capsys.readouterr().err
     assert main(["verify", str(recipe), str(file), "--tolerance", "0.01"]) == 2
     assert "give made.profile" in capsys.readouterr().err
-
-
-def test_a_folder_of_page_drawing_and_table(tmp_path, capsys):
-    recipe, files = measured(tmp_path, limited(ROLLER), bump(0.015), noise=0.001)
-    out = tmp_path / "out"
-    assert main(["verify", str(recipe), *map(str, files), "--out", str(out)]) == 0
-    told = capsys.readouterr().out
-    assert "part: ok  points-1.csv" in told
-    assert sorted(path.name for path in out.iterdir()) == ["part-made.csv", "part-made.html", "part-made.svg"]
-    page = (out / "part-made.html").read_text("utf-8")
-    assert page.count("<svg") == 3
-    assert "What to take off" in page
-    rows = np.genfromtxt(out / "part-made.csv", delimiter=",", names=True)
-    assert len(rows) == 720
-    worst = int(np.argmax(rows["deviation_mm"]))
-    assert rows["shaft_deg"][worst] == pytest.approx(50.0, abs=3.0)
-    foot = np.hypot(rows["x_mm"] - rows["foot_x_mm"], rows["y_mm"] - rows["foot_y_mm"])
-    assert foot == pytest.approx(np.abs(rows["deviation_mm"]), abs=1e-9)
 
 
 def test_metal_that_lacks_asks_for_a_smaller_cam(tmp_path, capsys):

@@ -1,4 +1,7 @@
-"""Checks of a camshaft that are told before it is made: those that come, whatever its lobes and files are."""
+"""Checks of a camshaft that are told before it is made: those that come, whatever its lobes and files are.
+
+Holds: camgeo.capabilities.camshaft.starter.
+"""
 
 from __future__ import annotations
 

@@ -1,68 +1,32 @@
-"""Camshafts: lobes where they belong, at their angle, judged in the solid as it lies on disk; an engine's events."""
+"""Camshafts: lobes where they belong, at their angle, judged in the solid as it lies on disk; an engine's events.
+
+Holds: camgeo.capabilities.camshaft, camgeo.capabilities.camshaft.body, camgeo.capabilities.camshaft.page,
+camgeo.capabilities.camshaft.record, camgeo.capabilities.camshaft.section,
+camgeo.capabilities.camshaft.tables.
+"""
 
 import csv
 import json
 import math
-import pickle
 import re
 import sys
 from pathlib import Path
-from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
-import yaml
+from support.camshafts import ENGINE, INTAKE, ROLLER, SHAFT, TWO, shaft
 from support.heavy import trimesh
 
 import camgeo
 from camgeo.capabilities.camshaft.diagrams import LEFT, RIGHT
-from camgeo.capabilities.camshaft.events import stretches
-from camgeo.capabilities.camshaft.keys import DIAGRAMS, Levels
 from camgeo.capabilities.camshaft.svg import WIDTH
 from camgeo.cli.exit_status import SURROUNDINGS
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
 from camgeo.recipe.loading import load_order
-from camgeo.recipe.starter import starter
-from camgeo.schema.errors import RecipeErrors
-from camgeo.synthesis.design import designed
 from kin.judge.camshaft import verify_camshaft
 
 RECIPES = Path(__file__).parents[3] / "recipes"
-INTAKE = """\
-cam:
-  kind: disc
-  base_radius: 18
-  follower: {kind: flat}
-  motion: {lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}
-part: {thickness: 14, density: 7850}
-"""
-EXHAUST = INTAKE.replace("lift: 8, half: 68", "lift: 7.6, half: 65")
-ROLLER = """\
-cam:
-  kind: disc
-  base_radius: 30
-  follower: {kind: roller, radius: 8, offset: 4}
-  motion: [{rise: 12, over: 60, law: modified-sine}, {dwell: 30}, {return: 12, over: 90, law: cycloidal}, {dwell: 180}]
-part: {thickness: 10}
-"""
-ENGINE = "  engine: {order: [1, 3, 4, 2], intake: 110, exhaust: 114, lift: 1}\n"
-SHAFT = "  shaft: {diameter: 24, to: 120, bore: 8}\n  journals: [{z: 0, length: 20, diameter: 30}]\n"
-
-
-def shaft(
-    folder: Path, lobes: str, engine: str = "", *, files: str = "[stl]", extra: str = "", body: str = SHAFT
-) -> Path:
-    for name, text in (("intake", INTAKE), ("exhaust", EXHAUST), ("roller", ROLLER)):
-        (folder / f"{name}.yaml").write_text(text)
-    path = folder / "shaft.yaml"
-    rows = "".join(f"    - {{{row}}}\n" for row in lobes.strip().splitlines())
-    text = f"{extra}camshaft:\n{body}  lobes:\n{rows}{engine}export: {{tolerance: 0.01, files: {files}}}\n"
-    path.write_text(text + "verify: {angles: 360}\n")
-    return path
-
-
-TWO = "recipe: intake.yaml, at: 33.3, z: 30\nrecipe: roller.yaml, at: -120, z: 60"
 
 
 def failing(report: camgeo.Report) -> set[str]:
@@ -223,57 +187,6 @@ def test_the_direction_turns_an_engines_metal_and_no_event(tmp_path: Path, engin
     assert "phase, cylinder 3 intake" in failing(camgeo.verify(shaft(straight, row.format(0), ENGINE), file))
 
 
-# --- from a program ---------------------------------------------------------------------------------------------------
-
-
-def test_a_camshaft_is_loaded_and_designed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """From its file, its text or a mapping: whatever `check` takes. Lifts are those of case f20, at crank 200."""
-    rows = [
-        f"recipe: {valve}.yaml, cylinder: 4, valve: {valve}, z: {z}" for valve, z in (("intake", 30), ("exhaust", 60))
-    ]
-    path = shaft(tmp_path, "\n".join(rows), ENGINE, files="[csv]")
-    monkeypatch.chdir(tmp_path)
-    design = camgeo.design(path)
-    assert isinstance(design, camgeo.CamshaftDesign)
-    assert design.ok
-    assert list(design.lobes) == ["cylinder 4 intake", "cylinder 4 exhaust"]
-    assert design.motion(math.radians(100)) == pytest.approx([1.952853268, 0], abs=1e-8)
-    assert design.motion([[0, 1], [2, 3]], derivative=1).shape == (2, 2, 2)
-    assert design.angles["cylinder 4 intake"] == pytest.approx(math.radians(55))
-    radius = design.lobes["cylinder 4 intake"].figures["radius-of-curvature"]
-    assert design.figures["radius-of-curvature, cylinder 4 intake"] == radius
-    assert repr(design) == "CamshaftDesign('shaft', 2 lobes)"
-    for source in (path.read_text(encoding="utf-8"), yaml.safe_load(path.read_text(encoding="utf-8"))):
-        recipe = camgeo.load(source)
-        assert isinstance(recipe, camgeo.CamshaftRecipe)
-        assert camgeo.check(recipe).ok
-        assert np.array_equal(camgeo.design(recipe).motion(1.0), design.motion(1.0))
-    with pytest.raises(camgeo.CallError, match="a derivative is one of order 0 to 6"):
-        design.motion(0.0, derivative=7)
-    again = pickle.loads(pickle.dumps(design))
-    assert again.checks == design.checks
-
-
-def test_a_report_of_a_camshaft_shows_itself_and_explains_its_checks(tmp_path: Path) -> None:
-    path = shaft(tmp_path, TWO, body="  shaft: {diameter: 37, to: 120}\n")
-    report = camgeo.check(path)
-    (failed,) = (check for check in report.checks if not check.ok)
-    told = report.explain(failed)
-    assert told.startswith("shaft, intake: 18 mm, at least 18.5 mm allowed\n")
-    assert told.endswith(f"recipe   {path}:4:16 camshaft.lobes[0].recipe")
-    assert "shaft, intake" in report._repr_html_()
-    assert "size, roller" in report.figures
-    assert "<svg" in report.design._repr_svg_()
-    mapping = {
-        "camshaft": {
-            "shaft": {"diameter": 20, "to": 10},
-            "lobes": [{"recipe": str(tmp_path / "intake.yaml"), "at": 0, "z": 1}],
-        }
-    }
-    with pytest.raises(camgeo.RecipeErrors, match=r"^recipe: camshaft\.lobes\[0\]\.z: it reaches from 1 to 15 mm"):
-        camgeo.load(mapping)
-
-
 # --- the chart --------------------------------------------------------------------------------------------------------
 
 CHART = re.compile(
@@ -321,60 +234,6 @@ def test_a_machine_has_a_bar_for_each_stretch_split_at_360(machine: tuple[str, c
     assert all(len(rows) == 1 for rows in heights.values())
     assert ">return 40–130<" in text
     assert ">310–10<" in text  # on the part that has room for it
-
-
-MATCHED = (
-    "{rise: 2, over: 40, law: match}, {rise: 6, over: 60, law: constant-velocity}, {rise: 2, over: 40, law: match}"
-)
-LOBE = "{lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}"
-SOURCES = {
-    "lobe": (LOBE, 235, [("return", 235, 303), ("dwell", 303, 527), ("rise", 167, 235)]),
-    "formula": ("{formula: 5*(1 - cos(t))}", 30, [("rise", 30, 210), ("return", 210, 390)]),
-    "one rise of three segments": (
-        f"[{MATCHED}, {{dwell: 40}}, {{return: 10, over: 180, law: cycloidal}}]",
-        0,
-        [("rise", 0, 140), ("dwell", 140, 180), ("return", 180, 360)],
-    ),
-    "rise and fall": (
-        "[{rise_fall: 5, over: 90}, {dwell: 270}]",
-        0,
-        [("rise", 0, 45), ("return", 45, 90), ("dwell", 90, 360)],
-    ),
-    "two a turn": (
-        "{repeat: 2, segments: [{rise: 5, over: 60, law: harmonic}, {to: 0, over: 60, law: harmonic}, {dwell: 60}]}",
-        350,
-        [
-            (name, at + turn, at + turn + 60)
-            for turn in (350, 170)
-            for name, at in (("rise", 0), ("return", 60), ("dwell", 120))
-        ],
-    ),
-    "a whole dwell": ("[{dwell: 360}]", 20, [("dwell", 0, 360)]),
-}
-
-
-@pytest.mark.parametrize(("motion", "zero", "expected"), SOURCES.values(), ids=SOURCES)
-def test_stretches_of_any_source(motion: str, zero: float, expected: list[tuple[str, float, float]]) -> None:
-    text = f"cam: {{kind: disc, base_radius: 30, follower: {{kind: roller, radius: 8}}, motion: {motion}}}\n"
-    exact = designed(camgeo.load(text), Clock()).exact
-    found = [tuple(stretch) for stretch in stretches(exact, math.radians(zero))]
-    right = [(phase, begin % 360, begin % 360 + end - begin) for phase, begin, end in expected]
-    assert [phase for phase, *_ in found] == [phase for phase, *_ in right]
-    assert np.array([ends for _, *ends in found]) == pytest.approx(np.array([ends for _, *ends in right]), abs=1e-4)
-
-
-def test_waves_of_a_base_circle_are_a_dwell() -> None:
-    """Forty waves of 0.3 micrometres beside a lift of 8 mm; those of 30 are drawn."""
-    motion = "{formula: 8*((1 - cos(t))/2)**8 + %s*cos(40*t)}"
-    text = f"cam: {{kind: disc, base_radius: 60, follower: {{kind: flat}}, motion: {motion}}}\n"
-    small, large = (stretches(designed(camgeo.load(text % wave), Clock()).exact, 0.0) for wave in ("0.0003", "0.03"))
-    assert [stretch.phase for stretch in small] == ["rise", "return", "dwell"]
-    rise, back, dwell = small
-    assert rise.end == back.begin == pytest.approx(180.0, abs=1e-6)
-    assert dwell.begin == back.end
-    assert dwell.end == pytest.approx(360.0 + rise.begin, abs=1e-9)
-    assert 60.0 < rise.begin < 120.0
-    assert len(large) > 20
 
 
 # --- the metal --------------------------------------------------------------------------------------------------------
@@ -502,7 +361,6 @@ def test_a_phase_is_measured(solid: tuple[Path, camgeo.Report]) -> None:
 
     from camgeo.capabilities.camshaft.lobes import placed
     from camgeo.capabilities.camshaft.pipeline import _intent
-    from camgeo.recipe.loading import load_order
 
     path, report = solid
     recipe = load_order(path)
@@ -526,23 +384,6 @@ def test_a_disc_is_no_camshaft(tmp_path: Path, solid: tuple[Path, camgeo.Report]
 
 
 # --- face to face -----------------------------------------------------------------------------------------------------
-
-
-def test_every_sum_of_tenths_of_a_millimetre_meets_the_tenth_that_it_is() -> None:
-    """Of all z to 30 and lengths to 20 mm, a sixth of the sums is not the float of the next body's z."""
-    z, long = (tenths.ravel() for tenths in np.meshgrid(np.arange(1, 301), np.arange(1, 201)))
-    sums, stated = z / 10 + long / 10, (z + long) / 10
-    off = sums != stated
-    assert 0.08 < np.mean(sums > stated) < off.mean() < 0.2
-    level = Levels(np.unique(stated).tolist())
-    assert list(map(level, sums[off].tolist())) == stated[off].tolist()
-
-
-def test_a_height_that_is_stated_takes_the_sums_about_it() -> None:
-    level = Levels([32.4, 6.2])
-    assert level(20.1 + 12.3) == 32.4 != 20.1 + 12.3
-    assert level(1.1 + 5.1) == 6.2 != 1.1 + 5.1
-    assert level(6.2 + 1e-8) == 6.2 + 1e-8
 
 
 FLUSH = {  # lobes, journals and where the shaft ends: sums that round up and down, beside one another and at the end
@@ -598,34 +439,6 @@ def test_equal_lobes_of_a_solid_need_no_face_and_others_do(tmp_path: Path) -> No
     assert {"phase, intake 2", "contour, intake 2", "motion, intake 2"} <= fails
 
 
-THIN = {
-    "a gap between lobes": (
-        "at: 0, z: 1.1, length: 5.1\nat: 90, z: 6.2000001, length: 12",
-        "camshaft.lobes[1].z: intake 1 and intake 2 are 1e-07 mm apart, which is too thin; let them ",
-    ),
-    "a gap before the end": (
-        "at: 0, z: 1, length: 5\nat: 90, z: 20, length: 39.995",
-        "camshaft.lobes[1].z: intake 2 and the shaft's upper end are 0.005 mm apart, which is too thin; let them ",
-    ),
-    "a gap at the lower end": (
-        "at: 0, z: 0.001, length: 5\nat: 90, z: 20, length: 5",
-        "camshaft.lobes[0].z: the shaft's lower end and intake 1 are 0.001 mm apart, which is too thin; let them ",
-    ),
-    "a lobe": (
-        "at: 0, z: 1, length: 0.0000000001\nat: 90, z: 20, length: 5",
-        "camshaft.lobes[0].length: intake 1 is too thin, 0 mm long; give a length of more than 0.01 mm, or ",
-    ),
-}
-
-
-@pytest.mark.parametrize(("rows", "message"), THIN.values(), ids=THIN)
-def test_what_is_thinner_than_the_tolerance_is_refused_by_name(tmp_path: Path, rows: str, message: str) -> None:
-    lobes = "\n".join(f"recipe: intake.yaml, {row}" for row in rows.splitlines())
-    body = "  shaft: {diameter: 24, to: 60}\n"
-    with pytest.raises(camgeo.RecipeErrors, match=re.escape(message)):
-        camgeo.check(shaft(tmp_path, lobes, body=body))
-
-
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("z", ["6.2", "6.2101"], ids=["they meet", "farther apart"])
 def test_what_would_do_for_a_thin_gap_does(tmp_path: Path, z: str) -> None:
@@ -645,61 +458,6 @@ def test_a_thin_gap_is_held_where_the_tolerance_is_finer(tmp_path: Path) -> None
 # --- what is refused --------------------------------------------------------------------------------------------------
 
 
-REFUSED = {
-    "two in one place": (
-        ("recipe: intake.yaml, at: 0, z: 30\nrecipe: intake.yaml, at: 9, z: 40", ""),
-        "shaft.yaml:6:39: camshaft.lobes[1].z: intake 2 overlaps intake 1, which reaches from 30 to 44 mm; give",
-    ),
-    "no file": (
-        ("recipe: nope.yaml, at: 0, z: 30", ""),
-        "shaft.yaml:5:16: camshaft.lobes[0].recipe: no such file, given 'nope.yaml'; give the path of a recipe from ",
-    ),
-    "no recipe": (
-        ("recipe: secrets.txt, at: 0, z: 30", ""),
-        "shaft.yaml:5:16: camshaft.lobes[0].recipe: no recipe, given 'secrets.txt'; give the recipe of a cam\n",
-    ),
-    "a camshaft": (
-        ("recipe: shaft.yaml, at: 0, z: 30", ""),
-        "shaft.yaml:5:16: camshaft.lobes[0].recipe: a camshaft is no lobe, given 'shaft.yaml'; give the recipe",
-    ),
-    "a fault of a lobe's own": (
-        ("recipe: slip.yaml, at: 0, z: 30", ""),
-        "shaft.yaml:5:16: camshaft.lobes[0].recipe: SLIP:3:16: cam.base_radius: not above 0, given -18; give ",
-    ),
-    "no engine": (
-        ("recipe: intake.yaml, cylinder: 1, valve: intake, z: 30", ""),
-        "shaft.yaml:5:39: camshaft.lobes[0].cylinder: needs the engine's data; give camshaft.engine, or `at`",
-    ),
-    "a fifth cylinder": (
-        ("recipe: intake.yaml, cylinder: 5, valve: intake, z: 30", ENGINE),
-        "shaft.yaml:5:39: camshaft.lobes[0].cylinder: not in the firing order, given 5; give one of 1, 3, 4, 2",
-    ),
-    "no valve": (
-        ("recipe: intake.yaml, cylinder: 1, z: 30", ENGINE),
-        "shaft.yaml:5:7: camshaft.lobes[0].valve: missing, needed with cylinder; give intake or exhaust",
-    ),
-    "beyond the shaft": (
-        ("recipe: intake.yaml, at: 0, z: 110", ""),
-        "shaft.yaml:5:39: camshaft.lobes[0].z: it reaches from 110 to 124 mm, the shaft from 0 to 120 mm; ",
-    ),
-}
-
-
-@pytest.mark.parametrize(("recipe", "message"), REFUSED.values(), ids=REFUSED)
-def test_one_line_with_place_and_remedy(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], recipe: tuple[str, str], message: str
-) -> None:
-    path = shaft(tmp_path, *recipe)
-    (tmp_path / "secrets.txt").write_text("root:x:0:0:root:/root:/bin/bash\n")
-    (tmp_path / "slip.yaml").write_text(INTAKE.replace("18", "-18"))
-    message = message.replace("SLIP", str(tmp_path / "slip.yaml"))
-    assert main(["export", str(path), "--out", str(tmp_path / "out")]) == 2
-    told = capsys.readouterr().err
-    assert message in told
-    assert told.count("\n") == 1
-    assert not (tmp_path / "out" / "shaft").exists()
-
-
 def test_an_inch_shaft_tells_inches_and_its_lobes_are_in_their_own_unit(tmp_path: Path) -> None:
     """A lobe's recipe without `units` is in mm wherever it stands; the report is in the shaft's unit."""
     body = "  shaft: {diameter: 1, to: 2}\n"
@@ -712,37 +470,11 @@ def test_an_inch_shaft_tells_inches_and_its_lobes_are_in_their_own_unit(tmp_path
         camgeo.check(shaft(tmp_path, lobe.format(1.6), extra="units: inch\n", body=body))
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        "dxf",
-        "gcode",  # needs: milling
-    ],
-)
-def test_a_drawing_is_that_of_a_lobe(tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str) -> None:
-    path = shaft(tmp_path, TWO, files=f"[{kind}]")
-    assert main(["check", str(path)]) == 2
-    assert f"a camshaft has no {kind}; export the lobe's own recipe" in capsys.readouterr().err
-
-
 def test_a_shaft_as_thick_as_a_lobe_fails(tmp_path: Path) -> None:
     path = shaft(tmp_path, TWO, body="  shaft: {diameter: 37, to: 120}\n")
     report = camgeo.check(path)
     assert failing(report) == {"shaft, intake"}
     assert json.loads(report.to_json())["files"] == []
-
-
-@pytest.mark.parametrize(
-    ("recipe", "message"),
-    [
-        ("w-booth", "two contacts on one arm are no lobe's"),
-        ("disc-ring", "a ring, a groove or a pair is no lobe"),  # needs: milling
-    ],
-)
-def test_what_is_no_lobe(tmp_path: Path, recipe: str, message: str) -> None:
-    path = shaft(tmp_path, f"recipe: {RECIPES / recipe}.yaml, at: 0, z: 30, length: 9")
-    with pytest.raises(camgeo.RecipeErrors, match=message):
-        camgeo.check(path)
 
 
 @pytest.mark.slow
@@ -766,116 +498,6 @@ def test_twenty_four_lobes_beside_one_another(tmp_path: Path) -> None:
     assert sum(check.name == "phase" for check in report.checks) == 24
 
 
-def test_the_rings_of_many_lobes_stay_wide_enough_for_their_numbers(tmp_path: Path) -> None:
-    rows = [f"recipe: intake.yaml, cylinder: {k // 2 + 1}, valve: intake, z: {4 * k}, length: 4" for k in range(24)]
-    order = ", ".join(str(k + 1) for k in range(12))
-    engine = ENGINE.replace("1, 3, 4, 2", order)
-    body = "  shaft: {diameter: 24, from: -2, to: 100}\n"
-    report = camgeo.export(shaft(tmp_path, "\n".join(rows), engine, files="[svg]", body=body), tmp_path / "out")
-    assert report.path is not None
-    text = (report.path / "shaft.svg").read_text(encoding="utf-8")
-    widths = [float(width) for width in re.findall(r'<path [^>]*stroke-width="([\d.]+)"', text)]
-    numbers = re.findall(r'font-size="([\d.]+)" text-anchor="middle" class="ground" fill="#ffffff"[^>]*>(\d+)<', text)
-    assert len(widths) == len(numbers) == 24
-    assert all(width >= 2 * 0.62 * float(size) for width, (size, _) in zip(widths, numbers, strict=True))
-    side = float(re.findall(r'width="([\d.]+)"', text)[0])
-    reach = max(float(radius) for radius in re.findall(r' r="([\d.]+)"', text))
-    assert reach + 40 < side / 2
-
-
-EVENT = re.compile(r"<text [^>]*>((?:IV|EV)[OC] [\d.]+° [AB][TB]DC)<")
-ALL_DRAWN = (
-    "[{svg: {as: timing}}, {svg: {as: bars}}, {svg: {as: cam-wheel}}, {svg: {as: crank-wheel}}, {svg: {as: shaft}}]"
-)
-
-
-def test_wheels_of_the_camshaft_and_of_the_crank_say_each_cylinders_events(tmp_path: Path) -> None:
-    """Events, durations and overlap stand on both; each has 360 degrees, of the crank or of the cam."""
-    source = RECIPES / "camshafts"
-    for name in ("intake.yaml", "exhaust.yaml"):
-        (tmp_path / name).write_text((source / name).read_text(encoding="utf-8"), encoding="utf-8")
-    path = tmp_path / "four.yaml"
-    text = (source / "four-cylinder.yaml").read_text(encoding="utf-8")
-    text = text.replace("intake: 110, exhaust: 114", "intake: 96, exhaust: 94")
-    path.write_text(re.sub(r"  files: .*", f"  files: {ALL_DRAWN}", text), encoding="utf-8")
-    report = camgeo.export(path, tmp_path / "out")
-    assert report.path is not None
-    names = ["four.svg", *(f"four-{form}.svg" for form in DIAGRAMS[1:])]
-    drawn = {form: (report.path / name).read_text(encoding="utf-8") for form, name in zip(DIAGRAMS, names, strict=True)}
-    assert drawn["timing"] == drawn["cam-wheel"]
-    cylinders = dict(report)["camshaft"]["cylinders"]
-    (own,) = {tuple(round(row[key], 1) for key in list(row)[1:]) for row in cylinders}
-    opens, closes, exhaust_opens, exhaust_closes, overlap, _ = own
-    assert overlap > 0.0
-    assert sorted(EVENT.findall(drawn["crank-wheel"])) == sorted(
-        [f"IVO {opens}° BTDC", f"IVC {closes}° ABDC", f"EVO {exhaust_opens}° BBDC", f"EVC {exhaust_closes}° ATDC"]
-    )
-    lobes = dict(report)["camshaft"]["lobes"]
-    for valve, lobe in zip(("intake", "exhaust"), lobes, strict=False):
-        assert f"{valve} {2 * lobe['duration_deg']:.1f}°" in drawn["crank-wheel"]
-    assert f"overlap {overlap}°" in drawn["crank-wheel"]
-    assert "cylinders 1, 3, 4, 2: crank degrees" in drawn["crank-wheel"]  # alike: one wheel
-    assert drawn["crank-wheel"].count("<svg") == 1
-    assert drawn["cam-wheel"].count(f"overlap {cylinders[0]['overlap'] / 2:.1f}°") == 4
-    for lobe in lobes:
-        span = f"{lobe['opens_deg']:.1f}–{lobe['closes_deg']:.1f}° ({lobe['duration_deg']:.1f}°)"
-        assert span in drawn["cam-wheel"]
-    for words in drawn.values():
-        ET.fromstring(words)
-
-
-def test_cylinders_that_differ_have_wheels_of_their_own(tmp_path: Path) -> None:
-    rows = (
-        "recipe: intake.yaml, cylinder: 1, valve: intake, z: 30\nrecipe: lobe.yaml, cylinder: 3, valve: intake, z: 60"
-    )
-    (tmp_path / "lobe.yaml").write_text(
-        (RECIPES / "camshafts" / "exhaust.yaml").read_text(encoding="utf-8"), encoding="utf-8"
-    )
-    report = camgeo.export(shaft(tmp_path, rows, ENGINE, files="[{svg: {as: crank-wheel}}]"), tmp_path / "out")
-    assert report.path is not None
-    text = (report.path / "shaft.svg").read_text(encoding="utf-8")
-    assert text.count("<svg") == 3
-    assert "cylinder 1: crank degrees" in text
-    assert "cylinder 3: crank degrees" in text
-    assert "overlap" not in text
-    ET.fromstring(text)
-
-
-def test_a_wheel_needs_an_engine(tmp_path: Path) -> None:
-    rows = "recipe: intake.yaml, at: 30, z: 30"
-    with pytest.raises(RecipeErrors, match=r"needs the engine's data.*; give camshaft.engine, or .svg"):
-        load_order(shaft(tmp_path, rows, files="[{svg: {as: crank-wheel}}]"))
-    load_order(shaft(tmp_path, rows, files="[{svg: {as: bars}}]"))
-
-
-@pytest.mark.thin(2)
-@pytest.mark.parametrize("rotation", ["cw", "ccw"])
-def test_the_drawing_of_the_shaft_is_to_scale(tmp_path: Path, rotation: str) -> None:
-    """Lobes and bars stand at their places along z, as high as their contours at a shaft angle of 0."""
-    rows = "recipe: intake.yaml, at: 33.3, z: 30"
-    path = shaft(tmp_path, rows, files="[stl, {svg: {as: shaft}}]", extra=f"rotation: {rotation}\n")
-    report = camgeo.export(path, tmp_path / "out")
-    assert report.path is not None
-    text = (report.path / "shaft.svg").read_text(encoding="utf-8")
-    boxes = [
-        [float(value) for value in found]
-        for found in re.findall(r'<rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"', text)
-    ]
-    mesh = trimesh.load(report.path / "shaft.stl")
-    (low, _, bottom), (high, _, top) = mesh.bounds
-    shaft_box = min(boxes, key=lambda box: box[0] + 1e-3 * box[3])
-    scale = max(box[2] for box in boxes) / (top - bottom)
-    lobe = next(box for box in boxes if box[0] - shaft_box[0] == pytest.approx(scale * (30 - bottom), abs=0.05))
-    points = mesh.vertices[(mesh.vertices[:, 2] > 29.9) & (mesh.vertices[:, 2] < 44.1)]
-    assert lobe[2] == pytest.approx(scale * 14, abs=0.05)
-    assert lobe[3] == pytest.approx(scale * np.ptp(points[:, 0]), rel=2e-3)
-    axis = next(box for box in boxes if box[2] == max(box[2] for box in boxes))
-    middle = axis[1] + 0.5 * axis[3]
-    assert (middle - lobe[1]) == pytest.approx(scale * points[:, 0].max(), rel=3e-3)
-    assert f"it turns {'clockwise' if rotation == 'cw' else 'counter-clockwise'}" in text
-    assert low < high
-
-
 def test_the_page_has_the_diagrams_in_colours_of_its_own(solid: tuple[Path, camgeo.Report]) -> None:
     """No plate of white in the dark: every colour of a diagram is a class that the page's style knows."""
     _, report = solid
@@ -891,56 +513,6 @@ def test_the_page_has_the_diagrams_in_colours_of_its_own(solid: tuple[Path, camg
         for (names,) in named:
             assert all(f".diagrams .{name} {{" in style for name in names.split())
     assert "prefers-color-scheme: dark" in style.partition(".diagrams {")[2]
-
-
-@pytest.mark.parametrize("word", ["camshafxt", "cam_shaft", "Camshaft"])
-def test_a_slip_in_the_word_camshaft_is_named(word: str, tmp_path: Path) -> None:
-    path = tmp_path / "shaft.yaml"
-    path.write_text(f"{word}: {{lobes: []}}\n", encoding="utf-8")
-    with pytest.raises(RecipeErrors) as caught:
-        load_order(path)
-    assert f"shaft.yaml:1:1: {word}: unknown key; did you mean camshaft?" in str(caught.value)
-    path.write_text("cma: {kind: disc}\n", encoding="utf-8")
-    with pytest.raises(RecipeErrors, match=r"cma: unknown key; did you mean cam\?"):
-        load_order(path)
-
-
-@pytest.mark.parametrize("key", ["motion_error", "output_error"])
-def test_what_a_lobe_is_permitted_stands_in_its_own_recipe(key: str, tmp_path: Path) -> None:
-    path = shaft(tmp_path, TWO)
-    path.write_text(path.read_text().replace("verify: {", f"verify: {{{key}: 0.1, "), encoding="utf-8")
-    with pytest.raises(RecipeErrors, match=rf"verify\.{key}: unknown key; the keys here are angles"):
-        load_order(path)
-    assert key not in starter("camshaft")
-
-
-def test_separation_and_advance_are_the_centres_that_they_make(tmp_path: Path) -> None:
-    lobes = "recipe: intake.yaml, cylinder: 1, valve: intake, z: 25\n"
-    lobes += "recipe: exhaust.yaml, cylinder: 1, valve: exhaust, z: 50"
-    files = "[{csv: {as: events}}]"
-    told = []
-    for centres in ("separation: 110, advance: 4", "intake: 106, exhaust: 114"):
-        path = shaft(tmp_path, lobes, f"  engine: {{order: [1], {centres}}}\n", files=files)
-        told.append(dict(camgeo.export(path, tmp_path / "out"))["camshaft"])
-    assert told[0] == told[1]
-    assert told[0]["cylinders"][0]["separation"] == pytest.approx(110.0, abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("engine", "message"),
-    [
-        ("order: [1]", "camshaft.engine: needs intake or separation; give exactly one of them"),
-        ("order: [1], intake: 106, exhaust: 114, separation: 110", "separation: cannot be combined with intake"),
-        ("order: [1], separation: 110, exhaust: 114", "exhaust: cannot be combined with separation; leave it out"),
-        ("order: [1], intake: 106", "camshaft.engine.exhaust: missing, needed with intake"),
-        ("order: [1], intake: 106, exhaust: 114, advance: 4", "advance: needs the lobes' separation; leave it out"),
-    ],
-)
-def test_centres_are_given_one_way(engine: str, message: str, tmp_path: Path) -> None:
-    path = shaft(tmp_path, "recipe: intake.yaml, cylinder: 1, valve: intake, z: 25", f"  engine: {{{engine}}}\n")
-    with pytest.raises(RecipeErrors) as caught:
-        load_order(path)
-    assert message in str(caught.value)
 
 
 @pytest.mark.thin(2)

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import math
-from typing import TYPE_CHECKING
 
 import pytest
 from support.places import ROOT
 
-import camgeo
-from camgeo.capabilities.budget.fits import HOLES, KEYWAYS, SHAFTS, UPPER_ENDS, clearance, fit_of, key_clearance
 from camgeo.capabilities.budget.keys import Budget
-from camgeo.cli.main import main
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 CAM = """\
 cam:
@@ -128,43 +120,6 @@ def test_values_are_in_mm_and_radians() -> None:
     assert budget("tolerances: {profile: 0.001}", arm).permitted == pytest.approx(math.radians(0.05))
 
 
-# --- fits -------------------------------------------------------------------------------------------------------------
-
-
-def test_classes_follow_from_the_standard_tolerances() -> None:
-    """IT6, IT7 and IT9 are 10, 16 and 40 times the unit of tolerance, rounded as the standard rounds."""
-    ends = (1.0, *UPPER_ENDS)
-    for i in range(len(UPPER_ENDS)):
-        size = math.sqrt(ends[i] * ends[i + 1]) if i else math.sqrt(3.0)
-        unit = 0.45 * size ** (1 / 3) + 0.001 * size
-        for classes, name, times in ((HOLES, "H7", 16), (SHAFTS, "h6", 10), (SHAFTS, "g6", 10), (SHAFTS, "k6", 10)):
-            low, high = classes[name][i]
-            assert abs(high - low - times * unit) < 1.6, (name, i)
-        for name in KEYWAYS:
-            low, high = KEYWAYS[name][i]
-            assert abs(high - low - 40 * unit) < 3.4, (name, i)
-
-
-def test_clearances() -> None:
-    assert clearance("H7", "h6", 20.0) == pytest.approx((0.0, 0.034))
-    assert clearance("H7", "g6", 20.0) == pytest.approx((0.007, 0.041))
-    assert clearance("H7", "k6", 18.0) == pytest.approx((-0.012, 0.017))
-    # hub JS9 over a key of 6 mm: 15 + 30 um; P9 at most 18
-    assert key_clearance("JS9", 6.0) == pytest.approx((-0.015, 0.045))
-    assert key_clearance("P9", 6.0).most == pytest.approx(0.018)
-    fit = fit_of(20.0, "H7", "h6", ("JS9", "P9"), 6.0)
-    assert fit.bore == pytest.approx(0.017)
-    assert fit.angle == pytest.approx((0.045 + 0.018) / 20.0)
-    with pytest.raises(ValueError, match="120 mm"):
-        clearance("H7", "h6", 121.0)
-
-
-def test_a_fit_counts_as_bore_and_angle() -> None:
-    value = dict(budget("tolerances: {profile: 0.01}, fit: h6, key: {hub: JS9, shaft: JS9}").tolerances)
-    assert value["bore"] == pytest.approx(0.017)
-    assert value["angle"] == pytest.approx(0.090 / 20.0)
-
-
 def test_a_bore_with_a_class_is_round_as_any() -> None:
     plain = load_text(CAM.replace("{diameter: 20, fit: H7}", "20"), "c.yaml").part
     fitted = load_text(CAM, "c.yaml").part
@@ -174,62 +129,3 @@ def test_a_bore_with_a_class_is_round_as_any() -> None:
         load_text(CAM.replace("fit: H7", "fit: H7, at: 10"), "c.yaml")
     with pytest.raises(RecipeErrors, match=r"part\.bore\.fit: missing"):
         load_text(CAM.replace(", fit: H7", ""), "c.yaml")
-
-
-# --- the command, the report ------------------------------------------------------------------------------------------
-
-
-def run(folder: Path, body: str, *words: str, cam: str = CAM) -> int:
-    (folder / "c.yaml").write_text(f"{cam}budget: {{{body}, runs: 100}}\n", encoding="utf-8")
-    return main(["budget", str(folder / "c.yaml"), *words])
-
-
-def test_the_command_splits_what_is_permitted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(tmp_path, "permitted: 0.05, fit: h6, tolerances: {profile: free, follower.radius: 0.005}") == 0
-    out = capsys.readouterr().out
-    assert "profile (found)" in out
-    assert "left for profile:" in out
-    left = float(out.split("left for profile: ")[1].split()[0])
-    assert run(tmp_path, f"permitted: 0.05, fit: h6, tolerances: {{profile: {left}, follower.radius: 0.005}}") == 0
-    more = left + 0.001
-    assert run(tmp_path, f"permitted: 0.05, fit: h6, tolerances: {{profile: {more}, follower.radius: 0.005}}") == 1
-    assert "NOT KEPT" in capsys.readouterr().out
-
-
-def test_the_command_finds_the_widest_set(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    body = "permitted: 0.05, cost: {profile: 4, follower.radius: 1}, tolerances: {angle: 0.02}, sum: rss"
-    assert run(tmp_path, body, "--json") == 0
-    found = json.loads(capsys.readouterr().out)
-    assert found["rss"]["value"] == pytest.approx(0.05, rel=1e-9)
-    assert found["worst"]["value"] > 0.05
-    assert {row["name"] for row in found["splits"]["worst"]["tolerances"]} == {"profile", "follower.radius"}
-
-
-def test_what_takes_all_is_refused_by_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(tmp_path, "permitted: 0.05, tolerances: {profile: free, follower.offset: 0.2}") == 2
-    error = capsys.readouterr().err
-    assert "budget.tolerances" in error
-    assert "nothing is left for profile: follower.offset alone takes" in error
-
-
-def test_play_and_a_recipe_without_a_budget(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(tmp_path, "permitted: 0.05, play: 0.03, tolerances: {breadth: 0.02, profile: 0.01}", cam=YOKE) == 1
-    assert "play from -0.04 to 0.04 mm, 0.03 permitted" in capsys.readouterr().out
-    (tmp_path / "c.yaml").write_text(CAM, encoding="utf-8")
-    assert main(["budget", str(tmp_path / "c.yaml")]) == 2
-    assert "there is no budget" in capsys.readouterr().err
-
-
-def test_report_limit_and_page(tmp_path: Path) -> None:
-    text = CAM + "budget: {permitted: 0.05, tolerances: {profile: 0.01, follower.offset: 0.01}}\n"
-    text = (
-        text.replace("[dxf]", "[dxf, html]") + "limits: {budget-worst: {at_most: 0.01}, budget-rss: {at_most: 0.02}}\n"
-    )
-    result = camgeo.export(camgeo.load(text), tmp_path)
-    failed = [check.name for check in result.checks if not check.ok]
-    assert failed == ["limit:budget-worst"]
-    assert result["budget"]["worst"]["value"] > 0.01
-    page = next(result.path.glob("*.html")).read_text(encoding="utf-8")
-    assert "Budget of errors</h2>" in page
-    assert page.count("<polygon") >= 2
-    assert '"title":"Budget"' in page
