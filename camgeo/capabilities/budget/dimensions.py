@@ -8,8 +8,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Set as AbstractSet
 
-    from camgeo.recipe.recipe import Recipe
-
 PROFILE, BORE, ANGLE, GUIDE = "profile", "bore", "angle", "guide"
 CONJUGATE, LINKAGE = "two discs", "linkage"
 
@@ -31,12 +29,6 @@ def traits(offers: AbstractSet[str], discs: int, linkage: str) -> frozenset[str]
     if linkage:
         return frozenset({LINKAGE, linkage})
     return frozenset(offers) | ({CONJUGATE} if discs > 1 else frozenset())
-
-
-def traits_of(recipe: Recipe) -> frozenset[str]:
-    """The traits of a recipe's cam and linkage."""
-    arrangement = recipe.cam.arrangement
-    return traits(arrangement.offers, arrangement.discs, recipe.linkage.kind if recipe.linkage else "")
 
 
 def _has(*names: str) -> Callable[[AbstractSet[str]], bool]:

@@ -42,6 +42,7 @@ def test_the_command_splits_what_is_permitted(tmp_path: Path, capsys: pytest.Cap
     assert "left for profile:" in out
     left = float(out.split("left for profile: ")[1].split()[0])
     assert run(tmp_path, f"permitted: 0.05, fit: h6, tolerances: {{profile: {left}, follower.radius: 0.005}}") == 0
+    assert "c: 0.05 mm kept by worst case: " in capsys.readouterr().out
     more = left + 0.001
     assert run(tmp_path, f"permitted: 0.05, fit: h6, tolerances: {{profile: {more}, follower.radius: 0.005}}") == 1
     assert "NOT KEPT" in capsys.readouterr().out

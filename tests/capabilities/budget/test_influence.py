@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.budgets import dimensions_of
 from support.made_cases import CASES
 
-from camgeo.capabilities.budget.dimensions import DIMENSIONS, dimension_names, traits_of
+from camgeo.capabilities.budget.dimensions import DIMENSIONS
 from camgeo.capabilities.budget.influence import Influence, influence, velocities
 from camgeo.capabilities.budget.keys import Budget
 from camgeo.capabilities.budget.sums import by_name, powers, spread, total
@@ -26,7 +27,7 @@ def of_words(text: str, degrees: tuple[float, ...], guide: float = 0.0, *, relat
     shaft = np.radians(degrees)
     if relative and design.driven is not None:
         shaft = design.driven.mechanism.at(shaft, 0).shaft[0]
-    words = dimension_names(traits_of(recipe))
+    words = dimensions_of(recipe)
     return influence(recipe, design, Budget(1.0, tuple((word, 1.0) for word in words), guide=guide), shaft)
 
 
@@ -95,7 +96,7 @@ def test_the_error_where_the_machine_is_set_is_subtracted() -> None:
 
 
 def test_every_word_is_known_of_some_cam() -> None:
-    seen = {word for case in CASES.values() for word in dimension_names(traits_of(load_text(case.cam, "a.yaml")))}
+    seen = {word for case in CASES.values() for word in dimensions_of(load_text(case.cam, "a.yaml"))}
     assert set(DIMENSIONS) - seen == {
         "index",
         "conjugate.radius",

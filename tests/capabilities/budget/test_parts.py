@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from support.budgets import dimensions_of
 from support.made_cases import CASES
 from support.places import ROOT
 
 import camgeo
-from camgeo.capabilities.budget.dimensions import DIMENSIONS, dimension_names, traits_of
+from camgeo.capabilities.budget.dimensions import DIMENSIONS
 from camgeo.capabilities.budget.influence import influence
 from camgeo.capabilities.budget.keys import Budget
 from camgeo.capabilities.budget.library import budget as split
@@ -127,7 +128,7 @@ def design_of(name: str):
 def test_influences_are_differences_of_contact_with_the_metal_fixed(name: str) -> None:
     recipe = of_recipe(name)
     design = design_of(name)
-    words = dimension_names(traits_of(recipe))
+    words = dimensions_of(recipe)
     stated = Budget(1.0, tuple((word, 1.0) for word in words), guide=GUIDE)
     rows = influence(recipe, design, stated, SHAFT)
     errors_of = errors_by_contact(recipe, design, stated, SHAFT)
@@ -181,7 +182,7 @@ def test_finite_errors() -> None:
 @pytest.mark.parametrize("name", FAMILIES)
 def test_deviations_are_those_foreseen(name: str) -> None:
     recipe, design = of_recipe(name), design_of(name)
-    sizes = tuple((word, 1e-3) for word in dimension_names(traits_of(recipe)))
+    sizes = tuple((word, 1e-3) for word in dimensions_of(recipe))
     parts = simulate(recipe, design, Budget(1.0, sizes, guide=GUIDE, runs=1000, seed=3), sample_angles([0.3]))
     assert all(one.agrees for one in parts.spreads)
     assert parts.within == 1.0

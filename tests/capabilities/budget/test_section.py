@@ -1,6 +1,6 @@
 """The section `budget` of a report, its limits, and the page.
 
-Holds: camgeo.capabilities.budget.panel, camgeo.capabilities.budget.record.
+Holds: camgeo.capabilities.budget.record.
 """
 
 from __future__ import annotations

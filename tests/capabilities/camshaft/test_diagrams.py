@@ -128,3 +128,9 @@ def test_the_drawing_of_the_shaft_is_to_scale(tmp_path: Path, rotation: str) -> 
     assert (middle - lobe[1]) == pytest.approx(scale * points[:, 0].max(), rel=3e-3)
     assert f"it turns {'clockwise' if rotation == 'cw' else 'counter-clockwise'}" in text
     assert low < high
+    (polygon,) = re.findall(r'<polygon points="([^"]+)"', text)
+    corners = np.array([[float(value) for value in corner.split(",")] for corner in polygon.split()])
+    (centre,) = set(re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)"', text))
+    from_axis = (corners - [float(value) for value in centre]) * (1.0, -1.0)
+    seen, made = (rows[np.argmax(np.hypot(*rows.T))] for rows in (from_axis, points[:, :2]))
+    assert np.arctan2(*seen) == pytest.approx(np.arctan2(*made), abs=0.03)

@@ -78,7 +78,11 @@ def test_tables_of_an_engine(engine: camgeo.Report) -> None:
     events = list(csv.DictReader((engine.path / "shaft.csv").read_text().splitlines()))
     assert float(events[0]["opens_crank_deg"]) == pytest.approx(369.750709, abs=1e-6)
     assert float(events[0]["duration_crank_deg"]) == pytest.approx(200.498582789, abs=1e-8)
+    first = dict(engine)["camshaft"]["lobes"][0]
+    assert (first["opens_crank_deg"], first["opens_deg"]) == pytest.approx((369.750709, 184.8753543), abs=1e-6)
+    assert first["closes_crank_deg"] - first["opens_crank_deg"] == pytest.approx(200.498582789, abs=1e-8)
     rows = list(csv.DictReader((engine.path / "shaft-motion.csv").read_text().splitlines()))
+    assert [float(row["shaft_deg"]) for row in rows] == [*range(361)]
     at_200 = next(row for row in rows if float(row["crank_deg"]) == 200.0)
     intake = [float(at_200[f"cylinder_{k}_intake_mm"]) for k in (1, 3, 4, 2)]
     exhaust = [float(at_200[f"cylinder_{k}_exhaust_mm"]) for k in (1, 3, 4, 2)]

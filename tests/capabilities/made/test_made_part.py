@@ -1,7 +1,7 @@
 """Measured points held against recipes: planted faults of every kind of follower, placings, verdicts, bad input.
 
 Holds: camgeo.capabilities.made, camgeo.capabilities.made.checks, camgeo.capabilities.made.record,
-camgeo.capabilities.made.refusal, camgeo.capabilities.made.section, camgeo.capabilities.made.verify.
+camgeo.capabilities.made.section, camgeo.capabilities.made.verify.
 """
 
 from __future__ import annotations

@@ -1,0 +1,48 @@
+"""Errors of measured points: each names the files, the cam of a shaft, or the place in the recipe that named them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from support.measured import RECIPES
+
+from camgeo.capabilities.made.refusal import as_call_errors, refused_at
+from camgeo.common.errors import CallError
+from camgeo.recipe.recipe import read
+from camgeo.schema.errors import RecipeErrors
+from kin.follower.frame_contact import FrameError
+from kin.made.points import UnlikePointsError
+
+FILES = [Path("a.csv"), Path("b.csv")]
+
+
+def refuse(error: Exception) -> None:
+    raise error
+
+
+@pytest.mark.parametrize(
+    ("error", "lobe", "message"),
+    [
+        (UnlikePointsError("they look turned"), "", "a.csv, b.csv: they look turned"),
+        (UnlikePointsError("they look turned"), "intake", "a.csv, b.csv: intake: they look turned"),
+        (FrameError("it binds"), "", "a.csv, b.csv: on the metal that these points tell, it binds"),
+        (CallError("a file is missing"), "", "a file is missing"),
+        (CallError("a file is missing"), "intake", "intake: a file is missing"),
+    ],
+)
+def test_what_is_refused_of_points_names_their_files(error: Exception, lobe: str, message: str) -> None:
+    with pytest.raises(CallError) as caught, as_call_errors(FILES, lobe):
+        refuse(error)
+    assert str(caught.value) == message
+
+
+def test_what_is_refused_in_a_recipe_stands_at_its_place() -> None:
+    text = f"{RECIPES['flat']}\nmade: {{profile: 0.02}}\n"
+    recipe = read(text.encode(), "part.yaml")
+    with pytest.raises(RecipeErrors) as caught, refused_at(recipe, "made", "a.csv", FILES[0]):
+        refuse(CallError("a.csv: no points; --units inch"))
+    (error,) = caught.value.errors
+    assert (error.path, error.problem) == ("made", "a.csv: no points; units: inch")
+    with refused_at(recipe, "made"):
+        pass
