@@ -14,7 +14,7 @@ import numpy as np
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
-from kin.read.drawing.dxf import read_dxf
+from kin.read.files import read_drawing
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt  # the backend must be chosen first
@@ -43,7 +43,7 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             outcome = pipeline.export(recipe, Path(folder))
             path = Path(folder) / recipe.name / f"{recipe.name}.dxf"
-            drawing = read_dxf(path)
+            drawing = read_drawing(path)
         follower = design.exact.gauge
         phi = np.linspace(0.0, 2.0 * np.pi, 3601)
         error = np.stack([one.rows(phi)[0] / follower.si for one in follower.resting(drawing.contour)])

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kin.read.errors import ReadError
-from kin.read.formats import FORMATS, format_of
+from kin.read.formats import FORMATS, DrawingOptions, format_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,12 +30,12 @@ def read_drawing(
     bridged: float = 0.0,
     unstated: float = 1.0,
 ) -> Drawing:
-    """Read a drawing; raises as `read_dxf` does, ValueError for a suffix that is no drawing's."""
+    """Read a drawing, see `DrawingOptions`; raises as `read_dxf`, ValueError for a suffix that is no drawing's."""
     path = Path(path)
     read = format_of(path).drawing
     if read is None:
         raise ValueError(f"{path.name} is no drawing")
-    return read(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
+    return read(path, DrawingOptions(gap, engraved, deepest, bridged, unstated))
 
 
 def read_solid(

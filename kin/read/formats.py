@@ -6,7 +6,7 @@ from here; here they are imported when a file is read, and for types alone.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -29,13 +29,21 @@ if TYPE_CHECKING:
 Contents: TypeAlias = Literal["drawing", "solid", "program", "table"]
 
 
-class DrawingReader(Protocol):
-    """Reader of a drawing, with the parameters of `read_dxf`."""
+class DrawingOptions(NamedTuple):
+    """How a drawing is read.
 
-    def __call__(
-        self, path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float
-    ) -> Drawing:
-        """Give the drawing of a file."""
+    gap       mm; ends of loose pieces are joined if they lie within it. None: 1e-6, or 2e-8 of a drawing below 50 mm
+    engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
+    deepest   how many others a closed chain may lie inside: 1, so that a hole has no island
+    bridged   mm; gaps up to this, and open chains within the contour, are told by `openings` and do not raise
+    unstated  mm in the unit in which `gap` and `bridged` are meant for a drawing that states none
+    """
+
+    gap: float | None = None
+    engraved: bool = False
+    deepest: int = 1
+    bridged: float = 0.0
+    unstated: float = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +55,7 @@ class Format:
     most      greatest size of a file that is read, bytes: any is read in 2 GB of memory, and in seconds
     suffixes  endings of files' names; the first is that of its word
     units     whether a file states its unit
-    drawing   reads a drawing as `read_dxf` does
+    drawing   reads a drawing, see `read_dxf`
     solid     reads one part: (path, heights, deepest), see `read_stl`
     bodies    reads several parts of one file, the lowest first: (path, what is sought of each)
     meshes    reads the triangles of each body, mm in a file that states its unit, and else as they stand there
@@ -58,7 +66,7 @@ class Format:
     most: int
     suffixes: tuple[str, ...]
     units: bool = True
-    drawing: DrawingReader | None = None
+    drawing: Callable[[Path, DrawingOptions], Drawing] | None = None
     solid: Callable[[Path, Sequence[float], int], AnySolid] | None = None
     bodies: Callable[[Path, Sequence[Sought]], Sequence[AnySolid]] | None = None
     meshes: Callable[[Path], Sequence[Placed]] | None = None
@@ -91,16 +99,16 @@ def mesh(
     return Format(name=name, contents="solid", most=most, suffixes=suffixes, units=units, solid=solid, meshes=meshes)
 
 
-def _dxf(path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float) -> Drawing:
+def _dxf(path: Path, options: DrawingOptions) -> Drawing:
     from kin.read.drawing.dxf import read_dxf
 
-    return read_dxf(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
+    return read_dxf(path, options)
 
 
-def _svg(path: Path, gap: float | None, *, engraved: bool, deepest: int, bridged: float, unstated: float) -> Drawing:
+def _svg(path: Path, options: DrawingOptions) -> Drawing:
     from kin.read.drawing.svg import read_svg
 
-    return read_svg(path, gap, engraved=engraved, deepest=deepest, bridged=bridged, unstated=unstated)
+    return read_svg(path, options)
 
 
 def _stl(raw: bytes, path: Path) -> tuple[Corners, Form]:

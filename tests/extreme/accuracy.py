@@ -24,7 +24,7 @@ from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
-from kin.read.drawing.dxf import read_dxf
+from kin.read.files import read_drawing
 from kin.read.mesh.stl import read_stl
 
 PAGE = Path(__file__).parents[2] / "docs" / "accuracy.md"
@@ -137,7 +137,7 @@ def made(asked):
         found = {}
         for file in sorted(Path(outcome.folder).iterdir()):
             if file.suffix == ".dxf":
-                found[file.name] = read_dxf(file).contour
+                found[file.name] = read_drawing(file).contour
             if file.suffix == ".stl":
                 found[file.name] = read_stl(file).contour
         return Made(outcome.report, "", found)

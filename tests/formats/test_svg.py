@@ -25,7 +25,6 @@ from camgeo.synthesis.intent import intended
 from kin.contour.contour import Contour
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
-from kin.read.drawing.svg import read_svg
 from kin.read.errors import ReadError
 from kin.read.files import read_drawing
 
@@ -124,7 +123,7 @@ def test_drawing_is_at_true_size_and_says_so(engraved):
     assert text.count("<circle") == 3
     assert "fill:none" in text
     assert "mark: 0.4 deep" in re.search("<desc>(.*)</desc>", text)[1]
-    drawing = read_svg(path, engraved=True)
+    drawing = read_drawing(path, engraved=True)
     assert (drawing.units_mm, drawing.version, len(drawing.holes), len(drawing.engraved)) == (1.0, "SVG", 4, 1)
     assert not drawing.turned
     assert drawing.contour.area == pytest.approx(math.pi * (25**2 - 4 * 8 / 2), rel=1e-3)
@@ -138,7 +137,7 @@ def test_inches_are_inches_and_the_same_bytes_come_each_time(tmp_path):
     assert b'in" viewBox' in first
     # from -0.92 to 1.08 inch, 1 mm of margin on either side, outward to the next hundredth
     assert re.search(rb'viewBox="(\S+) \S+ (\S+) ', first).groups() == (b"-0.96", b"2.08")
-    assert read_svg(path).units_mm == 25.4
+    assert read_drawing(path).units_mm == 25.4
     assert checks["units"].value == 0.0
     made(tmp_path, cam=cam, part="{bore: 0.5}", tolerance=0.0004)
     assert path.read_bytes() == first
@@ -150,7 +149,7 @@ def test_title_and_description_are_escaped(tmp_path):
     text = (tmp_path / "a.svg").read_text()
     assert "<title>&lt;cam&gt; &amp; co</title>" in text
     assert "<desc>camgeo units: mm; 1 &lt; 2</desc>" in text
-    assert read_svg(tmp_path / "a.svg").contour.area == 4.0
+    assert read_drawing(tmp_path / "a.svg").contour.area == 4.0
 
 
 def test_what_svg_does_not_have_is_refused(tmp_path):
@@ -177,7 +176,7 @@ def test_arcs_come_back_within_rounding(tmp_path, *, one, other, angle, far, mir
     outline = ArcSpline(chord + far, np.array([one, other]), EXACT)
     outline = outline.mirrored() if mirrored else outline
     write_svg(tmp_path / "a.svg", bored(outline))
-    back = read_svg(tmp_path / "a.svg").contour
+    back = read_drawing(tmp_path / "a.svg").contour
     meant = Contour.from_bulges(outline.points, outline.bulges)
     size = max(np.abs(outline.box()).max(), 1.0)
     assert meant.distance(back.sample(5)).max() <= 8e-15 * size
@@ -225,7 +224,7 @@ def test_planted_faults_are_caught(engraved, tmp_path, pattern, replacement, fou
 
 def test_what_stands_on_no_layer_is_cut_too(tmp_path):
     body = '<g id="CUT"><circle r="9"/></g><g id="X"><circle cx="4" r="1"/></g><style>.a {fill: none}</style>'
-    (hole,) = read_svg(written(tmp_path, body)).holes
+    (hole,) = read_drawing(written(tmp_path, body)).holes
     assert hole.area == pytest.approx(np.pi)
 
 
@@ -278,7 +277,7 @@ def test_a_disc_drawn_in_many_ways(tmp_path, body):
 
 
 def test_y_runs_up_and_letters_mean_what_they_say(tmp_path):
-    drawing = read_svg(written(tmp_path, '<path d="M1 -2h2 1V-5l-1-1.5-.5.5H1z"/>'))
+    drawing = read_drawing(written(tmp_path, '<path d="M1 -2h2 1V-5l-1-1.5-.5.5H1z"/>'))
     box = drawing.contour.box
     assert tuple(box) == (1.0, 2.0, 4.0, 6.5)
     corners = {(1.0, 2.0), (3.0, 2.0), (4.0, 2.0), (4.0, 5.0), (3.0, 6.5), (2.5, 6.0), (1.0, 6.0)}
@@ -288,7 +287,7 @@ def test_y_runs_up_and_letters_mean_what_they_say(tmp_path):
 
 def test_two_outlines_in_one_path_are_contour_and_hole(tmp_path):
     path = written(tmp_path, '<path d="M20 20H-20V-20H20zM5 5H-5V-5H5z"/>')
-    drawing = read_svg(path)
+    drawing = read_drawing(path)
     assert (drawing.contour.area, [hole.area for hole in drawing.holes]) == (1600.0, [100.0])
 
 
@@ -305,7 +304,7 @@ def test_two_outlines_in_one_path_are_contour_and_hole(tmp_path):
     ],
 )
 def test_units_of_the_page(tmp_path, size, unit):
-    drawing = read_svg(written(tmp_path, DISC, f'<svg xmlns="http://www.w3.org/2000/svg" {size}>'))
+    drawing = read_drawing(written(tmp_path, DISC, f'<svg xmlns="http://www.w3.org/2000/svg" {size}>'))
     assert drawing.units_mm == (None if unit is None else pytest.approx(unit, rel=1e-15))
     assert drawing.contour.area == pytest.approx(400 * math.pi * (unit or 1.0) ** 2)
 
@@ -353,7 +352,7 @@ BARE = '<svg xmlns="http://www.w3.org/2000/svg" '
 )
 def test_everything_else_is_refused_with_the_reason(tmp_path, head, body, reason, message):
     with pytest.raises(ReadError) as error:
-        read_svg(written(tmp_path, body, head))
+        read_drawing(written(tmp_path, body, head))
     assert error.value.reason == reason
     assert message in error.value.message
 
@@ -361,7 +360,7 @@ def test_everything_else_is_refused_with_the_reason(tmp_path, head, body, reason
 def test_an_empty_file_is_told(tmp_path):
     (tmp_path / "a.svg").write_bytes(b" ")
     with pytest.raises(ReadError, match="the file is empty"):
-        read_svg(tmp_path / "a.svg")
+        read_drawing(tmp_path / "a.svg")
 
 
 @settings(max_examples=examples(150), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -369,7 +368,7 @@ def test_an_empty_file_is_told(tmp_path):
 def test_noise_is_read_or_refused(tmp_path, data, transform):
     body = f'<path d="M0 0 9 0 9 9{data}" transform="scale(1){transform}"/>'
     try:
-        drawing = read_svg(written(tmp_path, body))
+        drawing = read_drawing(written(tmp_path, body))
     except ReadError:
         return
     assert math.isfinite(drawing.contour.area)

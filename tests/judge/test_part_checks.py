@@ -14,8 +14,8 @@ from kin.follower.envelope import FlatEnvelope
 from kin.judge.holes import Hole, round_hole
 from kin.judge.layers import CrossHole, Layer, faces, heights, slotted, volume
 from kin.law.support_function import lift_from_fourier
-from kin.read.drawing.dxf import read_dxf
 from kin.read.errors import ReadError
+from kin.read.files import read_drawing
 from kin.read.mesh.stl import read_stl
 
 E = 0.01
@@ -331,9 +331,9 @@ def test_parallel_of_a_flat_envelope():
 def test_engraved_chains_are_read_only_if_asked_for(drawing):
     _, _, files = drawing
     path = files["dxf"][0]
-    assert read_dxf(path).engraved == ()
-    assert len(read_dxf(path, engraved=True).engraved) == 1
-    assert len(read_dxf(path).holes) == 5
+    assert read_drawing(path).engraved == ()
+    assert len(read_drawing(path, engraved=True).engraved) == 1
+    assert len(read_drawing(path).holes) == 5
 
 
 def test_an_intent_with_nothing_but_a_bore_is_plain(solid):

@@ -7,9 +7,7 @@ from ezdxf.math import Matrix44
 from support.heavy import ezdxf
 
 from camgeo.cli.main import main
-from kin.read.drawing.dxf import read_dxf
-from kin.read.drawing.svg import read_svg
-from kin.read.files import read_solid
+from kin.read.files import read_drawing, read_solid
 
 RECIPE = """\
 name: cam
@@ -53,7 +51,7 @@ def saved_anew(folder, *, unit=0, scale=1.0, version="R12", name="anew.dxf", blo
 
 def test_a_drawing_that_states_no_unit(exported, capsys):
     name = saved_anew(exported)
-    assert read_dxf(exported / name).units_mm is None
+    assert read_drawing(exported / name).units_mm is None
     assert verified(exported, name) == 1
     said = capsys.readouterr().out
     assert said.count("\n") == 2
@@ -124,12 +122,12 @@ def test_a_block_is_what_ezdxf_explodes_it_to(exported):
     inner = {"rotation": 25.0, "xscale": -1.5, "yscale": 1.5, "insert": (4.0, -7.0)}
     name = saved_anew(exported, unit=4, version="R2010", name="block.dxf", block=(inner, {"rotation": -70.0}))
     document = ezdxf.readfile(exported / name)
-    found = read_dxf(exported / name)
+    found = read_drawing(exported / name)
     while inserts := document.modelspace().query("INSERT"):
         for one in inserts:
             one.explode()
     document.saveas(exported / "exploded.dxf")
-    meant = read_dxf(exported / "exploded.dxf")
+    meant = read_drawing(exported / "exploded.dxf")
     assert found.contour.start == pytest.approx(meant.contour.start, abs=1e-10)
     assert found.contour.area == pytest.approx(meant.contour.area, rel=1e-12)
 
@@ -155,4 +153,6 @@ def test_turns_and_skews_that_leave_a_drawing_where_it_is(exported, transform):
     assert verified(exported, "turned.svg") == 0
     path.write_text(text.replace('transform="', 'transform="rotate(1) '))
     assert verified(exported, "turned.svg") == 1
-    assert read_svg(path).contour.area == pytest.approx(read_svg(exported / "cam" / "cam.svg").contour.area, rel=1e-12)
+    assert read_drawing(path).contour.area == pytest.approx(
+        read_drawing(exported / "cam" / "cam.svg").contour.area, rel=1e-12
+    )

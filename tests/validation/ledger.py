@@ -20,7 +20,7 @@ from camgeo.output import pipeline
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load, read
 from camgeo.synthesis.design import designed
-from kin.read.drawing.dxf import read_dxf
+from kin.read.files import read_drawing
 
 ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "tests"))  # where pytest has it; the page is written without pytest
@@ -62,7 +62,7 @@ class Made:
 
     @cached_property
     def drawing(self):
-        return read_dxf(self.folder / f"{self.recipe.name}.dxf")
+        return read_drawing(self.folder / f"{self.recipe.name}.dxf")
 
     @cached_property
     def contour(self):

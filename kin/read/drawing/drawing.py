@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices, Mask
     from kin.read.drawing.shapes import Shape
+    from kin.read.formats import DrawingOptions
 
 CUT, BORE = "CUT", "BORE"
 # Layers that are cut beside CUT: the bore's, holes, a mark that is cut through, the flanks of a groove.
@@ -99,24 +100,20 @@ def drawing_of(
     curves: CutEntities,
     marks: CutEntities | None,
     unit: float | None,
-    gap: float | None,
     path: Path,
+    options: DrawingOptions,
     *,
     version: str,
-    deepest: int = 1,
-    bridged: float = 0.0,
-    unstated: float = 1.0,
 ) -> Drawing:
-    """Join what is to be cut, and what is engraved, in drawing units, to the contours of a drawing in mm.
+    """Join what is to be cut, and what is engraved, in drawing units of `unit` mm, to the contours of a drawing in mm.
 
-    `gap` in mm, by default GAP, or less in a small drawing; the rest is reported as it is. Heights may differ by as
-    much as such a gap; chains may lie inside `deepest` others. Gaps up to `bridged`, mm, are reported among `openings`,
-    as is an open chain within the others; without it they raise. Where a drawing states no unit `gap` and `bridged`
-    are lengths in one of `unstated` mm. Raises ReadError as the readers do.
+    Heights may differ by as much as the gap. Gaps up to `options.bridged` are reported among `openings`, as is an open
+    chain within the others; without it they raise. Raises ReadError as the readers do.
     """
+    gap, bridged = options.gap, options.bridged
     scale = 1.0 if unit is None else unit
     if unit is None:
-        gap, bridged = None if gap is None else gap / unstated, bridged / unstated
+        gap, bridged = None if gap is None else gap / options.unstated, bridged / options.unstated
     pieces, run = gathered(curves.shapes)
     demand_few_pieces(len(run), path)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
@@ -137,7 +134,7 @@ def drawing_of(
     meeting = first_meeting([c.contour for c in chained])
     if meeting:
         raise met(meeting, path)
-    order = nested([c.contour for c in chained], path, deepest)
+    order = nested([c.contour for c in chained], path, options.deepest)
     outer = chained[order[0].number]
     return Drawing(
         chains=tuple(

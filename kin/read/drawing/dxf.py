@@ -6,7 +6,6 @@ import io
 import re
 from collections import Counter
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,7 +16,6 @@ from kin.read.drawing.drawing import (
     ENGRAVED,
     REFERENCE,
     CutEntities,
-    Drawing,
     drawing_of,
 )
 from kin.read.drawing.dxf_entities import CURVES, NOTES, facing, shape_of
@@ -28,8 +26,12 @@ from kin.read.home import prepare_home
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from ezdxf.document import Drawing as Document
+
+    from kin.read.drawing.drawing import Drawing
+    from kin.read.formats import DrawingOptions
 
 # Mm in a unit of $INSUNITS: inch, foot, mm, cm, m, microinch, mil, yard, micrometre, decimetre.
 UNIT_MM = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254, 10: 914.4, 13: 1e-3, 14: 100.0}
@@ -55,49 +57,24 @@ DASH = 49  # group code of a dash, a dot or a space in a line type
 DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError, StopIteration)
 
 
-def read_dxf(
-    path: Path | str,
-    gap: float | None = None,
-    *,
-    engraved: bool = False,
-    deepest: int = 1,
-    bridged: float = 0.0,
-    unstated: float = 1.0,
-) -> Drawing:
+def read_dxf(path: Path, options: DrawingOptions) -> Drawing:
     """Read the outer contour and the holes that a DXF file gives to cut.
 
     Cut are the layers CUT, BORE, HOLES, MARK, GROOVE_INNER, GROOVE_OUTER and 0, if there is something on CUT; else all
     layers but those of reference geometry, without what has a line type with dashes, as centre lines and hidden edges
     have: outlines are continuous (ISO 128). The outermost closed chain is the contour, those inside it are holes.
 
-    gap       mm; ends of loose pieces are joined if they lie within it. Default: 1e-6, or 2e-8 of a drawing below 50 mm
-    engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
-    deepest   how many others a closed chain may lie inside: 1, so that a hole has no island
-    bridged   mm; gaps up to this, and open chains within the contour, are told by `openings` and do not raise
-    unstated  mm in the unit in which `gap` and `bridged` are meant for a drawing that states none
-
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
     lines, arcs and splines in one plane, with the place and the size of the gap.
     """
-    path = Path(path)
     raw = contents(path, "dxf")
     document = parsed(raw, path)
     with damage_reported(path):
         unit = unit_of(document, raw[:COMMENT_BYTES], path)
         drawn = everything(document, path)
         entities = entities_to_cut(document, drawn, path)
-        marks = entities_engraved(drawn, path) if engraved else None
-    return drawing_of(
-        entities,
-        marks,
-        unit,
-        gap,
-        path,
-        version=document.dxfversion,
-        deepest=deepest,
-        bridged=bridged,
-        unstated=unstated,
-    )
+        marks = entities_engraved(drawn, path) if options.engraved else None
+    return drawing_of(entities, marks, unit, path, options, version=document.dxfversion)
 
 
 @contextmanager

@@ -9,11 +9,10 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 from xml.etree import ElementTree as ET
 
-from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, CutEntities, Drawing, drawing_of
+from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, CutEntities, drawing_of
 from kin.read.drawing.shapes import Affine, Shape, UnfitError, shape
 from kin.read.drawing.svg_path import NUMBER, path_of
 from kin.read.errors import ReadError, xml_fault
@@ -21,7 +20,11 @@ from kin.read.formats import contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
     from xml.etree.ElementTree import Element
+
+    from kin.read.drawing.drawing import Drawing
+    from kin.read.formats import DrawingOptions
 
 SVG = "{http://www.w3.org/2000/svg}"
 LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
@@ -55,25 +58,15 @@ class _Drawn(NamedTuple):
     to: Affine
 
 
-def read_svg(
-    path: Path | str,
-    gap: float | None = None,
-    *,
-    engraved: bool = False,
-    deepest: int = 1,
-    bridged: float = 0.0,
-    unstated: float = 1.0,
-) -> Drawing:
+def read_svg(path: Path, options: DrawingOptions) -> Drawing:
     """Read the outer contour and the holes that an SVG file gives to cut.
 
     Groups named as the layers of a DXF (by id, or by Inkscape's label) are those; what stands in none of them is cut
-    too, and where nothing stands on CUT all elements are but those on REFERENCE. What is hidden is left out. `gap`, mm,
-    and all others as in `read_dxf`.
+    too, and where nothing stands on CUT all elements are but those on REFERENCE. What is hidden is left out.
 
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
     lines, arcs of circles and cubics, and for elements and transforms that are not read.
     """
-    path = Path(path)
     root = _parsed(contents(path, "svg"), path)
     unit = unit_of(root, path)
     elements = list(_elements(root, "", TURNED_OVER, path))
@@ -84,10 +77,8 @@ def read_svg(
     if not entities.shapes:
         others = ", ".join(f"{n} {kind} on {on or 'no layer'}" for (on, kind), n in sorted(entities.aside.items()))
         raise ReadError("empty", f"nothing to cut; the file holds {others or 'nothing at all'}", path)
-    marks = _gathered(elements, {ENGRAVED} if by_name else set(), path) if engraved else None
-    return drawing_of(
-        entities, marks, unit, gap, path, version="SVG", deepest=deepest, bridged=bridged, unstated=unstated
-    )
+    marks = _gathered(elements, {ENGRAVED} if by_name else set(), path) if options.engraved else None
+    return drawing_of(entities, marks, unit, path, options, version="SVG")
 
 
 def _parsed(raw: bytes, path: Path) -> Element:

@@ -21,7 +21,7 @@ from kin.numeric.records import dataclass, replace
 from kin.read.bodies import MOST_BODIES, ReadSolid, Section, Sought, beside, missing
 from kin.read.drawing.drawing import CutEntities, drawing_of
 from kin.read.errors import ReadError
-from kin.read.formats import contents
+from kin.read.formats import DrawingOptions, contents
 from kin.read.step.faces import Plane, Tube, face_of
 from kin.read.step.part21 import exchange
 from kin.read.step.space import space_of
@@ -201,7 +201,8 @@ class _Body:
         path = self.space.file.path
         if not entities.shapes:
             raise ReadError("open", f"no face reaches through z = {z:.9g} mm", path)
-        return drawing_of(entities, None, None, self.space.accuracy, path, version="STEP", deepest=self.deepest)
+        options = DrawingOptions(self.space.accuracy, deepest=self.deepest)
+        return drawing_of(entities, None, None, path, options, version="STEP")
 
     def _area(self, z: float) -> float:
         cut = self.section(z)

@@ -20,8 +20,8 @@ from support.heavy import ezdxf
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.read.drawing.chaining import close_pairs
-from kin.read.drawing.dxf import read_dxf
 from kin.read.errors import ReadError
+from kin.read.files import read_drawing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -99,7 +99,7 @@ def test_polylines_with_bulges(tmp_path: Path, version: str, clockwise: bool) ->
         document.modelspace().add_polyline2d(rows, format="xyb", close=True, dxfattribs={"layer": "CUT"})
     else:
         document.modelspace().add_lwpolyline(rows, format="xyb", close=True, dxfattribs={"layer": "CUT"})
-    drawing = read_dxf(saved(document, tmp_path, "camgeo units: mm"))
+    drawing = read_drawing(saved(document, tmp_path, "camgeo units: mm"))
     assert_is_the_circle(drawing.contour)
     assert drawing.turned == clockwise
     assert drawing.pieces == 4
@@ -116,7 +116,7 @@ def test_every_start_vertex_gives_the_same_contour(tmp_path: Path, first: int) -
     rows = np.roll(np.column_stack([points, bulges]), first, axis=0).tolist()
     document = new()
     document.modelspace().add_lwpolyline(rows, format="xyb", close=True)
-    assert_is_the_circle(read_dxf(saved(document, tmp_path)).contour)
+    assert_is_the_circle(read_drawing(saved(document, tmp_path)).contour)
 
 
 def test_coordinates_come_back_to_the_bit(tmp_path: Path) -> None:
@@ -125,7 +125,7 @@ def test_coordinates_come_back_to_the_bit(tmp_path: Path) -> None:
     points = (25.0 + rng.random(500))[:, None] * unit(t)
     document = new()
     document.modelspace().add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": "CUT"})
-    contour = read_dxf(saved(document, tmp_path)).contour
+    contour = read_drawing(saved(document, tmp_path)).contour
     assert np.array_equal(contour.start, points)
     assert np.array_equal(contour.end, np.roll(points, -1, axis=0))
 
@@ -137,7 +137,7 @@ def test_a_circle_and_its_bore(tmp_path: Path) -> None:
     space.add_circle((0, 0), 5.0, dxfattribs={"layer": "BORE"})
     space.add_circle((0, 0), 99.0, dxfattribs={"layer": "REFERENCE"})
     space.add_point((0, 0), dxfattribs={"layer": "REFERENCE"})
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert_is_the_circle(drawing.contour)
     assert len(drawing.contour.vertices) == 2
     assert [h.area for h in drawing.holes] == [pytest.approx(25.0 * np.pi)]
@@ -155,7 +155,7 @@ def test_what_is_drawn_without_choosing_a_layer_is_cut_too(tmp_path: Path) -> No
     space.add_circle(CENTRE.tolist(), 5.0)
     document.layout("Layout1").add_line((0, 0), (9, 9))  # of a frame on paper
     path = saved(document, tmp_path)
-    (hole,) = read_dxf(path).holes
+    (hole,) = read_drawing(path).holes
     assert hole.area == pytest.approx(25.0 * np.pi)
 
 
@@ -167,7 +167,7 @@ def test_an_extrusion_along_minus_z_mirrors(tmp_path: Path, side: int, expected:
     document.modelspace().add_lwpolyline(
         np.column_stack([points, bulges]).tolist(), format="xyb", close=True, dxfattribs={"extrusion": (0, 0, side)}
     )
-    contour = read_dxf(saved(document, tmp_path)).contour
+    contour = read_drawing(saved(document, tmp_path)).contour
     plain = Contour.from_bulges(points, np.array(bulges))
     assert contour.area == pytest.approx(plain.area)
     q = plain.support(ANGLES if expected > 0 else np.pi - ANGLES).q
@@ -184,7 +184,7 @@ def test_ellipses(tmp_path: Path, extrusion: tuple[int, int, int]) -> None:
     space.add_ellipse((2, 1), major, ratio, 0.5, 3.5, dxfattribs={"extrusion": (0, 0, 1)})
     params = (3.5, 0.5 + 2 * np.pi) if extrusion[2] > 0 else (-0.5 - 2 * np.pi, -3.5)
     space.add_ellipse((2, 1), major, ratio, *params, dxfattribs={"extrusion": extrusion})
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     p = 2 * np.cos(ANGLES) + np.sin(ANGLES) + np.hypot(a * np.cos(ANGLES - turn), a * ratio * np.sin(ANGLES - turn))
     np.testing.assert_allclose(drawing.contour.support(ANGLES).q, p, atol=1e-12)
     assert drawing.contour.area == pytest.approx(np.pi * a * a * ratio, rel=1e-13)
@@ -193,10 +193,10 @@ def test_ellipses(tmp_path: Path, extrusion: tuple[int, int, int]) -> None:
 def test_a_full_ellipse_and_a_full_circle_as_an_arc(tmp_path: Path) -> None:
     document = new()
     document.modelspace().add_ellipse((0, 0), (30, 0), 0.5, 0.0, 2.0 * np.pi)
-    assert read_dxf(saved(document, tmp_path)).contour.area == pytest.approx(450.0 * np.pi)
+    assert read_drawing(saved(document, tmp_path)).contour.area == pytest.approx(450.0 * np.pi)
     document = new()
     document.modelspace().add_arc(CENTRE.tolist(), RADIUS, 30.0, 390.0)
-    assert_is_the_circle(read_dxf(saved(document, tmp_path)).contour)
+    assert_is_the_circle(read_drawing(saved(document, tmp_path)).contour)
 
 
 def test_rational_and_plain_splines(tmp_path: Path) -> None:
@@ -208,7 +208,7 @@ def test_rational_and_plain_splines(tmp_path: Path) -> None:
         knots=[0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4],
     )  # fmt: skip
     spline.closed = True
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert_is_the_circle(drawing.contour)
     assert drawing.pieces == 4
 
@@ -228,7 +228,7 @@ def test_a_closed_spline_of_one_period(tmp_path: Path, degree: int) -> None:
     spline.control_points = [(*p, 0.0) for p in control]
     spline.knots = knots.tolist()
     spline.dxf.flags = spline.CLOSED | spline.PERIODIC
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     points = BSpline(knots, control, degree)(np.linspace(degree, n + degree, 20000))
     reach = (points @ unit(ANGLES).T).max(axis=0)
     q = drawing.contour.support(ANGLES).q
@@ -245,7 +245,7 @@ def test_a_closed_spline_of_one_period(tmp_path: Path, degree: int) -> None:
 def test_loose_entities_in_any_order_and_direction(tmp_path: Path, order: list[int], backwards: list[bool]) -> None:
     document = new()
     stadium(document.modelspace(), "0", list(order), backwards)
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     np.testing.assert_allclose(drawing.contour.support(ANGLES).q, 8.0 + 20.0 * np.abs(np.cos(ANGLES)), atol=1e-12)
     assert drawing.contour.area == pytest.approx(640.0 + 64.0 * np.pi)
     assert drawing.pieces == 4
@@ -263,7 +263,7 @@ def test_ten_thousand_loose_lines(tmp_path: Path) -> None:
     document = new()
     for k in rng.permutation(3000):
         document.modelspace().add_line(*ends[k].tolist())
-    contour = read_dxf(saved(document, tmp_path)).contour
+    contour = read_drawing(saved(document, tmp_path)).contour
     assert len(contour) == 3000
     assert contour.is_convex
     assert contour.area == pytest.approx(Contour.from_vertices(points).area)
@@ -273,10 +273,10 @@ def test_gaps_are_bridged_up_to_what_is_permitted_and_reported(tmp_path: Path) -
     document = new()
     stadium(document.modelspace(), "0", [0, 1, 2, 3], [False] * 4, shift=0.003)
     path = saved(document, tmp_path)
-    drawing = read_dxf(path, gap=0.0031)
+    drawing = read_drawing(path, gap=0.0031)
     assert drawing.widest_gap == pytest.approx(0.003)
     with pytest.raises(ReadError) as caught:
-        read_dxf(path, gap=0.0029)
+        read_drawing(path, gap=0.0029)
     error = caught.value
     assert error.reason == "gap"
     assert error.width == pytest.approx(0.003)
@@ -288,14 +288,14 @@ def test_gaps_are_bridged_up_to_what_is_permitted_and_reported(tmp_path: Path) -
 def test_gaps_that_are_reported_are_joined_by_lines(tmp_path: Path) -> None:
     document = new()
     stadium(document.modelspace(), "0", [0, 1, 2, 3], [False] * 4, shift=0.003)
-    drawing = read_dxf(saved(document, tmp_path), bridged=0.01)
+    drawing = read_drawing(saved(document, tmp_path), bridged=0.01)
     (told,) = drawing.openings
     assert "0.003 apart, permitted is 1e-06; 2 such places" in told
     assert len(drawing.contour) == 6
     assert np.array_equal(drawing.contour.end, np.roll(drawing.contour.start, -1, axis=0))
     assert drawing.chains[0].gap == pytest.approx(0.003)
     with pytest.raises(ReadError, match=r"0\.003 apart, permitted is 1e-06"):
-        read_dxf(saved(document, tmp_path), bridged=0.0029)
+        read_drawing(saved(document, tmp_path), bridged=0.0029)
 
 
 @pytest.mark.parametrize("outermost", [False, True])
@@ -306,9 +306,9 @@ def test_an_open_chain_within_the_contour_is_left_out(tmp_path: Path, outermost:
     path = saved(document, tmp_path)
     if outermost:
         with pytest.raises(ReadError, match="the contour is open"):
-            read_dxf(path, bridged=0.01)
+            read_drawing(path, bridged=0.01)
         return
-    drawing = read_dxf(path, bridged=0.01)
+    drawing = read_drawing(path, bridged=0.01)
     assert drawing.contour.area == pytest.approx(625.0 * np.pi, rel=1e-12)
     assert not drawing.holes
     assert len(drawing.openings) == 1
@@ -320,8 +320,8 @@ def test_pieces_no_longer_than_a_gap_are_named(tmp_path: Path) -> None:
     for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
         document.modelspace().add_line(a, b)
     path = saved(document, tmp_path)
-    assert not read_dxf(path).short
-    (short,) = read_dxf(path, gap=0.004).short
+    assert not read_drawing(path).short
+    (short,) = read_drawing(path, gap=0.004).short
     assert (short.kind, short.x, short.y) == ("short", 30.0, 0.0)
 
 
@@ -334,11 +334,11 @@ def test_gaps_permitted_by_default_go_with_a_small_drawing(tmp_path: Path, side:
             document.modelspace().add_line(a, b)
         return saved(document, tmp_path)
 
-    assert read_dxf(square(1e-15)).contour.area == pytest.approx(side * side)
+    assert read_drawing(square(1e-15)).contour.area == pytest.approx(side * side)
     share = min(2e-8, 1e-6 / side)
-    assert read_dxf(square(0.9 * share)).widest_gap == pytest.approx(0.9 * share * side)
+    assert read_drawing(square(0.9 * share)).widest_gap == pytest.approx(0.9 * share * side)
     with pytest.raises(ReadError) as caught:
-        read_dxf(square(1.1 * share))
+        read_drawing(square(1.1 * share))
     assert caught.value.reason == "gap"
 
 
@@ -348,7 +348,7 @@ def test_no_piece_of_a_small_drawing_is_without_length(tmp_path: Path) -> None:
     document = new()
     for a, b in zip(points.tolist(), np.roll(points, -1, axis=0).tolist(), strict=True):
         document.modelspace().add_line(a, b)
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert len(drawing.contour) == 256
     assert not drawing.faults
 
@@ -356,7 +356,7 @@ def test_no_piece_of_a_small_drawing_is_without_length(tmp_path: Path) -> None:
 def test_a_circle_far_out_closes_without_any_gap(tmp_path: Path) -> None:
     document = new()
     document.modelspace().add_circle((7e5, 3e4), 5e5)
-    drawing = read_dxf(saved(document, tmp_path), gap=0.0)
+    drawing = read_drawing(saved(document, tmp_path), gap=0.0)
     assert drawing.contour.area == pytest.approx(25e10 * np.pi)
 
 
@@ -366,7 +366,7 @@ def test_a_missing_segment(tmp_path: Path) -> None:
     with pytest.raises(
         ReadError, match=r"a segment is missing between \(-?20, 8\) and \(-?20, 8\): 40 apart"
     ) as caught:
-        read_dxf(saved(document, tmp_path))
+        read_drawing(saved(document, tmp_path))
     assert caught.value.reason == "open"
     assert caught.value.width == pytest.approx(40.0)
 
@@ -376,7 +376,7 @@ def test_an_open_polyline(tmp_path: Path) -> None:
     document = new()
     document.modelspace().add_lwpolyline(np.column_stack([points, bulges]).tolist(), format="xyb")
     with pytest.raises(ReadError) as caught:
-        read_dxf(saved(document, tmp_path))
+        read_drawing(saved(document, tmp_path))
     assert caught.value.reason == "open"
 
 
@@ -385,7 +385,7 @@ def test_a_branch(tmp_path: Path) -> None:
     stadium(document.modelspace(), "0", [0, 1, 2, 3], [False] * 4)
     document.modelspace().add_line((20, 8), (40, 8))
     with pytest.raises(ReadError, match=r"3 ends meet at \(20, 8\), where two should") as caught:
-        read_dxf(saved(document, tmp_path))
+        read_drawing(saved(document, tmp_path))
     assert caught.value.reason == "branch"
 
 
@@ -415,7 +415,7 @@ def test_header_units(tmp_path: Path, units: int, mm: float) -> None:
     document = new(units=units)
     points, bulges = circle_points()
     document.modelspace().add_lwpolyline(np.column_stack([points / mm, bulges]).tolist(), format="xyb", close=True)
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert drawing.units_mm == mm
     assert_is_the_circle(drawing.contour)
     assert tuple(drawing.contour.box) == pytest.approx((-22.0, -26.5, 28.0, 23.5))
@@ -436,7 +436,7 @@ def test_units_of_r12_by_a_comment(tmp_path: Path, comment: str, mm: float | Non
     points, bulges = circle_points()
     rows = np.column_stack([points, bulges]).tolist()
     document.modelspace().add_polyline2d(rows, format="xyb", close=True)
-    drawing = read_dxf(saved(document, tmp_path, comment))
+    drawing = read_drawing(saved(document, tmp_path, comment))
     assert drawing.units_mm == mm
     assert_is_the_circle(drawing.contour, 1.0 if mm is None else mm)
 
@@ -447,18 +447,18 @@ def test_a_file_without_a_header_states_no_unit(tmp_path: Path, head: str) -> No
     path = tmp_path / "cam.dxf"
     circle = "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\n0\n10\n0.0\n20\n0.0\n40\n25.0\n0\nENDSEC\n0\nEOF\n"
     path.write_text(head + circle)
-    drawing = read_dxf(path)
+    drawing = read_drawing(path)
     assert drawing.units_mm is None
     assert drawing.contour.area == pytest.approx(625.0 * np.pi, rel=1e-12)
     path.write_text("999\nunits: inch\n" + path.read_text())
-    assert read_dxf(path).units_mm == 25.4
+    assert read_drawing(path).units_mm == 25.4
 
 
 def test_frames_in_paper_space_are_set_aside(tmp_path: Path) -> None:
     document = new()
     document.modelspace().add_circle((0, 0), 25.0)
     document.layout("Layout1").add_circle((0, 0), 5.0)
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert drawing.aside == (("0", "CIRCLE in the paper space Layout1", 1),)
     assert not drawing.holes
     assert drawing.contour.area == pytest.approx(625.0 * np.pi, rel=1e-12)
@@ -468,9 +468,9 @@ def test_units_that_are_none_for_a_cam(tmp_path: Path) -> None:
     document = new(units=InsertUnits.Parsecs)
     document.modelspace().add_circle((0, 0), 1.0)
     with pytest.raises(ReadError, match=r"\$INSUNITS 20 is not a unit"):
-        read_dxf(saved(document, tmp_path))
+        read_drawing(saved(document, tmp_path))
     document.header["$INSUNITS"] = 0
-    assert read_dxf(saved(document, tmp_path)).units_mm is None
+    assert read_drawing(saved(document, tmp_path)).units_mm is None
 
 
 # --- layers
@@ -483,7 +483,7 @@ def test_foreign_files_have_everything_on_layer_0(tmp_path: Path) -> None:
     space.add_circle((12, 0), 2.0)
     space.add_circle((0, 0), 25.0)
     space.add_text("cam 7")
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert drawing.contour.area == pytest.approx(625.0 * np.pi)
     assert sorted(h.area for h in drawing.holes) == pytest.approx([4.0 * np.pi, 25.0 * np.pi])
     assert [(a.layer, a.kind) for a in drawing.aside] == [("0", "TEXT")]
@@ -493,7 +493,7 @@ def refused(folder: Path, draw: Callable[[Document], Any]) -> ReadError:
     document = new()
     draw(document)
     with pytest.raises(ReadError) as caught:
-        read_dxf(saved(document, folder))
+        read_drawing(saved(document, folder))
     return caught.value
 
 
@@ -637,7 +637,7 @@ def test_duplicates_are_reported_and_left_out(tmp_path: Path) -> None:
     stadium(space, "CUT", [0, 1, 2, 3], [False] * 4)
     space.add_line((20, -8), (-20, -8), dxfattribs={"layer": "CUT"})  # backwards over the first
     space.add_arc((20, 0), 8.0, -90, 90, dxfattribs={"layer": "CUT"})
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert [(f.kind, f.entity.split()[0], f.layer) for f in drawing.faults] == [
         ("duplicate", "LINE", "CUT"),
         ("duplicate", "ARC", "CUT"),
@@ -652,21 +652,21 @@ def test_a_whole_contour_drawn_twice_and_one_that_shares_an_edge(tmp_path: Path)
     document = new()
     for _ in range(2):
         document.modelspace().add_lwpolyline(rows, format="xyb", close=True)
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert [f.kind for f in drawing.faults] == ["duplicate"]
     assert_is_the_circle(drawing.contour)
     document = new()
     document.modelspace().add_lwpolyline([(0, 0), (20, 0), (20, 20), (0, 20)], close=True)
     document.modelspace().add_lwpolyline([(10, 5), (0, 0), (20, 0)], close=True)
     with pytest.raises(ReadError) as caught:
-        read_dxf(saved(document, tmp_path))
+        read_drawing(saved(document, tmp_path))
     assert caught.value.reason == "crossing"
 
 
 def test_an_edge_drawn_there_and_back_is_an_overlap(tmp_path: Path) -> None:
     document = new()
     document.modelspace().add_lwpolyline([(0, 0), (20, 0), (20, 20), (20, 30), (20, 20), (0, 20)], close=True)
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert [(f.kind, f.x, f.y) for f in drawing.faults] == [("overlap", 20.0, 30.0)]
     assert len(drawing.contour) == 6
 
@@ -677,7 +677,7 @@ def test_a_piece_drawn_again_by_another_entity(tmp_path: Path) -> None:
     stadium(document.modelspace(), "0", [0, 1, 2, 3], [False] * 4)
     document.modelspace().add_lwpolyline([(-20, -8), (20, -8), (30, -30)])
     with pytest.raises(ReadError) as caught:
-        read_dxf(saved(document, tmp_path))
+        read_drawing(saved(document, tmp_path))
     assert caught.value.reason == "branch"
 
 
@@ -685,7 +685,7 @@ def test_a_line_across_an_arc_of_the_same_ends_is_no_duplicate(tmp_path: Path) -
     document = new()
     document.modelspace().add_arc((0, 0), 10.0, 0.0, 180.0)
     document.modelspace().add_line((-10, 0), (10, 0))
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert drawing.faults == ()
     assert drawing.contour.area == pytest.approx(50.0 * np.pi)
 
@@ -694,7 +694,7 @@ def test_zero_length_pieces_are_reported_and_left_out(tmp_path: Path) -> None:
     document = new()
     document.modelspace().add_lwpolyline([(0, 0), (20, 0), (20, 0), (20, 20), (0, 0)], close=True)
     document.modelspace().add_line((20, 0), (20, 0))
-    drawing = read_dxf(saved(document, tmp_path))
+    drawing = read_drawing(saved(document, tmp_path))
     assert sorted((f.kind, f.entity.split()[0], f.x, f.y) for f in drawing.faults) == [
         ("zero-length", "LINE", 20.0, 0.0),
         ("zero-length", "LWPOLYLINE", 0.0, 0.0),
@@ -723,7 +723,7 @@ def sample(tmp_path: Path) -> Path:
 def outcome(path: Path) -> str:
     """Read, or refuse: nothing else may come out."""
     try:
-        read_dxf(path)
+        read_drawing(path)
     except ReadError as error:
         return error.reason
     return "read"
@@ -803,7 +803,7 @@ def test_what_is_no_drawing(tmp_path: Path, content: bytes, reason: str) -> None
 
 def test_a_missing_file_is_the_file_systems_error(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
-        read_dxf(tmp_path / "none.dxf")
+        read_drawing(tmp_path / "none.dxf")
 
 
 def test_a_line_without_its_end_is_not_drawn_to_the_origin(sample: Path) -> None:
@@ -814,4 +814,4 @@ def test_a_line_without_its_end_is_not_drawn_to_the_origin(sample: Path) -> None
     del lines[end : end + 6]
     sample.write_text("\n".join(lines) + "\n")
     with pytest.raises(ReadError, match="its end is missing"):
-        read_dxf(sample)
+        read_drawing(sample)
