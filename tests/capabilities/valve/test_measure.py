@@ -1,4 +1,8 @@
-"""The valve that a tappet works: its events and peaks by hand, a rocker by a table, limits, files, camshafts."""
+"""The valve that a tappet works: its events and peaks by hand, a rocker by a table, limits, files, camshafts.
+
+Holds: camgeo.capabilities.valve.figures, camgeo.capabilities.valve.keys, camgeo.capabilities.valve.record,
+camgeo.capabilities.valve.section, camgeo.capabilities.valve.table.
+"""
 
 import csv
 import math

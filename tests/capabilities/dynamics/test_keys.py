@@ -1,4 +1,7 @@
-"""A coil spring by its own figures, and forces of a rigid follower beside an elastic train's float."""
+"""A coil spring by its own figures, and forces of a rigid follower beside an elastic train's float.
+
+Holds: camgeo.capabilities.dynamics.measure, camgeo.capabilities.dynamics.figures.
+"""
 
 from typing import Any
 

@@ -1,4 +1,7 @@
-"""Recipes that ask for dynamics, from text to report: checks, runs, spoilt files, and what is refused."""
+"""Recipes that ask for dynamics, from text to report: checks, runs, spoilt files, and what is refused.
+
+Holds: camgeo.capabilities.dynamics.checks, camgeo.capabilities.dynamics.record.
+"""
 
 from __future__ import annotations
 

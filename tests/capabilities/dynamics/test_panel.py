@@ -1,4 +1,7 @@
-"""Reports of recipes in inches: pounds beside N in text, page and table; the numbers in SI stay where they were."""
+"""Reports of recipes in inches: pounds beside N in text, page and table; the numbers in SI stay where they were.
+
+Holds: camgeo.capabilities.dynamics.table, camgeo.capabilities.dynamics.force_figures.
+"""
 
 from __future__ import annotations
 
