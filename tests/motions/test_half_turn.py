@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from camgeo.motions.half_turn import HalfTurnCam
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -29,9 +30,11 @@ def test_the_other_half_turn_goes_back_as_the_first_goes_out():
     assert rows[0, 2] == pytest.approx(10.0, abs=1e-12)
     assert back[0] == pytest.approx(20.0 - rows[0], abs=1e-12)
     assert back[1] == pytest.approx(-rows[1], abs=1e-12)
-    assert recipe.cam.motion_span == pytest.approx(np.pi)
-    assert recipe.cam.kept() is None
-    assert len(recipe.cam.joints()) >= 2
+    cam = recipe.cam
+    assert isinstance(cam, HalfTurnCam)
+    assert cam.motion_span == pytest.approx(np.pi)
+    assert cam.kept() is None
+    assert len(cam.joints()) == 2  # the rise's two ends, each at rest
 
 
 def test_a_half_turn_is_filled():
