@@ -10,8 +10,8 @@ import argparse
 import time
 from pathlib import Path
 
-from camgeo.capabilities.mechanism.build import build_assembly
 from camgeo.capabilities.mechanism.interference import collision_checks
+from camgeo.capabilities.mechanism.making import build_assembly
 from camgeo.output.job import Job
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed

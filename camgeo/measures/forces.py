@@ -41,7 +41,7 @@ class Extreme(NamedTuple):
 class Turn(ABC):
     """A mechanism over the turn, by a parameter that rises with the shaft angle from 0 to a whole turn.
 
-    `corners` are shaft angles, rad, at which functions of it are not smooth, besides those of the motion.
+    `corners` are shaft angles, rad, at which functions of the parameter are not smooth, besides those of the motion.
     """
 
     corners: tuple[float, ...]

@@ -404,8 +404,8 @@ def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:
     )
 
 
-def _share(recipe: Recipe, name: RemarkName, limit: tuple[str, float], length: float) -> Remark | None:
-    (what, value), rule = limit, SHARE * length
+def _share(recipe: Recipe, name: RemarkName, subject: tuple[str, float], length: float) -> Remark | None:
+    (what, value), rule = subject, SHARE * length
     if value <= rule:
         return None
     sentence = (

@@ -87,7 +87,7 @@ class View(Generic[G_co, T_co]):
             raise TypeError("no flat face is touched")
         return place(shaft)
 
-    def touched(self, shaft: Array) -> list[Array]:
+    def contact_points_fixed(self, shaft: Array) -> list[Array]:
         """Point of contact of each contact in the fixed frame, mm, as complex numbers (n,)."""
         places = []
         parameters = self.design.motion.parameters(shaft, shaft).values()

@@ -283,7 +283,7 @@ class _Search:
             self.place = (x, y)
 
     def clearance(self) -> Clearance:
-        """Sum up."""
+        """Verdict on the two bodies: their least distance, its place, and the lower bound that is proved."""
         return Clearance(
             a=self.home.name,
             b=self.other.name,

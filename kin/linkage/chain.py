@@ -118,7 +118,7 @@ class Chain:
     def margins(self, loop: int, s: Array, s1: Array, about: Sequence[float]) -> Array:
         """Distances of a loop from its k limits, mm (k, n), below 0 where it binds.
 
-        Each is smooth where the lifts (n,) are. Raises BindingError where an earlier loop binds.
+        Each is smooth where the lifts (n,) are; `about` as of `solve`. Raises BindingError where an earlier loop binds.
         """
         if loop == 0:
             return self.linkage.margins(s, s1, self.breadth)

@@ -12,9 +12,9 @@ not.
 A linkage gives all that others ask of it; `lengths` name its links' lengths, by field. At positions that it has solved,
 `output_link` is the link that it drives, `driven` its name, and `joined` the name of the link that D is fixed in and
 whose axes are the frame's: the frame, or a block in it. `joints` are D and the pivot B. `transmission` is the sine and
-cosine (n,) of the angle from the frame's line u to the rocker BD, or to the slide's normal; `force` those of the force
-angle, the sine of the sign of phi' (`kin.linkage.forces`), for the slopes S' and S1' (n,), the sine 0 where there is no
-line of force. `force_line` is that line.
+cosine (n,) of the angle from the frame's line u to the rocker BD, or to the slide's normal; `force_angle` those of the
+force angle, the sine of the sign of phi' (`kin.linkage.forces`), for the slopes S' and S1' (n,), the sine 0 where there
+is no line of force. `force_line` is that line.
 """
 
 from __future__ import annotations
@@ -170,7 +170,7 @@ class FourBar:
         frame, output = positions.frame.c[0], positions.output.c[0]
         return np.sin(frame + output), -np.cos(frame + output)
 
-    def force(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
+    def force_angle(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
         """Sine and cosine (n,) of the angle between DP, along which the frame's force acts, and the rocker DB."""
         ax, ay = positions.from_instant_centre(slope, slope1)
         dx, dy = (row.c[0] for row in positions.joint)
@@ -281,7 +281,7 @@ class InvertedSliderCrank:
         frame = positions.frame.c[0]
         return np.ones_like(frame), np.zeros_like(frame)
 
-    def force(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
+    def force_angle(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
         """Sine and cosine (n,) of the angle between BP and the force through P, across the frame's line."""
         frame = positions.frame.c[0]
         c, s = np.cos(frame), np.sin(frame)
@@ -290,7 +290,10 @@ class InvertedSliderCrank:
         return angle(ax * c + ay * s, ay * c - ax * s, positions.slide.c[0])
 
     def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
-        """Line of the frame's force: across the frame's line, where P stands along it. Positions are to first order."""
+        """Line of the frame's force: across the frame's line, through the foot of the instant centre P on that line.
+
+        Positions are to first order.
+        """
         frame = positions.frame.c[0]
         c, s = np.cos(frame), np.sin(frame)
         fx, fy = positions.from_instant_centre(slope, slope1)
@@ -382,7 +385,7 @@ class SliderCrank:
         frame = positions.frame.c[0]
         return np.cos(frame), np.sin(frame)
 
-    def force(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
+    def force_angle(self, positions: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
         """Sine and cosine (n,) of the angle between DP, along which the frame's force acts, and the slide's normal."""
         return angle(*positions.from_instant_centre(slope, slope1), positions.joint[0].c[0])
 

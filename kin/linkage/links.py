@@ -39,7 +39,7 @@ class Joint(NamedTuple):
 
 
 def bar(p: Place, q: Place) -> Link:
-    """Return the link from P, its origin, to Q, which is on its x axis; within [-pi, pi]."""
+    """Return the link from P, its origin, to Q, which is on its x axis; its direction within [-pi, pi]."""
     return Link(p, atan2(q[1] - p[1], q[0] - p[0]))
 
 

@@ -262,7 +262,7 @@ class Mechanism:
         at, (s, s1) = motion.solved.linkage, motion.solved.lifts
         over = motion.over_shaft(motion.output)
         sine, cosine = self.linkage.transmission(at)
-        force_sine, force_cosine = self.linkage.force(at, s.c[1], s1.c[1])
+        force_sine, force_cosine = self.linkage.force_angle(at, s.c[1], s1.c[1])
         return Rows(
             output=motion.output[0],
             velocity_relative=motion.output[1],
@@ -294,7 +294,7 @@ class Mechanism:
         """Sine of the force angle (n,): bounded, and of the sign of phi'."""
         s, s1 = self._lifts(theta, 1)
         at = self.linkage.solve(Jet(s.c[:1]), Jet(s1.c[:1]), self.breadth)
-        return self.linkage.force(at, s.c[1], s1.c[1])[0]
+        return self.linkage.force_angle(at, s.c[1], s1.c[1])[0]
 
     @cached_property
     def about(self) -> tuple[float, ...]:

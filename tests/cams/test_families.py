@@ -12,7 +12,7 @@ import pytest
 from support.places import ROOT
 
 from camgeo.cams.families import FAMILIES
-from camgeo.capabilities.mechanism.build import BODIES  # needs: mechanism
+from camgeo.capabilities.mechanism.making import BODIES  # needs: mechanism
 from camgeo.checks.declared import CHECKS
 from camgeo.recipe.cam import MADE as SAID
 from camgeo.recipe.loading import load

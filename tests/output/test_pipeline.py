@@ -233,7 +233,7 @@ def test_a_file_alone_imports_nothing_of_what_it_does_not_ask_for(kind: str, tmp
         "heavy |= {'OCP', 'zipfile'}\n"
         "heavy |= {f'kin.{name}' for name in ('clearance', 'dynamics', 'linkage.mechanism', 'judge.milling')}\n"
         "heavy |= {f'kin.read.{kind}' for kind in ('mesh.threemf', 'gcode', 'step.step', 'drawing.svg')}\n"
-        "heavy |= {f'camgeo.{name}' for name in ('capabilities.mechanism.build', 'report.page')}\n"
+        "heavy |= {f'camgeo.{name}' for name in ('capabilities.mechanism.making', 'report.page')}\n"
         # every run reads the labels of capabilities; their modules are for recipes that use them
         "heavy |= {name for name in sys.modules if name.startswith('camgeo.capabilities.') and name.count('.') > 2}\n"
         f"heavy.add('camgeo.output.drawing' if {kind!r} == 'stl' else 'camgeo.output.solid')\n"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.build import build_assembly
+from camgeo.capabilities.mechanism.making import build_assembly
 from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed

@@ -13,7 +13,7 @@ import numpy as np
 
 from camgeo.capabilities.mechanism.assembly import GROUND, Assembly, Fit, Member, Plate
 from camgeo.capabilities.mechanism.poses import Turning, rocking_place
-from camgeo.capabilities.mechanism.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, shaft_members
+from camgeo.capabilities.mechanism.shaft import CLIP_COLOUR, base, bearing, least_pad_radius, shaft_fits, shaft_members
 from camgeo.capabilities.mechanism.shapes import bar, box, disc, eye, pin, retainer, transformed
 from camgeo.capabilities.mechanism.sizes import LINE, THIN, BodyError, require_thickness
 from kin.numeric.angles import TURN
@@ -138,7 +138,7 @@ def arm_assembly(
     # a cam that passes over the pivot lies on the arm, in the place of a retainer
     under = overlap(away, drive) > 0.0
     clips = [] if under else [Member("retainer-pivot", retainer(s, pivot, z.high), GROUND, colour=CLIP_COLOUR)]
-    width = max(2.0 * base_radius(drive), drive.reach)
+    width = max(2.0 * least_pad_radius(drive), drive.reach)
     foot_plates = bearing(drive, [bar((0.0, 0.0), pivot, width)], z.cam_low + drive.disk.bottom - s.gap)
     ground = base((*foot_plates, *pin(s, pivot, s.plate, z.low, z.high, crowned=not under)))
     members = (Member("arm", tuple(plates), "arm", place, ARM_COLOUR), *running, ground, *clips)
@@ -172,7 +172,7 @@ def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
         message = "the cam passes {near} from the pivot: no room for its hub"
         raise BodyError("mechanism.pin", message, remedy, near=away - reach, most=most)
     plates = [Plate(disc(hub), (eye(s),), low, high)]
-    for (side, _), contacts in zip(SIDES, view.touched(TURN * np.arange(PLACES) / PLACES), strict=True):
+    for (side, _), contacts in zip(SIDES, view.contact_points_fixed(TURN * np.arange(PLACES) / PLACES), strict=True):
         lever = np.abs(contacts - away)  # of the contact about the pivot
         along = side * (half + 0.5 * math.pi)
         y0, y1 = sorted((-side * s.gap_each_side, -side * (s.gap_each_side + s.bar)))
@@ -198,7 +198,7 @@ def pivoted_assembly(
     `heights` are those of the cam's disc, `fits` the follower's own, before all others.
     """
     s, pivot, (low, high) = drive.sizes, (away, 0.0), heights
-    pads = [bar((0.0, 0.0), pivot, max(2.0 * base_radius(drive), drive.reach))]
+    pads = [bar((0.0, 0.0), pivot, max(2.0 * least_pad_radius(drive), drive.reach))]
     ground = base((*bearing(drive, pads, low + drive.disk.bottom - s.gap), *pin(s, pivot, s.plate, low, high)))
     members = (follower, ground, Member("retainer-pivot", retainer(s, pivot, high), GROUND, colour=CLIP_COLOUR))
     every = (

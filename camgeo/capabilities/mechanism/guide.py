@@ -9,8 +9,8 @@ from camgeo.capabilities.mechanism.poses import Turning
 from camgeo.capabilities.mechanism.shaft import (
     GROUND_COLOUR,
     base,
-    base_radius,
     bearing,
+    least_pad_radius,
     shaft_fits,
     shaft_members,
 )
@@ -81,7 +81,7 @@ def guided_assembly(
         plates += blocks
         caps.append(cap)
         ends += [start, start + guide_length(s)]
-    radius, wide = base_radius(drive), half_width(s)
+    radius, wide = least_pad_radius(drive), half_width(s)
     half = max(wide, radius)
     low, high = min(line - wide, -radius), max(line + wide, radius)
     pad = box(min(*ends, -half), low, max(*ends, half), high)

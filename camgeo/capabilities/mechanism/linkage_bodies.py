@@ -22,7 +22,7 @@ from camgeo.capabilities.mechanism.base import (
     slotted_bar,
 )
 from camgeo.capabilities.mechanism.poses import Links, Turning
-from camgeo.capabilities.mechanism.shaft import base, base_radius, bearing, shaft_fits, shaft_members
+from camgeo.capabilities.mechanism.shaft import base, bearing, least_pad_radius, shaft_fits, shaft_members
 from camgeo.capabilities.mechanism.shapes import bar, bars, box, disc, eye, pin, transformed
 from camgeo.capabilities.mechanism.sizes import BodyError
 from kin.linkage.dyad import RPR, RRP, RRR
@@ -47,13 +47,13 @@ def linkage_assembly(mechanism: Mechanism, drive: Drive) -> Assembly:
     low = max(low, s.plate + s.gap - disk.bottom)
     high = low + disk.thickness
     links = Links(mechanism)
-    site = Site(s, links, high + s.gap, 2.0 * max(s.bar, base_radius(drive)))
+    site = Site(s, links, high + s.gap, 2.0 * max(s.bar, least_pad_radius(drive)))
     frame = site.add(Carrier("frame", _frame(mechanism.breadth, s, low, high), links.frame(), low, high))
     frame.colour = FRAME_COLOUR
     carriers = maker.make(site, frame, linkage)
     for loop, dyad in enumerate(mechanism.dyads, 1):
         carriers += MAKERS[type(dyad)].make(site, loop, dyad, _mount(site, carriers, loop))
-    support = max(base_radius(drive), 0.5 * mechanism.breadth + s.wall)
+    support = max(least_pad_radius(drive), 0.5 * mechanism.breadth + s.wall)
     foot = bearing(drive, [disc(support), *site.pads], low + disk.bottom - s.gap)
     ground = base((*foot, *_support(support, drive, low - s.gap), *site.ground))
     fits = (

@@ -61,8 +61,8 @@ def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[Prin
     """Write and judge all bodies, drawn for a shaft that turns clockwise; one of them is named "cam".
 
     A format that has one file for each disc writes one for each body. A format of contours writes two files of all
-    bodies, laid out and assembled. A format for viewers writes one file in which they move. Raises RecipeErrors and
-    SurroundingsError as `make` does.
+    bodies, laid out and assembled. A format for viewers writes one file in which they move. Raises RecipeErrors where
+    a mesh cannot be made within the tolerance, SurroundingsError where a file cannot be written or read.
     """
     record = request.format
     write = write_each if record.by_disc else write_together if record.contour else write_moving

@@ -217,8 +217,8 @@ def bearing(drive: Drive, pads: Sequence[ArcSpline], high: float) -> tuple[Plate
     return tuple(plates)
 
 
-def base_radius(drive: Drive) -> float:
-    """Least radius of a pad about the shaft."""
+def least_pad_radius(drive: Drive) -> float:
+    """Least radius, mm, of the base's pad about the shaft."""
     return _sink(drive) + drive.sizes.wall
 
 

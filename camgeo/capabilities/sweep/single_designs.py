@@ -115,7 +115,7 @@ def dyad_motions(recipe: Recipe, paths: Sequence[str], values: Array, count: int
         except BindingError:
             continue
         linkage, positions = mechanism.linkage, state.solved.linkage
-        sines = linkage.transmission(positions)[0], np.abs(linkage.force(positions, *state.faces[:, 1])[0])
+        sines = linkage.transmission(positions)[0], np.abs(linkage.force_angle(positions, *state.faces[:, 1])[0])
         for column, samples in zip(vars(rows).values(), (*state.output, *state.frame, *sines), strict=True):
             column[i] = samples
     return margin, rows

@@ -147,7 +147,7 @@ def flat_pair(view: View[Oscillating, Flat], size: float) -> tuple[list[Body], t
     away, half, thick = view.guide.pivot, view.contacts[0].apart, 2.0 * size
     swing = view.travel(SHAFT)[0]
     bodies: list[Body] = []
-    contact_points = view.touched(SHAFT)
+    contact_points = view.contact_points_fixed(SHAFT)
     levers = [np.abs(place - away) for place in contact_points]
     tall = max(float(lever.max()) for lever in levers) + 3.0 * size
     shapes = []

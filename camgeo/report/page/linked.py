@@ -82,7 +82,7 @@ class Driven:
         """Transmission angle and force angle, rad, from 0 to a quarter turn."""
         linkage, state = self.mechanism.linkage, self.solved.linkage
         sine, cosine = linkage.transmission(state)
-        pushed, resisted = linkage.force(state, *self.slopes)
+        pushed, resisted = linkage.force_angle(state, *self.slopes)
         return np.arctan2(np.abs(sine), np.abs(cosine)), np.arctan2(np.abs(pushed), np.abs(resisted))
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from support.heavy import Heavy, shapely
 
-from camgeo.capabilities.mechanism.build import build_assembly
 from camgeo.capabilities.mechanism.interference import collision_checks
+from camgeo.capabilities.mechanism.making import build_assembly
 from camgeo.fit.arcs import fit_arcs
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read

@@ -10,7 +10,7 @@ from support.heavy import trimesh
 from support.parts import member_of
 
 from camgeo.capabilities.mechanism.assembly import Plate, PrintBody
-from camgeo.capabilities.mechanism.build import build_assembly
+from camgeo.capabilities.mechanism.making import build_assembly
 from camgeo.capabilities.mechanism.meshes import GAP, body_mesh, layout, mirror, pose_matrix, print_pose
 from camgeo.capabilities.mechanism.shapes import bar
 from camgeo.files.errors import RegionError

@@ -15,9 +15,9 @@ from support.cases import few
 from support.parts import member_of
 
 from camgeo.capabilities.mechanism.assembly import Plate
-from camgeo.capabilities.mechanism.build import build_assembly
 from camgeo.capabilities.mechanism.interference import COARSE, collision_checks, movers, swept_size
 from camgeo.capabilities.mechanism.keys import RequestedSizes
+from camgeo.capabilities.mechanism.making import build_assembly
 from camgeo.capabilities.mechanism.meshes import body_mesh
 from camgeo.capabilities.mechanism.shaft import LEAST_EXCESS, require_drive, shaft_in
 from camgeo.capabilities.mechanism.shapes import disc
