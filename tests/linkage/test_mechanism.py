@@ -225,7 +225,7 @@ def test_force_angle_vanishes_exactly_where_the_shaft_stands_still():
     of = mechanism(InvertedSliderCrank(20.0, 0.0))
     still = np.array(of.mobility().reverses).ravel()
     s, s1 = (Jet(rows) for rows in of.at(still, 1).faces)
-    sine, cosine = of.linkage.force(of.linkage.solve(s, s1, 50.0), s.c[1], s1.c[1])
+    sine, cosine = of.linkage.force_angle(of.linkage.solve(s, s1, 50.0), s.c[1], s1.c[1])
     assert np.abs(of.at(still, 1).shaft[1]).max() < 1e-10
     assert np.abs(sine).max() < 1e-10
     assert np.abs(cosine) == pytest.approx(1)
@@ -260,7 +260,7 @@ def test_the_line_of_force_pushes_the_output_on(linkage, pivot):
     certain = reach > 1.001
     assert np.hypot(line.along_x, line.along_y)[certain] == pytest.approx(1)
     assert ((line.x - px) * line.along_y - (line.y - py) * line.along_x) / reach == pytest.approx(0, abs=1e-9)
-    link, sine = linkage.output_link(at), np.abs(linkage.force(at, s.c[1], s1.c[1])[0])
+    link, sine = linkage.output_link(at), np.abs(linkage.force_angle(at, s.c[1], s1.c[1])[0])
     if link.direction is None:
         lever, rate = line.along_x, link.origin[0].c[1]
     else:
@@ -282,7 +282,7 @@ def test_the_rate_of_the_shaft_is_the_lever_of_the_force_on_the_output(linkage, 
     s, s1 = (Jet(of.lift.derivatives(theta + k, 1)) for k in (0, math.pi / 2))
     at = linkage.solve(s, s1, 50.0)
     rate = 1 - at.frame.c[1]
-    sine, cosine = linkage.force(at, s.c[1], s1.c[1])
+    sine, cosine = linkage.force_angle(at, s.c[1], s1.c[1])
     assert np.hypot(sine, cosine) == pytest.approx(1)
     certain = np.abs(rate) > 1e-9
     assert (np.sign(sine) == np.sign(rate))[certain].all()

@@ -1,6 +1,6 @@
 """Paths of points of links in files: on REFERENCE in a DXF as ezdxf reads it, in a table, and what is refused.
 
-Holds: camgeo.formats.tables.trace.
+Holds: camgeo.formats.tables.trace, camgeo.synthesis.traces.
 """
 
 from __future__ import annotations

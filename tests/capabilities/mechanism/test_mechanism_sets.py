@@ -1,4 +1,7 @@
-"""Sets of all bodies through the whole pipeline: what is reported, what fails, what is refused."""
+"""Sets of all bodies through the whole pipeline: what is reported, what fails, what is refused.
+
+Holds: camgeo.capabilities.mechanism.checks, camgeo.capabilities.mechanism.record.
+"""
 
 from __future__ import annotations
 
