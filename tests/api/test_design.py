@@ -1,6 +1,6 @@
 """`camgeo.design`: motion, contour, edges and figures against other ways to have them.
 
-Holds: camgeo.api.cam, camgeo.api.check, camgeo.api.json_value, camgeo.api.notebook, camgeo.api.log.
+Holds: camgeo.api.cam, camgeo.api.check, camgeo.api.json_value, camgeo.api.log.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Recipes with a linkage from their text to judged files: checks, report, table, and what is refused.
 
-Holds: camgeo.report.linkage, camgeo.report.page.linked.
+Holds: camgeo.report.linkage.
 """
 
 from __future__ import annotations

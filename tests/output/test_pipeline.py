@@ -1,7 +1,6 @@
 """Every shipped recipe from its text to judged files, and what a run does when something is wrong.
 
-Holds: camgeo.output.job, camgeo.output.skipped, camgeo.output.file_intent, camgeo.registry.root,
-camgeo.recipe.export.
+Holds: camgeo.output.job, camgeo.output.skipped, camgeo.registry.root, camgeo.recipe.export.
 """
 
 from __future__ import annotations

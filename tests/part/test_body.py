@@ -1,7 +1,7 @@
 """Parts from recipes: what places itself, the least walls with the names of their edges, and what is refused.
 
-Holds: camgeo.part.bolts, camgeo.part.checks, camgeo.part.dowel, camgeo.part.feature, camgeo.part.largest_holes,
-camgeo.part.lightening, camgeo.part.mark.
+Holds: camgeo.part.checks, camgeo.part.dowel, camgeo.part.feature, camgeo.part.largest_holes, camgeo.part.lightening,
+camgeo.part.mark.
 """
 
 import math

@@ -1,7 +1,4 @@
-"""Shapes cut into a part and the walls between them, against closed forms; the keyways of DIN 6885.
-
-Holds: camgeo.part.flat, camgeo.part.keyway.
-"""
+"""Shapes cut into a part and the walls between them, against closed forms; the keyways of DIN 6885."""
 
 import math
 

@@ -1,9 +1,6 @@
 """The drawing of followers on a stem or an arm: where they stand, where they touch the drawn cam, and what is plotted.
 
-All is looked at in the drawing itself, turned back into the cam's axes, by means of its own.
-
-Holds: camgeo.report.page.followers.
-"""
+All is looked at in the drawing itself, turned back into the cam's axes, by means of its own."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """The page: one file without a network, its data against kin, its tables against the report, pictures and the watch.
 
 Holds: camgeo.cli.watch, camgeo.report.page.asset, camgeo.report.page.content, camgeo.report.page.curves,
-camgeo.report.page.looks, camgeo.report.page.outline, camgeo.report.page.png, camgeo.report.page.tables.
+camgeo.report.page.looks, camgeo.report.page.outline, camgeo.report.page.png, camgeo.report.page.tables,
+camgeo.report.page.linked.
 """
 
 from __future__ import annotations
