@@ -408,7 +408,7 @@ _CORE = {
 }
 LAST_EXACT = list(_CORE)[list(_CORE).index(READABLE.name) - 1]
 """Name of the core's last check of the exact cam."""
-CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {one.name: one for one in capability.checks()})
+CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {check.name: check for check in capability.checks()})
 """Every check but the limits of a recipe's own, by name, in the order in which they are foreseen."""
 
 
@@ -419,7 +419,7 @@ CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {one.name: one f
 def _of_figure(name: str, figure: Figure) -> Declared:
     """Declaration of the limit of a figure, which applies where the recipe gives the limit."""
 
-    def given(scene: Scene) -> bool:
+    def of_design(scene: Scene) -> bool:
         return figure.of != "file" and any(limit.figure == name for limit in scene.recipe.limits)
 
     def of_file(scene: Scene, file: FileRequest) -> bool:
@@ -433,7 +433,7 @@ def _of_figure(name: str, figure: Figure) -> Declared:
 
     # the check itself says what would do
     between = name == BACKLASH
-    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}", between=between)
+    return Declared(LIMIT + name, (), of_design, of_file, field=f"limits.{name}", between=between)
 
 
 def declaration(name: str) -> Declared | None:

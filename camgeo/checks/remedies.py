@@ -12,42 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from camgeo.cams.family import SMALLER_SWING
 from camgeo.common.rounding import downward, upward
 from camgeo.part.features import FEATURES
-from camgeo.recipe.figures import (
-    BACKLASH,
-    BASE_RADIUS,
-    CONTOUR_ERROR,
-    DURATION,
-    DWELL,
-    DWELL_ERROR,
-    DWELL_RELATIVE,
-    ECCENTRICITY,
-    FIGURES,
-    HOLLOW_RADIUS,
-    INERTIA,
-    LAW_ERROR,
-    LEAST_WALL,
-    LIFT_AREA,
-    LOBE_CENTRE,
-    MASS,
-    MOTION_ERROR,
-    OF_LINKS,
-    OFFSET,
-    ON_RETURN,
-    ON_RISE,
-    OUTPUT_ERROR,
-    PIECES,
-    PITCH_RADIUS,
-    PIVOT,
-    PIVOT_CLEARANCE,
-    PRELOAD_GREATEST,
-    PRELOAD_LEAST,
-    PRESSURE_ANGLE,
-    RADIUS,
-    RAMP_VELOCITY,
-    ROLLER_SPEED,
-    SIZE,
-    UNBALANCE,
-)
+from camgeo.recipe import figures
 from camgeo.registry import registry
 from camgeo.registry.capability import always
 
@@ -193,7 +158,7 @@ def limit_remedy(recipe: Recipe, limit: Limit, missed: Missed) -> str:
     lower = value > bound
     figure = limit.figure
     geometry = _to_lower(recipe, figure, missed) if lower else _to_raise(recipe, figure, missed)
-    owner = FIGURES.owner(figure)
+    owner = figures.FIGURES.owner(figure)
     own_remedy = registry.capability(owner).remedy(recipe, figure, value, bound) if owner else ""
     other_remedies = (own_remedy, _of_preload(figure, value, bound), _of_lobe(recipe, limit, value, bound))
     places = (_of_place(recipe, figure, value, bound), _of_files(recipe, figure, missed))
@@ -203,30 +168,30 @@ def limit_remedy(recipe: Recipe, limit: Limit, missed: Missed) -> str:
 
 
 def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
-    if figure == MOTION_ERROR:
+    if figure == figures.MOTION_ERROR:
         tolerance = None if missed.tolerance is None else missed.tolerance / recipe.mm
         return _tolerance(recipe, missed.value / recipe.mm, missed.bound / recipe.mm, tolerance)
     if missed.bound <= 0.0 or recipe.linkage is not None:
         return ""
-    if figure == LAW_ERROR:
+    if figure == figures.LAW_ERROR:
         return MORE_HARMONICS
-    if figure == ROLLER_SPEED:
+    if figure == figures.ROLLER_SPEED:
         return "a larger roller"
-    if figure == ECCENTRICITY:  # metal about the shaft draws the centre of mass to it
+    if figure == figures.ECCENTRICITY:  # metal about the shaft draws the centre of mass to it
         return ", or ".join([*(feature.steadies for feature in FEATURES if feature.steadies), "a smaller bore"])
-    if figure in {SIZE, MASS, INERTIA, UNBALANCE}:
-        return "a smaller cam" if figure == SIZE else "a thinner or a smaller part"
-    eased_by = FIGURES[figure].eased_by
+    if figure in {figures.SIZE, figures.MASS, figures.INERTIA, figures.UNBALANCE}:
+        return "a smaller cam" if figure == figures.SIZE else "a thinner or a smaller part"
+    eased_by = figures.FIGURES[figure].eased_by
     if not eased_by:
         return ""
-    if figure == PRESSURE_ANGLE:
+    if figure == figures.PRESSURE_ANGLE:
         least = recipe.cam.advice.least_pressure_angle
         if missed.bound <= least:
             return f"a ratio nearer to 1 (at this one no swing, however small, stays below {least:.4g} deg)"
     limits = "cam.sizing.pressure-angle"
-    if limits in recipe.marks and figure in {PRESSURE_ANGLE, ON_RISE, ON_RETURN}:
-        both = figure == PRESSURE_ANGLE and f"{limits}.on_return" in recipe.marks
-        key = "on_return" if figure == ON_RETURN else "at_most and on_return" if both else "at_most"
+    if limits in recipe.marks and figure in {figures.PRESSURE_ANGLE, figures.ON_RISE, figures.ON_RETURN}:
+        both = figure == figures.PRESSURE_ANGLE and f"{limits}.on_return" in recipe.marks
+        key = "on_return" if figure == figures.ON_RETURN else "at_most and on_return" if both else "at_most"
         return f"{key} of {missed.bound:.6g} under sizing"
     advice = recipe.cam.advice.on(missed.surface)
     if advice.larger and eased_by == "size" and not recipe.cam.sizes:  # a size that is found is no larger one
@@ -239,28 +204,28 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
     unit, remedy = "in" if recipe.units == "inch" else "mm", ""
     value, bound = missed.value / recipe.mm, missed.bound / recipe.mm
     by, advice = bound - value, recipe.cam.advice.on(missed.surface)
-    if figure == RADIUS and recipe.cam.sizes:
+    if figure == figures.RADIUS and recipe.cam.sizes:
         remedy = advice.rounder(value, bound, unit)
-    elif figure in {RADIUS, HOLLOW_RADIUS} and advice.radius:
+    elif figure in {figures.RADIUS, figures.HOLLOW_RADIUS} and advice.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
-        roller, hollow = advice.radius / recipe.mm, figure == HOLLOW_RADIUS
+        roller, hollow = advice.radius / recipe.mm, figure == figures.HOLLOW_RADIUS
         wider = recipe.cam.side > 0 and roller + by < advice.most_radius / recipe.mm
         if wider if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
             remedy = f"a {advice.radius_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
             remedy += advice.same_pitch(recipe.mm)
-    elif figure == RADIUS:
+    elif figure == figures.RADIUS:
         remedy = advice.rounder(0.0, by, unit)
-    elif figure == PITCH_RADIUS:
+    elif figure == figures.PITCH_RADIUS:
         remedy = "" if recipe.cam.sizes else ", ".join(filter(None, (advice.larger, advice.less_steep)))
-    elif figure in OF_LINKS:
+    elif figure in figures.OF_LINKS:
         remedy = "longer links, all in one proportion, about the same cam"
-    elif figure in {DWELL, DWELL_RELATIVE}:
+    elif figure in {figures.DWELL, figures.DWELL_RELATIVE}:
         remedy = "a wider dwell.band"
-    elif figure == PIVOT_CLEARANCE:
+    elif figure == figures.PIVOT_CLEARANCE:
         remedy = "a pivot farther from the shaft"
-    elif figure == LEAST_WALL and lone_ring(recipe):
+    elif figure == figures.LEAST_WALL and lone_ring(recipe):
         remedy = f"a part.outer larger by more than {upward(2.0 * by)} {unit}"
-    elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
+    elif figure == figures.LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
         remedy = (
             f"a bore smaller by more than {upward(2.0 * by)} {unit}" if 2.0 * by * recipe.mm < recipe.part.bore else ""
         )
@@ -269,7 +234,7 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
 
 def _of_preload(figure: str, value: float, bound: float) -> str:
     """Interference that would bring the force of a preload to a bound above 0; empty for other figures."""
-    if bound <= 0.0 or value <= 0.0 or figure not in {PRELOAD_LEAST, PRELOAD_GREATEST}:
+    if bound <= 0.0 or value <= 0.0 or figure not in {figures.PRELOAD_LEAST, figures.PRELOAD_GREATEST}:
         return ""
     share = upward(bound / value) if value < bound else downward(bound / value)  # in proportion to it
     return f"a cam.preload.interference {share} times as large"
@@ -278,14 +243,18 @@ def _of_preload(figure: str, value: float, bound: float) -> str:
 def _of_place(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     """Size or place of the recipe, in its unit, that would meet a bound; empty for other figures."""
     more, unit = value < bound, "in" if recipe.units == "inch" else "mm"
-    if figure == LOBE_CENTRE and "cam.motion.lobe" in recipe.marks:
+    if figure == figures.LOBE_CENTRE and "cam.motion.lobe" in recipe.marks:
         nose = f"a cam.motion.lobe.nose {'larger' if more else 'smaller'} by"
         return f"{nose} {upward(abs(bound - value))} deg"
-    keys = {BASE_RADIUS: "cam.base_radius", OFFSET: "cam.follower.offset", PIVOT: "cam.follower.arm.pivot"}
+    keys = {
+        figures.BASE_RADIUS: "cam.base_radius",
+        figures.OFFSET: "cam.follower.offset",
+        figures.PIVOT: "cam.follower.arm.pivot",
+    }
     if figure not in keys:
         return ""
-    if figure == BASE_RADIUS and recipe.cam.sizes:
-        angle, limited = PRESSURE_ANGLE, "cam.sizing.pressure-angle" in recipe.marks
+    if figure == figures.BASE_RADIUS and recipe.cam.sizes:
+        angle, limited = figures.PRESSURE_ANGLE, "cam.sizing.pressure-angle" in recipe.marks
         return f"a {'smaller' if more else 'greater'} {angle} under sizing" if limited else ""
     return f"a {keys[figure]} of {bound:.9g} {unit} or {'more' if more else 'less'}"
 
@@ -293,13 +262,13 @@ def _of_place(recipe: Recipe, figure: str, value: float, bound: float) -> str:
 def _of_files(recipe: Recipe, figure: str, missed: Missed) -> str:
     """Tolerance that would bring a figure of a file to its bound: errors are in proportion to it."""
     less = missed.bound < missed.value
-    if figure == PIECES:
+    if figure == figures.PIECES:
         return f"a {'larger' if less else 'smaller'} tolerance"
     if not less or missed.bound <= 0.0 or missed.tolerance is None:
         return ""
-    if figure == CONTOUR_ERROR:
+    if figure == figures.CONTOUR_ERROR:
         return f"a tolerance of {missed.bound / recipe.mm:.6g}"
-    if figure in {BACKLASH, DWELL_ERROR, OUTPUT_ERROR}:
+    if figure in {figures.BACKLASH, figures.DWELL_ERROR, figures.OUTPUT_ERROR}:
         return f"a tolerance of about {missed.tolerance * missed.bound / missed.value / recipe.mm:.2g}"
     return ""
 
@@ -307,13 +276,13 @@ def _of_files(recipe: Recipe, figure: str, missed: Missed) -> str:
 def _of_lobe(recipe: Recipe, limit: Limit, value: float, bound: float) -> str:
     """Change of a lobe's half, or of segments, that would bring duration, area or ramp velocity to a bound."""
     half, more = "cam.motion.lobe.half", value < bound
-    if limit.figure not in {DURATION, LIFT_AREA, RAMP_VELOCITY} or bound <= 0.0 or value <= 0.0:
+    if limit.figure not in {figures.DURATION, figures.LIFT_AREA, figures.RAMP_VELOCITY} or bound <= 0.0 or value <= 0.0:
         return ""
     if half not in recipe.marks:
         segments = any(path.startswith("cam.motion[") for path in recipe.marks)
-        longer = more if limit.figure != RAMP_VELOCITY else not more
+        longer = more if limit.figure != figures.RAMP_VELOCITY else not more
         return f"a rise and a return over {'more' if longer else 'less'} of the turn" if segments else ""
-    if limit.figure == RAMP_VELOCITY:
+    if limit.figure == figures.RAMP_VELOCITY:
         return "" if more else f"a larger {half}"
     about = "about " if "cam.motion.lobe.ramp" in recipe.marks else ""  # which keeps its length
     return f"a {half} {about}{upward(bound / value) if more else downward(bound / value)} times as large"

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from camgeo.cli.arguments import add_out, name_of, processes
-from camgeo.cli.batch import Task, result, results
+from camgeo.cli.batch import Task, failed_entry, folder_conflicts, result, results
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.common.terminal import complain, escaped, open_streams, say, say_json, silence
 from camgeo.common.units import UNIT_MM
@@ -218,8 +218,6 @@ def _complain(text: str) -> None:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from camgeo.cli.batch import folder_conflicts
-
     if arguments.watch:
         return _watch(arguments)
     recipes, refused = _load_recipes(arguments.recipes, arguments.tolerance, arguments.only)
@@ -287,7 +285,6 @@ def _load_recipes(
 
     The faults of the others are written to the terminal.
     """
-    from camgeo.cli.batch import failed_entry
     from camgeo.recipe.loading import load_order
     from camgeo.schema.errors import RecipeErrors
 
@@ -316,8 +313,6 @@ def _with_tolerance(recipe: O, tolerance: str | None) -> O:
 
 def _run_recipes(recipes: Sequence[Order], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace) -> int:
     """Run recipes and write their reports, in JSON with the entries `refused` in their places; the highest status."""
-    from camgeo.cli.batch import failed_entry
-
     status = WRONG if refused else OK
     entries: list[Entry] = []
     for outcome in results(recipes, task, arguments.jobs):

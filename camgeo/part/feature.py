@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
 
+from camgeo.registry.capability import NO_CHECK
 from camgeo.schema.fields import Field, Kind, Table
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
@@ -138,10 +139,6 @@ class View(NamedTuple):
         ]
 
 
-def _check_nothing(_part: Values, _reader: Reader) -> None:
-    pass
-
-
 @dataclass(frozen=True)
 class Feature(Generic[T]):
     """A feature of the part: all that the core asks of it; fields that do not apply are left out.
@@ -185,7 +182,7 @@ class Feature(Generic[T]):
     locates: bool = False
     holes: bool = False
     walled: bool = False
-    check: Callable[[Values, Reader], None] = _check_nothing
+    check: Callable[[Values, Reader], None] = NO_CHECK
     make: Callable[[Any, Values], T | None] | None = None
     bore: Callable[[T, float], ArcSpline] | None = None
     openings: Callable[[T], Sequence[Opening]] | None = None

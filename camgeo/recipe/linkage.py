@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 MOST_TRACES = 20
-Part = TypeVar("Part", bound="kin.linkage.four_bar.Linkage | kin.linkage.dyad.Dyad")
+Links = TypeVar("Links", bound="kin.linkage.four_bar.Linkage | kin.linkage.dyad.Dyad")
 
 
 class TracedPoint(NamedTuple):
@@ -75,7 +75,7 @@ def with_other_lengths(linkage: Linkage, loop: int, factor: float) -> Iterator[t
         yield f"dyads[{loop - 1}].{name}", size, linkage._replace(dyads=others)
 
 
-def _with_other(part: Part, factor: float) -> Iterator[tuple[str, float, Part]]:
+def _with_other(part: Links, factor: float) -> Iterator[tuple[str, float, Links]]:
     for name in part.lengths:
         key, _, index = name.partition("[")
         own = getattr(part, key)
@@ -369,5 +369,5 @@ def build_linkage(linkage: Values) -> Linkage:
     return Linkage(kind, _of_kind(loops, loop_values), tuple(_of_kind(dyads, dyad) for dyad in dyad_values), traces)
 
 
-def _of_kind(classes: Mapping[str, Callable[..., Part]], values: Values) -> Part:
+def _of_kind(classes: Mapping[str, Callable[..., Links]], values: Values) -> Links:
     return classes[values["kind"]](**{key: value for key, value in values.items() if key != "kind"})
