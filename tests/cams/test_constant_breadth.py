@@ -1,6 +1,6 @@
 """Sharp and irregular Reuleaux polygons from recipe to file: corners that are points, and faults that are seen.
 
-Holds: camgeo.cams.family, camgeo.cams.follower, camgeo.fit.cache.
+Holds: camgeo.cams.family, camgeo.cams.follower.
 """
 
 import json

@@ -1,6 +1,6 @@
 """What would help a groove: remedies of undercut on either flank, tried; a size that both flanks obey.
 
-Holds: camgeo.cams.sizing, camgeo.cams.surface.
+Holds: camgeo.cams.sizing.
 """
 
 import math

@@ -2,8 +2,6 @@
 
 The sound files come from formulas by numpy alone (`camfiles`). A fault that moves the follower must be felt by contact,
 one that contact cannot feel must be seen in the contour.
-
-Holds: kin.judge.bore.
 """
 
 import numpy as np
