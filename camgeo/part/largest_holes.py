@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.part.walls import Looks
     from kin.numeric.arrays import Array
 
-GRID = 49  # points of the search each way
+GRID = 37  # points of the search each way
 STARTS = 12  # places from which the search climbs
 CENTRE, DIAMETER = 0.01, 0.1  # mm: steps of centres and diameters
 RINGS = 400  # radii of a ring that are tried
