@@ -23,7 +23,7 @@ from camgeo.cams.guided import (
     RoundAdvice,
     base_size,
     centre_guide_of,
-    least_round_prime,
+    least_prime_for_roller,
     shrink_touch,
 )
 from camgeo.common.rounding import upward
@@ -184,7 +184,7 @@ class Conjugate(Holding):
             return Holding.rounder(self, surface, exact, mm)
         first, second = exact.follower.contacts
         guide, roller = centre_guide_of(second), self.touch.radius
-        prime = least_round_prime(exact.law.scaled(-1.0), guide, roller)
+        prime = least_prime_for_roller(exact.law.scaled(-1.0), guide, roller)
         if prime is None:
             return ""
         factor = 1.0 / mm if self.length is None else math.degrees(1.0)

@@ -135,7 +135,7 @@ class Advice(ABC):
         return ""
 
     def wider_face(self, width: float, mm: float) -> str:  # noqa: ARG002 - a round tappet's has lengths of its own
-        """Remedy for a face that is too narrow: one that has a width, in the recipe's unit."""
+        """Remedy for too narrow a face: a follower.width of at least `width`, in the recipe's unit."""
         return f"a follower.width of {upward(width)}"
 
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit
@@ -292,8 +292,8 @@ class ExactCam(ABC):
         return {}
 
     @property
-    def free(self) -> bool:
-        """Whether no motion can undercut it, as of a parallel outside a convex surface."""
+    def never_undercut(self) -> bool:
+        """Whether no motion can make the contour undercut."""
         return False
 
     @property

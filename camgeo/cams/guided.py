@@ -167,7 +167,7 @@ class Holding:
     def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:  # noqa: ARG002
         """The size, in words, at which a roller is half the pitch curve's least convex radius; empty without one."""
         cam, roller = exact.cam, exact.cam.touch.radius
-        prime = least_round_prime(exact.law, cam.centre_guide, roller)
+        prime = least_prime_for_roller(exact.law, cam.centre_guide, roller)
         return "" if prime is None else f"a base radius of {upward((prime - cam.side * roller) / mm)}"
 
 
@@ -194,7 +194,7 @@ def base_size(cam: GuidedCam, prime: float, mm: float, pivot: float | None = Non
     return words, cam.resized(float(size) * mm, float(pivot_words) * mm if pivot_words else None)
 
 
-def least_round_prime(law: Displacement, guide: moving_frame.Guide, roller: float) -> float | None:
+def least_prime_for_roller(law: Displacement, guide: moving_frame.Guide, roller: float) -> float | None:
     """Prime circle, mm, at which a roller is half the pitch curve's least convex radius; None without one."""
     from camgeo.cams.least_size import least_prime
     from camgeo.curve.moving_frame import CentreShape

@@ -320,8 +320,8 @@ class ExactPair(ExactCam):
         return ExactPair(self.cam.grow(out, scale), self.law.scaled(scale), scale * (self.out + out))
 
     @property
-    def free(self) -> bool:
-        """Whether these are faces beside their lines: a parallel outside a convex surface."""
+    def never_undercut(self) -> bool:
+        """Whether no motion undercuts it: flat faces that stand outside the lines through the pivot."""
         return self.out > 0.0 and self.cam.arrangement.touch is Flat
 
     @property

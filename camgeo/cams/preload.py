@@ -67,18 +67,18 @@ class PreloadedCam(AlteredCam):
 
     @property
     def margins(self) -> list[Margin]:
-        """Margins of the nominal motion."""
+        """Distances of the nominal motion from the limits beyond which it does not exist."""
         return self.nominal.margins
 
     @property
     def proofs(self) -> Mapping[str, Callable[[], Proof]]:
-        """Checks of the nominal motion."""
+        """Functions that prove the nominal motion, by the names of the checks."""
         return self.nominal.proofs
 
     @property
-    def free(self) -> bool:
+    def never_undercut(self) -> bool:
         """Whether no motion can undercut any of the grown metal."""
-        return all(exact.free for exact in self.grown_metal)
+        return all(exact.never_undercut for exact in self.grown_metal)
 
     @property
     def plate(self) -> Lift | None:

@@ -210,6 +210,8 @@ def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bou
         tolerance = max(tolerance, SHARPNESS * float(np.abs(values).max()))
         if values.flat[top] > best + NOISE * tolerance:  # on a circle the first place, not where rounding is greatest
             best, place = float(values.flat[top]), float(np.concatenate([low, high])[top])
+        # |g''| <= sigma' + omega' r + omega^2 |g|, so g leaves its end values by w^2/8 of that; the figure, its own by
+        # w/2 of the greatest |g| times the pace, unless both keep their signs
         bounds, width = cells.over(low, high), high - low
         turn = np.maximum(np.abs(bounds.turn_low), np.abs(bounds.turn_high))
         bend = 0.125 * width**2
@@ -237,7 +239,7 @@ class StarError(CurveError):
 
 
 def polar_radius(curve: Curve, angles: Array) -> Array:
-    """Distance of a contour from the shaft (n,) at polar angles (n,); raises as `polar_parameters`."""
+    """Distance of a contour from the shaft (n,), mm, at polar angles (n,), rad; StarError as `polar_parameters`."""
     point = curve.sample(polar_parameters(curve, angles)).point
     radius: Array = np.hypot(point[:, 0], point[:, 1])
     return radius

@@ -174,7 +174,7 @@ class Translating:
         return b, a, rate
 
     def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
-        """b, a and tau' as series, of the order of S, one fewer and one fewer."""
+        """Series of b, mm, a, mm, and tau', see the head of this module: of the order of S, one less and one less."""
         return s + self.foot, s.derivative() - self.offset, 1.0
 
     def resized(self, prime: float) -> Translating:
@@ -262,7 +262,7 @@ class Oscillating:
         return b, a, np.stack([1.0 + self.side * v, self.side * w])
 
     def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
-        """b, a and tau' as series, of the order of S, one fewer and one fewer."""
+        """Series of b, mm, a, mm, and tau', see the head of this module: of the order of S, one less and one less."""
         psi, side = s + self.rest, float(self.side)
         slope = s.derivative()
         lean = elementary.cos(cut(psi, slope.order)) * self.pivot - self.length
@@ -362,7 +362,7 @@ class CentreShape(FramedShape[Displacement]):
         return (self.law.on(tau, side),)
 
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
-        """b, a and tau' of the guide as series."""
+        """Terms b, mm, a, mm, and tau' of the guide as series; see the head of this module."""
         return self.guide.frame(figures[0])
 
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
@@ -371,7 +371,7 @@ class CentreShape(FramedShape[Displacement]):
         return (*self.guide.place(t, s[0]), *self.guide.rows(s))
 
     def slope(self, tau: Series, side: Side = 1) -> Series:
-        """Tangent of the pressure angle as a series: a/b."""
+        """Tangent of the pressure angle as a series: a/b of the head of this module."""
         b, a, _ = self.guide.frame(self.law.on(tau, side))
         return a / cut(b, a.order)
 

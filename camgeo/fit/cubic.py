@@ -34,7 +34,7 @@ REAL = 1e-6  # relative: roots with less of an imaginary part are a double root,
 
 
 @dataclass(frozen=True)
-class Contact:
+class NearestCubic:
     """The cubics nearest to a curve at n places, all (n,).
 
     `miss` is the coefficient c, positive where the cubic lies outside a convex curve, per mm^5; `lean` is the
@@ -45,8 +45,8 @@ class Contact:
     lean: Array
 
 
-def contact(speed: Array, turn: Array) -> Contact:
-    """Leading miss of the nearest cubic, from Taylor coefficients (5, n) of speed and turn.
+def nearest_cubic(speed: Array, turn: Array) -> NearestCubic:
+    """Miss and lean of the cubics nearest to a curve at n places, by Taylor coefficients (5, n) of speed and turn.
 
     Not finite where the speed vanishes.
     """
@@ -67,7 +67,7 @@ def contact(speed: Array, turn: Array) -> Contact:
         miss = f2 * b**2 + f3 * (lean**3 + 6.0 * lean * b) + f4 * (6.0 * lean**2 + 4.0 * b) + 5.0 * f5 * lean + f6
         least = np.argmin(np.where(np.isnan(miss), np.inf, np.abs(miss)), axis=1)[:, None]
         chosen, leaning = (np.take_along_axis(rows, least, axis=1)[:, 0] for rows in (miss, lean))
-        return Contact(np.where(known, chosen * scale**5, np.nan), np.where(known, leaning * scale, 0.0))
+        return NearestCubic(np.where(known, chosen * scale**5, np.nan), np.where(known, leaning * scale, 0.0))
 
 
 def _heights(speed: Array, turn: Array) -> Array:
@@ -114,7 +114,7 @@ class SpanDensity:
 
     @property
     def totals(self) -> Array:
-        """Integral of the density over each stretch (m,)."""
+        """Least spans of each stretch (m,) times the sixth root of the tolerance, mm^(1/6)."""
         return np.array([density.total for density in self.densities])
 
 
@@ -133,7 +133,7 @@ def span_density(curve: Curve, stretches: Array) -> SpanDensity:
         edges.append(np.append(inner.ravel(), high))
     middle = np.concatenate([0.5 * (part[:-1] + part[1:]) for part in edges])
     speed, turn = curve.shape.series(middle, 4)
-    miss = np.nan_to_num(contact(speed, turn).miss, nan=0.0, posinf=0.0, neginf=0.0)
+    miss = np.nan_to_num(nearest_cubic(speed, turn).miss, nan=0.0, posinf=0.0, neginf=0.0)
     value = (np.abs(miss) / LEAST) ** (1.0 / ORDER) * np.abs(speed[0])
     densities, begin = [], 0
     for part in edges:

@@ -167,7 +167,10 @@ def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -
 
 
 def prove_edges(curve: Curve, edges: PlacedEdges, tolerance: float) -> Edges:
-    """Edges with their proved deviation; an edge across a break of the curve is judged on both sides of it."""
+    """Edges with their proved deviation, whose bounds are sharpened until they are below `tolerance`, mm, or cannot be.
+
+    An edge across a break of the curve is judged on both sides of it.
+    """
     chain = Chain(
         edges.vertices[:-1][edges.edge], edges.tangent[edges.edge], np.zeros(edges.low.size), edges.low, edges.high
     )

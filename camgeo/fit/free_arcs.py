@@ -279,6 +279,8 @@ def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: f
     bend0, bend1 = curvature[left] - chain.curvature, curvature[right] - chain.curvature
     lean0, lean1 = joints.lean[left], joints.lean[right]
     ones, kink = np.ones_like(lean0), arcs.miss / arcs.length
+    # a row for the miss and for both extremes of each arc; columns: moves of its left joint, of its right one, the
+    # level, the right-hand side
     rows = np.zeros((left.size, 3, 8))
     rows[:, 0, 0:3] = np.column_stack([lever * bend0 - lean0 - kink, -ones, lever])
     rows[:, 0, 3:6] = np.column_stack([lever * bend1 + lean1 - kink, ones, lever])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.cubic import contact
+from camgeo.fit.cubic import nearest_cubic
 from camgeo.fit.spans import plane
 from kin.numeric.records import dataclass
 
@@ -96,7 +96,7 @@ def cubic_spans(curve: Curve, low: Array, high: Array, out: float) -> tuple[Arra
     # handles of a circular arc with these ends, and how the nearest cubic's differ
     third = chord * 2.0 / (3.0 * (1.0 + np.maximum(0.5 * np.abs(leaving + arriving), 1e-6)))
     speed, turn = curve.shape.series(0.5 * (low + high), 4)
-    lean = np.clip(np.nan_to_num(contact(speed, turn).lean) * chord, -MOST_LEAN, MOST_LEAN)
+    lean = np.clip(np.nan_to_num(nearest_cubic(speed, turn).lean) * chord, -MOST_LEAN, MOST_LEAN)
     leaning = np.column_stack([third * (1.0 - lean), third * (1.0 + lean)])
     spans = Spans(low, high, start, leaving, end, arriving)
     both = np.tile(np.arange(low.size), 2)

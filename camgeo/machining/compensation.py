@@ -78,7 +78,7 @@ def compensate(recipe: Recipe, design: Design, compensation: Compensation, field
         raise recipe.error(field, str(error)) from error
     name = f"{recipe.name}, {compensation.words(recipe.mm)}"
     different = replace(recipe, name=name, cam=exact.cam, part=part)
-    if exact.free:
+    if exact.never_undercut:
         has_contour = bool(design.contours)
         surfaces = [SurfaceDesign(surface, surface.curve if has_contour else None, ()) for surface in exact.surfaces]
     else:

@@ -64,7 +64,7 @@ class Deviation:
         return max((self.outside, self.outside_at), (self.inside, self.inside_at), (self.bare, self.bare_at))
 
     def less_sure(self, by: float) -> Deviation:
-        """Count in that the contour may be off by as much, mm."""
+        """Copy with all distances greater by `by`, mm: how far the contour itself may be off."""
         return replace(self, outside=self.outside + by, inside=self.inside + by, bare=self.bare + by)
 
 

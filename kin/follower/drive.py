@@ -60,7 +60,7 @@ class Shifted:
         return self.drive.smooth
 
     def rows(self, phi: Array) -> Array:
-        """See `Excitation`."""
+        """Shifted position and two derivatives by the shaft angle, (3, n), at angles phi (n,), rad, not at breaks."""
         rows = self.sign * self.drive.rows(phi)
         rows[0] += self.offset
         return rows

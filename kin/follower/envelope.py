@@ -122,7 +122,10 @@ class LiftPitch:
         return self.along.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Give r = cos(tilt) along and t = tau + tilt + turned."""
+        """Distance r, mm, of the face from the shaft and direction t of its normal, rad, with derivatives by the angle.
+
+        (order + 1, n) each, r = cos(tilt) along, t = tau + tilt + turned; at a break those of the side (-1 from below).
+        """
         r: Array = np.cos(self.tilt) * self.along.derivatives(tau, order, side)
         t = np.zeros_like(r)
         t[0], t[1:2] = tau + (self.tilt + self.turned), 1.0

@@ -151,7 +151,7 @@ class OfArmFace:
         return np.mod(self.face.starts(self.bearing), TURN)
 
     def rows(self, phi: Array) -> Array:
-        """See `Excitation`."""
+        """Position, rad, and two derivatives by the shaft angle, (3, n), at angles phi (n,), rad, not at breaks."""
         rows = self.face.touch(self.bearing, phi)
         rows[0] += self.face.side * self.datum - phi
         rows[1] -= 1.0
@@ -208,7 +208,7 @@ class _OnArm(Moved):
         return [OfArmFace(face, bearing, level) for face, level in zip(self.faces, self.levels, strict=True)]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """See `Follower`: the way of the place that is touched stands across the line to it from the pivot."""
+        """Pressure angle, rad, of a way across the line from the pivot, and radius of curvature, mm, (n,) each."""
         bearing, face = self.bearing(contour), self.faces[0]
         theta = face.touch(bearing, phi)[0]
         q, slope, bend = bearing.derivatives(theta, bearing.find(theta))
@@ -216,7 +216,7 @@ class _OnArm(Moved):
         return -face.side * np.arctan2(face.out, along), q + face.out + bend
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
-        """See `Follower`."""
+        """Shaft angle and position, rad, (n,) each, with each face on metal at points and outward normals (n, 2)."""
         direction = np.arctan2(normals[:, 1], normals[:, 0])
         touches = []
         for face, contact, level in zip(self.faces, self.contacts, self.levels, strict=True):
@@ -330,7 +330,7 @@ class SwingingFace(OfLaw, _OnArm):
 
     @cached_property
     def cells(self) -> Array:
-        """See `_OnArm`."""
+        """Shaft angles, rad, between which the law is followed by cubics: it has nothing narrow there."""
         return cubic_cells(self.law, self.law.breaks, NEAR / self.faces[0].pivot)
 
     @property
@@ -344,7 +344,7 @@ class SwingingFace(OfLaw, _OnArm):
         return ArmPitch(self.law, self.faces[0].pivot, self.faces[0].side)
 
     def contact_travel(self, contour: Contour) -> tuple[float, float]:
-        """See `Follower`."""
+        """Least and greatest place of contact 1 along the face, mm from the pivot's foot on it."""
         face = self.faces[0]
         q, slope, _ = face.bearing(contour).all_round(TRAVEL_STEPS)
         place = np.sqrt(face.pivot**2 - q**2) - face.side * slope
@@ -391,7 +391,7 @@ class FlatPair(OfTransmission, _OnArm):
 
     @cached_property
     def cells(self) -> Array:
-        """See `_OnArm`: the shaft angle bends no more sharply over the parameter than the law does."""
+        """Shaft angles, rad, of the law's cells: over the parameter they bend no more sharply than the law does."""
         cells = cubic_cells(self.transmission.psi, self.breaks, NEAR / self.transmission.arm)
         phi: Array = self.transmission.at(cells, 0)[0][0]
         return phi

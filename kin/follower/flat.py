@@ -51,7 +51,7 @@ class OfFace:
         return np.mod(self.bearing.breaks - self.turned, TURN)
 
     def rows(self, phi: Array) -> Array:
-        """See `Excitation`."""
+        """Position, m, and two derivatives by the shaft angle, (3, n), at angles phi (n,), rad, not at breaks."""
         theta = phi + self.turned
         rows: Array = METRE / self.share * self.bearing.derivatives(theta, self.bearing.find(theta))
         return rows
@@ -118,13 +118,13 @@ class FlatFace(Follower):
         return [OfFace(bearing, self.tilt + contact.turned, self._share) for contact in self.contacts]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """See `Follower`: the angle is that at which the face stands askew, whatever the contour is."""
+        """Pressure angle, rad, at which the face stands askew, and radius of curvature, mm, (n,) each."""
         bearing, theta = bearing_of(contour), phi + self.ahead
         q, _, bend = bearing.derivatives(theta, bearing.find(theta))
         return np.full(phi.shape, -self.tilt), q + bend
 
     def contact_travel(self, contour: Contour) -> tuple[float, float]:
-        """See `Follower`."""
+        """Least and greatest place of contact 1 along the face, mm from the stem's axis, above 0 ahead of it."""
         q, slope, _ = bearing_of(contour).all_round(TRAVEL_STEPS)
         guide = self.contacts[0].guide
         aside = guide.offset / self._share if isinstance(guide, Translating) else 0.0
@@ -132,7 +132,7 @@ class FlatFace(Follower):
         return float(place.min()), float(place.max())
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
-        """See `Follower`."""
+        """Shaft angle, rad, and position, mm, (n,) each, with each face on metal at points and normals (n, 2)."""
         direction = np.arctan2(normals[:, 1], normals[:, 0])
         own = dot(points, normals) / self._share
         return [(direction - self.tilt - contact.turned, contact.position(own)) for contact in self.contacts]

@@ -282,6 +282,7 @@ def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
         ).worst
     except FrameError:
         return None
+    # the last columns of OFF are one lift alone, to either side: half their sum is the curvature along that lift
     limit = worst + 0.5 * float(np.abs(at[0, CORNERS::2] + at[0, CORNERS + 1 :: 2]).sum(axis=0).max())
     return float(np.degrees(limit)) if mechanism.unit == "deg" else limit
 

@@ -176,7 +176,7 @@ class Arm:
         return y
 
     def on_side(self, phi: Array, points: Array, slack: float) -> NDArray[np.bool_]:
-        """Mask (n,) of the points (n, 2) on the roller's side of the line from shaft to pivot."""
+        """Mask (n,) of points (n, 2) on the roller's side of the line from shaft to pivot or `slack`, mm, beyond."""
         on_side: NDArray[np.bool_] = -self.side * cross(self.pivot * unit(phi), points) >= -slack * self.pivot
         return on_side
 

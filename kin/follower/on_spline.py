@@ -205,8 +205,8 @@ class Shape(NamedTuple):
 
     @staticmethod
     def of(control: Array, offset: float) -> Shape:
-        """Bounds from control points (n, d + 1, 2) of stretches of the contour, of which the path lies `offset` off."""
-        v = derivative(control)
+        """Bounds of the path that lies `offset`, mm, beside stretches of a contour of control points (n, d + 1, 2)."""
+        v = derivative(control)  # first to third derivative, as polynomials of the parameter
         w = derivative(v)
         u = derivative(w)
         chord = control[:, -1] - control[:, 0]
@@ -254,7 +254,7 @@ class BezierSpans:
 
     @property
     def half(self) -> Array:
-        """See `Shape`."""
+        """Greatest arc length (n,), mm, from the middle of each stretch to its ends."""
         return self.shape.half
 
     def quarters(self, which: NDArray[np.bool_]) -> BezierSpans:

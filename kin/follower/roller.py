@@ -72,7 +72,7 @@ class OfRoller:
         return Search.of(self.obstacle, self.guide)
 
     def _touched(self, phi: Array) -> tuple[Array, Indices]:
-        return touched(self._search, phi, self.turned)
+        return contact_distances(self._search, phi, self.turned)
 
     @cached_property
     def breaks(self) -> Array:
@@ -95,7 +95,7 @@ class OfRoller:
         return np.sort(np.mod(np.concatenate([ends, low]), TURN))
 
     def rows(self, phi: Array) -> Array:
-        """See `Excitation`."""
+        """Position, m or rad, and two derivatives by the shaft angle, (3, n), at angles phi (n,), not at breaks."""
         guide, angle = self.guide, phi + self.turned
         r, piece = self._touched(phi)
         met = self.obstacle.take(piece)
@@ -148,12 +148,12 @@ class _Rollers(Moved):
         return [OfRoller(obstacle, guide, contact.turned) for contact, guide in each]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """See `Follower`."""
+        """Pressure angle, rad, and radius of curvature of the contour, mm, (n,) each; see `Follower`."""
         pressure, radius = self.drives(contour)[0].pressed(phi)
         return pressure, radius - self.radius
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
-        """See `Follower`."""
+        """Shaft angle, rad, and position, mm or rad, (n,) each, with each roller on metal at points, normals (n, 2)."""
         centres = points + self.side * self.radius * normals
         distance = np.hypot(centres[:, 0], centres[:, 1])
         return [
@@ -372,7 +372,7 @@ def hold_roller(obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[An
     if few:
         pieces, _ = shortened(obstacle, guide)
         phi = np.concatenate([looked, end_angles(pieces, guide, looked)])
-    return Held(pieces, guide, phi, *touched(Search.of(pieces, guide), phi), contact)
+    return Held(pieces, guide, phi, *contact_distances(Search.of(pieces, guide), phi), contact)
 
 
 def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
@@ -409,7 +409,7 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
     for _ in range(ROUNDS):
         intended = law.rows(looked)
         errors = [
-            np.abs(roller.guide.position(touched(search, looked)[0]) - roller.contact.own(intended[0]))
+            np.abs(roller.guide.position(contact_distances(search, looked)[0]) - roller.contact.own(intended[0]))
             for roller, search in zip(rollers, searches, strict=True)
         ]
         error = np.max(errors, axis=0)
@@ -424,7 +424,7 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
     return worst
 
 
-def touched(search: Search, phi: Array, turned: float = 0.0) -> tuple[Array, Indices]:
+def contact_distances(search: Search, phi: Array, turned: float = 0.0) -> tuple[Array, Indices]:
     """Distance from the shaft of a roller held in contact, and the piece it meets, at shaft angles phi (n,)."""
     r, piece = search.first(phi + turned)
     if (piece < 0).any():
@@ -434,7 +434,7 @@ def touched(search: Search, phi: Array, turned: float = 0.0) -> tuple[Array, Ind
 
 def held_position(obstacle: Arcs, guide: Guide, phi: Array) -> Array:
     """Position of a roller held in contact, mm or radians (n,). ContactError where it meets nothing."""
-    return guide.position(touched(Search.of(obstacle, guide), phi)[0])
+    return guide.position(contact_distances(Search.of(obstacle, guide), phi)[0])
 
 
 def end_angles(pieces: Arcs, guide: Guide, angles: Array) -> Array:

@@ -331,7 +331,7 @@ class Spans:
         return state.limits(self.half, np.abs(state.k))
 
     def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
-        """See `Stretches`; bounds of sign * error."""
+        """Upper bounds of sign * error, one reached in each span, and where, off the middle: (n,) each."""
         return bounds_of_error(self.sign * state.error(own_rows(self.held.contact, rows)), most, self.half, self.half)
 
 
@@ -463,7 +463,7 @@ class State:
 
     @staticmethod
     def of(point: Array, tangent: Array, k: Array, guide: Guide) -> State:
-        """State at points (n, 2) where the path has tangents (n, 2) and curvatures k (n,)."""
+        """State at points (n, 2) where the path has tangents (n, 2) and curvatures k (n,): see the guide's module."""
         a, c, r = dot(point, tangent), cross(point, tangent), np.hypot(point[:, 0], point[:, 1])
         b, u = 1.0 - k * c, r * r
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):

@@ -166,6 +166,7 @@ def settled(solid: AnySolid, leaning: Sequence[Lean], tolerance: float) -> AnySo
     if not level.any():
         return solid
     faces = np.array(solid.faces)
+    # ends of level rows and faces, in groups of heights that rounding does not tell apart
     heights = np.concatenate([rows[level, 0], rows[level, 1], faces])
     order = np.argsort(heights, kind="stable")
     group = np.empty(len(heights), dtype=np.intp)
@@ -173,6 +174,7 @@ def settled(solid: AnySolid, leaning: Sequence[Lean], tolerance: float) -> AnySo
     heads = np.searchsorted(group[order], np.arange(group.max() + 1))
     low, high = np.minimum.reduceat(heights[order], heads), np.maximum.reduceat(heights[order], heads)
     uneven = high - low
+    # a group that holds such a row, and no more than rounding, becomes one face in its middle
     of_row = group[: int(level.sum())]
     even = np.zeros(len(uneven), dtype=bool)
     even[of_row] = True
@@ -268,8 +270,8 @@ def slotted(outline: Hole, hole: Hole, angle: float, half: float) -> Contour:
     """
     outer, inner = _turned(outline, -angle), _turned(hole, -angle)
     ends = np.array([half, -half])
-    out_x, out_piece = reach(outer, ends)
-    in_x, in_piece = reach(inner, ends)
+    out_x, out_piece = rightmost_crossing(outer, ends)
+    in_x, in_piece = rightmost_crossing(inner, ends)
     if not np.isfinite([*out_x, *in_x]).all():
         raise ValueError("the slot does not reach both outlines")
     outside = _part(outer, (float(out_x[0]), half, int(out_piece[0])), (float(out_x[1]), -half, int(out_piece[1])))
@@ -321,7 +323,7 @@ def _along(points: Array, bulges: Array, k: int, place: Array) -> float:
     return 2.0 * (0.5 * sweep - turn) / sweep
 
 
-def reach(outline: tuple[Array, Array], y: Array) -> tuple[Array, Indices]:
+def rightmost_crossing(outline: tuple[Array, Array], y: Array) -> tuple[Array, Indices]:
     """Greatest x at which an outline meets lines of given y (k,), and the piece that does; -inf where none does."""
     points, bulges = outline
     best, which = np.full(len(y), -np.inf), np.zeros(len(y), dtype=np.intp)
@@ -368,5 +370,5 @@ def _cross_hole_volume(cross: CrossHole, outline: Hole, hole: Hole) -> float:
     angle = (low + 0.5 * width * (node + 1.0)).ravel()
     share = (0.5 * width * weight).ravel()
     y = radius * np.sin(angle)
-    way = reach(outer, y)[0] - reach(inner, y)[0]
+    way = rightmost_crossing(outer, y)[0] - rightmost_crossing(inner, y)[0]
     return float(np.sum(share * 2.0 * (radius * np.cos(angle)) ** 2 * way))

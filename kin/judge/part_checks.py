@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.judge.intent import PartIntent
     from kin.judge.layers import Layer
-    from kin.judge.surfaces import Parted
+    from kin.judge.surfaces import SortedChains
     from kin.read.formats import AnySolid
 
 ORDER = ("bore", "holes", "mark", "thickness", "hub", "chamfer", "set-screw")
@@ -42,7 +42,7 @@ def levels_of(part: PartIntent) -> list[float]:
     return [z for z, _ in heights(part.layers, part.cross_holes)]
 
 
-def solid_checks(solid: AnySolid, sections: Sequence[Parted], part: PartIntent, tolerance: float) -> list[Check]:
+def solid_checks(solid: AnySolid, sections: Sequence[SortedChains], part: PartIntent, tolerance: float) -> list[Check]:
     """Check the openings, faces and sections of a solid, in mm and no longer mirrored.
 
     The plain disc's surfaces are judged elsewhere; here its sections need only be the same all along,
@@ -90,7 +90,9 @@ def _faces(tallies: Tallies, solid: AnySolid, layers: Sequence[Layer], tolerance
             )
 
 
-def _section(tallies: Tallies, level: tuple[float, Layer], section: Parted, part: PartIntent, tolerance: float) -> None:
+def _section(
+    tallies: Tallies, level: tuple[float, Layer], section: SortedChains, part: PartIntent, tolerance: float
+) -> None:
     """Hold one section against what is meant at its level."""
     z, layer = level
     where = f" at z = {length_words(z)} {UNIT}"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's size is looked at
 
 
-class Parted(NamedTuple):
+class SortedChains(NamedTuple):
     """Chains of a part told apart: one for each surface, the holes besides, and the checks of a round outline."""
 
     surfaces: tuple[Chain, ...]
@@ -37,7 +37,7 @@ class Parted(NamedTuple):
     checks: tuple[Check, ...]
 
 
-def parted(
+def sort_chains(
     outline: Chain | None,
     others: Sequence[Chain],
     part: PartIntent,
@@ -45,7 +45,7 @@ def parted(
     path: Path,
     *,
     z: float | None = None,
-) -> Parted:
+) -> SortedChains:
     """Tell apart the chains of a part, in mm, as if not mirrored; `outline` is None where it is not in the file.
 
     `z` is the height of the section in which they lie, None for that of the plain disc.
@@ -70,7 +70,7 @@ def parted(
             raise ReadError("several", f"{len(there)} closed contours on the layer {surface.layer}", path)
         (chosen[surface.name],) = there
     holes = tuple(chain.contour for chain in others if not any(chain is used for used in chosen.values()))
-    return Parted(tuple(chosen[surface.name] for surface in surfaces), holes, checks)
+    return SortedChains(tuple(chosen[surface.name] for surface in surfaces), holes, checks)
 
 
 def outermost_first(surfaces: Sequence[SurfaceIntent]) -> list[SurfaceIntent]:

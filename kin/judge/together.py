@@ -60,7 +60,10 @@ def verify_set(files: Sequence[DiscFile], shaft: ShaftIntent, angles: int, limit
 def left_between(
     files: Sequence[DiscsRead], shaft: ShaftIntent, limits: Limits
 ) -> tuple[tuple[ClosureVerdict, ...], tuple[Check, ...]]:
-    """Judge the play between surfaces of discs that were read from files: closures, and checks on the last file."""
+    """Judge the play between surfaces of discs that were read from files: closures and checks.
+
+    The checks are reported under the last file, with the others named.
+    """
     intents = {surface.name: surface for part in shaft.parts for surface in part.surfaces}
     verdicts = [verdict for file in files for verdict in file.surfaces]
     surfaces = [(intents[verdict.name], verdict.contour) for verdict in verdicts if verdict.contour is not None]

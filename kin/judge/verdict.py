@@ -49,7 +49,10 @@ UNREAD = SurfaceVerdict()
 
 @dataclass(frozen=True)
 class ClosureVerdict:
-    """Play between two surfaces, by name: of the gauges, which is meant to be 0, and of the follower itself."""
+    """Play of a follower between the surface named `pushes`, which drives it out, and `stops`, which holds it back.
+
+    `gauges` is that of the gauges, which is meant to be 0, and `play` that of the follower itself.
+    """
 
     pushes: str
     stops: str
@@ -84,7 +87,7 @@ class OfSurfaces:
 
     @property
     def measured_error(self) -> float | None:
-        """Two-sided distance of the first surface from its exact contour, mm."""
+        """Two-sided distance of the first surface from its exact contour, mm; None where that was not measured."""
         return self.surface.measured_error
 
     @property

@@ -17,7 +17,7 @@ from kin.contour.nearest import signed_distance
 from kin.judge.bore import bore_check
 from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
-from kin.judge.surfaces import SIZED, Parted, deepest, parted
+from kin.judge.surfaces import SIZED, SortedChains, deepest, sort_chains
 from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
 from kin.numeric.errors import CamgeoError
@@ -181,7 +181,7 @@ def _of_drawing(path: Path, part: PartIntent, limits: Limits, units: float | Non
     _demand_same(drawing.units_mm, units, path)
     scale = unstated if drawing.units_mm is None else 1.0
     chains = scaled(drawing.chains, scale, mirrored=part.mirrored)
-    parts = parted(chains[0], chains[1:], part, limits.tolerance, path)
+    parts = sort_chains(chains[0], chains[1:], part, limits.tolerance, path)
     joined = max(chain.gap for chain in parts.surfaces) if drawing.openings else 0.0
     uneven = joined if limits.gap is None else max(joined, limits.gap)
     checks = [_units_check(drawing.units_mm, units, part, parts), _closed_check(drawing, parts, limits, uneven)]
@@ -202,7 +202,7 @@ def _of_program(path: Path, part: PartIntent, limits: Limits, units: float | Non
     done = milled(program, part.milling, limits.tolerance)
     chains = scaled(done.chains, 1.0, mirrored=part.mirrored)
     outline, others = (chains[0], chains[1:]) if part.milling.outline else (None, chains)
-    parts = parted(outline, others, part, limits.tolerance, path)
+    parts = sort_chains(outline, others, part, limits.tolerance, path)
     checks = [_units_check(program.units_mm, units, part, parts), _count_check("closed", _crossing_places(parts))]
     checks += [*done.checks, *_opening_checks(parts.holes, [], part, limits)]
     return _Read(checks, parts.surfaces, chains, program.units_mm)
@@ -235,7 +235,7 @@ def _opening_checks(
     return [bore] if bore else []
 
 
-def _units_check(stated: float | None, units: float | None, part: PartIntent, parts: Parted) -> Check:
+def _units_check(stated: float | None, units: float | None, part: PartIntent, parts: SortedChains) -> Check:
     """Check the unit of a drawing or a program: what it states counts, unless its size tells that it is misstated."""
     unit = part.mm
     if stated is None and units is None:
@@ -256,13 +256,13 @@ def _units_check(stated: float | None, units: float | None, part: PartIntent, pa
     return Check("units", off <= UNITS_SHARE, off, UNITS_SHARE, "", detail=detail)
 
 
-def _size(part: PartIntent, parts: Parted) -> float:
+def _size(part: PartIntent, parts: SortedChains) -> float:
     """Size of the first surface as a share of the exact one's."""
     exact = part.surfaces[0].gauge.envelope.points(SIZED)
     return float(np.abs(parts.surfaces[0].contour.vertices).max() / np.abs(exact).max())
 
 
-def _closed_check(drawing: Drawing, parts: Parted, limits: Limits, joined: float) -> Check:
+def _closed_check(drawing: Drawing, parts: SortedChains, limits: Limits, joined: float) -> Check:
     """Check that no surface is open or crosses itself, and that nothing is drawn twice or without length."""
     faults = list(drawing.openings)
     faults += [f"{fault.kind} {fault.entity} at {place_words(fault.x, fault.y)}" for fault in drawing.faults]
@@ -280,7 +280,7 @@ def _closed_check(drawing: Drawing, parts: Parted, limits: Limits, joined: float
     return check
 
 
-def _crossing_places(parts: Parted, joined: float = 0.0) -> list[str]:
+def _crossing_places(parts: SortedChains, joined: float = 0.0) -> list[str]:
     """Where surfaces cross themselves, but for where a line that joins two ends turns back on what it joins."""
     places = []
     for chain in parts.surfaces:
@@ -390,19 +390,19 @@ def _uneven(solid: AnySolid, part: PartIntent, contours: Sequence[Contour]) -> f
     return solid.uneven_between(low, high, inner - solid.uneven)
 
 
-def _found(solid: AnySolid, part: PartIntent, tolerance: float, path: Path) -> Parted:
+def _found(solid: AnySolid, part: PartIntent, tolerance: float, path: Path) -> SortedChains:
     """Tell apart the section of the plain disc, and those in which a surface is looked for by its height."""
     by_height = {}
     for z in dict.fromkeys(surface.z for surface in part.surfaces):
         chains = solid.chains if z is None else solid.section(z).chains
         outline, *others = scaled(chains, 1.0, mirrored=part.mirrored)
-        by_height[z] = parted(outline, others, part, tolerance, path, z=z)
+        by_height[z] = sort_chains(outline, others, part, tolerance, path, z=z)
     remaining = {z: iter(section.surfaces) for z, section in by_height.items()}
     surfaces = tuple(next(remaining[surface.z]) for surface in part.surfaces)
     return by_height[part.surfaces[0].z]._replace(surfaces=surfaces)
 
 
-def _layered(solid: AnySolid, part: PartIntent, limits: Limits, path: Path) -> list[Parted]:
+def _layered(solid: AnySolid, part: PartIntent, limits: Limits, path: Path) -> list[SortedChains]:
     """Tell apart the sections of a solid in layers; of a layer with an outline of its own that is the outline."""
     from kin.judge.layers import heights
 
@@ -410,13 +410,13 @@ def _layered(solid: AnySolid, part: PartIntent, limits: Limits, path: Path) -> l
     for (_, layer), section in zip(heights(part.layers, part.cross_holes), solid.sections, strict=False):
         outline, *others = scaled(section.chains, 1.0, mirrored=part.mirrored)
         if layer.outline is None:
-            parts.append(parted(outline, others, part, limits.tolerance, path))
+            parts.append(sort_chains(outline, others, part, limits.tolerance, path))
         else:
-            parts.append(Parted((outline,), tuple(chain.contour for chain in others), ()))
+            parts.append(SortedChains((outline,), tuple(chain.contour for chain in others), ()))
     return parts
 
 
-def _watertight_check(solid: AnySolid, parts: Parted) -> Check:
+def _watertight_check(solid: AnySolid, parts: SortedChains) -> Check:
     """Check that each edge has two faces that run along it either way, facing outward, and no surface a crossing."""
     return _count_check("watertight", [*solid.faults, *_crossing_places(parts)])
 

@@ -15,7 +15,7 @@ from camgeo.capabilities.study.least_pieces import least_pieces, least_spline
 from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit import spline as module
-from camgeo.fit.cubic import LEAST, contact, span_density
+from camgeo.fit.cubic import LEAST, nearest_cubic, span_density
 from camgeo.fit.handles import LOOKS, PLACES, Spans, cubic_spans, sampled_gap
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.spans import plane
@@ -56,7 +56,7 @@ def test_the_two_constants() -> None:
 @pytest.mark.parametrize("radius", [1e-3, 0.5, 25.0, 1e4])
 def test_a_circle_in_closed_form(radius: float) -> None:
     curve = support(radius, {})
-    found = contact(*curve.shape.series(np.array([0.3]), 4))
+    found = nearest_cubic(*curve.shape.series(np.array([0.3]), 4))
     assert found.miss[0] == pytest.approx(1 / (128 * radius**5), rel=1e-12)
     assert found.lean[0] == pytest.approx(0.0, abs=1e-9 / radius)
     e = 1e-6 * radius
@@ -71,11 +71,11 @@ def test_a_parabola_and_a_cubic_are_met_for_good() -> None:
     x = Jet.variable(np.array([-0.7, 0.1, 1.3]), 4)
     for slope, bend in ((x, x.constant(1.0)), (x * x * 3.0, x * 6.0)):
         square = slope * slope + 1.0
-        found = contact((square**0.5).c, (bend * square**-1).c)
+        found = nearest_cubic((square**0.5).c, (bend * square**-1).c)
         assert np.abs(found.miss).max() < 1e-12
     speed, turn = np.zeros((2, 5, 1))
     speed[0], turn[1] = 1.0, 6.0  # at the inflection itself
-    assert np.isfinite(contact(speed, turn).miss).all()
+    assert np.isfinite(nearest_cubic(speed, turn).miss).all()
 
 
 def test_small_spans_err_as_theory_says() -> None:
@@ -84,7 +84,7 @@ def test_small_spans_err_as_theory_says() -> None:
         middle = np.linspace(0.1, 6.2, 40)
         speed = curve.sample(middle).speed
         low, high = middle - 0.5 * length / speed, middle + 0.5 * length / speed
-        miss = np.abs(contact(*curve.shape.series(middle, 4)).miss)
+        miss = np.abs(nearest_cubic(*curve.shape.series(middle, 4)).miss)
         _, worst, _ = cubic_spans(curve, low, high, 0.0)
         ratio = worst / (miss * length**6 / module.ON_CURVE)
         clear = miss * length**6 / module.ON_CURVE > 1e-12  # of rounding

@@ -181,7 +181,7 @@ class _Search:
         if radius[worst] < least[0]:
             least = float(radius[worst]), _pair(pairs.centre[worst])
         free = pairs.free(least[0] * (1.0 - NECK_SHARPNESS))
-        # also where the least seen is free by a hair: the neck itself is wanted
+        # in a bowl the distance has one minimum at most; the neck itself is wanted also where it is free by a hair
         bowls = np.flatnonzero((pairs.bowl > 0.0) & (pairs.chord < 2.0 * least[0] * (1.0 + NECK_SHARPNESS)))
         if bowls.size:
             ends = _double_normals(self.pitch, pairs.centre[bowls])
