@@ -1,7 +1,4 @@
-"""The lobe polynomial: its closed form, its ends at rest, and what is none.
-
-Holds: kin.law.sources.functions.
-"""
+"""The lobe polynomial: its closed form, its ends at rest, and what is none."""
 
 import math
 

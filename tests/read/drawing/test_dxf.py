@@ -1,6 +1,6 @@
 """DXF files of every version and manner, made with ezdxf, read back; damaged and wrong ones refused with the place.
 
-Holds: kin.read.drawing.drawing, kin.read.drawing.dxf_entities.
+Holds: kin.read.drawing.drawing.
 """
 
 from __future__ import annotations

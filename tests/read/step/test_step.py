@@ -1,6 +1,6 @@
 """Parts read from STEP texts written by hand, as several CAD systems write them, and faults in them; no CAD kernel.
 
-Holds: kin.read.step.curves, kin.read.step.faces.
+Holds: kin.read.step.faces.
 """
 
 import contextlib
