@@ -173,7 +173,7 @@ def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> fl
 
 
 def _tappet_lift(recipe: CamshaftRecipe, engine: Engine, lobe: Lobe, design: Design, index: int) -> float:
-    """Lift of a lobe's tappet, mm, at which its events are told; raises RecipeErrors for a valve that is not given."""
+    """Lift of a lobe's tappet, mm, at which its events are stated; RecipeErrors for a valve that is not given."""
     if not engine.at_valve:
         return engine.lift
     moved = moved_by(lobe.recipe, design)

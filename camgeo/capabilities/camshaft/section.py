@@ -64,16 +64,14 @@ def _balance(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dict[str, A
     """
     from camgeo.curve.measures import moments
 
-    if any(lobe.lobe.recipe.part.density is None or lobe.contour is None for lobe in lobes):
-        return None
     middle = 0.5 * (recipe.bars[0].low + recipe.bars[0].high)
     total, couple = 0.0 + 0.0j, 0.0 + 0.0j
     for lobe in lobes:
-        if lobe.contour is None or lobe.lobe.recipe.part.density is None:
-            continue
-        area = moments(lobe.contour)
-        length = lobe.lobe.high - lobe.lobe.low
-        unbalance = lobe.lobe.recipe.part.density * KG * length * complex(area.x, area.y) * np.exp(1j * lobe.at)
+        density, contour = lobe.lobe.recipe.part.density, lobe.contour
+        if density is None or contour is None:
+            return None
+        area, length = moments(contour), lobe.lobe.high - lobe.lobe.low
+        unbalance = density * KG * length * complex(area.x, area.y) * np.exp(1j * lobe.at)
         total += unbalance
         couple += unbalance * (0.5 * (lobe.lobe.high + lobe.lobe.low) - middle)
     turned = -1.0 if recipe.rotation == "ccw" else 1.0

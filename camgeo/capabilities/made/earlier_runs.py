@@ -155,7 +155,7 @@ def _section(report: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def lines(report: dict[str, Any]) -> str:
-    """The table for the terminal; empty without runs."""
+    """Table of runs and corrections for the terminal; empty without runs."""
     section = _section(report)
     if section is None:
         return ""
@@ -164,7 +164,7 @@ def lines(report: dict[str, Any]) -> str:
 
 
 def panel(report: dict[str, Any]) -> str:
-    """The table as a section of the page; empty without runs."""
+    """HTML section of the page with the table of runs and corrections; empty without runs."""
     from camgeo.report.page.tables import html_table, named_row
 
     section = _section(report)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from camgeo.part.part import Part
     from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
     from camgeo.registry.formats import Form as TableForm
     from camgeo.registry.formats import Format
     from camgeo.schema.fields import Schema
@@ -203,7 +204,10 @@ def check(values: Values, reader: Reader) -> None:
 
 
 def check_corrected(request: FileRequest, values: Values, reader: Reader, path: str) -> None:
-    """Note a corrected file without points, or of what is not corrected."""
+    """Note a fault where a file is to be corrected and the recipe has no points of earlier runs.
+
+    So it is where the file has no contour that could be, or one whose undercut is cut off.
+    """
     place = f"{path}.{request.kind}.{CORRECT.name}"
     if not (request.format.contour or _is_contour(request.form)):
         kinds = either(tuple(name for name, form in request.format.forms.items() if _is_contour(form)))
@@ -219,6 +223,12 @@ def check_corrected(request: FileRequest, values: Values, reader: Reader, path: 
 def build(values: Values) -> Made | None:
     """Make the value."""
     return Made(**values["made"]) if "made" in values else None
+
+
+def zone_of(recipe: Recipe) -> float | None:
+    """Width of the zone that the profile is held to, mm; None where the key gives none."""
+    made = recipe.of(Made)
+    return None if made is None else made.profile
 
 
 def datum_of(made: Made | None, part: Part) -> Datum:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.made.checks import MOTION, OUTPUT, PROFILE
-from camgeo.capabilities.made.keys import Made, datum_of
+from camgeo.capabilities.made.keys import Made, datum_of, zone_of
 from camgeo.capabilities.made.part_points import demand_points, name_of, part_points, read_tables
 from camgeo.synthesis.intent import closures_between, permitted
 from kin.judge.check import Check
@@ -195,14 +195,14 @@ def motion_uncertainty(result: PartMade, options: PointOptions) -> Array:
 def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[list[Check], dict[str, str]]:
     """Checks on the profile of each disc, the motion and the output, where there is a limit; and their verdicts."""
     checks, verdicts = [], {}
-    made, limits = recipe.of(Made), permitted(recipe, recipe.export.tolerance)
-    if made is not None and made.profile is not None:
+    zone, limits = zone_of(recipe), permitted(recipe, recipe.export.tolerance)
+    if zone is not None:
         for disc in result.discs:
             off, name = np.abs(disc.profile.e), name_of(disc.part)
             worst = int(np.argmax(off + disc.uncertain))
             parameter = np.concatenate([deviation.parameter for deviation in disc.profile.deviations])
             at = disc.surfaces[0].gauge.shaft_angle(parameter[worst : worst + 1])[0]
-            check, verdict = _held(PROFILE.name, 2.0 * off, 2.0 * disc.uncertain, made.profile, unit="mm", at=at)
+            check, verdict = _held(PROFILE.name, 2.0 * off, 2.0 * disc.uncertain, zone, unit="mm", at=at)
             checks.append(replace(check, surface=name))
             verdicts[f"{PROFILE.name} {name}".strip()] = verdict
     judged = []
@@ -238,8 +238,7 @@ def _remarks(
     """Remarks in sentences: what is assumed, what the points cannot show, and which points were left out."""
     remarks = []
     limits = permitted(recipe, recipe.export.tolerance)
-    made = recipe.of(Made)
-    if (made is None or made.profile is None) and limits.motion is None:
+    if zone_of(recipe) is None and limits.motion is None:
         remarks.append("no limit is given, so nothing fails: made.profile, verify.motion_error")
     if options.error is None:
         remarks.append("without --probe-error the scatter of the points alone is known, and no common error")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.made.keys import Made
+from camgeo.capabilities.made.keys import zone_of
 from camgeo.capabilities.made.made_part import motion_uncertainty
 from camgeo.capabilities.made.part_points import label_of
 from camgeo.capabilities.made.section_text import shaft_rows, table_rows
@@ -208,8 +208,8 @@ def _over_shaft(recipe: Recipe, surface: SurfaceMade) -> str:
     order = np.argsort(shaft, kind="stable")
     chosen = np.linspace(0, len(deviations.e) - 1, min(MOST_DOTS, len(deviations.e))).astype(np.intp)
     dots = np.mod(np.degrees(gauge.shaft_angle(deviations.parameter[chosen])), 360.0), deviations.e[chosen] / mm
-    made = recipe.of(Made)
-    half = None if made is None or made.profile is None else 0.5 * made.profile / mm
+    zone = zone_of(recipe)
+    half = None if zone is None else 0.5 * zone / mm
     e, band = surface.fit.curve.rows(t)[0] / mm, COVERAGE * surface.fit.curve.standard_deviations(t) / mm
     return _plot(shaft[order], e[order], band[order], dots=dots, zone=half)
 

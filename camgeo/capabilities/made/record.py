@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.capabilities.made.keys import CORRECT, Made, build, check, check_corrected, fields, offered
+from camgeo.capabilities.made.keys import CORRECT, build, check, check_corrected, fields, offered, zone_of
 from camgeo.registry.capability import CallOption, Capability, FileJudge
 from camgeo.registry.formats import Alteration
 
@@ -85,8 +85,8 @@ def _shown(report: dict[str, Any], everything: bool) -> str:
 
 def _profile(recipe: Recipe) -> tuple[str, float] | None:
     """Zone that a measured contour is held to."""
-    keys = recipe.of(Made)
-    return None if keys is None or keys.profile is None else ("made.profile", keys.profile)
+    zone = zone_of(recipe)
+    return None if zone is None else ("made.profile", zone)
 
 
 def _corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:

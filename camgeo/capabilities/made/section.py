@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.made.keys import Made
+from camgeo.capabilities.made.keys import zone_of
 from camgeo.capabilities.made.made_part import motion_uncertainty
 from camgeo.capabilities.made.part_points import name_of
 from camgeo.measures.units import UNIT_NAMES, report_unit
@@ -105,8 +105,8 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
         entry["certificate"] = 2.0 * profile.certified.certificate / mm
         entry["multipliers"] = profile.certified.multipliers.tolist()
     entry["causes"] = _causes(recipe, disc)
-    made = recipe.of(Made)
-    lack = 0.0 if made is None or made.profile is None else -float(profile.e.min()) - 0.5 * made.profile
+    zone = zone_of(recipe)
+    lack = 0.0 if zone is None else -float(profile.e.min()) - 0.5 * zone
     if lack > 0.0:
         entry["reduction"] = _reduction(recipe, disc, lack)
     if disc.placing.turn or any(disc.placing.shift):

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.cams.families import FAMILIES
-from camgeo.capabilities.made.keys import Made
+from camgeo.capabilities.made.keys import zone_of
 from camgeo.capabilities.made.made_part import made_part
 from camgeo.capabilities.made.options import PointOptions
 from camgeo.capabilities.made.part_points import (
@@ -277,8 +277,7 @@ def _measured_cam(rough: _Rough) -> _MeasuredCam:
     runs = [SurfaceRun(gauges[surface.name], surface.side, *rough.points[surface.name]) for surface in exact.surfaces]
     motion = measured_motion(runs, recipe.cam.motion_span, opposed=keys.opposed, lag=keys.lag)
     _demand_symmetry(recipe, motion)
-    made = recipe.of(Made)
-    zone = None if made is None else made.profile
+    zone = zone_of(recipe)
     reading = READING if zone is None else 0.5 * zone
     unit = motion.gauge.unit
     reading = motion.gauge.moved_by(reading) if unit == "deg" else reading
