@@ -137,11 +137,6 @@ class Search:
         return radius, piece_met
 
 
-def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
-    """Distance, mm, and piece, (n,) each, of the first contact at shaft angles phi (n,); see `Search.first`."""
-    return Search.of(obstacle, guide).first(phi)
-
-
 def within_reach(pieces: Arcs, guide: Guide, slack: float) -> NDArray[np.bool_]:
     """Mask (n,) of the short pieces of which some point may lie as far from the shaft as the roller's centre can."""
     nearest, farthest = _distances(pieces, slack)

@@ -165,13 +165,6 @@ class _Rollers(Moved):
         chain = contour.as_arcs(*spline)[0]
         return dilated(chain if self.side > 0 else chain.reversed(), self.radius)
 
-    def _positions(self, obstacle: Arcs, phi: Array, count: int = 2) -> Array:
-        """Position with each of the first `count` rollers held: (1 or 2, n)."""
-        each = list(zip(self.contacts, self.guides, strict=True))[:count]
-        return np.stack(
-            [contact.position(held_position(obstacle, guide, phi + contact.turned)) for contact, guide in each]
-        )
-
     @cached_property
     def pitches(self) -> tuple[GuidedPitch, ...]:
         """Intended path of each roller's centre."""
@@ -206,13 +199,13 @@ class _Rollers(Moved):
         each = list(zip(self.contacts, self.guides, self._looked(obstacle, steps), strict=False))
         # a roller that stands turned meets the contour as one that does not meets it turned back
         held = [hold_roller(obstacle.turned(-contact.turned), guide, at, contact, few) for contact, guide, at in each]
-        place = [
-            contact.position(there.position[: len(steps)]) for (contact, _, _), there in zip(each, held, strict=True)
-        ]
+        place = [there.contact.position(there.position[: len(steps)]) for there in held]
         errors = np.stack(place) - self.course.rows(steps)[0]
         worst, remainder = settled(held, self.course, errors, few=few)
         dwells = list(dwell_angles(self.rests, phi))
-        kept = self._positions(obstacle, np.concatenate(dwells), len(held)) if dwells else np.empty((1, 0))
+        kept = np.empty((1, 0))
+        if dwells:
+            kept = np.stack([held_position(there.search, there.contact, np.concatenate(dwells)) for there in held])
         ends = np.cumsum([len(angle) for angle in dwells])[:-1]
         flatness = [float(np.ptp(part, axis=1).max()) for part in np.split(kept, ends, axis=1) if part.size]
         off = self.motion_limit(spread) if spread else 0.0
@@ -312,7 +305,10 @@ class RollerYoke(_Guided):
 
     def _play(self, contour: Contour, obstacle: Arcs, rollers: Sequence[Held], phi: Array) -> Play:  # noqa: ARG002
         angle = np.concatenate([phi, passing_angles(obstacle, self.guides[0])])
-        near, far = self._positions(obstacle, angle)
+        near, far = (
+            held_position(Search.of(obstacle, guide), contact, angle, contact.turned)
+            for contact, guide in zip(self.contacts, self.guides, strict=True)
+        )
         return sampled_play(far - near, angle)
 
     def _gaps(self, paths: Sequence[SplinePath], phi: Array, place: Array) -> Array:  # noqa: ARG002
@@ -372,7 +368,8 @@ def hold_roller(obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[An
     if few:
         pieces, _ = shortened(obstacle, guide)
         phi = np.concatenate([looked, end_angles(pieces, guide, looked)])
-    return Held(pieces, guide, phi, *contact_distances(Search.of(pieces, guide), phi), contact)
+    search = Search.of(pieces, guide)
+    return Held(search, phi, *contact_distances(search, phi), contact)
 
 
 def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
@@ -405,12 +402,11 @@ def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, f
         ends = roller.guide.shaft_angle(np.concatenate([sharp.start, sharp.ends]))
         looked = np.concatenate([looked, phi[np.argsort(error)[-CLOSER:]], ends[np.isfinite(ends)]])
     worst = 0.0, 0.0
-    searches = [Search.of(roller.pieces, roller.guide) for roller in rollers]
     for _ in range(ROUNDS):
         intended = law.rows(looked)
         errors = [
-            np.abs(roller.guide.position(contact_distances(search, looked)[0]) - roller.contact.own(intended[0]))
-            for roller, search in zip(rollers, searches, strict=True)
+            np.abs(roller.guide.position(contact_distances(roller.search, looked)[0]) - roller.contact.own(intended[0]))
+            for roller in rollers
         ]
         error = np.max(errors, axis=0)
         worst = max(worst, greatest(error, looked))
@@ -432,9 +428,9 @@ def contact_distances(search: Search, phi: Array, turned: float = 0.0) -> tuple[
     return r, piece
 
 
-def held_position(obstacle: Arcs, guide: Guide, phi: Array) -> Array:
-    """Position of a roller held in contact, mm or radians (n,). ContactError where it meets nothing."""
-    return guide.position(contact_distances(Search.of(obstacle, guide), phi)[0])
+def held_position(search: Search, contact: Contact[Any, Any], phi: Array, turned: float = 0.0) -> Array:
+    """Position of the follower, mm or rad (n,), by one roller held in contact. ContactError where it meets nothing."""
+    return contact.position(search.guide.position(contact_distances(search, phi, turned)[0]))
 
 
 def end_angles(pieces: Arcs, guide: Guide, angles: Array) -> Array:

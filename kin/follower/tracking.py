@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, nearest_on
-from kin.follower.contact import angles_of, extent, first_contact, meet, within_reach
+from kin.follower.contact import angles_of, extent, meet, within_reach
 from kin.follower.laws import own_rows
 from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from kin.follower.contact import Search
     from kin.follower.guide import Guide
     from kin.law.contacts import Contact
     from kin.numeric.arrays import Array, Indices
@@ -134,18 +135,27 @@ class _Changes(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A guided roller held on `pieces`, short ones (`kin.follower.contact.shortened`), that bound its centre.
+    """A guided roller held on short pieces (`kin.follower.contact.shortened`) that bound its centre, by their search.
 
     At shaft angles phi (n,) it touches pieces `piece` (n,) at distances r (n,) from the shaft; among them are the ends
     of all pieces. `contact` says where it is meant to be.
     """
 
-    pieces: Arcs
-    guide: Guide
+    search: Search
     phi: Array
     r: Array
     piece: Indices
     contact: Contact[Any, Any]
+
+    @property
+    def pieces(self) -> Arcs:
+        """Short pieces that bound the roller's centre."""
+        return self.search.obstacle
+
+    @property
+    def guide(self) -> Guide:
+        """Guide of the roller's centre: an arm or a line of travel."""
+        return self.search.guide
 
     @cached_property
     def position(self) -> Array:
@@ -154,7 +164,7 @@ class Held:
 
     def reached(self, phi: Array) -> Array:
         """Own position (n,), mm or rad, of the roller in contact at shaft angles phi (n,), rad."""
-        return self.guide.position(first_contact(self.pieces, self.guide, phi)[0])
+        return self.guide.position(self.search.first(phi)[0])
 
     @cached_property
     def slack(self) -> float:
@@ -192,7 +202,7 @@ class Held:
         after = known[np.searchsorted(known, at + DOUBT, side="right") % len(known)]
         back, on = np.mod(at - before, TURN), np.mod(after - at, TURN)
         more = np.concatenate([at, at - 0.5 * back, at + 0.5 * on])
-        r, piece = first_contact(self.pieces, self.guide, more)
+        r, piece = self.search.first(more)
         met = piece >= 0
         return replace(
             self,
@@ -215,7 +225,7 @@ class Held:
             if not (leap.any() or (spare and deep.any())):
                 return self._spans(changes, here, there, spanned)
             lone = 0.5 * (a + b)[leap | deep]  # between its ends a short arc stands out alone
-            more, met = first_contact(self.pieces, self.guide, lone)
+            more, met = self.search.first(lone)
             if (met < 0).any():
                 break
             phi, r, piece = np.append(phi, lone), np.append(r, more), np.append(piece, met)

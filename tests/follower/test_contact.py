@@ -11,7 +11,7 @@ from support.heavy import shapely
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.contour.nearest import nearest, signed_distance
-from kin.follower.contact import angles_of, dilated, first_contact, shortened, within_reach
+from kin.follower.contact import Search, angles_of, dilated, shortened, within_reach
 from kin.follower.guide import Arm
 from kin.law.contacts import LEADING, TRAILING
 
@@ -44,7 +44,7 @@ def contact_by_bisection(points, radius, arm, phi):
 
 def contact(points, radius, arm, phi, bulges=None):
     contour = Contour.from_bulges(points, np.zeros(len(points)) if bulges is None else bulges)
-    return first_contact(dilated(contour.as_arcs()[0], radius), arm, phi)[0]
+    return Search.of(dilated(contour.as_arcs()[0], radius), arm).first(phi)[0]
 
 
 @pytest.mark.parametrize("side", [TRAILING, LEADING])
@@ -109,7 +109,7 @@ def test_polygons_of_ever_more_edges_converge_on_the_arcs():
 
 
 def test_nothing_is_met_far_away():
-    r, piece = first_contact(dilated(Contour.from_vertices(circle_points(6)).as_arcs()[0], 2.0), Arm(20.0, 60.0), PHI)
+    r, piece = Search.of(dilated(Contour.from_vertices(circle_points(6)).as_arcs()[0], 2.0), Arm(20.0, 60.0)).first(PHI)
     assert np.isnan(r).all()
     assert (piece == -1).all()
 
@@ -119,7 +119,7 @@ def test_the_piece_met_is_the_one_that_touches():
     chain, _ = Contour.from_vertices(points).as_arcs()
     obstacle = dilated(chain, 8.0)
     arm = Arm(60.0, 60.0, LEADING)
-    r, piece = first_contact(obstacle, arm, PHI)
+    r, piece = Search.of(obstacle, arm).first(PHI)
     centre = arm.centre(PHI, arm.position(r))
     _, distance = nearest(chain, centre)
     assert distance == pytest.approx(8.0, abs=1e-12)
@@ -165,7 +165,7 @@ def test_a_contour_through_the_shaft_and_one_at_the_end_of_the_reach():
     arm = Arm(60.0, 60.0, TRAILING)
     assert contact(wedge, 8.0, arm, FEW) == pytest.approx(contact_by_bisection(wedge, 8.0, arm, FEW), abs=1e-9)
     rim = Contour.from_bulges(112.0 * np.array([[1.0, 0.0], [-1.0, 0.0]]), np.ones(2))
-    r, _ = first_contact(dilated(rim.as_arcs()[0], 8.0), arm, PHI)
+    r, _ = Search.of(dilated(rim.as_arcs()[0], 8.0), arm).first(PHI)
     assert r == pytest.approx(120.0, abs=1e-6)
     assert arm.position(r) == pytest.approx(np.pi, abs=1e-6)
     assert arm.position(np.array([120.0 + 1e-9, 120.0])) == pytest.approx(np.pi, abs=1e-12)
