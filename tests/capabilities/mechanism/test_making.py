@@ -1,7 +1,6 @@
 """Printable bodies of every kind of mechanism: fits, joints, sections and gaps, by means of their own.
 
-Holds: camgeo.capabilities.mechanism.arms, camgeo.capabilities.mechanism.base,
-camgeo.capabilities.mechanism.disc_followers, camgeo.capabilities.mechanism.guide, camgeo.capabilities.mechanism.poses,
+Holds: camgeo.capabilities.mechanism.arms, camgeo.capabilities.mechanism.disc_followers,
 camgeo.capabilities.mechanism.yoke, camgeo.synthesis.view.
 """
 

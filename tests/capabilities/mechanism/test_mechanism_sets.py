@@ -1,6 +1,6 @@
 """Sets of all bodies through the whole pipeline: what is reported, what fails, what is refused.
 
-Holds: camgeo.capabilities.mechanism.checks, camgeo.capabilities.mechanism.record.
+Holds: camgeo.capabilities.mechanism.record.
 """
 
 from __future__ import annotations
