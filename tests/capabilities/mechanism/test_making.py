@@ -1,7 +1,7 @@
 """Printable bodies of every kind of mechanism: fits, joints, sections and gaps, by means of their own.
 
 Holds: camgeo.capabilities.mechanism.arms, camgeo.capabilities.mechanism.disc_followers,
-camgeo.capabilities.mechanism.yoke, camgeo.synthesis.view.
+camgeo.capabilities.mechanism.yoke.
 """
 
 from __future__ import annotations

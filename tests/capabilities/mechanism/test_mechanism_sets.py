@@ -1,7 +1,4 @@
-"""Sets of all bodies through the whole pipeline: what is reported, what fails, what is refused.
-
-Holds: camgeo.capabilities.mechanism.record.
-"""
+"""Sets of all bodies through the whole pipeline: what is reported, what fails, what is refused."""
 
 from __future__ import annotations
 
