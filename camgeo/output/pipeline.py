@@ -76,7 +76,7 @@ def export(
 
 
 def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
-    """Make and judge everything in a temporary folder that is gone afterwards; raises as `export` does."""
+    """Make and judge everything in a temporary folder that goes; raises RecipeErrors, SurroundingsError as `export`."""
     import tempfile
     from pathlib import Path
 
@@ -93,7 +93,7 @@ def demand_any(path: Path, findings: Findings) -> None:
 
 
 def check_and_show(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
-    """Outcome as of `check`, and the content of its page; raises as `export` does."""
+    """Outcome as of `check`, and the content of its page; raises RecipeErrors, SurroundingsError as `export`."""
     import tempfile
     from pathlib import Path
 

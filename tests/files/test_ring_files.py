@@ -1,4 +1,7 @@
-"""Rings through files: outline, opening and holes by second readers, and what a judge says of spoilt ones."""
+"""Rings through files: outline, opening and holes by second readers, and what a judge says of spoilt ones.
+
+Holds: camgeo.output.drawing.
+"""
 
 import math
 

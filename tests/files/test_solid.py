@@ -1,6 +1,6 @@
 """What a part's features become in DXF and STL files: by second readers, closed forms, and kin's verdict.
 
-Holds: camgeo.files.errors, camgeo.output.part_geometry, camgeo.formats.three_mf.
+Holds: camgeo.files.errors, camgeo.output.part_geometry, camgeo.formats.three_mf, camgeo.output.solid.
 """
 
 import math

@@ -1,6 +1,6 @@
 """DXF drawings read back by ezdxf: units, layers, exact numbers, extents, same bytes in any process and time zone.
 
-Holds: camgeo.formats.drawings, camgeo.output.drawing, camgeo.files.layer_outline.
+Holds: camgeo.formats.drawings, camgeo.files.layer_outline.
 """
 
 import os

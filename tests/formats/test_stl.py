@@ -1,6 +1,6 @@
 """STL files read back: closed and oriented by counting edges, exact volume, tolerances, second readers.
 
-Holds: camgeo.files.mesh, camgeo.files.precision, camgeo.files.triangulate, camgeo.output.solid.
+Holds: camgeo.files.mesh, camgeo.files.precision, camgeo.files.triangulate.
 """
 
 import math

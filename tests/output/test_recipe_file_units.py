@@ -1,6 +1,6 @@
 """Files in a unit of their own: the same cam in mm and in inch, by camgeo's readers and by others, and with faults.
 
-Holds: camgeo.common.units.
+Holds: camgeo.common.units, camgeo.formats.options.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """What a recipe comes to: values, units, names, places; and that the shipped recipes are cams.
 
-Holds: camgeo.recipe.cam, camgeo.recipe.keys, camgeo.recipe.machining, camgeo.recipe.starter,
-camgeo.schema.json_schema.
+Holds: camgeo.recipe.cam, camgeo.recipe.machining, camgeo.recipe.starter, camgeo.schema.json_schema.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Records of formats: a made-up one is asked for, written, read and judged; one that is taken out is unknown.
 
-Holds: camgeo.formats.csv, camgeo.formats.meshes, camgeo.formats.options.
+Holds: camgeo.formats.csv, camgeo.formats.meshes.
 """
 
 from __future__ import annotations

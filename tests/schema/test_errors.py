@@ -1,7 +1,7 @@
 """What a faulty recipe is answered: whole messages, with file, line, column, field, fault, value and remedy.
 
 Holds: camgeo.schema.fields, camgeo.schema.read_scalar, camgeo.schema.reader, camgeo.schema.readers,
-camgeo.schema.yaml_source.
+camgeo.schema.yaml_source, camgeo.recipe.keys.
 """
 
 from __future__ import annotations

@@ -117,7 +117,10 @@ def check(file: Values, values: Values, reader: Reader) -> None:
 
 
 def make(job: Job, request: FileRequest, path: Path) -> Made:
-    """Write a table with the step that is given, or the widest that holds the tolerance; read it back and judge it."""
+    """Write a table with the step that is given, or the widest that holds the tolerance; read it back and judge it.
+
+    Raises RecipeErrors where no step, or not the one given, holds the tolerance in a table of this controller.
+    """
     from camgeo.output.job import Made
     from camgeo.synthesis.intent import permitted
 
