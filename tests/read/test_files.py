@@ -1,4 +1,7 @@
-"""Which unit a file is judged in: the one that it states, the one that is given, and where both are at odds."""
+"""Which unit a file is judged in: the one that it states, the one that is given, and where both are at odds.
+
+Holds: kin.read.drawing.svg.
+"""
 
 from __future__ import annotations
 
