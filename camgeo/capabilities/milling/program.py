@@ -100,11 +100,11 @@ def _contour(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list
     if manufacture.allowance is not None:
         (path,) = cutter_paths(job.recipe, job.design, manufacture.allowance)
         rough = [_outline(job, path, ROUGH * manufacture.allowance)]
-    loops = [_round(job, manufacture, outline, surface.side) for outline in (*rough, fine)]
+    loops = [_lap(job, manufacture, outline, surface.side) for outline in (*rough, fine)]
     return passes(loops[:-1], loops[-1:], manufacture, thickness), [fine]
 
 
-def _round(job: Job, manufacture: Manufacture, path: ArcSpline, side: Side, room: float = math.inf) -> ClosedPath:
+def _lap(job: Job, manufacture: Manufacture, path: ArcSpline, side: Side, room: float = math.inf) -> ClosedPath:
     """A path along a surface with ways in and out, which have `room`, mm; where they would vanish it has none."""
     begun = begun_at(path, manufacture.start)
     drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
@@ -124,27 +124,30 @@ def _pocket(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[
     pitch, radius, depth = inner.base.shape, manufacture.radius, pocket_of(job.design)
     if depth is None:
         raise job.recipe.error("cam.track.groove.depth", "gcode needs the depth of the groove")
-    near, far = radius - inner.radius, outer.radius - radius  # without the pitch curve
-    room = far - near
+    # distances of the cutter's centre from the pitch curve, mm, outward positive
+    least, greatest = radius - inner.radius, outer.radius - radius
+    play = greatest - least
 
-    def along(place: float, within: float) -> ArcSpline:
-        return _outline(job, CutterPath(Curve.whole(Parallel(pitch, -place)), radius), within)
+    def path_at(offset: float, within: float) -> ArcSpline:
+        return _outline(job, CutterPath(Curve.whole(Parallel(pitch, -offset)), radius), within)
 
-    reached = cutter_paths(job.recipe, job.design)
-    if room <= ONE * tolerance and not any(path.lost for path in reached):
-        middle = along(0.5 * (near + far), tolerance - 0.5 * max(room, 0.0))
-        fine = [replace(middle, bound=middle.bound.widened(0.5 * max(room, 0.0)))]
-        return passes([], [_round(job, manufacture, middle, inner.side, 0.0)], manufacture, depth), fine
-    ways = side_by_side(near, far, radius, manufacture.allowance or 0.0)
-    if not manufacture.allowance and len(ways) > 1:
-        del ways[-2:]  # the flanks' own
-    few_passes(job.recipe, depth, len(ways) + len(reached))
-    rough = [along(place, max(tolerance, ROUGH * min(place - near, far - place, radius))) for place in ways]
-    fine = [_outline(job, path, tolerance) for path in reached]
-    sides = [(inner if place - near < far - place else outer).side for place in ways]
-    first = [_round(job, manufacture, path, side, 0.0) for path, side in zip(rough, sides, strict=True)]
-    last = [_round(job, manufacture, path, each.side, room) for path, each in zip(fine, (inner, outer), strict=True)]
-    return passes(first, last, manufacture, depth), fine
+    flanks = cutter_paths(job.recipe, job.design)
+    if play <= ONE * tolerance and not any(path.lost for path in flanks):
+        middle = path_at(0.5 * (least + greatest), tolerance - 0.5 * max(play, 0.0))
+        fine = [replace(middle, bound=middle.bound.widened(0.5 * max(play, 0.0)))]
+        return passes([], [_lap(job, manufacture, middle, inner.side, 0.0)], manufacture, depth), fine
+    offsets = side_by_side(least, greatest, radius, manufacture.allowance or 0.0)
+    if not manufacture.allowance and len(offsets) > 1:
+        del offsets[-2:]  # the flanks' own
+    few_passes(job.recipe, depth, len(offsets) + len(flanks))
+    rough = [
+        path_at(offset, max(tolerance, ROUGH * min(offset - least, greatest - offset, radius))) for offset in offsets
+    ]
+    fine = [_outline(job, path, tolerance) for path in flanks]
+    sides = [(inner if offset - least < greatest - offset else outer).side for offset in offsets]
+    roughing = [_lap(job, manufacture, path, side, 0.0) for path, side in zip(rough, sides, strict=True)]
+    finishing = [_lap(job, manufacture, path, each.side, play) for path, each in zip(fine, (inner, outer), strict=True)]
+    return passes(roughing, finishing, manufacture, depth), fine
 
 
 def _holes(job: Job, manufacture: Manufacture) -> list[tuple[str, list[Pass]]]:

@@ -51,7 +51,7 @@ def own_export(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
 
 
 def wider(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Remedy in words: the tolerance that the contour keeps, widened for the polygons, or the own export."""
+    """Remedy in words: the measured distance and two tenths of the tolerance for the polygons; or camgeo's own file."""
     export = own_export(check, report, recipe)
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check["file"]), None)
     if check["value"] is None or tolerance is None:

@@ -8,7 +8,7 @@ from functools import reduce
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.capabilities.sheet.dxf import annotation
-from camgeo.capabilities.sheet.frame import Facts, LongTextError, footer, framed_page, free, notes_at, title_block
+from camgeo.capabilities.sheet.frame import Facts, LongTextError, footer, framed_page, free_area, notes_at, title_block
 from camgeo.capabilities.sheet.lettering import unknown, wrap
 from camgeo.capabilities.sheet.options import Sheet, build_sheet
 from camgeo.capabilities.sheet.pages import LINE, full_size, motion_page, polar_table, table_pages
@@ -118,7 +118,7 @@ def _pages(run: Run, job: Job, sheet: Sheet, drawn: Drawn, *, tolerance: Toleran
     table = polar_table(names, sheet.step, ccw=drawn.ccw)
     last = full_size(drawn)
     notes = _notes(drawn, recipe, wide=notes_at(sheet.paper)[2], full=last is not None)
-    area = free(sheet.paper, block=True, notes=LINE * len(notes) + 6.0)
+    area = free_area(sheet.paper, block=True, notes=LINE * len(notes) + 6.0)
     sense = 1.0 if sheet.projection == "first" else -1.0
     try:
         layout = lay_out(drawn, sizes, area, sheet.scale, sense)

@@ -79,7 +79,7 @@ def framed_page(name: str, paper: str) -> Page:
     return page
 
 
-def free(paper: str, *, block: bool, notes: float = 0.0) -> Area:
+def free_area(paper: str, *, block: bool, notes: float = 0.0) -> Area:
     """Free area of a page above its title block and notes of a height, mm; the notes stand beside the block on A3."""
     wide, high = SIZES[paper]
     beside = wide - BINDING - EDGE - BLOCK > 100.0

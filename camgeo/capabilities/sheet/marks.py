@@ -40,7 +40,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Circle:
-    """A circle."""
+    """A circle; `weight` is the width of its line, mm, `pattern` that of its dashes, solid by default."""
 
     centre: Point
     radius: float

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.sheet.frame import EDGE, SIZES, framed_page, free
+from camgeo.capabilities.sheet.frame import EDGE, SIZES, framed_page, free_area
 from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width, wrap
 from camgeo.capabilities.sheet.marks import THICK, THIN, Line, Page, shifted
 from camgeo.capabilities.sheet.part import number
@@ -100,7 +100,7 @@ def _spline(rows: Array, between: int) -> Array:
 
 def table_pages(table: Table, paper: str) -> list[Page]:
     """Pages of the table, as many as it takes."""
-    area = free(paper, block=False)
+    area = free_area(paper, block=False)
     cells = [[_cell(value, k) for k, value in enumerate(row)] for row in table.rows.tolist()]
     texts = [[head, *(row[k] for row in cells)] for k, head in enumerate(table.heads)]
     wides = [max(width(text, SMALL) for text in column) + 3.0 for column in texts]
@@ -148,7 +148,7 @@ def _draw_rows(
 
 def motion_page(design: Design, findings: Findings, paper: str, sources: Sequence[tuple[str, str]]) -> Page:
     """The follower's motion over a turn above, the verdict and the files that it is of below."""
-    page, area = framed_page("Motion and verdict", paper), free(paper, block=False)
+    page, area = framed_page("Motion and verdict", paper), free_area(paper, block=False)
     lines = _verdict(findings)
     rows = len(lines) + 2 * len(sources) + 2
     split = area.low + LINE * rows + 6.0
@@ -221,7 +221,7 @@ def full_size(drawn: Drawn) -> Page | None:
     points = np.concatenate([loop.points for loop in drawn.loops])
     (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
     for paper in SIZES:
-        area = free(paper, block=False)
+        area = free_area(paper, block=False)
         if x1 - x0 <= area.right - area.left and y1 - y0 + 24.0 <= area.high - area.low:
             break
     else:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.sweep.gather import Selection
     from camgeo.capabilities.sweep.task import Task
     from camgeo.recipe.limits import Limit
-    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.numeric.arrays import Indices
 
     Spread = Callable[[Callable[[int], "ExactDesign"], Sequence[int]], Iterable[tuple[int, "ExactDesign"]]]
 
@@ -57,15 +57,14 @@ def certify(
     task: Task,
     selection: Selection,
     spread: Spread,
-    are_apart: Callable[[Array, Array], Mask],
     progress: Callable[[int], None],
 ) -> Selection:
     """The selection with certified designs in front: their exact figures keep the limits.
 
-    Designs are computed exactly in the order of their estimates, until as many are certified as the sweep keeps; then,
-    as many at the most, those estimated as good as the last of these but for the error of an estimate. `are_apart`
-    (n,) says of values (n, axes) which lie apart from a design (axes,); only such are certified. Where no design is
-    within the limits the nearest one is computed. `progress` is called with the number certified.
+    Designs are computed exactly in the order of their estimates, until as many are certified as the sweep keeps. Then
+    at most as many more are computed: those whose estimate, but for its possible error, is as good as the worst
+    certified one. Where the sweep refines, only designs that lie apart are certified. Where no design is within the
+    limits the nearest one is computed. `progress` is called with the number certified.
     """
     if not selection.rows and (near := selection.nearest) is not None:
         unknown = {name: np.full(1, np.nan) for name in selection.figures}
@@ -83,9 +82,9 @@ def certify(
         left = np.setdiff1d(left, batch)
         for place, design in sorted(spread(partial(_compute_exactly, task, selection), batch.tolist())):
             exact_designs[place] = design
-            if not design.fault and are_apart(selection.values[places], selection.values[place]).all():
+            if not design.fault and task.are_apart(selection.values[places], selection.values[place]).all():
                 places.append(place)
-                left = left[are_apart(selection.values[left], selection.values[place])]
+                left = left[task.are_apart(selection.values[left], selection.values[place])]
                 progress(min(len(places), task.sweep.keep))
     rejected = Counter(design.fault for design in exact_designs.values() if design.fault)
     errors = {

@@ -93,10 +93,10 @@ def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
     EngineError where the scheduler does not answer or goes away, has no workers or some without camgeo, or a chunk
     kills its workers again and again.
     """
-    from distributed import Client, wait
+    from distributed import wait
 
     wait_for: Callable[..., Any] = wait
-    with _quiet(), _connected(Client, address) as client, _connection_errors(address):
+    with _quiet(), _connected(address) as client:
         _require_versions(client.run(versions, job.plan, on_error="return"), versions(job.plan))
         key, left = job.key, list(reversed(numbers))
         running: dict[Any, int] = {}
@@ -146,15 +146,29 @@ def _quiet() -> Iterator[None]:
 
 
 @contextmanager
-def _connected(client: Any, address: str) -> Iterator[Any]:  # noqa: ANN401 - distributed has no types
-    """A client of the scheduler, closed in the end; the scheduler then drops the chunks it still had."""
+def _connected(address: str) -> Iterator[Any]:
+    """A client of the scheduler, closed in the end; the scheduler then drops the chunks it still had.
+
+    Raises EngineError in place of Dask's errors for a lost scheduler, or a chunk that kills its workers.
+    """
+    from concurrent.futures import CancelledError
+
+    from distributed import Client
+    from distributed.scheduler import KilledWorker
+
+    connect: Callable[..., Any] = Client
     _require_scheduler(address)  # first: a client without a scheduler takes half a minute to fail, or for ever
     try:
-        opened = client(address, timeout=_TIMEOUT, set_as_default=False)
+        client = connect(address, timeout=_TIMEOUT, set_as_default=False)
     except OSError as error:
         raise EngineError(f"the server at {address} is not a Dask scheduler") from error
-    with opened:
-        yield opened
+    with client:
+        try:
+            yield client
+        except (CancelledError, OSError) as error:
+            raise EngineError(f"the connection to the scheduler at {address} was lost") from error
+        except KilledWorker as error:
+            raise EngineError(f"workers of {address} were killed before their chunk was done") from error
 
 
 def _require_scheduler(address: str) -> None:
@@ -193,18 +207,3 @@ async def _node_type(address: str) -> str:
     connect: Callable[..., Any] = rpc
     async with connect(address, timeout=_TIMEOUT) as node:
         return str((await node.identity())["type"])
-
-
-@contextmanager
-def _connection_errors(address: str) -> Iterator[None]:
-    """Raise EngineError in place of Dask's errors for a lost scheduler, or a chunk that kills its workers."""
-    from concurrent.futures import CancelledError
-
-    from distributed.scheduler import KilledWorker
-
-    try:
-        yield
-    except (CancelledError, OSError) as error:
-        raise EngineError(f"the connection to the scheduler at {address} was lost") from error
-    except KilledWorker as error:
-        raise EngineError(f"workers of {address} were killed before their chunk was done") from error

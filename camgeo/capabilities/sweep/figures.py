@@ -25,9 +25,9 @@ from camgeo.capabilities.sweep.windows import (
     cell_bounds,
     greatest,
     least,
-    lengths,
     longest_windows,
     window_ends,
+    window_lengths,
 )
 from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, RADIUS, SIZE
 from camgeo.recipe.linkage import output_slides
@@ -133,9 +133,9 @@ class Evaluator:
     ) -> Evaluator:
         """Evaluator of designs in which the fields at `paths` differ.
 
-        `figures` are those computed besides those limited, all by default. `samples` is their number, raised to a
-        multiple of 4. Cams without a linkage are estimated where they are `screened` and can be. Raises ValueError for
-        a path at which no number stands.
+        `figures` are those computed besides those limited, all by default. `samples` is the number of samples of a
+        turn, by default that of the sweep, raised to a multiple of 4. With `screened`, figures of cams without a
+        linkage are estimated where an estimate exists. Raises ValueError for a path at which no number stands.
         """
         sweep = recipe.of(Sweep)
         limits = sweep.limits if sweep else ()
@@ -250,7 +250,7 @@ class Evaluator:
                 if blocks:
                     rows_left = np.concatenate([index for index, _ in blocks])
                     windows = Ends.concatenate([dwells[name] for _, dwells in blocks])
-                    figures[name][rows_left] = np.degrees(lengths(windows, self._band))
+                    figures[name][rows_left] = np.degrees(window_lengths(windows, self._band))
         for column in figures.values():
             column[(reason != FINE) & (reason != BROKEN)] = np.nan
         self._mark_broken(figures, reason)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.numeric.records import dataclass, field, replace
+from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -120,10 +120,6 @@ class Cells:
     centres: tuple[Array, ...]
     best: Array
     state: NDArray[np.uint8]
-
-    def scaled(self, factor: float) -> Cells:
-        """Copy of these cells with the ranking's figure multiplied by a factor."""
-        return replace(self, best=self.best * factor)
 
 
 @dataclass(frozen=True)

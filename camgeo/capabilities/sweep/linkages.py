@@ -61,7 +61,7 @@ class Support:
         return _quarter_on(self.ddp)
 
     def part(self, rows: Mask) -> Support:
-        """The cams of some rows (m,)."""
+        """The cams of the rows that a mask (m,) marks."""
         return _copy_cached(self, Support(self.breadth[rows], self.p[rows], self.dp[rows], self.ddp[rows]), rows)
 
 
@@ -100,7 +100,7 @@ class LoopArrays:
     far: Array
 
     def part(self, rows: Mask) -> Self:
-        """The loops of some rows (m,)."""
+        """The loops of the rows that a mask (m,) marks."""
         lengths = Lengths(*(length[rows] for length in self.lengths))
         fields = (self.x, self.y, self.q, self.near, self.far)
         part = self.__class__(self.side, self.cams.part(rows), lengths, *(field[rows] for field in fields))
@@ -217,10 +217,10 @@ class CouplerLoop(LoopArrays):
         return self.x * self.cams.ddp + self.y * self.cams.ddp1
 
     def turned(self, along: Array, across: Array) -> tuple[Array, Array]:
-        """Vector (along, across) times the conjugate of X + iY.
+        """Components of the vector (along, across) along AD and at right angles to it, times the length of AD.
 
-        It never crosses the ray on which the arctangent of `frame` jumps: D stays on one side of AB, or of the slide's
-        foot, and X > 0.
+        Their angle never reaches the cut of the arctangent in `frame`: D stays on one side of AB, or of the slide's
+        foot, and x > 0.
         """
         x, y = self.x, self.y
         return along * x + across * y, across * x - along * y

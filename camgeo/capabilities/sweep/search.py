@@ -29,12 +29,11 @@ if TYPE_CHECKING:
     from camgeo.capabilities.sweep.chunks import Compute, Listener, Work
     from camgeo.capabilities.sweep.engines import Engine
     from camgeo.capabilities.sweep.gather import Selection
-    from kin.numeric.arrays import Array, Mask
+    from kin.numeric.arrays import Array
 
 FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
 _WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
 _PAUSE = 0.05  # seconds until the next attempt
-_START_DISTANCE = 0.15  # of an axis's range in every value: polishing would lead nearer designs to one place
 _SAME_DISTANCE = 0.05  # of an axis's range: designs nearer than that in every value, once polished, count as one
 
 
@@ -149,7 +148,7 @@ def best_designs(
         left, places = np.arange(rows), []
         while len(left) and len(places) < task.sweep.keep:
             places.append(int(left[0]))
-            left = left[_are_apart(task, selection.values[left], selection.values[left[0]])]
+            left = left[task.are_apart(selection.values[left], selection.values[left[0]])]
     designs = [
         Best(
             number,
@@ -184,25 +183,15 @@ def _with_all_figures(task: Task, designs: list[Best], measure: Measure) -> list
     ]
 
 
-def _are_apart(task: Task, values: Array, start: Array) -> Mask:
-    """Whether polishing leads designs (n, axes) elsewhere than a start (axes,), as they lie far from it, (n,)."""
-    ranges = np.array([axis.range or 1.0 for axis in task.plan.axes])
-    apart: Mask = np.abs((values - start) / ranges).max(axis=1) > _START_DISTANCE
-    return apart
-
-
 def _certify(task: Task, selection: Selection, engine: Engine, listener: Listener | None) -> Selection:
     """The selection with certified designs in front, which lie apart where they are to be polished."""
     started = time.perf_counter()
-
-    def are_apart(values: Array, design: Array) -> Mask:
-        return _are_apart(task, values, design) if task.sweep.refine else np.ones(len(values), dtype=np.bool_)
 
     def progress(count: int) -> None:
         if listener is not None:
             listener("designs worked out", count, task.sweep.keep, time.perf_counter() - started)
 
-    return certify(task, selection, partial(spread, count=engine.processes), are_apart, progress)
+    return certify(task, selection, partial(spread, count=engine.processes), progress)
 
 
 def _polish_all(

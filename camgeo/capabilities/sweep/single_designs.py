@@ -52,7 +52,7 @@ def word_lists(recipe: Recipe) -> dict[str, tuple[str, ...]]:
 
 
 def text_with(recipe: Recipe, values: Mapping[str, float]) -> str:
-    """Text of a recipe with values, in its units, at paths; of words their index. Raises as `recipe_with`."""
+    """Text of a recipe with values, in its units, at paths; of words their index. ValueError for a wrong path."""
     words = word_lists(recipe)
     chosen = {path: words[path][int(value)] for path, value in values.items() if path in words}
     variant = replace(recipe, text=recipe.changed(chosen)) if chosen else recipe

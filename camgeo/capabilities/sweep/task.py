@@ -7,6 +7,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from camgeo.capabilities.sweep.figures import Evaluator, Scene, estimable_figures, figure_names
 from camgeo.capabilities.sweep.gather import Ranking
 from camgeo.capabilities.sweep.keys import Sweep
@@ -26,8 +28,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from camgeo.capabilities.sweep.figures import FigureTable
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
 
+_START_DISTANCE = 0.15  # of an axis's range in every value: polishing would lead nearer designs to one place
 EXACT = 100  # designs, up to which each is computed exactly, which takes seconds
 _LENGTH_UNITS = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
@@ -117,6 +120,15 @@ class Task:
         """Names of the figures of the best designs: those that the recipe has with each word."""
         names = [figure_names(recipe) for recipe in (self.recipe, *self.variants)]
         return tuple(name for name in names[0] if all(name in others for others in names))
+
+    def are_apart(self, values: Array, start: Array) -> Mask:
+        """Mask (n,) of the designs (n, axes) that lie so far from a start (axes,) that polishing leads them elsewhere.
+
+        All do where nothing is polished.
+        """
+        ranges = np.array([axis.range or 1.0 for axis in self.plan.axes])
+        apart: Mask = np.abs((values - start) / ranges).max(axis=1) > (_START_DISTANCE if self.sweep.refine else -1.0)
+        return apart
 
     def values_by_path(self, values: Iterable[float]) -> dict[str, float | str]:
         """Values of a design (axes,) by their paths, as the recipe writes them, words as words."""

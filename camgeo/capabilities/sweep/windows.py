@@ -280,7 +280,7 @@ def window_ends(
     abscissa: tuple[Array, Array],
     bounds: tuple[Array, Array],
 ) -> Ends:
-    """Ends of windows, from which `lengths` measures them.
+    """Ends of windows, from which `window_lengths` measures them.
 
     `window` are first node and number of whole cells, (m,) each. `output` and `abscissa` are values and slopes by the
     angle, (m, n); the abscissa rises, by 2 pi a turn. `bounds` are those of the output over each cell. The first and
@@ -309,15 +309,15 @@ def window_ends(
     return Ends(low, high, np.where(core < 0.0, core + TURN, core), sides[0], sides[1], cells == n)
 
 
-def lengths(ends: Ends, band: float) -> Array:
+def window_lengths(ends: Ends, band: float) -> Array:
     """Lengths of m windows along the abscissa (m,), each within the band of a height that makes it longest.
 
     The band [y, y + band] contains the core; raising it moves ends at its lower limit inward and ends at its upper
     limit outward, each by 1/slope. So the best y is the lowest, the highest, or where the two rates balance, which
     bisection finds.
     """
-    best, gain = _length(ends, ends.high - band, band)
-    rising = gain > 0.0  # most windows end at the lower limit on both sides, and the lowest band is the best
+    best, length_rate = _length(ends, ends.high - band, band)
+    rising = length_rate > 0.0  # most windows end at the lower limit on both sides, and the lowest band is the best
     if rising.any():
         part = ends.part(rising)
         below, above = part.high - band, part.low
@@ -325,23 +325,23 @@ def lengths(ends: Ends, band: float) -> Array:
         longest = np.maximum(longest, best[rising])
         for _ in range(_BISECTIONS):
             y = 0.5 * (below + above)
-            length, gain = _length(part, y, band)
+            length, length_rate = _length(part, y, band)
             longest = np.maximum(longest, length)
-            below, above = np.where(gain > 0.0, y, below), np.where(gain > 0.0, above, y)
+            below, above = np.where(length_rate > 0.0, y, below), np.where(length_rate > 0.0, above, y)
         best[rising] = longest
     return np.where(ends.whole, TURN, np.minimum(best, TURN))
 
 
 def _length(ends: Ends, low: Array, band: float) -> tuple[Array, Array]:
     """Length within [low, low + band], and its derivative by `low`."""
-    behind, slope_behind = _reach(ends.behind, low, low + band)
-    ahead, slope_ahead = _reach(ends.ahead, low, low + band)
-    return ends.core + behind + ahead, slope_behind + slope_ahead
+    behind, rate_behind = _reach(ends.behind, low, low + band)
+    ahead, rate_ahead = _reach(ends.ahead, low, low + band)
+    return ends.core + behind + ahead, rate_behind + rate_ahead
 
 
 def _reach(side: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """Distance from the core's end outward over which the output stays within limits; its derivative by the limits."""
-    reach, gain, inside = np.zeros_like(low), np.zeros_like(low), np.ones(len(low), dtype=np.bool_)
+    reach, reach_rate, inside = np.zeros_like(low), np.zeros_like(low), np.ones(len(low), dtype=np.bool_)
     for cell in (0, 1):
         f, g, x, v = side[:, :, cell]
         f1, g1, x1, v1 = side[:, :, cell + 1]
@@ -350,9 +350,9 @@ def _reach(side: Array, low: Array, high: Array) -> tuple[Array, Array]:
         reach = np.where(inside, abscissa(t), reach)
         with np.errstate(divide="ignore", invalid="ignore"):
             more = np.abs(abscissa.slope(t) / output.slope(t)) * side_left
-        gain = np.where(inside, more, gain)
+        reach_rate = np.where(inside, more, reach_rate)
         inside &= side_left == 0
-    return reach, gain
+    return reach, reach_rate
 
 
 def _first_exit(cell: _Cubic, lowest: Array, highest: Array) -> tuple[Array, NDArray[np.int8]]:

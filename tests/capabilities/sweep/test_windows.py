@@ -20,9 +20,9 @@ from camgeo.capabilities.sweep.windows import (
     cell_bounds,
     greatest,
     least,
-    lengths,
     longest_windows,
     window_ends,
+    window_lengths,
 )
 from kin.numeric.longest_window import dwells
 
@@ -136,7 +136,7 @@ def lengths_of(wave, band):
     theta = np.broadcast_to(angles(f[0].shape[1]), f[0].shape)
     over = (x, (theta, np.ones_like(theta)))
     bounds = samples.low, samples.high
-    return [lengths(window_ends((found.start[k], found.cells[k]), f, over[k], bounds), band) for k in (0, 1)]
+    return [window_lengths(window_ends((found.start[k], found.cells[k]), f, over[k], bounds), band) for k in (0, 1)]
 
 
 def exact(seed, m, row):
