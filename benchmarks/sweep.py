@@ -27,9 +27,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.cams.flat_faced import breadth_of
-from camgeo.capabilities.sweep.certify import error_of
 from camgeo.capabilities.sweep.figures import Evaluator
 from camgeo.capabilities.sweep.keys import Sweep
+from camgeo.capabilities.sweep.screen import error_of
 from camgeo.capabilities.sweep.single_designs import recipe_with
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load_text

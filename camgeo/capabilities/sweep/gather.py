@@ -108,21 +108,6 @@ class Certificate:
 
 
 @dataclass(frozen=True)
-class Cells:
-    """The best design in each cell over one or two axes, whatever its other values are.
-
-    `edges` and `centres` of the cells along each axis; `best` (cells of axis 1, of axis 2 or 1) is the ranking's
-    figure, nan where no design is kept; `state` has NONE, STUCK, OUTSIDE or KEPT.
-    """
-
-    axes: tuple[Axis, ...]
-    edges: tuple[Array, ...]
-    centres: tuple[Array, ...]
-    best: Array
-    state: NDArray[np.uint8]
-
-
-@dataclass(frozen=True)
 class Selection:
     """The best designs of a sweep, best first, at most MOST_ROWS, with counts and cells of all.
 
@@ -154,7 +139,7 @@ def gather(
 
     Raises ValueError unless the chunks have the figures of all designs of the plan.
     """
-    painter = _CellPainter(plan)
+    cells = Cells(plan, most=ranking.most)
     failing = dict.fromkeys((limit.figure for limit in ranking.limits), 0)
     stuck = kept = first = waiting = 0
     reasons: Counter[int] = Counter()
@@ -183,7 +168,7 @@ def gather(
             reasons.update(figures[REASON][~turns].astype(int).tolist())
         kept += int(kept_here.sum())
         score = ranking.score(figures)
-        painter.paint(values, score, np.where(kept_here, KEPT, np.where(turns, OUTSIDE, STUCK)).astype(np.uint8))
+        cells.paint(values, score, np.where(kept_here, KEPT, np.where(turns, OUTSIDE, STUCK)).astype(np.uint8))
         index = np.arange(first, last)
         parts.append(_Rows(index[listed], score[listed], values[listed], table[listed]))
         waiting += len(parts[-1].index)
@@ -199,7 +184,7 @@ def gather(
         rows.index,
         rows.values,
         {name: rows.table[:, i] for i, name in enumerate(names)},
-        painter.cells(most=ranking.most),
+        cells,
         None if kept else nearest,
     )
 
@@ -223,39 +208,39 @@ class _Rows:
         return _Rows(index[order], score[order], values, np.concatenate([part.table for part in parts])[order])
 
 
-class _CellPainter:
-    """Cells over the first two axes, filled chunk by chunk."""
+class Cells:
+    """The best design in each cell over the first one or two axes, whatever its other values are; filled by `paint`.
 
-    def __init__(self, plan: Plan) -> None:
-        self._axes = plan.axes[:2]
-        ranges = [axis for axis in self._axes if not axis.values]
-        most = _MOST_CELLS_CURVE if len(plan.axes) == 1 else _MOST_CELLS
+    `edges` and `centres` of the cells along each axis; `state` (cells of axis 1, of axis 2 or 1) has NONE, STUCK,
+    OUTSIDE or KEPT. `most` is that of the ranking.
+    """
+
+    def __init__(self, plan: Plan, *, most: bool) -> None:
+        self.axes = plan.axes[:2]
+        ranges = [axis for axis in self.axes if not axis.values]
+        greatest = _MOST_CELLS_CURVE if len(plan.axes) == 1 else _MOST_CELLS
         count = int((plan.count / _DESIGNS_A_CELL) ** (1.0 / max(len(ranges), 1)))
-        self._grids = [_AxisCells(axis, min(max(count, 8), most)) for axis in self._axes]
+        self._grids = [_AxisCells(axis, min(max(count, 8), greatest)) for axis in self.axes]
+        self.edges = tuple(grid.edges for grid in self._grids)
+        self.centres = tuple(grid.centres for grid in self._grids)
         shape = [grid.count for grid in self._grids] + [1] * (2 - len(self._grids))
-        self._shape = (shape[0], shape[1])
-        self._best = np.full(shape[0] * shape[1], -np.inf)
-        self._state = np.zeros(shape[0] * shape[1], np.uint8)
+        self._most = most
+        self._score = np.full(shape, -np.inf)
+        self.state = np.zeros(shape, np.uint8)
 
     def paint(self, values: Array, score: Array, state: NDArray[np.uint8]) -> None:
         """Add designs with values (m, axes), scores (m,) and states (m,)."""
         cell = np.zeros(len(values), np.int64)
         for i, grid in enumerate(self._grids):
             cell = cell * grid.count + grid.cell(values[:, i])
-        np.maximum.at(self._state, cell, state)
-        held = state == KEPT
-        np.maximum.at(self._best, cell[held], score[held])
+        np.maximum.at(self.state.reshape(-1), cell, state)
+        kept = state == KEPT
+        np.maximum.at(self._score.reshape(-1), cell[kept], score[kept])
 
-    def cells(self, *, most: bool) -> Cells:
-        """All cells, the figure positive again where less is better."""
-        best = np.where(self._state == KEPT, self._best if most else -self._best, np.nan)
-        return Cells(
-            self._axes,
-            tuple(grid.edges for grid in self._grids),
-            tuple(grid.centres for grid in self._grids),
-            best.reshape(self._shape),
-            self._state.reshape(self._shape),
-        )
+    @property
+    def best(self) -> Array:
+        """The ranking's figure of the best design, in the shape of `state`; nan where no design is kept."""
+        return np.where(self.state == KEPT, self._score if self._most else -self._score, np.nan)
 
 
 class _AxisCells:

@@ -278,14 +278,14 @@ def _map_pictures(task: Task, designs: Selection, best: Sequence[Best]) -> list[
     if len(paths) > 2:
         others = " and ".join(filter(None, (", ".join(paths[2:-1]), paths[-1])))
         notes += f"; each cell shows the best over {others}"
-    cells = replace(designs.cells, best=designs.cells.best * (1.0 / unit.divisor))
     places = [[b.values[paths[0]], b.values[paths[1]] if flat else b.figures[rank] / unit.divisor] for b in best]
     pictures = draw_map(
         f"{task.recipe.name}: {FIGURES[rank].about.split(',')[0]}",
-        cells,
+        designs.cells,
         _label(rank, unit.name),
         [_label(path, task.axis_unit(path)) for path in paths[:2]],
         np.array(places).reshape(-1, 2),
+        divisor=unit.divisor,
         notes=notes,
     )
     return [pictures["png"], pictures["svg"]]

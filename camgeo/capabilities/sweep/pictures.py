@@ -45,16 +45,17 @@ class Curve:
 
 
 def draw_map(
-    title: str, cells: Cells, label: str, names: Sequence[str], best: Array, *, notes: str = ""
+    title: str, cells: Cells, label: str, names: Sequence[str], best: Array, *, divisor: float = 1.0, notes: str = ""
 ) -> dict[str, bytes]:
     """Picture of the ranking's figure over the cells' one or two axes, as bytes: {"png": ..., "svg": ...}.
 
-    `label` is that of the figure and `names` are those of the axes, with units; `best` (n, 2) are the coordinates of
-    the best designs, best first. Raises ModuleNotFoundError without matplotlib.
+    The figure is divided by the `divisor` of its unit. `label` is that of the figure and `names` are those of the axes,
+    with units; `best` (n, 2) are the coordinates of the best designs, best first. Raises ModuleNotFoundError without
+    matplotlib.
     """
-    flat = len(cells.axes) == 2
+    flat, values = len(cells.axes) == 2, cells.best * (1.0 / divisor)
     with _blank() as (figure, axes):
-        handles = _draw_cells(figure, axes, cells, label) if flat else _draw_curve(axes, cells)
+        handles = _draw_cells(figure, axes, cells, values, label) if flat else _draw_curve(axes, cells, values[:, 0])
         if len(best):
             x, y = best.T
             ring: dict[str, Any] = {"linestyle": "", "markeredgecolor": "black"}
@@ -102,7 +103,7 @@ def draw_best(title: str, curves: Sequence[Curve], label: str, *, notes: str = "
         return _encoded(figure)
 
 
-def _draw_cells(figure: Figure, axes: Axes, cells: Cells, label: str) -> list[Artist]:
+def _draw_cells(figure: Figure, axes: Axes, cells: Cells, values: Array, label: str) -> list[Artist]:
     """Draw cells of two axes in colour, those without a kept design in grey; return the legend's entries."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
@@ -115,19 +116,19 @@ def _draw_cells(figure: Figure, axes: Axes, cells: Cells, label: str) -> list[Ar
             axes.pcolormesh(x, y, where, cmap=ListedColormap([colour]), rasterized=True)
             handles.append(Patch(facecolor=colour, label=text))
     if (cells.state == KEPT).any():
-        mesh = axes.pcolormesh(x, y, cells.best.T, cmap="viridis", rasterized=True)
+        mesh = axes.pcolormesh(x, y, values.T, cmap="viridis", rasterized=True)
         figure.colorbar(mesh, ax=axes, label=label, pad=0.02)
     axes.set_xlim(x[0], x[-1])
     axes.set_ylim(y[0], y[-1])
     return handles
 
 
-def _draw_curve(axes: Axes, cells: Cells) -> list[Artist]:
+def _draw_curve(axes: Axes, cells: Cells, values: Array) -> list[Artist]:
     """Draw the figure over one axis, where no design is kept a grey band; return the legend's entries."""
-    x, best, state = cells.centres[0], cells.best[:, 0], cells.state[:, 0]
+    x, state = cells.centres[0], cells.state[:, 0]
     filled = state != NONE
     marker = "." if len(x) <= _MOST_POINTS else ""
-    axes.plot(x[filled], best[filled], "-", marker=marker, color=_COLOURS[0], linewidth=1.6)
+    axes.plot(x[filled], values[filled], "-", marker=marker, color=_COLOURS[0], linewidth=1.6)
     handles: list[Artist] = []
     for kind, (colour, text) in _GREYS.items():
         bands = [(cells.edges[0][i], cells.edges[0][i + 1] - cells.edges[0][i]) for i in np.flatnonzero(state == kind)]

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.sweep.certify import slack
 from camgeo.capabilities.sweep.figures import DWELLS, Evaluator
+from camgeo.capabilities.sweep.screen import slack
 from camgeo.capabilities.sweep.single_designs import mechanism_in, recipe_with
 from camgeo.common.rounding import downward
 from kin.numeric.errors import CamgeoError

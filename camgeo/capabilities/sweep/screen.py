@@ -48,11 +48,13 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.sweep.cams import Codes
     from camgeo.capabilities.sweep.samples import CamSample, MotionBatch
+    from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Mask
 
 DESIGNS = 1000  # random ones on which the errors of the estimates were measured
+_SAFETY = 2.0  # times the greatest error measured: estimates that miss a bound by less are computed exactly too
 _BLOCK = 24_000  # samples of a block: two dozen arrays of them stay in a cache
 _QUARTER = 0.5 * np.pi
 
@@ -338,6 +340,26 @@ def estimates() -> dict[str, FigureEstimate]:
     return _CORE | {
         name: FigureEstimate(*estimate) for each in capabilities for name, estimate in each.estimates().items()
     }
+
+
+def allowance(name: str, value: float) -> float:
+    """Greatest error, in the figure's unit, to be expected of an estimate near a value."""
+    estimate = estimates().get(name)
+    if estimate is None or estimate.error is None:
+        return 0.0
+    return _SAFETY * estimate.error * (1.0 if estimate.in_degrees else abs(value))
+
+
+def slack(limit: Limit) -> float:
+    """Amount, in the figure's unit, by which estimates may miss a limit while the exact figure may keep it."""
+    return max(allowance(limit.figure, bound) for bound in (limit.at_least, limit.at_most) if bound is not None)
+
+
+def error_of(name: str, estimate: float, exact: float) -> float:
+    """Error of an estimate, at least 0: in degrees of an angle, else as a share of the exact value."""
+    if estimate == exact or np.isnan(estimate):
+        return 0.0
+    return abs(estimate - exact) / (1.0 if estimates()[name].in_degrees else max(abs(exact), 1e-300))
 
 
 @dataclass(frozen=True, eq=False)

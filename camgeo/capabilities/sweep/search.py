@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import os
 import time
+from collections import Counter
 from functools import partial
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from camgeo.capabilities.sweep.cams import REASONS
-from camgeo.capabilities.sweep.certify import certify, slack
 from camgeo.capabilities.sweep.chunks import Job, chunks_of, compute, gather_chunks
 from camgeo.capabilities.sweep.engines import spread
 from camgeo.capabilities.sweep.figures import compute_figures
+from camgeo.capabilities.sweep.gather import Certificate, Nearest
 from camgeo.capabilities.sweep.outputs import PICTURES, REPORT, TABLES, Best, outputs, recipe_text
 from camgeo.capabilities.sweep.refine import PolishError, polish
+from camgeo.capabilities.sweep.screen import allowance, error_of, slack
 from camgeo.capabilities.sweep.task import Task
 from camgeo.common.errors import BusyError, SurroundingsError
 from camgeo.output.output_folder import Family, RunFolder
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.sweep.chunks import Compute, Listener, Work
     from camgeo.capabilities.sweep.engines import Engine
     from camgeo.capabilities.sweep.gather import Selection
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
 _WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
@@ -91,7 +93,7 @@ def search(
     work = compute(job, chunks, engine, fresh=fresh, listener=listener)
     selection = gather_chunks(job, chunks, task.ranking, slack if task.screened else None)
     if task.screened:
-        selection = _certify(task, selection, engine, listener)
+        selection = certify(task, selection, engine, listener)
     best = best_designs(task, selection, procedures, engine, listener)
     run = {
         "engine": str(engine),
@@ -183,17 +185,6 @@ def _with_all_figures(task: Task, designs: list[Best], measure: Measure) -> list
     ]
 
 
-def _certify(task: Task, selection: Selection, engine: Engine, listener: Listener | None) -> Selection:
-    """The selection with certified designs in front, which lie apart where they are to be polished."""
-    started = time.perf_counter()
-
-    def progress(count: int) -> None:
-        if listener is not None:
-            listener("designs worked out", count, task.sweep.keep, time.perf_counter() - started)
-
-    return certify(task, selection, partial(spread, count=engine.processes), progress)
-
-
 def _polish_all(
     task: Task, designs: list[Best], polish: Polish, engine: Engine, listener: Listener | None
 ) -> list[Best]:
@@ -228,6 +219,122 @@ def _are_same(task: Task, design: Best, other: Best) -> bool:
     return all(
         abs(design.values[axis.path] - other.values[axis.path]) <= _SAME_DISTANCE * axis.range
         for axis in task.plan.axes
+    )
+
+
+class ExactDesign(NamedTuple):
+    """Exact figures of a design, mm and degrees; why it is rejected: of REASONS, or the figure of a limit."""
+
+    figures: dict[str, float]
+    fault: str
+
+
+def certify(task: Task, selection: Selection, engine: Engine, listener: Listener | None) -> Selection:
+    """The selection with certified designs in front: their exact figures keep the limits.
+
+    Designs are computed exactly in the order of their estimates, until as many are certified as the sweep keeps. Then
+    at most as many more are computed: those whose estimate, but for its possible error, is as good as the worst
+    certified one. Where the sweep refines, only designs that lie apart are certified. Where no design is within the
+    limits the nearest one is computed. The listener hears of the number certified.
+    """
+    started = time.perf_counter()
+    if not selection.rows and (near := selection.nearest) is not None:
+        unknown = {name: np.full(1, np.nan) for name in selection.figures}
+        selection = replace(selection, index=np.array([near.index]), values=near.values[None], figures=unknown)
+    left: Indices = np.arange(selection.rows)
+    spare, exact_designs = task.sweep.keep, dict[int, ExactDesign]()
+    places: list[int] = []  # in the table, of the certified designs
+    while len(left):
+        batch = left[: task.sweep.keep - len(places)]
+        if not len(batch) and spare:
+            kept = [exact_designs[place].figures for place in places]
+            batch, spare = _next_candidate(task, selection, left, kept), spare - 1
+        if not len(batch):
+            break
+        left = np.setdiff1d(left, batch)
+        compute_exactly = partial(_compute_exactly, task, selection)
+        for place, design in sorted(spread(compute_exactly, batch.tolist(), engine.processes)):
+            exact_designs[place] = design
+            if not design.fault and task.are_apart(selection.values[places], selection.values[place]).all():
+                places.append(place)
+                left = left[task.are_apart(selection.values[left], selection.values[place])]
+                if listener is not None:
+                    count = min(len(places), task.sweep.keep)
+                    listener("designs worked out", count, task.sweep.keep, time.perf_counter() - started)
+    rejected = Counter(design.fault for design in exact_designs.values() if design.fault)
+    errors = {
+        name: max(
+            (
+                error_of(name, float(estimate[place]), design.figures[name])
+                for place, design in exact_designs.items()
+                if design.figures
+            ),
+            default=0.0,
+        )
+        for name, estimate in selection.figures.items()
+    }
+    certificate = Certificate(len(places), dict(sorted(rejected.items())), errors)
+    nearest = None if places else _nearest(task, selection, exact_designs)
+    return replace(_reorder(task, selection, exact_designs, places), nearest=nearest, certificate=certificate)
+
+
+def _next_candidate(task: Task, selection: Selection, left: Indices, kept: Sequence[Mapping[str, float]]) -> Indices:
+    """First of the places left whose estimate may beat the last design that the sweep keeps; empty without one."""
+    rank, sign = task.ranking.rank, 1.0 if task.ranking.most else -1.0
+    worst = sorted(sign * figures[rank] for figures in kept)[-task.sweep.keep]
+    better = task.ranking.score(selection.figures)[left] >= worst - allowance(rank, worst)
+    first: Indices = left[better][:1]
+    return first
+
+
+def _compute_exactly(task: Task, selection: Selection, place: int) -> ExactDesign:
+    """Exact design at a place of the selection."""
+    computed = task.exact_figures(selection.values[[place]])
+    if computed.reason[0]:
+        return ExactDesign({}, REASONS[computed.reason[0]])
+    figures = {name: computed.figures[name] for name in selection.figures}
+    broken = [limit.figure for limit in task.ranking.limits if not task.ranking.held(limit, figures)[0]]
+    return ExactDesign({name: float(column[0]) for name, column in figures.items()}, broken[0] if broken else "")
+
+
+def _nearest(task: Task, selection: Selection, exact_designs: Mapping[int, ExactDesign]) -> Nearest | None:
+    """The exact design that misses the limits by least, where all of them were rejected.
+
+    It is the nearest of the estimates where no exact design has figures.
+    """
+    places = [place for place, design in exact_designs.items() if design.figures]
+    if not places or not task.ranking.limits:
+        return selection.nearest
+    figures = {name: np.array([exact_designs[place].figures[name] for place in places]) for name in selection.figures}
+    row, worst, _ = task.ranking.nearest(figures, np.ones(len(places), dtype=np.bool_))
+    place = places[row]
+    return Nearest(int(selection.index[place]), selection.values[place], worst, float(figures[worst.figure][row]))
+
+
+def _reorder(
+    task: Task, selection: Selection, exact_designs: Mapping[int, ExactDesign], places: Sequence[int]
+) -> Selection:
+    """The selection with certified designs first, best first, then others whose estimates keep the limits."""
+    figures = {name: column.copy() for name, column in selection.figures.items()}
+    inside = np.ones(selection.rows, dtype=np.bool_)
+    for limit in task.ranking.limits:
+        inside &= task.ranking.held(limit, selection.figures)
+    for place in places:
+        for name, value in exact_designs[place].figures.items():
+            figures[name][place] = value
+    score = task.ranking.score(figures)
+    first = sorted(places, key=lambda place: (-score[place], selection.index[place]))
+    faults = {place: design.fault for place, design in exact_designs.items()}
+    others = [place for place in range(selection.rows) if (not faults[place] if place in faults else inside[place])]
+    order = np.array([*first, *(place for place in others if place not in places)], dtype=np.int64)
+    lost = sum(bool(inside[place]) for place, fault in faults.items() if fault)
+    gained = sum(not inside[place] for place in places)
+    return replace(
+        selection,
+        counts=replace(selection.counts, kept=selection.counts.kept - lost + gained),
+        index=selection.index[order],
+        values=selection.values[order],
+        figures={name: column[order] for name, column in figures.items()},
     )
 
 

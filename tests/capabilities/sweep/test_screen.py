@@ -14,11 +14,10 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from camgeo.capabilities.sweep.cams import REASONS
-from camgeo.capabilities.sweep.certify import error_of
 from camgeo.capabilities.sweep.engines import Engine
 from camgeo.capabilities.sweep.figures import Evaluator, estimable_figures
 from camgeo.capabilities.sweep.keys import varied_fields
-from camgeo.capabilities.sweep.screen import estimates
+from camgeo.capabilities.sweep.screen import error_of, estimates
 from camgeo.capabilities.sweep.search import search
 from camgeo.capabilities.sweep.task import EXACT, Task
 from camgeo.recipe.loading import load, load_text
