@@ -45,7 +45,7 @@ class CutterPath:
     lost: tuple[Undercut, ...] = ()
 
     def arcs(self, tolerance: float, fit_curve: Fit = fit_arcs) -> ArcSpline:
-        """Arcs within `tolerance` mm of the path, made of each curve by `fit_curve`; raises as that does."""
+        """Arcs within `tolerance` mm of the path, made of each curve by `fit_curve`; CurveError where it fits none."""
         if not self.corners:
             return fit_curve(self.curve, tolerance)
         fits = [fit_curve(Curve(self.curve.shape, (self._in_two(run),)), tolerance) for run in self.curve.runs]
@@ -106,7 +106,7 @@ def cutter_path(contour: Curve, radius: float) -> CutterPath:
 
 
 def no_hollow(contour: Curve) -> bool:
-    """Whether the metal is proved to have no hollow: a disc's contour turns left throughout, no ring's opening does."""
+    """Whether metal is proved to have no hollow: true of a disc whose contour nowhere turns right, never of a ring."""
     return not in_ring(contour) and bool((contour.cells.rows[2] >= 0.0).all())
 
 

@@ -58,7 +58,7 @@ def grinding_table(recipe: Recipe, design: Design, request: FileRequest, toleran
     """Table of a request within a tolerance, mm; `field` is the path of the request, for errors.
 
     Raises RecipeErrors for a wheel or roller that the contour does not let in, a step that is too wide for the
-    tolerance, and a tolerance that takes too fine a one.
+    tolerance, and a tolerance that takes too fine a step.
     """
     wheel = _Wheel.of(recipe, request, field)
     path = _path(recipe, design, wheel)

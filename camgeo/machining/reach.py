@@ -27,7 +27,10 @@ ALIKE = 1e-9  # share by which hollows of a regular cam differ through rounding:
 
 
 def cutter_paths(recipe: Recipe, design: Design, further: float = 0.0) -> tuple[CutterPath, ...]:
-    """Path of the cutter's centre along each surface, `further` mm off the metal; raises as `cutter_path` does."""
+    """Path of the cutter's centre along each surface, `further` mm off the metal.
+
+    Raises UndercutError where no single path is left, CurveError where what is reached cannot be proved.
+    """
     contours, manufacture = milled_contours(recipe, design)
     return tuple(cutter_path(contour, manufacture.radius + further) for _, contour in contours)
 

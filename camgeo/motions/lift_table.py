@@ -60,7 +60,7 @@ class Rows:
 
 
 def read_path(reader: Reader, field: Field, node: Node, path: str) -> str | None:
-    """Read the path of a file, as written."""
+    """Read the path of a file, as written; None where it is no path, and the fault is noted."""
     if isinstance(node, Scalar) and 0 < len(node.text) <= MOST_TEXT and node.text.isprintable():
         return node.text
     reader.fault(node.mark, path, "not the path of a file", describe(node), reader.wanted(field))
@@ -202,8 +202,9 @@ def _text(data: bytes) -> str:
 
 @lru_cache(maxsize=4)
 def _rows(text: str, sheet: Sheet) -> tuple[Rows, float]:
+    """Rows of a table's text, and the unit of its last digit, mm or rad."""
     from kin.read.tables import read_table
 
-    samples, place = read_table(text, sheet, _FIELD)
+    samples, last_digit = read_table(text, sheet, _FIELD)
     theta, s, lines = (tuple(column.tolist()) for column in (samples.theta, samples.s, samples.lines))
-    return Rows(theta, s, lines, samples.unit, samples.slack, samples.turned), place
+    return Rows(theta, s, lines, samples.unit, samples.slack, samples.turned), last_digit

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, ClassVar
 from camgeo.motions.contour_motion import DRAWING, read_contours
 from camgeo.motions.lift_table import SHEET, TABLE, Rows, read_rows
 from camgeo.motions.lobes import lobe_field, read_sides
-from camgeo.motions.segments import LEAST, REST, read_segments, segment_table, segments_schema
+from camgeo.motions.segments import LEAST, REST, read_pairs, read_segments, segment_table, segments_schema
 from camgeo.schema.fields import MOST, Field, Form, Kind, Table
 from camgeo.schema.json_schema import number_schema, table_schema
-from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, describe, entries, join
+from camgeo.schema.yaml_source import Mapping, Scalar, entries, join
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -507,19 +507,7 @@ def _read_points(
     """Read a list of angles and displacements."""
     angle = Field("", Kind.ANGLE, "", at_least=0, at_most=360)
     value = Field("", stroke, "", at_least=-MOST, at_most=MOST)
-    points = []
-    for i, item in enumerate(reader.items(field, node, path, MOST_POINTS)):
-        below = join(path, i)
-        if not isinstance(item, Sequence) or len(item.items) != 2:
-            reader.fault(item.mark, below, "not a point", describe(item), "give a list [angle, displacement]")
-            continue
-        points.append(
-            tuple(
-                reader.field(part, n, join(below, k))
-                for k, (part, n) in enumerate(zip((angle, value), item.items, strict=True))
-            )
-        )
-    return tuple(points) if points and not any(None in point for point in points) else None
+    return read_pairs(reader, field, node, path, parts=(angle, value), most=MOST_POINTS, row="[angle, displacement]")
 
 
 def _points(_: Field) -> Schema:

@@ -20,7 +20,10 @@ class Law(Protocol):
     """Protocol of a motion over the shaft angle."""
 
     def derivatives(self, theta: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
-        """Position and its derivatives at theta (n,), (order + 1, n)."""
+        """Position, mm or rad, and its derivatives by rad at theta (n,), (order + 1, n).
+
+        With `side` -1 they are the limits from below at a break.
+        """
         ...
 
 

@@ -210,17 +210,25 @@ MOST_LAW_POINTS = 200
 LEAST_READING = 1e-9  # of a law whose table shows every digit of its computer
 
 
-def _read_points(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[float, float], ...] | None:
-    """Read a list of pairs from 0 to 1."""
-    number = Field("", Kind.NUMBER, "", at_least=-10, at_most=10)
+def read_pairs(
+    reader: Reader, field: Field, node: Node, path: str, *, parts: tuple[Field, Field], most: int, row: str
+) -> tuple[tuple[float, float], ...] | None:
+    """Read a list of at most `most` pairs, such as `row`, whose numbers are of the fields `parts`."""
     points = []
-    for i, item in enumerate(reader.items(field, node, path, MOST_LAW_POINTS)):
+    for i, item in enumerate(reader.items(field, node, path, most)):
         below = join(path, i)
         if not isinstance(item, Sequence) or len(item.items) != 2:
-            reader.fault(item.mark, below, "not a point", describe(item), "give a list [u, s]")
+            reader.fault(item.mark, below, "not a point", describe(item), f"give a list {row}")
             continue
-        points.append(tuple(reader.field(number, part, join(below, k)) for k, part in enumerate(item.items)))
+        cells = enumerate(zip(parts, item.items, strict=True))
+        points.append(tuple(reader.field(part, cell, join(below, k)) for k, (part, cell) in cells))
     return tuple(points) if points and not any(None in point for point in points) else None
+
+
+def _read_points(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[float, float], ...] | None:
+    """Read a list of pairs of numbers from -10 to 10."""
+    number = Field("", Kind.NUMBER, "", at_least=-10, at_most=10)
+    return read_pairs(reader, field, node, path, parts=(number, number), most=MOST_LAW_POINTS, row="[u, s]")
 
 
 _POINTS = Form(

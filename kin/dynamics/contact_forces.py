@@ -108,14 +108,14 @@ class Guided(NamedTuple):
         While both bear, P1 - P2 less friction is linear in P1 for either sign of both reactions. Friction takes the
         signs that make it greatest: of four solutions P1 is the greatest where that opposes it, else the least.
         """
-        ratio, most = self.elastic.second / self.elastic.first, -self.elastic.loses_first
-        solutions = []
-        for near in (-1.0, 1.0):
+        ratio, preload_sum = self.elastic.second / self.elastic.first, -self.elastic.loses_first
+        force_by_signs = []
+        for near in (-1.0, 1.0):  # signs of the reactions at both ends of the guide
             for far in (-1.0, 1.0):
                 first, second = self.rub * (near * self.ends[:, 0] + far * self.ends[:, 1])
-                solutions.append((force + most * (1.0 + second)) / (1.0 + ratio - first + ratio * second))
-        both = np.where(self.rub > 0.0, np.max(solutions, axis=0), np.min(solutions, axis=0))
-        pair = np.array([both, most - ratio * both])
+                force_by_signs.append((force + preload_sum * (1.0 + second)) / (1.0 + ratio - first + ratio * second))
+        first_force = np.where(self.rub > 0.0, np.max(force_by_signs, axis=0), np.min(force_by_signs, axis=0))
+        pair = np.array([first_force, preload_sum - ratio * first_force])
         alone = self.alone
         pair = np.where(force > self.loses_second, [force / alone[0], np.zeros_like(force)], pair)
         pair = np.where(force < self.loses_first, [np.zeros_like(force), -force / alone[1]], pair)

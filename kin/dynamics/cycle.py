@@ -39,7 +39,11 @@ class Turn(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ContactSamples:
-    """Samples of a state of contact in time order: stretch (n,), time in it (n,), level (n,); `knots` of all."""
+    """Samples of a state of contact in time order: stretch (n,), time since its start (n,), rad, and level (n,).
+
+    The level is the contact force, N or N m: contact ends where it falls below 0. `knots` are the shaft angles, rad, at
+    which the stretches begin.
+    """
 
     stretch: Indices
     time: Array
@@ -66,9 +70,8 @@ class Log:
     def __init__(self, work: Work) -> None:
         self._work = work
         self.reached, self.changes = 0.0, 0
-        self._greatest, self._greatest_at = -math.inf, 0.0
-        self._least, self._least_at = math.inf, 0.0
-        self._impacts, self._velocity, self._velocity_at = 0, 0.0, 0.0
+        self._greatest, self._least = (-math.inf, 0.0), (math.inf, 0.0)  # forces, each with its shaft angle
+        self._impacts, self._velocity = 0, (0.0, 0.0)  # the greatest velocity, with its shaft angle
         self._free = 0.0
         self._bore: set[int] = set()
 
@@ -86,7 +89,7 @@ class Log:
         if hit is not None:
             samples = samples.until(*hit)
         self._extremes(1.0, samples, span_of, end)
-        if self._least > 0.0:
+        if self._least[0] > 0.0:
             self._extremes(-1.0, samples, span_of, end)
 
     def fly(self, begin: float, end: float) -> None:
@@ -104,9 +107,9 @@ class Log:
         before = np.append(0.0, np.where(joined, step, 0.0))  # how much a sample is above the one before
         after = np.append(np.where(joined, -step, 0.0), 0.0)
         # a parabola is an eighth of what its samples lie apart above them, at most
-        known = sign * (self._greatest if sign > 0.0 else self._least)
-        room = np.maximum(before, after)
-        near = np.flatnonzero((before >= 0.0) & (after >= 0.0) & (level + 0.5 * room > known) & (room > 0.0))
+        known = sign * (self._greatest if sign > 0.0 else self._least)[0]
+        apart = np.maximum(before, after)
+        near = np.flatnonzero((before >= 0.0) & (after >= 0.0) & (level + 0.5 * apart > known) & (apart > 0.0))
         near = near[np.argsort(-level[near], kind="stable")[:_MOST_NEAR]]
         for i in near.tolist():
             stretch, time = int(samples.stretch[i]), float(samples.time[i])
@@ -122,27 +125,17 @@ class Log:
         A force below 0 counts as 0.
         """
         value = max(value, 0.0)
-        if value > self._greatest:
-            self._greatest, self._greatest_at = value, phi
-        if value < self._least:
-            self._least, self._least_at = value, phi
+        if value > self._greatest[0]:
+            self._greatest = value, phi
+        if value < self._least[0]:
+            self._least = value, phi
 
     def meet(self, speed: float, phi: float) -> None:
         """Count an impact of the follower on a face, at a relative speed, m/s or rad/s, and shaft angle phi, rad."""
         self._impacts += 1
-        if speed > self._velocity:
-            self._velocity, self._velocity_at = speed, phi
+        if speed > self._velocity[0]:
+            self._velocity = speed, phi
 
     def turn(self) -> Turn:
         """Result of the turn."""
-        return Turn(
-            self._greatest,
-            self._greatest_at,
-            self._least,
-            self._least_at,
-            self._impacts,
-            self._velocity,
-            self._velocity_at,
-            self._free,
-            frozenset(self._bore),
-        )
+        return Turn(*self._greatest, *self._least, self._impacts, *self._velocity, self._free, frozenset(self._bore))

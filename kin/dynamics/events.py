@@ -100,14 +100,14 @@ class Pressed:
         self._factors = free.summed(*weights)
 
     def at(self, time: Array) -> Array:
-        """See `Span`."""
+        """Contact force (n,), N or N m, at times (n,) from the knot, rad."""
         cosine, other = self._free.oscillator.basis(time - self._free.since)
         first, second = self._factors
         value: Array = together(self._series[None], time / self._half - 1.0)[0] + first * cosine + second * other
         return value
 
     def once(self, time: float) -> float:
-        """See `Span`."""
+        """Contact force, N or N m, at one time from the knot, rad."""
         cosine, other = self._free.oscillator.basis_at(time - self._free.since)
         first, second = self._factors
         return value(self._plain, time / self._half - 1.0) + first * cosine + second * other

@@ -41,7 +41,7 @@ class Intended:
         return self.follower.motion.breaks
 
     def rows(self, phi: Array) -> Array:
-        """See `kin.follower.drive.Excitation`."""
+        """Position and two derivatives by the shaft angle, (3, n), at shaft angles phi (n,): m or rad."""
         return self.follower.si * self.follower.motion.derivatives(phi, 2)
 
 
@@ -63,7 +63,7 @@ class OfMechanism:
         return shaft
 
     def rows(self, phi: Array) -> Array:
-        """See `kin.follower.drive.Excitation`."""
+        """Output and two derivatives by the shaft angle, (3, n), at shaft angles phi (n,): m or rad."""
         at = self.mechanism.at(self.mechanism.relative(phi), 2)
         rows: Array = self._unit * at.over_shaft(at.output)
         return rows

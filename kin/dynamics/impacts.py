@@ -100,7 +100,7 @@ class _Course:
     def __init__(self, running: Running, faces: tuple[Drive, Drive | None], most: int) -> None:
         self.running = running
         self.lower, self.upper = faces
-        self.found = {
+        self.responses = {
             LOWER: running.response(self.lower),
             FREE: response(running.loose, self.lower, running.forcing),
         }
@@ -110,10 +110,12 @@ class _Course:
             if least <= 0.0:
                 where = math.degrees(at) % 360.0
                 raise DynamicsError(f"no backlash is left at {where:.6g} degrees: {least:.3g} m or rad")
-            self.found[UPPER] = running.response(self.upper)
+            self.responses[UPPER] = running.response(self.upper)
             rows = (self.upper.position - self.lower.position, self.upper.velocity - self.lower.velocity)
             self.gap = np.stack(rows, axis=1)
-        self.forces = {side: running.force(self.found[side], side) for side in (LOWER, UPPER) if side in self.found}
+        self.forces = {
+            side: running.force(self.responses[side], side) for side in (LOWER, UPPER) if side in self.responses
+        }
         self.contact = running.train.stiffness, running.train.damping * running.speed
         scale = running.inertia * float(np.abs(self.lower.acceleration).sum(axis=1).max())
         self.limit = -_LEVEL * (scale + running.train.preload)
@@ -157,15 +159,15 @@ class _Course:
 
     def _turn(self, state: State, log: Log) -> State:
         contact, place, time = state.contact, 0, 0.0
-        current = np.array([state.z, state.v - self.found[contact].drive.jumps[0]])
+        current = np.array([state.z, state.v - self.responses[contact].drive.jumps[0]])
         # a state that has just begun may not end at once by rounding, but a jump may end it
         while True:
-            event = self._on(contact, place, time, current, log)
+            event = self._run_on(contact, place, time, current, log)
             if not isinstance(event, tuple):
                 return State(contact, float(event[0]), float(event[1]))
             begins, place, time, current = event
-            phi = float(self.found[contact].drive.knots[place]) + time
-            current = self._over(current, contact, begins, phi)
+            phi = float(self.responses[contact].drive.knots[place]) + time
+            current = self._relative_to_face(current, contact, begins, phi)
             log.changes += 1
             if log.changes > _MOST_EVENTS:
                 raise SpentError
@@ -174,11 +176,11 @@ class _Course:
                 log.meet(-begins * float(current[1]) * self.running.speed, phi)
                 log.force(-begins * float(k * current[0] + c * current[1]), phi)
             contact = begins
-            drive = self.found[contact].drive
+            drive = self.responses[contact].drive
             place = drive.find(phi)
             time = phi - float(drive.knots[place])
 
-    def _over(self, current: Array, before: int, after: int, phi: float) -> Array:
+    def _relative_to_face(self, current: Array, before: int, after: int, phi: float) -> Array:
         """The state over the face that counts after an event."""
         if UPPER not in (before, after):
             return current
@@ -195,14 +197,14 @@ class _Course:
 
     def _pressed_face(self, contact: int, place: int, free: Free) -> Pressed:
         """A face that bears on one stretch."""
-        half = float(self.found[contact].half[place])
+        half = float(self.responses[contact].half[place])
         k, c = self.contact
         series = self.forces[contact].series[place]
         return Pressed(Driven(series, half), free, (-contact * k, -contact * c), self.limit)
 
     def _flight(self, place: int, free: Free) -> Flight:
         """A train without contact on one stretch."""
-        here = self.found[FREE]
+        here = self.responses[FREE]
         half = float(here.half[place])
         gap = None
         if self.gap is not None:
@@ -211,34 +213,34 @@ class _Course:
             gap = Path(self.gap[own], float(self.lower.half[own]), begin - float(self.lower.knots[own]))
         return Flight(Path(np.stack([here.p[place], here.v[place]]), half), free, self.contact, gap, self.limit)
 
-    def _on(self, contact: int, place: int, time: float, current: Array, log: Log) -> _Event | Array:
+    def _run_on(self, contact: int, place: int, time: float, current: Array, log: Log) -> _Event | Array:
         """Run on to the next event, or to the end of the turn: the state (2,) there."""
-        here = self.found[contact]
-        window, alone = _FIRST_WINDOW, _ALONE
+        here = self.responses[contact]
+        window, singly = _FIRST_WINDOW, _ALONE  # the first stretches one by one, then windows that double
         while True:
-            landing = self._along(contact, place, time, current, log)
-            if isinstance(landing, tuple):
-                return landing
-            current, place, time = landing, place + 1, 0.0
-            if alone and place < len(here):
-                alone -= 1
+            event = self._run_along(contact, place, time, current, log)
+            if isinstance(event, tuple):
+                return event
+            current, place, time = event, place + 1, 0.0
+            if singly and place < len(here):
+                singly -= 1
                 current = current - np.array([0.0, here.drive.jumps[place]])
                 continue
             while place < len(here):
                 count = min(window, len(here) - place)
-                starts, quiet = self._quiet(here, place, count, current)
+                starts, quiet = self._before_ringing(here, place, count, current)
                 if not quiet:
                     current = starts[:, place]
                     break
-                event = self._many(contact, starts, place, quiet, log)
-                if event is not None:
-                    return event
+                next_event = self._next_in(contact, starts, place, quiet, log)
+                if next_event is not None:
+                    return next_event
                 current = here.end(current, place, quiet)
                 place, window = place + quiet, min(2 * window, _MOST_WINDOW)
             if place == len(here):
                 return current
 
-    def _quiet(self, here: Response, place: int, count: int, before: Array) -> tuple[Array, int]:
+    def _before_ringing(self, here: Response, place: int, count: int, before: Array) -> tuple[Array, int]:
         """States (2, m) at the starts of the next `count` stretches, and how many come before one that rings long."""
         starts = np.zeros((2, len(here)))
         starts[:, place : place + count] = here.starts(before, place, count)
@@ -246,9 +248,9 @@ class _Course:
         loud = np.flatnonzero(fine > _QUIET)
         return starts, int(loud[0]) if len(loud) else count
 
-    def _along(self, contact: int, place: int, time: float, current: Array, log: Log) -> _Event | Array:
+    def _run_along(self, contact: int, place: int, time: float, current: Array, log: Log) -> _Event | Array:
         """Run on along one stretch to the next event, or to its end: the state (2,) there."""
-        here = self.found[contact]
+        here = self.responses[contact]
         free = here.free(place, time, current)
         end = 2.0 * float(here.half[place])
         if contact == FREE:
@@ -271,9 +273,9 @@ class _Course:
                 return FREE, place, hit, here.moved(place, free, hit)
         return here.moved(place, free, end)
 
-    def _many(self, contact: int, starts: Array, place: int, count: int, log: Log) -> _Event | None:
+    def _next_in(self, contact: int, starts: Array, place: int, count: int, log: Log) -> _Event | None:
         """Look along whole stretches at once, from the states (2, m) at their starts: the next event in them."""
-        here = self.found[contact]
+        here = self.responses[contact]
         at = here.samples(starts, np.arange(place, place + count))
         self.work.take(len(at.time))
         if contact == FREE:
@@ -297,7 +299,7 @@ class _Course:
 
     def _far(self, starts: Array, samples: Samples, log: Log) -> _Event | None:
         """Fly along whole stretches; those on which a face may be met between two samples are looked along alone."""
-        here = self.found[FREE]
+        here = self.responses[FREE]
         knots = here.drive.knots
         first_, last = int(samples.stretch[0]), int(samples.stretch[-1])
         begin = float(knots[first_])
@@ -320,7 +322,7 @@ class _Course:
 
     def _bends(self, starts: Array) -> Array:
         """Bound (m,) of the second derivative of the distance to either face in flight, on each stretch."""
-        here, oscillator = self.found[FREE], self.found[FREE].oscillator
+        here, oscillator = self.responses[FREE], self.responses[FREE].oscillator
         if not oscillator.square:
             return self._driven_bends
         bends: Array = self._driven_bends + oscillator.square * oscillator.bound(starts - here.ends[0].T)
@@ -329,7 +331,7 @@ class _Course:
     @cached_property
     def _driven_bends(self) -> Array:
         """What `_bends` are without free motion."""
-        here = self.found[FREE]
+        here = self.responses[FREE]
         bounds: Array = np.abs(here.v @ DERIVATIVE.T).sum(axis=1) / here.half
         if self.gap is not None:
             bends = np.abs(self.gap[:, 1] @ DERIVATIVE.T).sum(axis=1) / self.lower.half

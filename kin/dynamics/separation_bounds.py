@@ -142,7 +142,7 @@ class Look:
         return float(np.abs(series).sum(axis=1).max())
 
     @cached_property
-    def driven(self) -> Array:
+    def least_driven(self) -> Array:
         """Lower bound (m, 32) of the force that goes with q, on the windows of each stretch."""
         series = self._series
         at = series @ _ON_GRID
@@ -213,7 +213,7 @@ class Look:
 
         It holds at this speed and at all lower ones.
         """
-        return float(self.lower_bound(self.ages[0], self.driven).min())
+        return float(self.lower_bound(self.ages[0], self.least_driven).min())
 
     @cached_property
     def _forces(self) -> Array:
@@ -230,7 +230,7 @@ class Look:
         sag = np.abs(self._figure.series) @ _CURVED + self.gain * self._size(bends) * response.half**2
         lowest: Array = np.minimum(self._forces[:, :-1], self._forces[:, 1:]) - (_WINDOW**2 / 8.0 * sag)[:, None]
         if response.slow.any():  # a window of theirs may hold many swings
-            lowest[response.slow] = self.lower_bound(self._size(free), self.driven)[response.slow]
+            lowest[response.slow] = self.lower_bound(self._size(free), self.least_driven)[response.slow]
         return lowest
 
     @cached_property
@@ -307,11 +307,11 @@ class Range:
         low, high = self.low, self.high
         if not high.swings:
             return -math.inf
-        sizes, driven = high.rung * high.oscillator.detuning, high.driven
+        sizes, driven = high.rung * high.oscillator.detuning, high.least_driven
         growth, power = self.width * (math.pi + _POWER / high.b), self.width * _POWER / high.b
         if np.array_equal(low.response.slow, high.response.slow):
             sizes = np.maximum(sizes, low.gain / high.gain * low.rung * low.oscillator.detuning)
-            driven = np.minimum(driven, low.driven)
+            driven = np.minimum(driven, low.least_driven)
             growth, power = growth**2 / 8.0, power**2 / 4.0
         return (
             float(high.lower_bound((sizes + growth * high.turn) / self.detuning, driven).min()) - power * high.inertial

@@ -50,35 +50,28 @@ class _Purse:
         self._places, self._searches = max(0, self._places - places), self._searches - 1
 
 
-class DynamicsResult(NamedTuple):
-    """The report's section, and the checks."""
-
-    section: dict[str, Any]
-    checks: tuple[Check, ...]
-
-
 class _Scene(NamedTuple):
     """Data that all runs of a recipe share.
 
-    `unit` converts metres or radians to the report's unit, whose name is `name`.
+    `unit` converts metres or radians to the report's unit, whose name is `unit_name`.
     """
 
     recipe: Recipe
-    asked: Dynamics
+    dynamics: Dynamics
     train: Train
     floats: _Purse
     courses: _Purse
     rests: tuple[tuple[float, float], ...]
     unit: float
-    name: str
+    unit_name: str
 
 
-def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> DynamicsResult:
-    """Find the dynamics of a recipe that asks for them, as intended and with each drawing and solid that was read.
+def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> tuple[dict[str, Any], list[Check]]:
+    """Section `dynamics` of the report and its checks: as intended, and with each drawing and solid that was read.
 
     Checks, for the intent and each file: `float`, that the contact force stays above 0 at the speed asked for, or with
-    play `play`, that some is left. Raises RecipeErrors where the train has no steady state, and ValueError for a recipe
-    that asks for no dynamics.
+    backlash `least-backlash`, that some is left. Raises RecipeErrors where the train has no steady state, and
+    ValueError for a recipe that asks for no dynamics.
     """
     from kin.dynamics.drive import DriveError
     from kin.dynamics.train import DynamicsError
@@ -95,7 +88,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
     checks: list[Check] = []
     for file in sources:
         try:
-            entry, check = _one(scene, design, file)
+            entry, check = _run(scene, design, file)
         except DynamicsError as error:
             raise recipe.error("dynamics", str(error)) from error
         except (ContactError, DriveError) as error:
@@ -113,11 +106,11 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
         "natural_ratio": train.ratio(train_keys.rpm),
         "natural_rpm": train.natural * 30.0 / math.pi,
         "damping_ratio": train.damping_ratio,
-        "unit": scene.name,
-        "force_unit": "N" if scene.name != "deg" else "N m",
+        "unit": scene.unit_name,
+        "force_unit": "N" if scene.unit_name != "deg" else "N m",
         "runs": entries,
     }
-    return DynamicsResult(section, tuple(checks))
+    return section, checks
 
 
 def steady_force(recipe: Recipe, design: Design, dynamics: Dynamics, shaft: Array) -> tuple[Running, Array]:
@@ -158,7 +151,9 @@ def _scene(recipe: Recipe, dynamics: Dynamics, design: Design, runs: int) -> _Sc
         dwells = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
-    return _Scene(recipe, dynamics, train, _Purse(runs), _Purse(runs), dwells, unit, name)
+    return _Scene(
+        recipe, dynamics, train, floats=_Purse(runs), courses=_Purse(runs), rests=dwells, unit=unit, unit_name=name
+    )
 
 
 def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
@@ -168,7 +163,7 @@ def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
     if design.driven is not None:
         return Faces(OfMechanism(design.driven.mechanism), None)
     follower = design.exact.gauge
-    play = scene.asked.backlash
+    play = scene.dynamics.backlash
     if play is not None:  # at the contact, which of a double follower lies about an arm's length from its pivot
         play = follower.moved_by(play)
     if file is None or file.contour is None:
@@ -176,7 +171,7 @@ def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
     return measured_faces(follower, file.contour, play)
 
 
-def _one(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[str, Any], Check]:
+def _run(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[str, Any], Check]:
     """Entry of the report for a run of the train, as intended or with a file's cam, and its check."""
     drives = _drives(scene, design, file)
     entry: dict[str, Any] = {"from": "intended" if file is None else file.path.name}
@@ -192,7 +187,7 @@ def _drives(scene: _Scene, design: Design, file: FileResult | None) -> list[Driv
     from kin.follower.drive import Shifted
 
     faces = _faces(scene, design, file)
-    if scene.asked.rate:  # the spring's force is given at the lowest place
+    if scene.dynamics.rate:  # the spring's force is given at the lowest place
         faces = Faces(Shifted(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
     ends = [end for rest in scene.rests for end in rest]
     return drives([face for face in faces if face is not None], ends)
@@ -212,15 +207,15 @@ def _lowest(motion: Excitation) -> float:
 def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[dict[str, Any], Check]:
     from kin.dynamics.train import steady
 
-    train, rpm = scene.train, scene.asked.rpm
+    train, rpm = scene.train, scene.dynamics.rpm
     state = steady(train, drive, rpm, scene.rests)
     entry["steady"] = _steady(scene, state)
-    if scene.asked.transient:
+    if scene.dynamics.transient:
         entry |= _followed(_course(scene, drive, None), rpm, train)
     entry |= _float_speed(scene, drive)
     least = state.force.least
     detail = f"greatest {state.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
-    unit = "N m" if scene.name == "deg" else "N"
+    unit = "N m" if scene.unit_name == "deg" else "N"
     at_deg = degrees(state.force.least_at)
     return entry, Check(FLOAT.name, least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)
 
@@ -228,7 +223,7 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
 def _course(scene: _Scene, lower: Drive, upper: Drive | None) -> Course:
     from kin.dynamics.impacts import course
 
-    followed = course(scene.train, (lower, upper), scene.asked.rpm, TURNS, most=scene.courses.share())
+    followed = course(scene.train, (lower, upper), scene.dynamics.rpm, TURNS, most=scene.courses.share())
     scene.courses.spend(followed.places)
     return followed
 
@@ -240,16 +235,16 @@ def _with_backlash(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Dr
 
     least, at = least_gap(lower, upper)
     detail = ""
-    if least > 0.0 and scene.asked.transient:
+    if least > 0.0 and scene.dynamics.transient:
         followed = _course(scene, lower, upper)
         if not followed.turns and followed.stopped is not None:
             raise DynamicsError(followed.stopped)
-        entry |= _followed(followed, scene.asked.rpm, scene.train)
+        entry |= _followed(followed, scene.dynamics.rpm, scene.train)
         bore = followed.turns[-1].bore
         entry["impacts"]["faces"] = [name for name, face in (("lower", LOWER), ("upper", UPPER)) if face in bore]
         if not bore:
             detail = "the follower touches neither face: the backlash exceeds the cam's motion"
-    swings = scene.name == "deg"
+    swings = scene.unit_name == "deg"
     value, unit = (math.degrees(least), "deg") if swings else (1e3 * least, "mm")
     return entry, Check(LEAST_BACKLASH.name, least > 0.0, value, 0.0, unit, degrees(at), "at_least", detail=detail)
 

@@ -101,8 +101,8 @@ class FrameRunning(Running):
         y = self.position(rows)
         force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
         forces = self._given(motion, force, self.speed)
-        (first, three), (two, four) = map(self._faces, forces.pairs)
-        normal = np.array([first, two, three, four])
+        (one, three), (two, four) = map(self._faces, forces.pairs)
+        normal = np.array([one, two, three, four])
         reactions = {"across": forces.across, "along": forces.along} | self._joints(motion, forces.joint)
         return State(force, y, normal, PER_MM * forces.torque, self._pressure(t, normal), reactions)
 
@@ -118,7 +118,7 @@ class FrameRunning(Running):
 
     @cached_property
     def pressed(self) -> Elastic | None:
-        """The faces of either pair under a preload, N and mm, None where there is play."""
+        """Preload of either pair of faces, N, and their stiffness, N/mm; None with play, and without a stiffness."""
         from kin.dynamics.contact_forces import preloaded
 
         preload = self.design.exact.preload

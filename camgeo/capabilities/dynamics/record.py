@@ -78,9 +78,8 @@ def _examine(recipe: Recipe, design: Design, files: Sequence[FileResult], clock:
         from camgeo.capabilities.dynamics.measure import of_runs
 
         with clock.stage("dynamics"):
-            results = dynamics_of(recipe, design, files)
-        sections["dynamics"], checks = results.section, results.checks
-        runs = of_runs(results.section, checks)
+            section, checks = dynamics_of(recipe, design, files)
+        sections["dynamics"], runs = section, of_runs(section, checks)
     with clock.stage("forces"):
         forces = rigid_forces(recipe, design)
     if forces is not None:

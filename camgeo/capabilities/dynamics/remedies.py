@@ -26,9 +26,10 @@ if TYPE_CHECKING:
 
 
 def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Tell the preload at which contact holds as intended and with every file.
+    """The preload at which contact holds as intended and with every file, in words.
 
-    Against the spring's rate the train's stiffness passes k/(k + k_p) of a preload on to the contact.
+    Empty where contact holds, and for a train without preload. Against the spring's rate the train's stiffness passes
+    k/(k + k_p) of a preload on to the contact.
     """
     train, least = recipe.of(Dynamics), worst(check, report)
     if train is None or train.preload is None or not least < 0.0:

@@ -194,7 +194,7 @@ class Running(ABC):
         return contact_width(self.train.width, part.thickness, part.edge, depth)
 
     def hertz(self, normal: Array, curvature: Array) -> Array | None:
-        """Hertz's pressure of line contacts, N/mm^2, by forces, N, and curvatures, 1/mm; None without material."""
+        """Hertz's pressure of line contacts, N/mm^2 (m, n), by force, N, and curvature, 1/mm; None without material."""
         train = self.train
         if train.material is None or self.width is None:
             return None

@@ -195,12 +195,13 @@ class FollowerRunning(Running):
         return {"guide_a": near, "guide_b": far}
 
     def _pressure(self, normal: Array, lines: Sequence[ContactLine]) -> Array | None:
-        pressures = []
+        """Hertz's pressure of each contact, N/mm^2, (m, n); None without material or width."""
+        curvatures = []
         follower = self.design.follower
         for line, side, contact in zip(lines, self.sides, follower.contacts, strict=True):
             radius = follower.running(contact).radius
-            pressures.append(side / (line.bent - side * contact.touch.radius) + (1.0 / radius if radius else 0.0))
-        return self.hertz(normal, np.array(pressures))
+            curvatures.append(side / (line.bent - side * contact.touch.radius) + (1.0 / radius if radius else 0.0))
+        return self.hertz(normal, np.array(curvatures))
 
     def _roller_rpm(self, lines: Sequence[ContactLine]) -> Array | None:
         from kin.follower.contact_lines import roller_turns

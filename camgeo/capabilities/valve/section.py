@@ -99,7 +99,7 @@ def panel(report: dict[str, Any]) -> str:
 def plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
     """Plots of lift, velocity and acceleration of the valve over the turn, in the recipe's unit.
 
-    None without a valve.
+    Empty without a valve.
     """
     valve = valve_of(recipe, design)
     if valve is None:
