@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 
 class Elastic(NamedTuple):
-    """Two contacts under preload: preload P and stiffness K of each contact, both along the travel; (n,) each."""
+    """Two contacts under preload: preload P and stiffness K of each contact, both along the travel; (n,) each.
+
+    N and N/mm; about a pivot N mm and N mm/rad.
+    """
 
     preload: Array
     first: Array

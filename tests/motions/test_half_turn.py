@@ -1,7 +1,4 @@
-"""Cams between two opposite contacts: one half turn gives the other.
-
-Holds: camgeo.motions.by_motion.
-"""
+"""Cams between two opposite contacts: one half turn gives the other."""
 
 from pathlib import Path
 
