@@ -1,6 +1,6 @@
 """Reports of recipes in inches: pounds beside N in text, page and table; the numbers in SI stay where they were.
 
-Holds: camgeo.capabilities.dynamics.table, camgeo.capabilities.dynamics.force_figures.
+Holds: camgeo.capabilities.dynamics.table.
 """
 
 from __future__ import annotations

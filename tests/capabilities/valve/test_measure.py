@@ -94,6 +94,7 @@ def test_files_report_and_page(tmp_path: Path) -> None:
     (tmp_path / "lobe.yaml").write_text(f"{text}export: {{files: [{{csv: {{as: valve}}}}, html]}}\n", encoding="utf-8")
     report: dict[str, Any] = dict(camgeo.export(tmp_path / "lobe.yaml", tmp_path))
     entry = report["valve"]
+    assert (entry["lash"], entry["unit"]) == (0.3, "mm")
     assert entry["ratio"] == [[0.0, 1.5], [3.0, 1.58], [6.0, 1.62], [9.0, 1.6]]
     seat, open_ = entry["events"]
     assert (seat["lift"], open_["lift"]) == (0.0, 1.0)
