@@ -125,7 +125,7 @@ class Swing:
 
     def rows(self, phi: Array) -> Array:
         """Swing and two derivatives at shaft angles phi (n,), (3, n); at a break those of either side."""
-        tau, side = self._parameter.at(phi)
+        tau, side = ParameterTable.of(self.transmission).at(phi)
         shaft, psi = self.transmission.jets(Jet.variable(tau, 3), side)
         p = [row.c[0] for row in derivatives_by(psi, shaft)]
         h = np.mod(phi - shaft.c[0] + np.pi, TURN) - np.pi  # tau is near enough for a step of third order
@@ -135,10 +135,6 @@ class Swing:
             rows[:, far] = self.transmission.psi_of_shaft(phi[far], 2)
         swing: Array = self.share * rows
         return swing
-
-    @cached_property
-    def _parameter(self) -> ParameterTable:
-        return ParameterTable.of(self.transmission)
 
     @cached_property
     def _steepness(self) -> Steepness:
