@@ -206,11 +206,12 @@ def names(cases, slow):
     return [pytest.param(name, marks=pytest.mark.slow) if name in slow else name for name in cases]
 
 
-def shown_as_measured(topic, name):
-    """Every row of a case holds, and the page has its lines, in their order, with their bounds.
+def shown_as_measured(module, name):
+    """Every row of a case of a test's module holds, and the page has its lines, in their order, with their bounds.
 
     Figures of rounding differ between machines: of those that the page shows, only their bound is held.
     """
+    topic = module.rpartition(".")[2]
     rows = measured(topic, name)
     assert rows
     assert [row.line() for row in rows if not row.holds] == []
