@@ -28,7 +28,7 @@ from scipy.integrate import solve_ivp
 from kin.dynamics.drive import drives
 from kin.dynamics.oscillator import Oscillator
 from kin.dynamics.peaks import ResponseFigure
-from kin.dynamics.response import Forcing, Samples, response
+from kin.dynamics.response import Forcing, ResponsePlaces, response
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
@@ -67,7 +67,7 @@ def exact(ratio):
     found = response(Oscillator(ZETA * ratio, ratio**2), drive, Forcing())
     starts = found.starts(np.zeros(2), 0, len(found))
     stretch = np.minimum(np.searchsorted(found.drive.knots, PLACES, side="right") - 1, len(found) - 1)
-    samples = Samples(stretch, PLACES - found.drive.knots[stretch])
+    samples = ResponsePlaces(stretch, PLACES - found.drive.knots[stretch])
     return ResponseFigure.of(found, 1.0, 0.0).at(starts, samples), len(found)
 
 

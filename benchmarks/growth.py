@@ -50,7 +50,7 @@ from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended, intents, permitted
 from kin.contour.contour import Contour
 from kin.judge.contour_checks import judge_contour
-from kin.read.nesting import Chain
+from kin.read.nesting import ClosedContour
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -164,7 +164,7 @@ def judged(name: str) -> Callable[[float], Callable[[], object]]:
         run = contour.runs[0]
         t = np.linspace(run.low, run.high, int(count), endpoint=False)
         points = contour.sample(t).point
-        return lambda: judge_contour(Chain(Contour.from_vertices(points)), surface, phi, limits)[0] and None
+        return lambda: judge_contour(ClosedContour(Contour.from_vertices(points)), surface, phi, limits)[0] and None
 
     return prepare
 
@@ -274,7 +274,7 @@ def in_memory(recipe: Recipe) -> None:
     surfaces = (surface for intent in intents(recipe, design) for surface in intent.surfaces)
     for fit, surface in zip(Job.of(recipe, design).fits, surfaces, strict=True):
         arcs = fit.within("arcs", MICROMETRE)
-        judge_contour(Chain(Contour.from_bulges(arcs.points, arcs.bulges)), surface, phi, limits)
+        judge_contour(ClosedContour(Contour.from_bulges(arcs.points, arcs.bulges)), surface, phi, limits)
 
 
 def warm(pattern: str, *, small: bool) -> dict[Path, list[float]]:

@@ -11,11 +11,12 @@ if TYPE_CHECKING:
     from camgeo import capabilities
     from camgeo.api.check import Check, Figure, Figures
     from camgeo.api.design import Design
+    from camgeo.api.designing import design
     from camgeo.api.edges import Arc, Edges, Line, Spline
     from camgeo.api.laws import Law, laws
     from camgeo.api.loading import load
     from camgeo.api.report import File, Remark, Report
-    from camgeo.api.run import check, design, export, verify
+    from camgeo.api.run import check, export, verify
     from camgeo.capabilities import *  # noqa: F403 - their folder says which names these are
     from camgeo.common.errors import BusyError, CallError, SurroundingsError
     from camgeo.fit.nodes import ToleranceError
@@ -78,7 +79,7 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
         "ToleranceError": "camgeo.fit.nodes",
         "UnitsError": "kin.judge.verify",
         "check": "camgeo.api.run",
-        "design": "camgeo.api.run",
+        "design": "camgeo.api.designing",
         "export": "camgeo.api.run",
         "laws": "camgeo.api.laws",
         "load": "camgeo.api.loading",

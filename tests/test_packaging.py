@@ -1,4 +1,7 @@
-"""What the project says of itself: one version, packages that are found, a citation that can be read."""
+"""What the project says of itself: one version, packages that are found, a citation that can be read.
+
+Holds: camgeo.version.
+"""
 
 from __future__ import annotations
 

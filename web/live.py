@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from camgeo.api.report import Report
     from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
-    from camgeo.schema.fields import Field, Form, Table
+    from camgeo.schema.fields import Field, FieldTable, OwnForm
     from kin.numeric.arrays import Array
 
 FOLDER = tempfile.mkdtemp()  # for the recipe, its tables, a file to judge; in the browser's own file system
@@ -63,7 +63,7 @@ PAGE = FileRequest("html")
 ALIKE = 1e-6  # of its size: what a recipe in another unit may differ by
 LENGTHS = ("roller", "shoe", "width", "offset", "pivot", "arm", "x", "y", "reading")  # of a follower
 WRITTEN = {Kind.TEXT, Kind.NAME, Kind.FORMULA, Kind.RATIO}  # fields that hold a text
-_WORDS: dict[Form[Any], list[str]] = {}  # of forms of their own, whose schemas are large
+_WORDS: dict[OwnForm[Any], list[str]] = {}  # of forms of their own, whose schemas are large
 
 
 def answer(call: str, text: str) -> str:
@@ -288,7 +288,7 @@ def more(name: str, text: str) -> dict[str, Any]:
     return {"more": list(_absent(reader, source.root, table))}
 
 
-def _absent(reader: Reader, node: Mapping, table: Table, path: str = "") -> Iterator[dict[str, Any]]:
+def _absent(reader: Reader, node: Mapping, table: FieldTable, path: str = "") -> Iterator[dict[str, Any]]:
     """The fields that the mappings of a recipe could have besides, with what each is and what it is by default."""
     present = entries(node)
     chosen = [set(names) for name, names in table.alternatives if name in present]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.api.check import Figures
-    from camgeo.api.run import Designed
+    from camgeo.api.designing import Designed
     from camgeo.recipe.recipe import Order
 
 
@@ -120,7 +120,7 @@ class Report(Mapping[str, JSON]):
     @cached_property
     def design(self) -> Designed:
         """Design of the recipe, computed at first use, as of `camgeo.design`."""
-        from camgeo.api.run import design
+        from camgeo.api.designing import design
 
         return design(self.recipe)
 

@@ -11,7 +11,7 @@ from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.motions.half_turn import BY_MOTION, MOTION, SWING, HalfTurnCam, check_half_turn
 from camgeo.motions.motion import FormulaMotion
-from camgeo.schema.fields import Table, length
+from camgeo.schema.fields import FieldTable, length
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.records import dataclass, replace
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from camgeo.motions.motion import MotionSource
     from camgeo.schema.reader import Reader, Values
     from kin.law.frame_swing import FrameSwing
-    from kin.law.joints import Joint
+    from kin.law.joints import DerivativeJump
     from kin.law.sources.motion import Kept, Motion
     from kin.law.support_function import Lift
 
@@ -65,7 +65,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         """The lift over the half turn; for a swing over half a turn of the relative angle."""
         return super().half_turn if self.frame_swing is None else self.frame_swing.half_turn
 
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Joints of the half turn's motion, or of the swing over the shaft angle, rad."""
         return super().joints() if self.frame_swing is None else self.frame_swing.joints
 
@@ -124,7 +124,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         return replace(self, base_radius=scale * (self.base_radius + out))
 
 
-TABLE = Table(
+TABLE = FieldTable(
     (
         length("base_radius", "radius of the base circle", required=True),
         replace(MOTION, required=False),

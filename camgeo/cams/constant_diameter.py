@@ -15,7 +15,7 @@ from camgeo.cams.follower import Follower
 from camgeo.cams.guided import LARGER_BASE, SMALLER_STROKE, ExactGuided, GuidedCam, RoundAdvice
 from camgeo.cams.preload import PRELOAD, build_preload, with_preload
 from camgeo.motions.half_turn import BY_MOTION, MOTION, HalfTurnCam, check_half_turn
-from camgeo.schema.fields import Table, length
+from camgeo.schema.fields import FieldTable, length
 from kin.law.contacts import Arrangement, Roller, Translating, opposite
 from kin.numeric.records import dataclass, replace
 
@@ -91,7 +91,7 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
         return replace(self, base_radius=base, roller_radius=radius)
 
 
-TABLE = Table(
+TABLE = FieldTable(
     (
         length("base_radius", "radius of the base circle", required=True),
         length("roller_radius", "radius of both rollers", required=True),

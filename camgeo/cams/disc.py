@@ -14,7 +14,7 @@ from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, find_size
 from camgeo.motions.by_motion import ByMotion
 from camgeo.motions.motion import check_whole_turn, motion_field
 from camgeo.motions.segments import LEAST
-from camgeo.schema.fields import Field, Kind, Table, coordinate, length
+from camgeo.schema.fields import Field, FieldTable, Kind, coordinate, length
 from camgeo.schema.reader import kind_of
 from camgeo.schema.readers import form_of_kinds
 from camgeo.schema.yaml_source import Mapping as Written
@@ -50,13 +50,13 @@ _ROUND_ARM = Field(
     "arm",
     Kind.TABLE,
     "an arm in place of a stem: the follower oscillates, and strokes are degrees",
-    table=Table((length("length", "from the pivot to the roller's centre", required=True), _PIVOT, _SIDE)),
+    table=FieldTable((length("length", "from the pivot to the roller's centre", required=True), _PIVOT, _SIDE)),
 )
 _FACE_ARM = Field(
     "arm",
     Kind.TABLE,
     "an arm in place of a stem: the follower oscillates, and strokes are degrees",
-    table=Table(
+    table=FieldTable(
         (
             _PIVOT,
             coordinate("face", "how much nearer the shaft than its parallel through the pivot", default="0"),
@@ -66,11 +66,11 @@ _FACE_ARM = Field(
 )
 _OFFSET = coordinate("offset", "eccentricity of the stem's line, above 0 on the side of the rise", default="0")
 
-FOLLOWERS: dict[str, Table] = {
-    "roller": Table((length("radius", "radius of the roller", required=True), _OFFSET, _ROUND_ARM)),
-    "knife-edge": Table((_OFFSET, _ROUND_ARM)),
-    "shoe": Table((length("radius", "radius of the curved shoe", required=True), _OFFSET, _ROUND_ARM)),
-    "flat": Table(
+FOLLOWERS: dict[str, FieldTable] = {
+    "roller": FieldTable((length("radius", "radius of the roller", required=True), _OFFSET, _ROUND_ARM)),
+    "knife-edge": FieldTable((_OFFSET, _ROUND_ARM)),
+    "shoe": FieldTable((length("radius", "radius of the curved shoe", required=True), _OFFSET, _ROUND_ARM)),
+    "flat": FieldTable(
         (
             Field(
                 "tilt", Kind.ANGLE, "turn of the face's normal ahead of travel", default="0", at_least=-80, at_most=80
@@ -88,7 +88,7 @@ FOLLOWERS: dict[str, Table] = {
 ON_DISC_2 = (0.0, 1.0)  # shares of a preload
 FOLLOWER = form_of_kinds("follower", FOLLOWERS, "follower of kind")
 
-TABLE = Table(
+TABLE = FieldTable(
     (
         length("base_radius", "radius of the cam's own circle at displacement 0, or of a ring's opening"),
         SIZING,

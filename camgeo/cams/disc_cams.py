@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from camgeo.curve.moving_frame import Displacement
     from camgeo.motions.motion import MotionSource, Open
     from kin.law.contacts import Guide, Side, Touch
-    from kin.law.joints import Joint
+    from kin.law.joints import DerivativeJump
     from kin.law.sources.motion import Kept, Motion
 
 
@@ -82,7 +82,7 @@ class DiscCam(GuidedCam):
     def _contact(self) -> Contact[Guide, Touch]:
         return Contact(self.guide, self.touch, self.datum)
 
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Joints of the motion over the turn, or over the part of it that repeats."""
         return self._turn.joints
 

@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from camgeo.motions.by_motion import ByMotion
     from camgeo.motions.motion import MotionSource, Open
     from camgeo.motions.position import Position
-    from camgeo.schema.fields import Table
+    from camgeo.schema.fields import FieldTable
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
     from kin.follower.base import Follower as Gauge
     from kin.law.contacts import Arrangement, Contact, Guide, Side, Touch
     from kin.law.frame_swing import FrameSwing
-    from kin.law.joints import Joint
+    from kin.law.joints import DerivativeJump
     from kin.law.piecewise import Piecewise
     from kin.law.sources.motion import Kept
     from kin.law.support_function import Lift
@@ -251,7 +251,7 @@ class ExactCam(ABC):
         return self.law.rounding
 
     @property
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Joints of the recipe's motion, angles at which derivatives jump; displacements in mm or rad."""
         return ()
 
@@ -458,7 +458,7 @@ class Family:
 
     kind: str
     arrangement: Arrangement
-    table: Table
+    table: FieldTable
     build: Callable[[Values, float], Cam]
     check: Callable[[Values, Reader], None]
     by_motion: ByMotion

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from camgeo.cams.family import Preload
     from kin.law.contacts import Guide, Touch
-    from kin.law.joints import Joint
+    from kin.law.joints import DerivativeJump
     from kin.law.piecewise import Piecewise
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
@@ -94,7 +94,7 @@ class FlatFacedCam(Cam):
         """The cam with its support function, and its preload."""
         return with_preload(ExactLifted(self, self.lift(), framed), self.preload)
 
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Angles at which derivatives of the recipe's motion jump."""
         return ()
 
@@ -153,7 +153,7 @@ class ExactLifted(ExactCam):
         return self.law.law
 
     @cached_property
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Joints of the recipe's motion."""
         return self.cam.joints()
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.guided import Flank, Holding, RoundAdvice
-from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length
+from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, coordinate, length
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.read_scalar import read_choice
 from camgeo.schema.yaml_source import Mapping
@@ -79,7 +79,7 @@ GROOVE = Field(
     Kind.TABLE,
     "a groove with a flank on either side of the roller",
     required=True,
-    table=Table(
+    table=FieldTable(
         (
             coordinate(
                 "clearance",
@@ -103,8 +103,8 @@ TRACK = Field(
     "which side of the metal is followed: internal is the opening of a ring, a groove has both",
     default="external",
     choices=("external", "internal"),
-    table=Table((GROOVE,)),
-    form=Form(
+    table=FieldTable((GROOVE,)),
+    form=OwnForm(
         "a track",
         "external, internal or a mapping such as {groove: {clearance: 0.03, depth: 6}}",
         read_track,

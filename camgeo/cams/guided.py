@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from camgeo.curve.moving_frame import CentreShape, Displacement
     from camgeo.curve.rates import Series
     from kin.law.contacts import Contact, Guide, Side, Touch
-    from kin.law.joints import Joint
+    from kin.law.joints import DerivativeJump
     from kin.law.piecewise import Piecewise
 
 LARGER_BASE = "a larger base radius"
@@ -216,7 +216,7 @@ class GuidedCam(Cam):
         """Guide of the centre; raises IntentError where it does not reach the prime circle."""
 
     @abstractmethod
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Angles at which derivatives of the recipe's motion jump."""
 
     @abstractmethod
@@ -293,7 +293,7 @@ class ExactLed(ExactCam):
         return self.law.law()
 
     @cached_property
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Joints of the recipe's motion."""
         return self.cam.joints()
 

@@ -15,7 +15,7 @@ from camgeo.cams.preload import PRELOAD, with_preload
 from camgeo.common.rounding import downward
 from camgeo.motions.motion import MotionSource, check_filled, motion_field
 from camgeo.motions.position import Position, SwingPosition
-from camgeo.schema.fields import Field, Kind, Table, length, mapping
+from camgeo.schema.fields import Field, FieldTable, Kind, length, mapping
 from kin.law.contacts import Flat
 from kin.numeric.angles import degrees
 from kin.numeric.records import dataclass
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from camgeo.cams.follower import Follower
     from camgeo.cams.surface import Surface
     from camgeo.schema.reader import Reader, Values
-    from kin.law.joints import Joint
+    from kin.law.joints import DerivativeJump
     from kin.law.sources.motion import Kept
     from kin.law.transmission import Transmission
     from kin.law.wanted import Nearest
@@ -253,7 +253,7 @@ class PairCam(Cam):
             return self.route.motion.motion(math.pi / self.lam, field, None).kept
         return None
 
-    def joints(self, law: Transmission) -> tuple[Joint, ...]:
+    def joints(self, law: Transmission) -> tuple[DerivativeJump, ...]:
         """Joints of the swing over 360/lambda degrees; empty where the recipe gives D or an arc by numbers."""
         if not isinstance(self.route, LawRoute | DeltaFormulaRoute | CurveRoute):
             return ()
@@ -308,7 +308,7 @@ class ExactPair(ExactCam):
         return self.law
 
     @cached_property
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Joints of the recipe's motion."""
         return self.cam.joints(self.law)
 
@@ -401,7 +401,7 @@ _ARC = Field(
     "arc",
     Kind.TABLE,
     "first arc of the pitch curve",
-    table=Table(
+    table=FieldTable(
         (
             length("radius", "radius of a circular arc, symmetric about its bisector"),
             Field("side", Kind.CHOICE, "how that bulges", default="convex", choices=("convex", "concave")),
@@ -425,10 +425,10 @@ _ROSETTE = mapping(
 )
 
 
-def pair_table(law: str, roller: tuple[Field, ...]) -> Table:
+def pair_table(law: str, roller: tuple[Field, ...]) -> FieldTable:
     """Table of a double roller or a flat pair, with their keys of a roller and the words for the swing."""
     routes = (_DELTA, motion_field("law", Kind.ANGLE, law), _ARC, _ROSETTE)
-    return Table(
+    return FieldTable(
         (
             Field("ratio", Kind.RATIO, "pi/alpha = lambda/mu in lowest terms, mu odd", required=True),
             length("arm", "arm length, the distance l of the closing equation", required=True),

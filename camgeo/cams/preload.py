@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from camgeo.cams.surface import Surface
     from camgeo.schema.reader import Values
     from kin.follower.base import Follower as Gauge
-    from kin.law.joints import Joint
+    from kin.law.joints import DerivativeJump
     from kin.law.support_function import Lift
 
 
@@ -61,7 +61,7 @@ class PreloadedCam(AlteredCam):
         return self.nominal.gauges
 
     @property
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Joints of the nominal motion."""
         return self.nominal.joints
 

@@ -13,7 +13,7 @@ from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.cams.surface import Surface
 from camgeo.common.rounding import NOISE, upward
 from camgeo.motions.by_motion import ByMotion
-from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, length, mapping
 from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.records import dataclass, field, replace
 
@@ -283,7 +283,7 @@ _HYPOCYCLOID = mapping(
 )
 
 
-TABLE = Table(
+TABLE = FieldTable(
     (
         Field("p", Kind.FORMULA, "support function p(t), t in radians, its value a length"),
         _FOURIER,

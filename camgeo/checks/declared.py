@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from camgeo.cams.follower import Follower
     from camgeo.part.feature import Feature, FeatureCheck
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.figures import Figure
+    from camgeo.recipe.figures import DesignFigure
     from camgeo.recipe.recipe import Recipe
 
 STANDS = "the mechanism does not make a full turn: it has no motion over the shaft angle"
@@ -44,7 +44,7 @@ LIMIT = "limit:"  # before the name of the figure that a recipe limits
 
 
 @dataclass(frozen=True)
-class Scene:
+class CheckFacts:
     """Facts that decide which checks are made: the recipe and the follower of its motion.
 
     In a run also whether the contour is trimmed, and whether the linkage turns right round.
@@ -76,8 +76,8 @@ class Scene:
         return self.recipe.linkage is not None
 
 
-Exact: TypeAlias = "Callable[[Scene], bool]"
-OfFile: TypeAlias = "Callable[[Scene, FileRequest], bool]"
+Exact: TypeAlias = "Callable[[CheckFacts], bool]"
+OfFile: TypeAlias = "Callable[[CheckFacts, FileRequest], bool]"
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Declared:
     units: tuple[str, ...]
     exact: Exact | None = None
     of_file: OfFile | None = None
-    why_not: Callable[[Scene], str] | None = None
+    why_not: Callable[[CheckFacts], str] | None = None
     field: str = ""
     own_field: str = ""
     remedy: remedies.Remedy | None = None
@@ -128,74 +128,74 @@ def _named(name: str) -> Exact:
     return lambda scene: name in scene.follower.checks
 
 
-def _dwells(scene: Scene) -> bool:
+def _dwells(scene: CheckFacts) -> bool:
     dwell = scene.recipe.dwell
     return scene.linked and dwell is not None and dwell.at_least is not None
 
 
-def _contour(_: Scene, file: FileRequest) -> bool:
+def _contour(_: CheckFacts, file: FileRequest) -> bool:
     return file.format.contour
 
 
-def _ground_or_drawn(scene: Scene, file: FileRequest) -> bool:
+def _ground_or_drawn(scene: CheckFacts, file: FileRequest) -> bool:
     return file.form.ground or file.form.curve or _contour(scene, file)
 
 
-def _of_a_drive(_: Scene, file: FileRequest) -> bool:
+def _of_a_drive(_: CheckFacts, file: FileRequest) -> bool:
     return file.as_ == "controller"
 
 
-def _stated(scene: Scene, file: FileRequest) -> bool:
+def _stated(scene: CheckFacts, file: FileRequest) -> bool:
     return file.form.ground or _of_a_drive(scene, file)
 
 
-def _drawing(_: Scene, file: FileRequest) -> bool:
+def _drawing(_: CheckFacts, file: FileRequest) -> bool:
     return file.format.contour and not file.format.solid
 
 
-def _solid(scene: Scene, file: FileRequest) -> bool:
+def _solid(scene: CheckFacts, file: FileRequest) -> bool:
     return _contour(scene, file) and file.format.solid
 
 
-def _reached(scene: Scene, file: FileRequest) -> bool:
+def _reached(scene: CheckFacts, file: FileRequest) -> bool:
     manufacture = scene.recipe.manufacture
     is_drawn = file.format.path and file.compensation is None and manufacture is not None and manufacture.layer
     return is_drawn or file.format.program
 
 
-def _ringed(scene: Scene, file: FileRequest) -> bool:
+def _ringed(scene: CheckFacts, file: FileRequest) -> bool:
     return scene.recipe.part.outer is not None and _contour(scene, file) and not file.format.program
 
 
-def _bored(scene: Scene, file: FileRequest) -> bool:
+def _bored(scene: CheckFacts, file: FileRequest) -> bool:
     return scene.recipe.part.bore is not None and _contour(scene, file) and file.format.bored(scene.recipe)
 
 
-def _drilled(scene: Scene, file: FileRequest) -> bool:
+def _drilled(scene: CheckFacts, file: FileRequest) -> bool:
     return _contour(scene, file) and file.format.drilled(scene.recipe)
 
 
-def _shaped(scene: Scene, file: FileRequest) -> bool:
+def _shaped(scene: CheckFacts, file: FileRequest) -> bool:
     return _contour(scene, file) and not file.format.program
 
 
-def _in_a_yoke(scene: Scene, file: FileRequest) -> bool:
+def _in_a_yoke(scene: CheckFacts, file: FileRequest) -> bool:
     return scene.yoke and scene.follower.closure != "form-closure" and _contour(scene, file)
 
 
-def _form_closed(scene: Scene, file: FileRequest) -> bool:
+def _form_closed(scene: CheckFacts, file: FileRequest) -> bool:
     return scene.follower.closure == "form-closure" and _contour(scene, file)
 
 
-def _driven(scene: Scene, file: FileRequest) -> bool:
+def _driven(scene: CheckFacts, file: FileRequest) -> bool:
     return scene.linked and _contour(scene, file) and file.compensation is None
 
 
-def _dwelling(scene: Scene, file: FileRequest) -> bool:
+def _dwelling(scene: CheckFacts, file: FileRequest) -> bool:
     return _dwells(scene) and _driven(scene, file)
 
 
-def run_with(scene: Scene, file: FileRequest) -> bool:
+def run_with(scene: CheckFacts, file: FileRequest) -> bool:
     """Whether the dynamics of a run are computed with a file's motion: the part is nominal and drives no linkage."""
     return not scene.linked and file.format.part and file.compensation is None
 
@@ -203,31 +203,31 @@ def run_with(scene: Scene, file: FileRequest) -> bool:
 # --- why a check is not made ------------------------------------------------------------------------------------------
 
 
-def _no_swing(scene: Scene) -> str:
+def _no_swing(scene: CheckFacts) -> str:
     return "" if scene.swings else "the follower does not oscillate"
 
 
-def _no_roller(scene: Scene) -> str:
+def _no_roller(scene: CheckFacts) -> str:
     return "" if scene.roller else "a flat face is pushed along its normal"
 
 
-def _one_face(scene: Scene) -> str:
+def _one_face(scene: CheckFacts) -> str:
     single = not (scene.yoke or scene.swings or scene.follower.closure)  # of others that one tells what is left
     return "the breadth is not constant: a single flat face follows" if single else ""
 
 
-def _no_dwell(scene: Scene) -> str:
+def _no_dwell(scene: CheckFacts) -> str:
     return "dwell is not given" if scene.linked and scene.turns and scene.recipe.dwell is None else ""
 
 
-def _output_lost(scene: Scene) -> str:
+def _output_lost(scene: CheckFacts) -> str:
     if scene.linked and not scene.turns:
         return STANDS
     lost = scene.linked and scene.trimmed and scene.recipe.verify.output_error is None
     return "the contour is trimmed and verify.output_error is not given: reported, not judged" if lost else ""
 
 
-def _motion_lost(scene: Scene) -> str:
+def _motion_lost(scene: CheckFacts) -> str:
     lost = scene.trimmed and scene.recipe.verify.motion_error is None
     return "the contour is trimmed and verify.motion_error is not given: reported, not judged" if lost else ""
 
@@ -381,10 +381,10 @@ def _of_feature(feature: Feature[Any], check: FeatureCheck) -> Declared:
     """Declaration of the check of a feature, which is made where the part has it."""
     condition, after = _FILES[check.files]
 
-    def exact(scene: Scene) -> bool:
+    def exact(scene: CheckFacts) -> bool:
         return scene.recipe.part.of(feature.kind) is not None
 
-    def of_file(scene: Scene, file: FileRequest) -> bool:
+    def of_file(scene: CheckFacts, file: FileRequest) -> bool:
         return condition is not None and condition(scene, file) and exact(scene)
 
     return Declared(
@@ -416,13 +416,13 @@ CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {check.name: che
 
 
 @cache
-def _of_figure(name: str, figure: Figure) -> Declared:
+def _of_figure(name: str, figure: DesignFigure) -> Declared:
     """Declaration of the limit of a figure, which applies where the recipe gives the limit."""
 
-    def of_design(scene: Scene) -> bool:
+    def of_design(scene: CheckFacts) -> bool:
         return figure.of != "file" and any(limit.figure == name for limit in scene.recipe.limits)
 
-    def of_file(scene: Scene, file: FileRequest) -> bool:
+    def of_file(scene: CheckFacts, file: FileRequest) -> bool:
         if not any(limit.figure == name for limit in scene.recipe.limits):
             return False
         if figure.of == "run":

@@ -27,7 +27,7 @@ IMPORTS = 1.0  # processor seconds of the first recipe that its imports may take
 
 
 @dataclass(frozen=True)
-class Task:
+class BatchTask:
     """Work on each recipe: files of the kinds `only`, or of all, into `out`; without `out` only checks."""
 
     out: Path | None
@@ -47,7 +47,7 @@ class Result:
     errors: tuple[RecipeError, ...] = ()
 
 
-def results(recipes: Sequence[Order], task: Task, jobs: int | None) -> Iterator[Result]:
+def results(recipes: Sequence[Order], task: BatchTask, jobs: int | None) -> Iterator[Result]:
     """Result of each recipe, in order; the first run in this process.
 
     The others run in `jobs` processes, by default one for each core, where their work is worth starting processes.
@@ -67,7 +67,7 @@ def results(recipes: Sequence[Order], task: Task, jobs: int | None) -> Iterator[
         warm = warm if number else time.process_time()
 
 
-def _in_parallel(recipes: Sequence[Order], task: Task, count: int, *, fork: bool) -> Iterator[Result]:
+def _in_parallel(recipes: Sequence[Order], task: BatchTask, count: int, *, fork: bool) -> Iterator[Result]:
     """Result of each recipe, in order, from `count` processes."""
     from concurrent.futures.process import BrokenProcessPool
 
@@ -89,7 +89,7 @@ def _in_parallel(recipes: Sequence[Order], task: Task, count: int, *, fork: bool
             progress.clear()
 
 
-def result(recipe: Order, task: Task, progress: Progress | None = None) -> Result:
+def result(recipe: Order, task: BatchTask, progress: Progress | None = None) -> Result:
     """Result of one recipe; a wrong recipe, the disk and a missing package are in the result, not raised."""
     from camgeo.api import run
     from camgeo.common.errors import SurroundingsError

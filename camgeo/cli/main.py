@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from camgeo.cli.arguments import add_out, name_of, processes
-from camgeo.cli.batch import Task, failed_entry, folder_conflicts, result, results
+from camgeo.cli.batch import BatchTask, failed_entry, folder_conflicts, result, results
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.common.terminal import complain, escaped, open_streams, say, say_json, silence
 from camgeo.common.units import UNIT_MM
@@ -226,12 +226,12 @@ def _export(arguments: argparse.Namespace) -> int:
         _complain(fault)
     if faults:
         return WRONG
-    return _run_recipes(recipes, refused, Task(Path(arguments.out), tuple(arguments.only)), arguments)
+    return _run_recipes(recipes, refused, BatchTask(Path(arguments.out), tuple(arguments.only)), arguments)
 
 
 def _check(arguments: argparse.Namespace) -> int:
     recipes, refused = _load_recipes(arguments.recipes, arguments.tolerance, ())
-    return _run_recipes(recipes, refused, Task(None), arguments)
+    return _run_recipes(recipes, refused, BatchTask(None), arguments)
 
 
 def _watch(arguments: argparse.Namespace) -> int:
@@ -261,7 +261,7 @@ def _watch(arguments: argparse.Namespace) -> int:
         requests = [request for request in recipe.export.files if not request.format.summary]
         page = FileRequest("html")
         recipe = replace(recipe, export=replace(recipe.export, files=(*requests, page)))
-        outcome = result(_with_tolerance(recipe, arguments.tolerance), Task(out, only))
+        outcome = result(_with_tolerance(recipe, arguments.tolerance), BatchTask(out, only))
         if outcome.report is None:
             complain(outcome.message)
             return None, outcome.message
@@ -311,7 +311,9 @@ def _with_tolerance(recipe: O, tolerance: str | None) -> O:
     return replace(recipe, export=replace(recipe.export, tolerance=within))
 
 
-def _run_recipes(recipes: Sequence[Order], refused: dict[int, Entry], task: Task, arguments: argparse.Namespace) -> int:
+def _run_recipes(
+    recipes: Sequence[Order], refused: dict[int, Entry], task: BatchTask, arguments: argparse.Namespace
+) -> int:
     """Run recipes and write their reports, in JSON with the entries `refused` in their places; the highest status."""
     status = WRONG if refused else OK
     entries: list[Entry] = []

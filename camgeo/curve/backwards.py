@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.curvature import least_radius
-from camgeo.curve.curve import Bounds, Curve, Frame, Run, Shape
+from camgeo.curve.curve import Bounds, Curve, Frame, Shape, SmoothRun
 from camgeo.curve.parallel import Parallel
 from kin.numeric.records import dataclass, replace
 
@@ -91,10 +91,10 @@ def backwards(curve: Curve) -> Curve:
     return Curve(turned, runs_backwards(curve.runs), curve)
 
 
-def runs_backwards(runs: Sequence[Run]) -> tuple[Run, ...]:
+def runs_backwards(runs: Sequence[SmoothRun]) -> tuple[SmoothRun, ...]:
     """Runs in the parameter of the curve run through the other way."""
     return tuple(
-        Run(-run.high, -run.low, tuple(-b for b in reversed(run.breaks)), run.closed) for run in reversed(runs)
+        SmoothRun(-run.high, -run.low, tuple(-b for b in reversed(run.breaks)), run.closed) for run in reversed(runs)
     )
 
 

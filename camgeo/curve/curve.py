@@ -175,7 +175,7 @@ class Shape(Protocol):
 
 
 @dataclass(frozen=True)
-class Run:
+class SmoothRun:
     """Part of a curve without corners: parameters from `low` to `high`, and the breaks of curvature inside.
 
     A closed run is the whole curve, its end is its beginning.
@@ -203,7 +203,7 @@ class Curve:
     """
 
     shape: Shape
-    runs: tuple[Run, ...]
+    runs: tuple[SmoothRun, ...]
     mirror: Curve | None = field(default=None, repr=False, compare=False)
 
     @staticmethod
@@ -215,7 +215,7 @@ class Curve:
         """
         breaks = np.asarray(shape.breaks, dtype=np.float64)
         if not breaks.size:
-            return Curve(shape, (Run(0.0, shape.period, (), closed=True),))
+            return Curve(shape, (SmoothRun(0.0, shape.period, (), closed=True),))
         side = np.repeat([1, -1], breaks.size)
         after, before = shape.sample(np.tile(breaks, 2), side).split(breaks.size)
         alike = after.turn * before.turn > 0.0
@@ -226,7 +226,7 @@ class Curve:
         else:
             low = 0.5 * float(breaks[-1] - shape.period + breaks[0])
             others = breaks
-        return Curve(shape, (Run(low, low + shape.period, tuple(float(b) for b in others), closed=True),))
+        return Curve(shape, (SmoothRun(low, low + shape.period, tuple(float(b) for b in others), closed=True),))
 
     @property
     def closed(self) -> bool:

@@ -37,7 +37,7 @@ NEAR = 1e-9  # rad: of a knot and a parameter that are one
 
 
 @dataclass(frozen=True, eq=False)
-class Spline:
+class PeriodicPolynomials:
     """A periodic function over a turn, mm: on each of N equal spans a polynomial.
 
     `pieces` (k, N) has the coefficients of each span, lowest first, by the place in it, which runs from 0 to 1.
@@ -66,7 +66,7 @@ class Moved(ABC):
     """Curve outside `base` by a distance `by`, mm, that varies with the parameter."""
 
     base: Shape
-    by: Spline
+    by: PeriodicPolynomials
 
     @property
     def period(self) -> float:

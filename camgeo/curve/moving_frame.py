@@ -23,7 +23,7 @@ from camgeo.curve.curve import Bounds, Frame, columns
 from camgeo.curve.rates import MotionShape, SourceT, cut
 from kin.law.piecewise import Piecewise
 from kin.law.programme import IntentError, first_harmonic
-from kin.law.segment import Affine, Constant
+from kin.law.segment import AffineStretch, Constant
 from kin.numeric import elementary
 from kin.numeric.elementary import Jet
 from kin.numeric.records import dataclass
@@ -98,7 +98,7 @@ class Displacement:
     @property
     def eccentric(self) -> Mask:
         """Whether S + S'' is constant on each stretch (m,): a dwell, or the harmonic law over a half turn."""
-        harmonic = [isinstance(f, Affine) and first_harmonic(f) is not None for f in self.functions]
+        harmonic = [isinstance(f, AffineStretch) and first_harmonic(f) is not None for f in self.functions]
         mask: Mask = self.steady | np.array(harmonic)
         return mask
 
@@ -114,7 +114,7 @@ class Displacement:
 def _transform(function: Stretch, offset: float, scale: float, start: float) -> Stretch:
     if isinstance(function, Constant):
         return Constant(offset + scale * function.value)
-    return Affine.of(function, offset=offset, scale=scale, start=start)
+    return AffineStretch.of(function, offset=offset, scale=scale, start=start)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Series = TypeVar("Series", Jet, BallJet)
 
 
-class Figures(Protocol):
+class MotionJets(Protocol):
     """Figures of a motion as jets of its parameter: phi and psi, or S alone; the side decides at breaks."""
 
     def __call__(self, tau: Series, side: Side = 1, /) -> tuple[Series, ...]:
@@ -141,7 +141,7 @@ def cut(series: Series, order: int) -> Series:
     return BallJet(series.mid[: order + 1], series.rad[: order + 1])
 
 
-def bounds_of(figures: Figures, low: Array, high: Array, rates: Rates) -> Bounds:
+def bounds_of(figures: MotionJets, low: Array, high: Array, rates: Rates) -> Bounds:
     """Proved bounds over intervals (n,) from a motion's figures, and from speed and turn as functions of them.
 
     Interval arithmetic alone loses the dependence of its operands. So each derivative, of the law as of speed and turn,

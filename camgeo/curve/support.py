@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve.curve import Bounds, Curve, Frame, Run, columns
+from camgeo.curve.curve import Bounds, Curve, Frame, SmoothRun, columns
 from kin.numeric.records import dataclass
 from kin.numeric.taylor import factorials
 
@@ -95,7 +95,7 @@ def with_corners(curve: Curve) -> Curve:
     arcs = [stretch for stretch in stretches.tolist() if curve.radius(stretch) != 0.0]
     if len(arcs) in {0, len(stretches)}:
         return curve
-    return Curve(curve.shape, tuple(Run(low, high, (), closed=False) for low, high in arcs))
+    return Curve(curve.shape, tuple(SmoothRun(low, high, (), closed=False) for low, high in arcs))
 
 
 def is_sharp(contour: Curve) -> bool:

@@ -19,7 +19,7 @@ from camgeo.fit.deviation import Chain, Deviation, chain_deviation, foot, sample
 from camgeo.fit.free_arcs import FittedArcs, cross
 from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshare, rounding
 from camgeo.fit.parts import CONSTANT as FREE
-from camgeo.fit.parts import Part
+from camgeo.fit.parts import MonotonePart
 from camgeo.fit.pieces import ArcSpline, Bound
 from kin.numeric.records import dataclass
 
@@ -70,7 +70,7 @@ class _Stretch:
 
     low: float
     high: float
-    parts: tuple[Part, ...] = ()
+    parts: tuple[MonotonePart, ...] = ()
     biarcs: int = 0
     whole: FittedArcs | None = None
 
@@ -134,13 +134,13 @@ def _split_at_extrema(density: Density, slope: Array, tolerance: float) -> list[
     edges = [float(density.t[0]), *extrema, float(density.t[-1])]
     share = np.interp(edges, density.t, density.sum) / math.cbrt(tolerance)
     divided: list[_Stretch] = []
-    parts: list[Part] = []
+    parts: list[MonotonePart] = []
     begin = 0
     for i, (low, high) in enumerate(pairwise(edges)):
         within = (density.t > low) & (density.t < high)
         grid = np.concatenate([[low], density.t[within], [high]])
         rising = 1.0 if float(np.sum(slope[within[1:-1]])) >= 0.0 else -1.0
-        parts.append(Part(grid, np.interp(grid, density.t, RATIO * density.sum), rising))
+        parts.append(MonotonePart(grid, np.interp(grid, density.t, RATIO * density.sum), rising))
         last = high == edges[-1]
         if last or (share[i + 1] - share[begin] >= APART and share[-1] - share[i + 1] >= APART):
             biarcs = math.ceil(0.5 * float(share[i + 1] - share[begin]))

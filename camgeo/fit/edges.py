@@ -15,7 +15,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.curve.curve import Curve, Frame, Run
+    from camgeo.curve.curve import Curve, Frame, SmoothRun
     from kin.numeric.arrays import Array
 
 EVEN = 0.02  # relative change of curvature over an edge up to which one sample in the middle is enough
@@ -52,7 +52,7 @@ class Sagittas:
 
 
 @dataclass(frozen=True)
-class Edges:
+class ProvedEdges:
     """Edges with their proved deviation.
 
     `heights` (n,) is the deviation of each edge to either side, mm. `overhang`, mm, bounds how far the feet of the
@@ -79,7 +79,7 @@ class Edges:
         return outward, inward
 
 
-def node_frames(curve: Curve, run: Run, nodes: Array) -> Frame:
+def node_frames(curve: Curve, run: SmoothRun, nodes: Array) -> Frame:
     """Frames at the nodes (n + 1,) of a run; the last one of a closed run is the first again."""
     if not run.closed:
         return curve.sample(nodes, np.where(np.arange(nodes.size) < nodes.size - 1, 1, -1))
@@ -87,7 +87,7 @@ def node_frames(curve: Curve, run: Run, nodes: Array) -> Frame:
     return frame.joined(frame.split(1)[0])
 
 
-def place_edges(frame: Frame, run: Run, nodes: Array, away: Array) -> PlacedEdges:
+def place_edges(frame: Frame, run: SmoothRun, nodes: Array, away: Array) -> PlacedEdges:
     """Edges between vertices that stand `away` (n + 1,), mm, outside the curve on its normals at the nodes of a run.
 
     `away` is set to 0 where it points to the hollow side of the curve, and at both ends of an open run.
@@ -166,7 +166,7 @@ def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -
     return Sagittas(load[best], -side * (1.0 - u) * edges.lean[:, 0], -side * u * edges.lean[:, 1])
 
 
-def prove_edges(curve: Curve, edges: PlacedEdges, tolerance: float) -> Edges:
+def prove_edges(curve: Curve, edges: PlacedEdges, tolerance: float) -> ProvedEdges:
     """Edges with their proved deviation, whose bounds are sharpened until they are below `tolerance`, mm, or cannot be.
 
     An edge across a break of the curve is judged on both sides of it.
@@ -179,4 +179,4 @@ def prove_edges(curve: Curve, edges: PlacedEdges, tolerance: float) -> Edges:
     outward, inward = max(0.0, float(edges.away.max())), max(0.0, -float(edges.away.min()))
     heights = np.zeros(edges.nodes.size - 1)
     np.maximum.at(heights, edges.edge, deviation.worst)
-    return Edges(edges.vertices, outward, inward, overhang, deviation, heights)
+    return ProvedEdges(edges.vertices, outward, inward, overhang, deviation, heights)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from camgeo.curve.curve import Curve, Frame
-    from camgeo.fit.parts import Part
+    from camgeo.fit.parts import MonotonePart
     from kin.numeric.arrays import Array
 
 LEVEL = 1.02  # times the level foreseen: a part so near to it has settled
@@ -136,7 +136,7 @@ class _Peaks:
     foot: Array
 
 
-def free_arcs(curve: Curve, parts: Sequence[Part], aim: float, limit: float) -> list[FittedArcs | None]:
+def free_arcs(curve: Curve, parts: Sequence[MonotonePart], aim: float, limit: float) -> list[FittedArcs | None]:
     """Arcs with free joints along parts of a curve, their errors seen up to `aim` and proved up to `limit` mm.
 
     Each part's arcs begin and end on the curve, in its direction. None stands for a part for which none were found.

@@ -18,7 +18,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.curve.curve import Curve, Frame, Run
+    from camgeo.curve.curve import Curve, Frame, SmoothRun
     from camgeo.fit.nodes import Density
     from kin.numeric.arrays import Array
 
@@ -78,7 +78,7 @@ def reach(frame: Frame, tolerance: float) -> Array:
     return far
 
 
-def reaches(curve: Curve, bends: Array, run: Run, tolerance: float) -> tuple[Array, Array]:
+def reaches(curve: Curve, bends: Array, run: SmoothRun, tolerance: float) -> tuple[Array, Array]:
     """Reach, in parameter, of edges across inflections `bends` (n,) before them and after them: (n,) each.
 
     Either side counts by itself, as the slope of the curvature may jump at a break and be 0 on one side. A reach is

@@ -24,7 +24,7 @@ FINER = 4  # times as many steps next to an extremum, where the density has no s
 
 
 @dataclass(frozen=True)
-class Part:
+class MonotonePart:
     """A part of a curve on which curvature rises or falls: `grid` (m,) and `share` (m,), the integral of arcs up to it.
 
     `share` is of ``(|kappa'| / 124.7)^(1/3) ds``: arcs at a tolerance of 1 mm. `rising` is 1 or -1.
@@ -51,7 +51,7 @@ class Part:
         return nodes
 
 
-def refine(curve: Curve, parts: Sequence[Part], tolerance: float) -> list[Part]:
+def refine(curve: Curve, parts: Sequence[MonotonePart], tolerance: float) -> list[MonotonePart]:
     """Parts whose grid is as fine as the arcs on it, so that these begin within a fraction of an arc of their place.
 
     From a coarse grid thousands of arcs begin several arcs off, most where the density falls to nothing at an extremum
@@ -69,11 +69,11 @@ def refine(curve: Curve, parts: Sequence[Part], tolerance: float) -> list[Part]:
         own = density[begin : begin + grid.size]
         begin += grid.size
         share = np.append(0.0, np.cumsum(0.5 * (own[1:] + own[:-1]) * np.diff(grid)))
-        finer[i] = Part(grid, share, parts[i].rising)
+        finer[i] = MonotonePart(grid, share, parts[i].rising)
     return finer
 
 
-def _grid(part: Part, tolerance: float) -> Array:
+def _grid(part: MonotonePart, tolerance: float) -> Array:
     """Grid of a part with about `STEP` arcs to a step, its first and last steps closing in on the ends."""
     steps = np.maximum(1, np.ceil(np.diff(part.share) / (STEP * math.cbrt(tolerance)))).astype(np.intp)
     steps[[0, -1]] *= FINER

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.edges import Edges, Sagittas, node_frames, place_edges, prove_edges, sagittas
+from camgeo.fit.edges import ProvedEdges, Sagittas, node_frames, place_edges, prove_edges, sagittas
 from camgeo.fit.inflection import REACH, crossings, inflections, reaches
 from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshare, rounding
 from camgeo.fit.pieces import Bound, Polygon
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.curve.curve import Curve, Frame, Run
+    from camgeo.curve.curve import Curve, Frame, SmoothRun
     from kin.numeric.arrays import Array
 
 USABLE = 0.9995  # of the tolerance; the rest covers the second order at the vertices
@@ -91,7 +91,7 @@ def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
     return Polygon(np.concatenate(parts), Bound(outward, inward).widened(rounding(size)))
 
 
-def _fit_run(curve: Curve, run: Run, tolerance: float, full: float) -> Edges:
+def _fit_run(curve: Curve, run: SmoothRun, tolerance: float, full: float) -> ProvedEdges:
     """Edges of one run, proved to lie within the tolerance; `full` is the tolerance before rounding was taken off."""
     densities = Density.of(curve, run.stretches, polygon_density)
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
@@ -115,7 +115,7 @@ def _fit_run(curve: Curve, run: Run, tolerance: float, full: float) -> Edges:
     raise ToleranceError(f"a polygon within {full:.3g} mm was not reached; the best was {best:.3g} mm", best)
 
 
-def _balance(curve: Curve, run: Run, parts: list[_Part], shift: float, tolerance: float) -> Edges:
+def _balance(curve: Curve, run: SmoothRun, parts: list[_Part], shift: float, tolerance: float) -> ProvedEdges:
     """Proved edges; in a run without corners moved once more where one side is used more than the other."""
     nodes, sides = _chain(parts)
     frames = node_frames(curve, run, nodes)
@@ -131,7 +131,7 @@ def _balance(curve: Curve, run: Run, parts: list[_Part], shift: float, tolerance
 
 
 def _parts(
-    curve: Curve, run: Run, densities: list[Density], bends: Array, *, sense: float, tolerance: float
+    curve: Curve, run: SmoothRun, densities: list[Density], bends: Array, *, sense: float, tolerance: float
 ) -> list[_Part]:
     """Parts between breaks and inflections, nodes in equal shares."""
     root = math.sqrt(tolerance)
@@ -205,7 +205,7 @@ def _chain(parts: list[_Part]) -> tuple[Array, Array]:
     return np.concatenate(nodes), np.concatenate(sides)
 
 
-def _settle(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tuple[list[_Part], float]:
+def _settle(curve: Curve, run: SmoothRun, parts: list[_Part], tolerance: float) -> tuple[list[_Part], float]:
     """Parts with the fewest edges whose sagittas keep within twice the tolerance, and half the greatest sagitta, mm."""
     allowed = 2.0 * tolerance
     noise = 0.5 * rounding(curve.size)
@@ -258,7 +258,7 @@ def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bo
     return True
 
 
-def _shorten_failing(parts: list[_Part], edges: Edges, tolerance: float) -> bool:
+def _shorten_failing(parts: list[_Part], edges: ProvedEdges, tolerance: float) -> bool:
     """Shorten edges across inflections that a proof found too high; whether there were any."""
     last = list(accumulate((part.count + part.crossed for part in parts), initial=-1))[1:]
     shorter = False
@@ -304,7 +304,7 @@ def level_loads(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Arr
 
 
 def _across_breaks(
-    curve: Curve, run: Run, densities: list[Density], parts: list[_Part], tolerance: float
+    curve: Curve, run: SmoothRun, densities: list[Density], parts: list[_Part], tolerance: float
 ) -> tuple[list[_Part], float] | None:
     """Fewer edges, placed regardless of the breaks, where rounding up the stretches' counts wastes tolerance.
 
@@ -334,7 +334,7 @@ def _across_breaks(
     return None
 
 
-def _level(curve: Curve, run: Run, nodes: Array, sense: float, tolerance: float) -> tuple[Array, float] | None:
+def _level(curve: Curve, run: SmoothRun, nodes: Array, sense: float, tolerance: float) -> tuple[Array, float] | None:
     """Nodes at which no sagitta exceeds twice the tolerance, and half the greatest; None where none are found.
 
     Newton's method on the edges' heights, which have corners where edges meet breaks: a step that does not make them

@@ -10,13 +10,13 @@ from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
 from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.registry.formats import Form, Format
 from camgeo.registry.gathered import Gathered
-from camgeo.schema.fields import Field, Kind, Table, either, length
+from camgeo.schema.fields import Field, FieldTable, Kind, either, length
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.reader import Reader, Values
@@ -50,7 +50,7 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
             reader.fault_at(f"{file['path']}.csv.{key}", f"belongs to a table as {kinds}", None, "leave it out")
 
 
-def _make(job: Job, request: FileRequest, path: Path) -> Made:
+def _make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     if request.form.make is None:
         raise ValueError(f"nothing makes {request.word}")
     return request.form.make(job, request, path)
@@ -65,7 +65,7 @@ def _intent(recipe: Recipe, design: Design) -> PartIntent:
 
 FORMAT = Format(
     name="csv",
-    options=Table(
+    options=FieldTable(
         (
             Field("as", Kind.CHOICE, "which table it is", default="motion", choices=FORMS),
             Field(

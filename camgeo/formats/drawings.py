@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 from camgeo.formats.options import OF_DRAWING
 from camgeo.registry.capability import NO_CHECK
 from camgeo.registry.formats import Form, Format
-from camgeo.schema.fields import Field, Kind, Table
+from camgeo.schema.fields import Field, FieldTable, Kind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
     from camgeo.output.drawing import Draw
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.reader import Reader, Values
 
@@ -38,14 +38,14 @@ def drawing_format(
     """
     named = tuple(item.name for item in more)
 
-    def make(job: Job, request: FileRequest, path: Path) -> Made:
+    def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
         from camgeo.output.drawing import make_drawing
 
         return make_drawing(job, request, path, draw)
 
     return Format(
         name=name,
-        options=Table((_AS, *more, *OF_DRAWING)),
+        options=FieldTable((_AS, *more, *OF_DRAWING)),
         named=named,
         forms={
             form: Form(name=form, surfaces=2, discs=2, pieces=pieces, listed=("as", *named))

@@ -59,7 +59,7 @@ _COMMENT = 250  # characters; R12 readers may stop at 255
 
 
 @dataclass(frozen=True)
-class Circle:
+class ReferenceCircle:
     """A circle of the reference, such as the prime circle: centre and radius in mm."""
 
     name: str
@@ -84,14 +84,14 @@ class Trace:
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class ReferenceLine:
     """A line of the reference through points (n, 2), mm, such as that of a moving point; it may cross itself."""
 
     name: str
     points: Array
 
 
-Reference = Circle | Point | Trace | Line
+Reference = ReferenceCircle | Point | Trace | ReferenceLine
 
 
 def write_dxf(
@@ -159,19 +159,19 @@ def _draw_layer(space: Modelspace, layered: LayerOutline, mm: float) -> Box:
     """Add an outline on its layer; returns its extremes in drawing units."""
     if layered.circle is None:
         return _draw_outline(space, layered.outline, mm, layered.layer)[1]
-    return _draw_circle(space, Circle(layered.layer, *layered.circle), mm, layered.layer)[1]
+    return _draw_circle(space, ReferenceCircle(layered.layer, *layered.circle), mm, layered.layer)[1]
 
 
 def _draw_reference(space: Modelspace, reference: Sequence[Reference], mm: float) -> list[Box]:
     """Add what is drawn to look at, each shape with its names; returns the extremes of each in drawing units."""
     boxes = []
     for item, names in _distinct(reference):
-        if isinstance(item, Circle):
+        if isinstance(item, ReferenceCircle):
             entity, box = _draw_circle(space, item, mm, _REFERENCE)
         elif isinstance(item, Point):
             x, y = item.at[0] / mm, item.at[1] / mm
             entity, box = space.add_point((x, y), {"layer": _REFERENCE}), (x, y, x, y)
-        elif isinstance(item, Line):
+        elif isinstance(item, ReferenceLine):
             entity, box = _draw_path(space, item.points / mm)
         else:
             entity, box = _draw_outline(space, item.outline, mm, _REFERENCE)
@@ -261,7 +261,7 @@ def _draw_spline(space: Modelspace, spline: BSpline, mm: float, layer: str) -> D
     return entity
 
 
-def _draw_circle(space: Modelspace, circle: Circle, mm: float, layer: str) -> tuple[DXFGraphic, Box]:
+def _draw_circle(space: Modelspace, circle: ReferenceCircle, mm: float, layer: str) -> tuple[DXFGraphic, Box]:
     x, y, r = circle.centre[0] / mm, circle.centre[1] / mm, circle.radius / mm
     if not r > 0.0:
         raise ValueError(f"{circle.name}: radius must be > 0, not {circle.radius!r}")
@@ -283,12 +283,12 @@ def _distinct(reference: Sequence[Reference]) -> list[tuple[Reference, list[str]
     shapes: dict[tuple[float, ...] | int, tuple[Reference, list[str]]] = {}
     for item in reference:
         key: tuple[float, ...] | int
-        if isinstance(item, Circle):
+        if isinstance(item, ReferenceCircle):
             key = (*item.centre, item.radius)
         elif isinstance(item, Point):
             key = item.at
         else:
-            key = id(item.points) if isinstance(item, Line) else id(item.outline)
+            key = id(item.points) if isinstance(item, ReferenceLine) else id(item.outline)
         shapes.setdefault(key, (item, []))[1].append(item.name)
     return list(shapes.values())
 
@@ -347,22 +347,22 @@ def _reference(job: Job, tolerance: float) -> list[Reference]:
     shapes: list[Reference] = [Point("shaft", (0.0, 0.0))]
     boss = recipe.part.boss
     if boss is not None:
-        shapes.append(Circle(boss.name, (0.0, 0.0), 0.5 * boss.diameter))
+        shapes.append(ReferenceCircle(boss.name, (0.0, 0.0), 0.5 * boss.diameter))
     for surface in pitches:
         for name, radius in exact.circles(surface.name):
             if radius is not None:
-                shapes.append(Circle(name, (0.0, 0.0), radius))
+                shapes.append(ReferenceCircle(name, (0.0, 0.0), radius))
                 continue
             least = abs(distance_inside(Looks.of(surface.base), (0.0, 0.0))[0])
             if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
-                shapes.append(Circle(name, (0.0, 0.0), least))
+                shapes.append(ReferenceCircle(name, (0.0, 0.0), least))
             if surface.radius:
                 pitch = fit_arcs(surface.base, COARSE)
                 shapes.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
     if recipe.linkage is not None and recipe.linkage.traces:
         from camgeo.synthesis.traces import trace_lines
 
-        shapes += [Line(name, points) for name, points in trace_lines(recipe, job.design, tolerance)]
+        shapes += [ReferenceLine(name, points) for name, points in trace_lines(recipe, job.design, tolerance)]
     return shapes
 
 

@@ -16,7 +16,7 @@ from camgeo.common.units import UNIT_MM
 from camgeo.formats.meshes import foresee_mesh
 from camgeo.formats.options import TOLERANCE
 from camgeo.registry.formats import Format
-from camgeo.schema.fields import Table
+from camgeo.schema.fields import FieldTable
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array
 
@@ -172,7 +172,7 @@ def steady_turn(rotation: str) -> Array:
     return pose
 
 
-def make_view(job: Job, request: FileRequest, path: Path) -> Made:
+def make_view(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit and write the cam, turning once, for viewers.
 
     Raises RecipeErrors for a tolerance that cannot be held, SurroundingsError for the disk or a missing package.
@@ -195,7 +195,7 @@ def _single() -> Precision:
 
 FORMAT = Format(
     name="glb",
-    options=Table((TOLERANCE,)),
+    options=FieldTable((TOLERANCE,)),
     contour=False,
     part=False,
     solid=True,

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 from camgeo.registry.formats import Format
 from camgeo.schema.errors import quote, suggestion
-from camgeo.schema.fields import Field, Form, Kind, Table, either
+from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, either
 from camgeo.schema.yaml_source import Scalar, describe, join
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.output.job import Made
+    from camgeo.output.job import MadeFiles
     from camgeo.recipe.export import FileRequest
-    from camgeo.registry.formats import Run
+    from camgeo.registry.formats import RunResults
     from camgeo.schema.reader import Reader
     from camgeo.schema.yaml_source import Node
 
@@ -54,7 +54,7 @@ _OVERLAYS = Field(
     Kind.OWN,
     "constructions shown over the mechanism, which turn with it, as far as its family has them",
     default="none",
-    form=Form(
+    form=OwnForm(
         "a list of overlays",
         f"a list of {either(tuple(OVERLAYS), 'and')}",
         _read_overlays,
@@ -69,10 +69,10 @@ _OVERLAYS = Field(
 )
 
 
-def _summarise(run: Run, request: FileRequest, path: Path) -> Made:
+def _summarise(run: RunResults, request: FileRequest, path: Path) -> MadeFiles:
     """Write the page on a run, also on one that makes no cam."""
     from camgeo.measures.file_result import FileResult
-    from camgeo.output.job import Made
+    from camgeo.output.job import MadeFiles
     from camgeo.output.pipeline import content_of
     from camgeo.report.document import document
     from camgeo.report.page.page import page
@@ -80,12 +80,12 @@ def _summarise(run: Run, request: FileRequest, path: Path) -> Made:
     content = content_of(run.recipe, run.design, run.findings, run.clock)
     with run.clock.stage("write html"):
         path.write_bytes(page(run.recipe, content, document(run.recipe, run.findings)).encode("utf-8"))
-    return Made((FileResult(path, request),))
+    return MadeFiles((FileResult(path, request),))
 
 
 FORMAT = Format(
     name="html",
-    options=Table((_OVERLAYS,)),
+    options=FieldTable((_OVERLAYS,)),
     contour=False,
     part=False,
     summarise=_summarise,

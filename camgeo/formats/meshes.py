@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.formats.options import OF_SOLID
 from camgeo.registry.formats import Form, Format
-from camgeo.schema.fields import Table
+from camgeo.schema.fields import FieldTable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
     from camgeo.files.mesh import Item
     from camgeo.files.precision import Precision
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
 
-OPTIONS = Table(OF_SOLID)
+OPTIONS = FieldTable(OF_SOLID)
 EDGES = {"": Form(surfaces=2, discs=2, pieces="edges")}
 
 
@@ -48,7 +48,7 @@ def mesh_format(
     )
 
 
-def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
+def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit, write, read back and judge the meshes of a file.
 
     Raises RecipeErrors for a tolerance that cannot be held, SurroundingsError for the disk or a missing package.

@@ -19,7 +19,7 @@ from camgeo.fit.nodes import ToleranceError
 from camgeo.formats.options import OF_SOLID
 from camgeo.part.features import EDGE_KEYS
 from camgeo.registry.formats import Form, Format
-from camgeo.schema.fields import Field, Kind, Table
+from camgeo.schema.fields import Field, FieldTable, Kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from camgeo.files.layer_outline import LayerOutline
     from camgeo.files.solid import Solid
     from camgeo.fit.pieces import Outline
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.reader import Reader, Values
 
@@ -197,7 +197,7 @@ def _string(text: str) -> Any:  # noqa: ANN401 - the kernel has no types
 # --- its files --------------------------------------------------------------------------------------------------------
 
 
-def make_step(job: Job, request: FileRequest, path: Path) -> Made:
+def make_step(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit, write, read back and judge one STEP file; without the kernel nothing is fitted."""
     from camgeo.output.part_geometry import contours_of, rim_of, solid_of
 
@@ -250,7 +250,7 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
 
 FORMAT = Format(
     name="step",
-    options=Table(
+    options=FieldTable(
         (
             Field(
                 "as",

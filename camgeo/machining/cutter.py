@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.backwards import Backwards, runs_backwards
-from camgeo.curve.curve import Curve, Run
+from camgeo.curve.curve import Curve, SmoothRun
 from camgeo.curve.parallel import Parallel
 from camgeo.curve.support import is_sharp
 from camgeo.curve.undercut.causes import UndercutError, causes, in_ring
@@ -61,7 +61,7 @@ class CutterPath:
         bound = Bound(max(fit.bound.outward for fit in fits), max(fit.bound.inward for fit in fits))
         return ArcSpline(np.concatenate(points), np.concatenate(turns), bound)
 
-    def _in_two(self, run: Run) -> Run:
+    def _in_two(self, run: SmoothRun) -> SmoothRun:
         """The run; one that is a circular arc is broken in the middle, as a chain has two arcs at least."""
         if run.breaks or self.curve.radius((run.low, run.high)) is None:
             return run

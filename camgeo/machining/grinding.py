@@ -45,7 +45,7 @@ NOTHING = 1e-13  # of a direction or of the size: rounding about 0
 DIGITS = 5e-12  # of a length as a table has it
 
 
-class Table(NamedTuple):
+class GrindingTable(NamedTuple):
     """Names of the columns, rows (n + 1, k), the lines of the head, and the greatest error of straight joins, mm."""
 
     columns: tuple[str, ...]
@@ -54,7 +54,7 @@ class Table(NamedTuple):
     error: float
 
 
-def grinding_table(recipe: Recipe, design: Design, request: FileRequest, tolerance: float, field: str) -> Table:
+def grinding_table(recipe: Recipe, design: Design, request: FileRequest, tolerance: float, field: str) -> GrindingTable:
     """Table of a request within a tolerance, mm; `field` is the path of the request, for errors.
 
     Raises RecipeErrors for a wheel or roller that the contour does not let in, a step that is too wide for the
@@ -94,7 +94,7 @@ def grinding_table(recipe: Recipe, design: Design, request: FileRequest, toleran
         head[0] = head[0].format(f"places of a grinding wheel {length} across")
         head.append(f"x_{unit}: its distance; normal_deg: direction in which the metal faces where it grinds")
     head.append(f"joined by straight lines the metal is within {_length(error, recipe)} of the exact contour, proved")
-    return Table(columns, np.column_stack(rows), tuple(head), error)
+    return GrindingTable(columns, np.column_stack(rows), tuple(head), error)
 
 
 def grinding_intent(recipe: Recipe, design: Design) -> Grinding:

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, SurfaceDesign
-    from camgeo.synthesis.linkage import Driven
+    from camgeo.synthesis.linkage import DesignedLinkage
     from kin.follower.motion_error import Play
     from kin.judge.check import Check
     from kin.judge.verdict import SurfaceVerdict
-    from kin.linkage.extremes import Place
+    from kin.linkage.extremes import ExtremePlace
 
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 ORDERS = {"swing": 0, **{name: k for k, name in enumerate(figures.PEAKS, 1)}}
@@ -271,7 +271,7 @@ def motion_figures(design: Design, order: int) -> dict[str, Measured]:
     return measured
 
 
-def _linkage_figures(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
+def _linkage_figures(driven: DesignedLinkage, names: Iterable[str]) -> dict[str, Measured]:
     """Figures of a linkage: its margin, and its motion where its shaft turns."""
     mobility, unit = driven.mechanism.mobility(), driven.mechanism.unit
     scale = math.degrees(1.0) if unit == "deg" else 1.0
@@ -286,7 +286,7 @@ def _linkage_figures(driven: Driven, names: Iterable[str]) -> dict[str, Measured
         standing = (name for name in names if FIGURES[name].needs in needs and name not in {*measured, *_OF_CURVE})
         return measured | {name: Measured(None, "", detail=STANDS) for name in standing}
 
-    def placed(place: Place, factor: float, unit: str) -> Measured:
+    def placed(place: ExtremePlace, factor: float, unit: str) -> Measured:
         return Measured(abs(place.value) * factor, unit, math.degrees(place.shaft))
 
     motion, turn = driven.figures, math.degrees(1.0)

@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from kin.dynamics.contact_forces import Elastic
     from kin.follower.contact_lines import ContactLine
     from kin.numeric.arrays import Array
-    from kin.numeric.monotone import Pieces
+    from kin.numeric.monotone import MonotonePieces
 
 SHARE = 1e-12  # of the greatest value, to which a force is followed over the turn
 PER_MM = 1e-3  # N/mm in N/m, and N m in N mm
 
 
-class Extreme(NamedTuple):
+class ExtremeAtAngle(NamedTuple):
     """A least or greatest value over the turn, and its shaft angle in degrees."""
 
     value: float
@@ -78,7 +78,7 @@ class Turn(ABC):
         """Unit of forces along the travel, as reported."""
         return "N m" if self.swings else "N"
 
-    def pieces(self, values: Callable[[Array], Array]) -> list[Pieces]:
+    def pieces(self, values: Callable[[Array], Array]) -> list[MonotonePieces]:
         """Monotone pieces of r functions of the parameter, values(t (n,)) -> (r, n); raises RoughError if they leap."""
         from kin.numeric.monotone import between, cells, pieces
 
@@ -90,11 +90,11 @@ class Turn(ABC):
         """Shaft angle in degrees, from 0 to less than 360, at a parameter."""
         return degrees(float(self.shaft(np.array([t]))[0]))
 
-    def extremes(self, values: Callable[[Array], Array]) -> list[tuple[Extreme, Extreme]]:
+    def extremes(self, values: Callable[[Array], Array]) -> list[tuple[ExtremeAtAngle, ExtremeAtAngle]]:
         """Least and greatest value over the turn of r functions of the parameter, values(t (n,)) -> (r, n); proved."""
 
-        def placed(extreme: tuple[float, float]) -> Extreme:
-            return Extreme(extreme[0], self.degrees(extreme[1]))
+        def placed(extreme: tuple[float, float]) -> ExtremeAtAngle:
+            return ExtremeAtAngle(extreme[0], self.degrees(extreme[1]))
 
         return [(placed(piece.least()), placed(piece.greatest())) for piece in self.pieces(values)]
 
@@ -159,7 +159,7 @@ def elastic_contacts(turn: FollowerTurn, preload: Preload, rows: Array) -> Elast
     return preloaded((first.lever, second.lever), preload.overlaps, (k1, k2))
 
 
-def preload_force(design: Design, preload: Preload) -> tuple[Extreme, Extreme]:
+def preload_force(design: Design, preload: Preload) -> tuple[ExtremeAtAngle, ExtremeAtAngle]:
     """Least and greatest force of the preload along the travel over the turn, N, or N m about a pivot."""
     turn = FollowerTurn(design)
     scale = PER_MM if turn.swings else 1.0

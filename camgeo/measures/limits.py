@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.checks.declared import LIMIT, Scene, declaration
+from camgeo.checks.declared import LIMIT, CheckFacts, declaration
 from camgeo.checks.remedies import Missed, limit_remedy
 from camgeo.measures.figures import design_figures, file_figure
 from camgeo.recipe.figures import FIGURES
@@ -36,7 +36,7 @@ def limit_checks(
     `checks` are all checks of the run, `runs` figures by run (`Results`). A figure without a value fails with its
     reason.
     """
-    scene = Scene(recipe, design.follower)
+    scene = CheckFacts(recipe, design.follower)
     speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}
     names = [limit.figure for limit in recipe.limits if FIGURES[limit.figure].at_lift is None]
     measured = design_figures(recipe, design, checks, names, speeds)

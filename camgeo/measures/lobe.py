@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
     from camgeo.cams.family import ExactCam
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import Moved
+    from camgeo.registry.capability import MovedBody
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
-    from kin.numeric.monotone import Pieces
+    from kin.numeric.monotone import MonotonePieces
 
 CRANK = 2.0  # turns of the crank for one of the cam
 NODES, WEIGHTS = gauss(12)
@@ -38,7 +38,7 @@ _TWO = 2  # places, both ends of a turn or of a rest
 PARTS = 8  # of each stretch between breaks and crossings, over which the area is integrated
 
 
-class Event(NamedTuple):
+class LobeEvent(NamedTuple):
     """A lobe above a lift, mm: shaft angles, rad, at which it rises through it and falls again; closing > opening."""
 
     lift: float
@@ -61,7 +61,7 @@ class EventError(CamgeoError, ValueError):
 
 
 @lru_cache(maxsize=16)
-def event_of(exact: ExactCam, lift: float) -> Event:
+def event_of(exact: ExactCam, lift: float) -> LobeEvent:
     """Crossings of a lift, mm from the lowest. Raises EventError unless there is one upwards and one downwards."""
     pieces = lift_pieces(exact)
     datum, _ = pieces.least()
@@ -70,20 +70,20 @@ def event_of(exact: ExactCam, lift: float) -> Event:
         raise EventError(f"the lift passes {lift:.6g} mm {len(crossings)} times in a turn")
     first, last = crossings.tolist()
     above = float(exact.motion.by_parameter(np.array([0.5 * (first + last)]), 0)[0, 0]) > datum + lift
-    event = Event(lift, first, last) if above else Event(lift, last, first + TURN)
+    event = LobeEvent(lift, first, last) if above else LobeEvent(lift, last, first + TURN)
     return _off_rest(event, exact) if lift == 0.0 else event
 
 
-def _off_rest(event: Event, exact: ExactCam) -> Event:
+def _off_rest(event: LobeEvent, exact: ExactCam) -> LobeEvent:
     """The event at lift 0, its ends moved to the breaks where the lowest rest ends: near them the lift is rounding."""
     breaks = np.concatenate([exact.breaks + turns * TURN for turns in (0.0, 1.0, 2.0)])
     rest = breaks[(breaks >= event.closing - ROUNDING) & (breaks <= event.opening + TURN + ROUNDING)]
     if len(rest) < _TWO or np.ptp(rest) <= ROUNDING:
         return event
-    return Event(event.lift, float(rest.max()) - TURN, float(rest.min()))
+    return LobeEvent(event.lift, float(rest.max()) - TURN, float(rest.min()))
 
 
-def _crossings(pieces: Pieces, level: float) -> Array:
+def _crossings(pieces: MonotonePieces, level: float) -> Array:
     """Places at which a level is crossed, ascending: 0 and the whole turn are one, and a rest on the level is none."""
     places = pieces.crossings(level)
     if len(places) < _TWO or places[0] > 0.0 or places[-1] < TURN:
@@ -95,7 +95,7 @@ def _crossings(pieces: Pieces, level: float) -> Array:
 
 
 @lru_cache(maxsize=16)
-def lift_pieces(exact: ExactCam) -> Pieces:
+def lift_pieces(exact: ExactCam) -> MonotonePieces:
     """The follower's position over a turn, mm or rad, in monotone pieces; raises EventError if it is too rough."""
     position, turn = exact.motion, between(0.0, TURN, exact.breaks.tolist())
     try:
@@ -104,15 +104,15 @@ def lift_pieces(exact: ExactCam) -> Pieces:
         raise EventError("the motion changes too abruptly to be resolved") from error
 
 
-def _duration(event: Event, _: ExactCam) -> Measured:
+def _duration(event: LobeEvent, _: ExactCam) -> Measured:
     return Measured(event.duration, "deg", degrees(event.opening % TURN))
 
 
-def _centre(event: Event, _: ExactCam) -> Measured:
+def _centre(event: LobeEvent, _: ExactCam) -> Measured:
     return Measured(event.centre, "deg", event.centre)
 
 
-def _ramp_velocity(event: Event, exact: ExactCam) -> Measured:
+def _ramp_velocity(event: LobeEvent, exact: ExactCam) -> Measured:
     """The greater speed of both crossings, mm a cam degree; at a break that of the side nearer to rest."""
     opening, closing = np.array([event.opening % TURN]), np.array([event.closing % TURN])
     rates = exact.motion.rows(opening, 1, -1)[1], exact.motion.rows(closing, 1, 1)[1]
@@ -120,7 +120,7 @@ def _ramp_velocity(event: Event, exact: ExactCam) -> Measured:
     return Measured(math.radians(rate), "mm/deg", degrees(parameter % TURN))
 
 
-def _area(event: Event, exact: ExactCam) -> Measured:
+def _area(event: LobeEvent, exact: ExactCam) -> Measured:
     """Area between the lift and the stated one from crossing to crossing, mm times cam degrees."""
     breaks = [parameter + turns * TURN for parameter in exact.breaks.tolist() for turns in (0.0, 1.0)]
     places = between(event.opening, event.closing, sorted(breaks))
@@ -137,7 +137,7 @@ def _integral(exact: ExactCam, places: Array, lift: float) -> float:
     return float((s @ WEIGHTS) @ half)
 
 
-_FIGURES: dict[str, Callable[[Event, ExactCam], Measured]] = {
+_FIGURES: dict[str, Callable[[LobeEvent, ExactCam], Measured]] = {
     DURATION: _duration,
     LOBE_CENTRE: _centre,
     RAMP_VELOCITY: _ramp_velocity,
@@ -166,7 +166,7 @@ def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measure
     return lobe_figure(name, design.exact, lift)
 
 
-def moved_by(recipe: Recipe, design: Design) -> Moved | None:
+def moved_by(recipe: Recipe, design: Design) -> MovedBody | None:
     """Motion of the body that the follower moves besides itself, such as a valve; None without one."""
     motions = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
     return next((moved for moved in motions if moved is not None), None)

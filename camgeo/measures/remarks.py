@@ -18,7 +18,7 @@ from camgeo.part.features import with_records
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
 from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius
-from kin.law.joints import Joint
+from kin.law.joints import DerivativeJump
 from kin.numeric.angles import degrees
 from kin.numeric.records import dataclass, replace
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from camgeo.synthesis.linkage import Driven
+    from camgeo.synthesis.linkage import DesignedLinkage
     from kin.judge.check import Check
 
 PRESSURE_RULE = {"oscillating": 45.0, "translating": 30.0}  # degrees: cam handbooks' rule of thumb for rollers
@@ -80,7 +80,7 @@ RemarkName = Literal[
 
 
 @dataclass(frozen=True)
-class Remark:
+class RuleRemark:
     """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
 
     name: str
@@ -93,9 +93,9 @@ class Remark:
 
 def remarks_of(
     recipe: Recipe, design: Design, checks: Sequence[Check] = (), files: Sequence[FileResult] = ()
-) -> tuple[Remark, ...]:
+) -> tuple[RuleRemark, ...]:
     """All remarks on a recipe, its design, and the checks of its files, in the order of the report."""
-    remarks: dict[str, Sequence[Remark | None]] = {
+    remarks: dict[str, Sequence[RuleRemark | None]] = {
         "sizing": [_sizing(recipe, design), _least_angle(recipe)],
         "pressure-angle": [_pressure(recipe, design)],
         "large-roller": [_roller(recipe, design)],
@@ -120,13 +120,13 @@ def remarks_of(
     return tuple(remark for group in remarks.values() for remark in group if remark is not None)
 
 
-def _sizing(recipe: Recipe, design: Design) -> Remark | None:
+def _sizing(recipe: Recipe, design: Design) -> RuleRemark | None:
     """The size that `sizing` gave, and what bounds it."""
     sentence = recipe.cam.advice.chosen_size(design.exact, recipe.mm)
-    return Remark("sizing", None, None, "", sentence) if sentence else None
+    return RuleRemark("sizing", None, None, "", sentence) if sentence else None
 
 
-def _least_angle(recipe: Recipe) -> Remark | None:
+def _least_angle(recipe: Recipe) -> RuleRemark | None:
     """The least angle that all limits allow, and what fails below it."""
     choice = recipe.settled
     if choice is None:
@@ -138,10 +138,10 @@ def _least_angle(recipe: Recipe) -> Remark | None:
     sentence += f"; the dwell takes {rest:.10g}"
     if choice.again:
         sentence += f"; not all longer ones are allowed, such as {choice.again[0]:.4g} deg"
-    return Remark("least-angle", least, None, "deg", sentence)
+    return RuleRemark("least-angle", least, None, "deg", sentence)
 
 
-def _pressure(recipe: Recipe, design: Design) -> Remark | None:
+def _pressure(recipe: Recipe, design: Design) -> RuleRemark | None:
     """A pressure angle of a roller beyond the rule of thumb, with the size that keeps the rule.
 
     None where the recipe limits that angle itself. On the return a follower held by a spring may be steeper.
@@ -180,7 +180,7 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
         size, other = remedy
         against = _against(recipe, other, design)
         sentence += f"; {size} would keep it, but {against}" if against else f", which {size} keeps"
-    return Remark("pressure-angle", value, rule, "deg", sentence, at_deg)
+    return RuleRemark("pressure-angle", value, rule, "deg", sentence, at_deg)
 
 
 def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
@@ -207,7 +207,7 @@ def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
     return "leaves no metal round the shaft" if min(nearest(contour).value for contour in contours) <= shaft else ""
 
 
-def _roller(recipe: Recipe, design: Design) -> Remark | None:
+def _roller(recipe: Recipe, design: Design) -> RuleRemark | None:
     """A roller above half the pitch curve's least convex radius, where the recipe limits no radius."""
     if any(limit.figure in {RADIUS, PITCH_RADIUS} and limit.at_least is not None for limit in recipe.limits):
         return None
@@ -229,10 +229,10 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
         f"the roller's radius{where}, {_length(recipe, roller)}, is {roller / radius:.3g} times the pitch curve's "
         f"least convex radius; up to half is the rule, which {size} keeps"
     )
-    return Remark("large-roller", roller, HALF * radius, "mm", sentence, sharpest.bent.at_deg)
+    return RuleRemark("large-roller", roller, HALF * radius, "mm", sentence, sharpest.bent.at_deg)
 
 
-def _corner(recipe: Recipe, design: Design) -> Remark | None:
+def _corner(recipe: Recipe, design: Design) -> RuleRemark | None:
     """Sharp corners that the recipe asks for, where it limits no radius."""
     sharp = [contour for _, contour in design.contours if is_sharp(contour)]
     if not sharp or any(limit.figure == RADIUS and limit.at_least is not None for limit in recipe.limits):
@@ -246,10 +246,10 @@ def _corner(recipe: Recipe, design: Design) -> Remark | None:
         "contact pressure has no bound; a reuleaux.rounding above 0 rounds it"
     )
     at_deg = design.motion.shaft_deg(runs[longest].high)
-    return Remark("sharp-corner", math.degrees(turns[longest]), 0.0, "deg", sentence, at_deg)
+    return RuleRemark("sharp-corner", math.degrees(turns[longest]), 0.0, "deg", sentence, at_deg)
 
 
-def _cutter(recipe: Recipe, design: Design) -> Remark | None:
+def _cutter(recipe: Recipe, design: Design) -> RuleRemark | None:
     """A hollow that the cutter does not reach into, where no program says so by its checks."""
     manufacture = recipe.manufacture
     if manufacture is None or not design.contours or "roller" not in recipe.cam.arrangement.offers:
@@ -264,10 +264,10 @@ def _cutter(recipe: Recipe, design: Design) -> Remark | None:
         f"{_length(recipe, manufacture.cutter)} does not reach into; "
         f"a cutter of {downward(2.0 * radius / recipe.mm)} does"
     )
-    return Remark("large-cutter", radius, manufacture.radius, "mm", sentence, design.motion.shaft_deg(parameter))
+    return RuleRemark("large-cutter", radius, manufacture.radius, "mm", sentence, design.motion.shaft_deg(parameter))
 
 
-def _pivot(recipe: Recipe, design: Design) -> Remark | None:
+def _pivot(recipe: Recipe, design: Design) -> RuleRemark | None:
     """A disc that passes over its arm's pivot: it can be made, and lies in another plane than the pivot's pin."""
     if "arm" not in recipe.cam.arrangement.offers or not design.contours:
         return None
@@ -277,10 +277,10 @@ def _pivot(recipe: Recipe, design: Design) -> Remark | None:
     if clearance.value is None or clearance.value > 0.0:
         return None
     sentence = f"the disc passes over the arm's pivot, by {_length(recipe, -clearance.value)}"
-    return Remark("pivot-clearance", clearance.value, 0.0, "mm", sentence, clearance.at_deg)
+    return RuleRemark("pivot-clearance", clearance.value, 0.0, "mm", sentence, clearance.at_deg)
 
 
-def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Remark | None:
+def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> RuleRemark | None:
     """A roller that files within a coarse tolerance leave no play in its groove, though the recipe gives it some."""
     first, *others = design.follower.contacts
     clearance = max((other.touch.radius - first.touch.radius for other in others), default=0.0)
@@ -296,10 +296,10 @@ def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Remar
         f"{file.path.name} leaves the roller {play_words} between {closure.pushes} and {closure.stops}: "
         f"it sticks there; a tolerance below {downward(0.5 * clearance / recipe.mm)} leaves it play"
     )
-    return Remark("no-play", play.least, 0.0, play.unit, sentence, play.least_at_deg)
+    return RuleRemark("no-play", play.least, 0.0, play.unit, sentence, play.least_at_deg)
 
 
-def _openings(recipe: Recipe, files: Sequence[FileResult]) -> Remark | None:
+def _openings(recipe: Recipe, files: Sequence[FileResult]) -> RuleRemark | None:
     """Remark that openings of files are not judged, as the recipe asks for; None where there are none."""
     names = [file.path.name for file in files if any(len(body) > len(file.surfaces) for body in file.bodies)]
     if recipe.verify.openings == "judge" or not names:
@@ -307,15 +307,15 @@ def _openings(recipe: Recipe, files: Sequence[FileResult]) -> Remark | None:
     sentence = (
         f"openings of {' and '.join(names)} that the part does not name are not judged, as verify.openings has it"
     )
-    return Remark("openings", None, None, "", sentence)
+    return RuleRemark("openings", None, None, "", sentence)
 
 
-def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
+def _motion(recipe: Recipe, design: Design) -> list[RuleRemark | None]:
     """A follower that stands still, and errors permitted that are a good part of its stroke."""
     stroke, arm = _stroke(design)
     length = stroke * arm
     if length <= STILL * size_of(design):
-        return [Remark("no-motion", 0.0, None, "mm", "the follower does not move at all")]
+        return [RuleRemark("no-motion", 0.0, None, "mm", "the follower does not move at all")]
     files = [request for request in recipe.export.files if request.format.contour]
     tolerance = max((request.tolerance or recipe.export.tolerance for request in files), default=0.0)
     remarks = [_share(recipe, "coarse-tolerance", ("the tolerance", tolerance), length)]
@@ -326,7 +326,7 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
     return remarks
 
 
-def _law_error(recipe: Recipe, design: Design) -> Remark | None:
+def _law_error(recipe: Recipe, design: Design) -> RuleRemark | None:
     """A swing that is far from the one wanted, where the recipe does not limit it."""
     check = next((check for check in design.checks if check.name == LAW.name), None)
     if check is None or check.value is None or any(limit.figure == LAW.name for limit in recipe.limits):
@@ -336,10 +336,10 @@ def _law_error(recipe: Recipe, design: Design) -> Remark | None:
         return None
     off = f"the swing is off delta.law by up to {check.value:.4g} deg, {check.value / swing:.3g} times the swing"
     sentence = f"{off}; {MORE_HARMONICS} would be nearer"
-    return Remark("wanted-law", check.value, NEAR * swing, "deg", sentence, check.at_deg)
+    return RuleRemark("wanted-law", check.value, NEAR * swing, "deg", sentence, check.at_deg)
 
 
-def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> Remark | None:
+def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> RuleRemark | None:
     """A limit that the tolerance of a file implies, and that is no small part of the stroke or of the rollers."""
     from kin.judge.limits import direct_play, is_loose, stroke_of
 
@@ -372,7 +372,7 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
         f"the limit of {check.name} that follows from the tolerance, {amount}, is {share:.3g} times the {reference}; "
         "verify.motion_error gives one of your own"
     )
-    return Remark("loose-motion-error", limit, LOOSE * limit / share, unit, sentence, check.at_deg)
+    return RuleRemark("loose-motion-error", limit, LOOSE * limit / share, unit, sentence, check.at_deg)
 
 
 def _stroke(design: Design) -> tuple[float, float]:
@@ -381,40 +381,40 @@ def _stroke(design: Design) -> tuple[float, float]:
     return design.motion.stroke(np.sort(np.concatenate([t, design.exact.breaks])))
 
 
-def _table(design: Design) -> list[Remark]:
+def _table(design: Design) -> list[RuleRemark]:
     """Remarks that the rows of a table gave when they were read, in the table's units."""
     kept = design.exact.kept
-    return [] if kept is None else [Remark(name, None, None, "", sentence) for name, sentence in kept.remarks]
+    return [] if kept is None else [RuleRemark(name, None, None, "", sentence) for name, sentence in kept.remarks]
 
 
-def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:
+def _acceleration(recipe: Recipe, joints: tuple[DerivativeJump, ...]) -> RuleRemark | None:
     """The greatest jump of acceleration, which strikes the follower; jumps of jerk are in the report alone."""
     jumps = [(abs(b - a), joint) for joint in joints for k, a, b in joint.jumps if k == 2]
     if not jumps:
         return None
     value, worst = max(jumps, key=lambda row: row[0])
     scale, unit = displacement_unit(recipe)
-    sentence = Joint(worst.at, tuple(jump for jump in worst.jumps if jump[0] == 2)).scaled(scale).said(unit)
+    sentence = DerivativeJump(worst.at, tuple(jump for jump in worst.jumps if jump[0] == 2)).scaled(scale).said(unit)
     if len(jumps) > 1:
         sentence += f", and at {len(jumps) - 1} other joint{'s' if len(jumps) > 2 else ''} by no more"
     if unit == "deg":
         value *= scale
-    return Remark(
+    return RuleRemark(
         "acceleration-jump", value, 0.0, f"{'deg' if unit == 'deg' else 'mm'}/rad^2", sentence, math.degrees(worst.at)
     )
 
 
-def _share(recipe: Recipe, name: RemarkName, subject: tuple[str, float], length: float) -> Remark | None:
+def _share(recipe: Recipe, name: RemarkName, subject: tuple[str, float], length: float) -> RuleRemark | None:
     (what, value), rule = subject, SHARE * length
     if value <= rule:
         return None
     sentence = (
         f"{what}, {_length(recipe, value)}, is {value / length:.3g} times the stroke of {_length(recipe, length)}"
     )
-    return Remark(name, value, rule, "mm", sentence)
+    return RuleRemark(name, value, rule, "mm", sentence)
 
 
-def _output(recipe: Recipe, design: Design) -> list[Remark | None]:
+def _output(recipe: Recipe, design: Design) -> list[RuleRemark | None]:
     """Limits of a linkage's error and dwell that are a good part of the output's swing."""
     if design.driven is None or design.driven.figures is None:
         return []
@@ -425,17 +425,17 @@ def _output(recipe: Recipe, design: Design) -> list[Remark | None]:
         ("loose-output-error", "verify.output_error", recipe.verify.output_error),
         ("wide-dwell-band", "dwell.band", band),
     )
-    remarks: list[Remark | None] = []
+    remarks: list[RuleRemark | None] = []
     for name, field, value in limits:
         if value is not None and value > SHARE * swing:
             sentence = (
                 f"{field} is {value / swing:.3g} times the swing of the output" if swing else f"{field}: no swing"
             )
-            remarks.append(Remark(name, value * scale, SHARE * swing * scale, unit, sentence))
+            remarks.append(RuleRemark(name, value * scale, SHARE * swing * scale, unit, sentence))
     return remarks
 
 
-def shortened_dwells(driven: Driven, files: Sequence[FileResult]) -> tuple[Remark, ...]:
+def shortened_dwells(driven: DesignedLinkage, files: Sequence[FileResult]) -> tuple[RuleRemark, ...]:
     """A remark on each file whose dwell is clearly shorter than the intended one: a ripple crosses the band's edge."""
     remarks = []
     for file in files:
@@ -448,11 +448,11 @@ def shortened_dwells(driven: Driven, files: Sequence[FileResult]) -> tuple[Remar
                 "as a ripple fills the band: give a wider dwell.band or a smaller export.tolerance"
             )
             at_deg = dwell.start_deg if dwell.over == "shaft" else None
-            remarks.append(Remark("dwell-shorter", dwell.length_deg, LASTS * intended, "deg", sentence, at_deg))
+            remarks.append(RuleRemark("dwell-shorter", dwell.length_deg, LASTS * intended, "deg", sentence, at_deg))
     return tuple(remarks)
 
 
-def _shaft(recipe: Recipe, design: Design) -> Remark | None:
+def _shaft(recipe: Recipe, design: Design) -> RuleRemark | None:
     """A shaft outside the contour of a part without a bore; with one the wall is a check."""
     if recipe.part.bore is not None or not design.contours:
         return None
@@ -471,10 +471,10 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     sentence = f"the shaft lies outside the contour by {_length(recipe, -distance)}"
     if -distance <= NOISE * size_of(design):
         sentence = "the shaft lies on the contour"
-    return Remark("shaft-outside", distance, 0.0, "mm", sentence, design.motion.shaft_deg(parameter))
+    return RuleRemark("shaft-outside", distance, 0.0, "mm", sentence, design.motion.shaft_deg(parameter))
 
 
-def _metric(recipe: Recipe) -> list[Remark]:
+def _metric(recipe: Recipe) -> list[RuleRemark]:
     """A bore by the inch with a feature of metric standard sizes."""
     bore = recipe.part.bore
     if bore is None:
@@ -485,14 +485,14 @@ def _metric(recipe: Recipe) -> list[Remark]:
     features = with_records(recipe.part.features)
     sizes = [feature.metric(value) for feature, value in features if feature.metric is not None]
     sentences = [f"a bore of {_length(recipe, bore)} takes a {size}" for size in sizes if size]
-    return [Remark("metric-keyway", bore, None, "mm", sentence) for sentence in sentences]
+    return [RuleRemark("metric-keyway", bore, None, "mm", sentence) for sentence in sentences]
 
 
 def _is_whole(value: float) -> bool:
     return abs(value - round(value)) <= _SAME * max(abs(value), 1.0)
 
 
-def _thickness(recipe: Recipe, design: Design) -> Remark | None:
+def _thickness(recipe: Recipe, design: Design) -> RuleRemark | None:
     """A disc that is a bar or a foil: a slip of the unit, mostly."""
     thickness, size = recipe.part.thickness, size_of(design)
     if thickness is None or not size or THINNEST * size <= thickness <= THICKEST * size:
@@ -502,7 +502,7 @@ def _thickness(recipe: Recipe, design: Design) -> Remark | None:
     sentence = (
         f"part.thickness, {_length(recipe, thickness)}, is {thickness / size:.3g} times the cam's greatest radius"
     )
-    return Remark("thick" if thick else "thin", thickness, rule, "mm", sentence)
+    return RuleRemark("thick" if thick else "thin", thickness, rule, "mm", sentence)
 
 
 def size_of(design: Design) -> float:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.motions.lift_table import read_path
-from camgeo.schema.fields import Form
+from camgeo.schema.fields import OwnForm
 from camgeo.schema.scalars import MOST_TEXT
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 ANGLES = 720  # shaft angles at which the follower's position on the contour is taken
 _DIGITS = 3  # beyond that of the reading, to which positions are rounded
 
-DRAWING = Form(
+DRAWING = OwnForm(
     "the path of a drawing, or of points",
     "the path of a DXF or SVG, such as old.dxf, or of a CSV of points x, y round the contour",
     read_path,

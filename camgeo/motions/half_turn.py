@@ -15,7 +15,7 @@ from camgeo.schema.fields import Kind
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
-    from kin.law.joints import Joint
+    from kin.law.joints import DerivativeJump
     from kin.law.sources.motion import Kept, Motion
 
 MOTION = motion_field(
@@ -51,7 +51,7 @@ class HalfTurnCam:
         """The motion over the half turn; the other half follows in the opposite sense."""
         return self.motion.motion(math.pi, "motion", -1)
 
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Joints of the half turn's motion; the other half has the same in the opposite sense."""
         return self.half_turn.joints
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.schema.fields import MOST, Field, Form, Kind
+from camgeo.schema.fields import MOST, Field, Kind, OwnForm
 from camgeo.schema.file_bytes import read_bytes
 from camgeo.schema.scalars import MOST_TEXT, Complaint
 from camgeo.schema.yaml_source import Scalar, Sequence, describe, join
@@ -83,7 +83,7 @@ def _read_origin(reader: Reader, field: Field, node: Node, path: str) -> Origin 
     return Origin("the rows", "\n".join(lines)) if lines else None
 
 
-TABLE = Form(
+TABLE = OwnForm(
     "the path of a file, or a list of rows",
     "the path of a CSV file, such as lift.csv, or rows such as [[0, 0], [10, 0.2]]",
     _read_origin,
@@ -117,7 +117,7 @@ def _read_columns(reader: Reader, field: Field, node: Node, path: str) -> tuple[
     return None
 
 
-_TWO = Form(
+_TWO = OwnForm(
     "a list of two columns",
     "a list of the columns of angle and value, by heading or number, such as [crank, intake]",
     _read_columns,

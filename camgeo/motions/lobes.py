@@ -6,7 +6,7 @@ import math
 from functools import partial
 from typing import TYPE_CHECKING
 
-from camgeo.schema.fields import Field, Form, Kind, Table, mapping
+from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, join
 from kin.numeric.records import dataclass
@@ -115,7 +115,7 @@ def lobe_field(stroke: Kind, most: float) -> Field:
 
 
 def _side_fields(stroke: Kind, most: float) -> tuple[Field, ...]:
-    crossing = Table(
+    crossing = FieldTable(
         (
             Field("at_lift", stroke, "a lift, from the lowest place", required=True, above=0, at_most=most),
             Field(
@@ -128,7 +128,7 @@ def _side_fields(stroke: Kind, most: float) -> tuple[Field, ...]:
             ),
         )
     )
-    durations = Form(
+    durations = OwnForm(
         "a list of durations",
         "up to three durations such as [{at_lift: 1.27 mm, degrees: 228}]",
         partial(_read_durations, crossing),
@@ -154,13 +154,13 @@ def _side_fields(stroke: Kind, most: float) -> tuple[Field, ...]:
     )
 
 
-def _durations_schema(table: Table, _: Field) -> Schema:
+def _durations_schema(table: FieldTable, _: Field) -> Schema:
     alone = table_schema(table)
     return {"anyOf": [alone, {"type": "array", "items": alone, "minItems": 1, "maxItems": MOST_DURATIONS}]}
 
 
 def _read_durations(
-    table: Table, reader: Reader, field: Field, node: Node, path: str
+    table: FieldTable, reader: Reader, field: Field, node: Node, path: str
 ) -> tuple[tuple[float, float], ...] | None:
     """Read lifts and the angles of the crank for which a lobe is above them."""
     row = Field("", Kind.TABLE, field.about, table=table)

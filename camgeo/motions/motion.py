@@ -15,7 +15,7 @@ from camgeo.motions.contour_motion import DRAWING, read_contours
 from camgeo.motions.lift_table import SHEET, TABLE, Rows, read_rows
 from camgeo.motions.lobes import lobe_field, read_sides
 from camgeo.motions.segments import LEAST, REST, read_pairs, read_segments, segment_table, segments_schema
-from camgeo.schema.fields import MOST, Field, Form, Kind, Table
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, entries, join
 from kin.numeric.records import dataclass, field, replace
@@ -326,7 +326,7 @@ def motion_field(
     `longest` degrees are those of a segment, where it is not over a whole turn.
     """
     sources = _sources(stroke, whole_turn=whole_turn)
-    form = Form(
+    form = OwnForm(
         "a list of motion segments",
         "a list of segments such as [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]",
         partial(_read, stroke),
@@ -345,7 +345,7 @@ def _read_reading(reader: Reader, field: Field, node: Node, path: str) -> float 
     return value
 
 
-_READING = Form(
+_READING = OwnForm(
     "a stroke, or auto",
     "a stroke above 0, or auto for half the last digit of the table",
     _read_reading,
@@ -354,7 +354,7 @@ _READING = Form(
 
 
 @cache
-def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
+def _sources(stroke: Kind, *, whole_turn: bool) -> FieldTable:
     """Table of the keys of a motion that is no list of segments."""
     most = 180 if stroke is Kind.ANGLE else MOST
     units = Field(
@@ -364,7 +364,9 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
         default="the heading's, else the recipe's",
         choices=("mm", "inch", "thou"),
     )
-    points = Form("a list of points", "a list of points [angle, displacement]", partial(_read_points, stroke), _points)
+    points = OwnForm(
+        "a list of points", "a list of points [angle, displacement]", partial(_read_points, stroke), _points
+    )
     fields = (
         Field("formula", Kind.FORMULA, "displacement at t, the motion's angle in radians", unit=stroke),
         Field(
@@ -400,7 +402,7 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     )
     alternatives = tuple((key, ()) for key in ("formula", "table", "points", "lobe"))
     if not whole_turn:
-        return Table(fields, alternatives)
+        return FieldTable(fields, alternatives)
     contour = Field(
         "contour", Kind.OWN, "drawing of a cam, or points, whose motion under the follower is taken", form=DRAWING
     )
@@ -412,10 +414,10 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
         choices=("cam", "pitch"),
     )
     repeat = Field("repeat", Kind.INTEGER, "how often the segments fill a turn", at_least=1, at_most=MOST_REPEATS)
-    form = Form("a list of motion segments", "a list of segments", partial(_read_segments, stroke), segments_schema)
+    form = OwnForm("a list of motion segments", "a list of segments", partial(_read_segments, stroke), segments_schema)
     inner = segment_table(stroke, 360, free=True)
     segments = Field("segments", Kind.OWN, "the segments of 360/repeat degrees", table=inner, form=form)
-    return Table(
+    return FieldTable(
         (repeat, segments, *fields, contour, curve), (("segments", ("repeat",)), *alternatives, ("contour", ()))
     )
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-class Law(Protocol):
+class PositionLaw(Protocol):
     """Protocol of a motion over the shaft angle."""
 
     def derivatives(self, theta: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
@@ -62,7 +62,7 @@ class _Swing:
 class LiftPosition(_Turn):
     """Lift along a line, by a law whose parameter is the shaft angle; `datum` is the law's value at lift 0, mm."""
 
-    law: Law
+    law: PositionLaw
     datum: float = 0.0
     title: ClassVar[str] = "lift"
     unit: ClassVar[str] = "mm"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from camgeo.motions.lift_table import COLUMNS, TABLE, read_rows
 from camgeo.schema.errors import quote, suggestion
-from camgeo.schema.fields import MOST, MOST_SEGMENTS, Field, Form, Kind, Table, mapping
+from camgeo.schema.fields import MOST, MOST_SEGMENTS, Field, FieldTable, Kind, OwnForm, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Scalar, Sequence, describe, join
 from kin.numeric.records import dataclass, replace
@@ -128,7 +128,7 @@ class MotionSegment:
         """
         from kin.law.programme import IntentError
         from kin.law.sources.laws import split
-        from kin.law.sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State
+        from kin.law.sources.programme import Dwell, Given, JointState, Matched, Move, RiseAndFall
 
         if self.kind == "dwell":
             return Dwell(self.over)
@@ -143,7 +143,7 @@ class MotionSegment:
         if self.law == MATCH:
             if self.split is not None:
                 raise IntentError("a matched segment takes no split", f"{field}.split")
-            state = None if self.at_end is None else State(*self.at_end)
+            state = None if self.at_end is None else JointState(*self.at_end)
             return Move(self.over, Matched(at_end=state), by, to)
         if self.at_end is not None:
             raise IntentError("only a matched segment takes a state at its end", f"{field}.at_end")
@@ -176,7 +176,7 @@ def _angle_or(word: str, about: str, field: Field) -> Field:
         return value
 
     wanted = f"{field.wanted()}, or {word} for {about}"
-    return replace(field, form=Form(f"an angle, or {word}", wanted, read, partial(_angle_or_schema, word)))
+    return replace(field, form=OwnForm(f"an angle, or {word}", wanted, read, partial(_angle_or_schema, word)))
 
 
 def _angle_or_schema(word: str, field: Field) -> Schema:
@@ -195,7 +195,7 @@ def _read_blend(reader: Reader, field: Field, node: Node, path: str) -> tuple[fl
     return None if len(angles) < 2 or None in angles else (angles[0], angles[1])
 
 
-_BLEND = Form(
+_BLEND = OwnForm(
     "angles of blends",
     "an angle from 0 to 360, or two, such as [10, 20]",
     _read_blend,
@@ -231,7 +231,7 @@ def _read_points(reader: Reader, field: Field, node: Node, path: str) -> tuple[t
     return read_pairs(reader, field, node, path, parts=(number, number), most=MOST_LAW_POINTS, row="[u, s]")
 
 
-_POINTS = Form(
+_POINTS = OwnForm(
     "a list of points",
     "a list of points such as [[0, 0], [0.4, 0.25], [1, 1]]",
     _read_points,
@@ -242,7 +242,7 @@ _POINTS = Form(
         "maxItems": MOST_LAW_POINTS,
     },
 )
-_LAW = Table(
+_LAW = FieldTable(
     (
         Field("polynomial", Kind.NUMBERS, "coefficients c0, c1, ... of u, from 0 to 1 as u does"),
         mapping(
@@ -391,11 +391,11 @@ def segments_schema(field: Field) -> Schema:
     return {"type": "array", "items": table_schema(field.inner), "minItems": 1, "maxItems": MOST_SEGMENTS}
 
 
-LAW = Form("a motion law", "a motion law", read_law, _law_schema)
+LAW = OwnForm("a motion law", "a motion law", read_law, _law_schema)
 
 
 @cache
-def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> Table:
+def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> FieldTable:
     """Table of a segment whose stroke is a length or an angle; it is `over` degrees long at most.
 
     With `free` a word may leave its angle open.
@@ -407,7 +407,7 @@ def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> Table
     if free:
         angle = _angle_or(LEAST, "the quickest that all limits allow", angle)
         dwell = _angle_or(REST, "what the others leave of the turn", dwell)
-    return Table(
+    return FieldTable(
         (
             *strokes,
             Field("to", stroke, "displacement at the end of the segment", at_least=-most, at_most=most),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.output.job import Made
+from camgeo.output.job import MadeFiles
 from camgeo.recipe.export import disc_filename
 from camgeo.registry.formats import FORMATS, variant
 from kin.judge.check import about
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 
-def make(job: Job, request: FileRequest, path: Path) -> Made:
+def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Make and judge the files of one request: one at `path`, or one for each disc beside it.
 
     No file is made of an altered part whose contour fails a check: then the failed checks come back alone; nor where
@@ -27,12 +27,12 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     """
     job, failed = job.of_file(request)
     if failed:
-        return Made((), tuple(about(check, path.name) for check in failed))
+        return MadeFiles((), tuple(about(check, path.name) for check in failed))
     if request.variant:
         return variant(request.variant).make(job, request, path)
     driven = job.design.driven
     if request.format.turning and driven is not None and not driven.turns:
-        return Made(())
+        return MadeFiles(())
     if len(job.design.discs) == 1 or not request.format.by_disc:
         return _make_file(job, request, path)
     paths = [path.with_name(disc_filename(path.name, rank)) for rank in range(len(job.design.discs))]
@@ -45,7 +45,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     )
 
 
-def _make_file(job: Job, request: FileRequest, path: Path) -> Made:
+def _make_file(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     if request.format.make is None:
         raise ValueError(f"nothing makes {request.kind} alone")
     return request.format.make(job, request, path)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from camgeo.files.precision import conversion_error
 from camgeo.fit.bound import Bound
 from camgeo.output import part_geometry
-from camgeo.output.job import Made
+from camgeo.output.job import MadeFiles
 from camgeo.output.part_geometry import contours_of, openings_of, rim_of
 from kin.judge.check import about
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Draw = Callable[[Job, FileRequest, Path, list[LayerOutline], list[str]], Sequence[Check]]
 
 
-def make_drawing(job: Job, request: FileRequest, path: Path, draw: Draw) -> Made:
+def make_drawing(job: Job, request: FileRequest, path: Path, draw: Draw) -> MadeFiles:
     """Fit, write, read back and judge one drawing; the file and its checks.
 
     `draw` writes outlines on their layers and remarks, (job, request, path, outlines, remarks), and returns the checks
@@ -43,4 +43,4 @@ def make_drawing(job: Job, request: FileRequest, path: Path, draw: Draw) -> Made
         checks = draw(job, request, path, outlines, remarks)
     bound = reduce(Bound.wider, (outline.bound.widened(shift(outline)) for outline in contours))
     judged = job.judge(request, path, bound, sum(outline.count for outline in contours))
-    return Made(judged.files, (*(about(check, path.name) for check in checks), *judged.checks))
+    return MadeFiles(judged.files, (*(about(check, path.name) for check in checks), *judged.checks))

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 STEEP = 0.999  # psi'(phi) from which a roller may run past a contour that is within its tolerance
 
 
-class Made(NamedTuple):
+class MadeFiles(NamedTuple):
     """Files of one request, and the checks on them."""
 
     files: tuple[FileResult, ...]
@@ -176,7 +176,7 @@ class Job:
         reached = f"{error.reached:.3g} mm are {error.reached / recipe.mm:.3g} in" if recipe.units == "inch" else ""
         return recipe.error(field_path, str(error), None, reached)
 
-    def judge(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
+    def judge(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> MadeFiles:
         """Read a file back and judge it by the recipe's motion; the file and its checks."""
         from kin.judge.verify import verify
 
@@ -187,9 +187,9 @@ class Job:
         with self.clock.stage(f"judge {request.kind}"):
             verdict = verify(path, intent, recipe.verify.angles, permitted(recipe, tolerance), units)
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
-        return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
+        return MadeFiles((file,), tuple(self._why_lost(check) for check in verdict.checks))
 
-    def judge_together(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
+    def judge_together(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> MadeFiles:
         """Read back a file of several discs, each in its place, and judge it by the recipe's motion."""
         from kin.judge.together import DiscFile, verify_set
 
@@ -198,22 +198,22 @@ class Job:
         with self.clock.stage(f"judge {request.kind}"):
             (verdict,) = verify_set([DiscFile(path, None)], intent, recipe.verify.angles, permitted(recipe, tolerance))
         file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
-        return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
+        return MadeFiles((file,), tuple(self._why_lost(check) for check in verdict.checks))
 
-    def combine_discs(self, request: FileRequest, products: Sequence[Made]) -> Made:
+    def combine_discs(self, request: FileRequest, products: Sequence[MadeFiles]) -> MadeFiles:
         """Join the files of each disc, and judge the play that they leave between them."""
         from kin.judge.together import DiscsRead, left_between
 
         files = [replace(file, disc=rank) for rank, product in enumerate(products) for file in product.files]
         checks = [check for product in products for check in product.checks]
         if not files:
-            return Made((), tuple(checks))
+            return MadeFiles((), tuple(checks))
         limits = permitted(self.recipe, self.tolerance(request))
         with self.clock.stage(f"judge {request.kind}"):
             discs = [DiscsRead(file.path.name, file.surfaces, file.uneven) for file in files]
             closures, more = left_between(discs, shaft_of_file(self.recipe, self.design, request.kind), limits)
         files[-1] = replace(files[-1], closures=closures)
-        return Made(tuple(files), (*checks, *more))
+        return MadeFiles(tuple(files), (*checks, *more))
 
     def _why_lost(self, check: Check) -> Check:
         """Check with the reason why a roller may miss a file's contour, where the cam can hardly be turned through."""
@@ -229,6 +229,6 @@ class Job:
         return replace(check, detail=f"{marked(check.detail)}: {why}")
 
 
-def unjudged(path: Path, request: FileRequest, units: float) -> Made:
+def unjudged(path: Path, request: FileRequest, units: float) -> MadeFiles:
     """Product of a file that nothing judges, such as a table; `units` is the unit of its numbers, mm."""
-    return Made((FileResult(path, request, units=units),))
+    return MadeFiles((FileResult(path, request, units=units),))

@@ -15,7 +15,7 @@ from camgeo.files.errors import MissingExtraError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import shaft_of_file
 from camgeo.registry import registry
-from camgeo.registry.formats import Run
+from camgeo.registry.formats import RunResults
 from camgeo.report.document import Findings, as_json, document
 from camgeo.synthesis.design import Design, designed
 from camgeo.synthesis.intent import permitted
@@ -260,7 +260,7 @@ def _produce(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, cl
     for request in requests:
         if request.format.summarise is not None and request not in missing:
             path = folder / request.filename(recipe.name, recipe.export.files)
-            product = request.format.summarise(Run(recipe, design, findings, job, clock), request, path)
+            product = request.format.summarise(RunResults(recipe, design, findings, job, clock), request, path)
             findings = replace(
                 findings, files=(*findings.files, *product.files), checks=(*findings.checks, *product.checks)
             )

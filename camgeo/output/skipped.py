@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.checks.declared import CHECKS, OUTPUT, STANDS, Scene
+from camgeo.checks.declared import CHECKS, OUTPUT, STANDS, CheckFacts
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 
@@ -54,10 +54,10 @@ def _skipped_files(recipe: Recipe, requests: tuple[FileRequest, ...], design: De
     return skipped
 
 
-def scene_of(recipe: Recipe, design: Design) -> Scene:
+def scene_of(recipe: Recipe, design: Design) -> CheckFacts:
     """Facts of a run by which declarations decide which checks are made."""
     turns = design.driven is None or design.driven.turns
-    return Scene(recipe, design.follower, design.trimmed, turns)
+    return CheckFacts(recipe, design.follower, design.trimmed, turns)
 
 
 def _skipped_of_linkage(recipe: Recipe, design: Design) -> list[Skipped]:

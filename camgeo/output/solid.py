@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
     from camgeo.files.mesh import Mesh, MeshFacts
     from camgeo.files.precision import Precision
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array
 
 
-def make_mesh(job: Job, request: FileRequest, path: Path) -> Made:
+def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit, write, read back and judge the discs of a file, each a mesh in its place."""
     write, kind = request.format.write, request.kind
     if write is None:

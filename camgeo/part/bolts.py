@@ -10,7 +10,7 @@ from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.part.feature import View
+    from camgeo.part.feature import SheetView
     from camgeo.part.shapes import Opening
     from camgeo.schema.reader import Reader, Values
 
@@ -39,7 +39,7 @@ def _openings(bolts: Bolts) -> list[Opening]:
     return [hole_at(f"bolt hole {k + 1}", bolts.circle, bolts.hole, at) for k, at in enumerate(angles)]
 
 
-def _callouts(bolts: Bolts, view: View) -> tuple[Callout, ...]:
+def _callouts(bolts: Bolts, view: SheetView) -> tuple[Callout, ...]:
     centre, radius = min(view.named("bolt hole"))
     text, note = f"{bolts.count} × Ø{view.number(bolts.hole)}", f"first at {view.degrees(bolts.start)}"
     hole = Callout(text, note, centre, radius, 0.75 * math.pi, bolts.hole)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.part.feature import angle
-from camgeo.schema.fields import Field, Form, Kind, Table, length
+from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, length
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.read_scalar import read_numeric
 from camgeo.schema.yaml_source import Scalar
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 LEAST_SIZE = 1e-3  # mm: of what is cut, drilled or stands; a file's reader takes much less for nothing
 SIDES = {"square": 4, "hexagon": 6}
-TABLE = Table(
+TABLE = FieldTable(
     (
         length("square", "width across flats of a square bore"),
         length("hexagon", "width across flats of a hexagonal bore"),
@@ -35,7 +35,7 @@ def read_bore(reader: Reader, field: Field, node: Node, path: str) -> float | Va
     return reader.mapping(field, node, path)
 
 
-FORM = Form(
+FORM = OwnForm(
     "a bore",
     "a diameter above 0, or a form such as {square: 10}, {hexagon: 10} or {diameter: 20, fit: H7}",
     read_bore,

@@ -9,7 +9,7 @@ from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.part.feature import View
+    from camgeo.part.feature import SheetView
     from camgeo.part.shapes import Opening
 
 
@@ -28,7 +28,7 @@ def _openings(dowel: Dowel) -> list[Opening]:
     return [hole_at("dowel hole", dowel.circle, dowel.hole, dowel.at)]
 
 
-def _callouts(dowel: Dowel, view: View) -> tuple[Callout, ...]:
+def _callouts(dowel: Dowel, view: SheetView) -> tuple[Callout, ...]:
     ((centre, radius),) = view.named("dowel hole")
     note = f"dowel at {view.degrees(dowel.at)}"
     hole = Callout(f"Ø{view.number(dowel.hole)}", note, centre, radius, 2.9, dowel.hole)

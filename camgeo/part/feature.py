@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
 
 from camgeo.registry.capability import NO_CHECK
-from camgeo.schema.fields import Field, Kind, Table
+from camgeo.schema.fields import Field, FieldTable, Kind
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
@@ -112,7 +112,7 @@ class Callout(NamedTuple):
     value: float | None = None
 
 
-class View(NamedTuple):
+class SheetView(NamedTuple):
     """A part as a shop drawing shows it, perhaps mirrored.
 
     `part` as in the recipe, `openings` as drawn, by their names. `number` writes a size in mm, `degrees` a direction of
@@ -200,7 +200,7 @@ class Feature(Generic[T]):
     metric: Callable[[T], str] | None = None
     remark: Callable[[T, float], str] | None = None
     unmilled: str = ""
-    callouts: Callable[[T, View], Iterable[Callout]] | None = None
+    callouts: Callable[[T, SheetView], Iterable[Callout]] | None = None
 
     @property
     def name(self) -> str:
@@ -241,7 +241,7 @@ def count(name: str, about: str, *, least: int = 1, required: bool = False) -> F
 
 def optional(name: str, about: str, *fields: Field, alternatives: Collection[str] = ()) -> Field:
     """Make the field of a feature that is a mapping, of whose `alternatives` exactly one is given."""
-    table = Table(fields, alternatives=tuple((word, ()) for word in alternatives))
+    table = FieldTable(fields, alternatives=tuple((word, ()) for word in alternatives))
     return Field(name, Kind.TABLE, about, default="none", table=table)
 
 

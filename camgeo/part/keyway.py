@@ -8,7 +8,7 @@ from camgeo.part.bore import diameter_of
 from camgeo.part.din6885 import LEAST, MOST, key_for
 from camgeo.part.feature import Feature, angle, check_below, size_words
 from camgeo.schema.errors import quote
-from camgeo.schema.fields import Field, Form, Kind, Table, length
+from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, length
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Scalar
 from kin.numeric.records import dataclass
@@ -34,7 +34,7 @@ class Keyway:
     standard: bool = False
 
 
-TABLE = Table(
+TABLE = FieldTable(
     (
         Field("standard", Kind.CHOICE, "width and depth by the bore, from DIN 6885-1 or JIS B 1301", choices=STANDARDS),
         length("width", "width b of the key"),
@@ -55,7 +55,7 @@ def read_keyway(reader: Reader, field: Field, node: Node, path: str) -> Values |
     return reader.mapping(field, node, path)
 
 
-FORM = Form(
+FORM = OwnForm(
     "a keyway",
     "din6885, jis-b1301, or a mapping such as {width: 4, depth: 1.8}",
     read_keyway,

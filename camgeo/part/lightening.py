@@ -10,7 +10,7 @@ from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.part.feature import Site, View
+    from camgeo.part.feature import SheetView, Site
     from camgeo.schema.reader import Reader, Values
 
 
@@ -60,7 +60,7 @@ def _place(lightening: Lightening, site: Site) -> Placed:
     return Placed(holes, Check(FEATURE.name, ok, len(holes), enough, "holes", None, "at_least", detail=detail))
 
 
-def _callouts(lightening: Lightening, view: View) -> list[Callout]:
+def _callouts(lightening: Lightening, view: SheetView) -> list[Callout]:
     holes = view.named("lightening hole")
     if holes and lightening.ring is not None:
         centre, radius = min(holes)

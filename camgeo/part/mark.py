@@ -12,7 +12,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.part.feature import Site, View
+    from camgeo.part.feature import SheetView, Site
     from camgeo.part.shapes import Layer, Opening
     from camgeo.schema.reader import Reader, Values
     from kin.judge.check import Check
@@ -128,7 +128,7 @@ def _no_room(mark: Mark, fits: Mark | None = None, wall: float = 0.0) -> Check:
     return Check(FEATURE.name, ok=False, value=mark.width, limit=width, unit="mm", sense="at_most", detail=detail)
 
 
-def _callouts(mark: Mark, view: View) -> list[Callout]:
+def _callouts(mark: Mark, view: SheetView) -> list[Callout]:
     opening = view.openings.get("mark")
     if opening is None:
         return []

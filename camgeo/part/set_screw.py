@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from camgeo.part.body import Body
-    from camgeo.part.feature import Boss, View
+    from camgeo.part.feature import Boss, SheetView
     from camgeo.part.walls import Looks, Possible
     from camgeo.schema.reader import Reader, Values
     from kin.judge.layers import CrossHole
@@ -73,7 +73,7 @@ def _grown(screw: SetScrew, out: float, scale: float) -> SetScrew:
     return replace(screw, diameter=narrowed(screw.diameter, out, scale), height=height)
 
 
-def _callouts(screw: SetScrew, view: View) -> tuple[Callout, ...]:
+def _callouts(screw: SetScrew, view: SheetView) -> tuple[Callout, ...]:
     boss = view.part.boss
     if boss is None:
         return ()

@@ -9,7 +9,7 @@ from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.part.feature import View
+    from camgeo.part.feature import SheetView
     from camgeo.part.shapes import Opening
     from camgeo.schema.reader import Reader, Values
 
@@ -39,7 +39,7 @@ def _openings(slot: Slot) -> list[Opening]:
     return [Opening("slot", "HOLES", slot_across(0.5 * slot.circle, slot.length, slot.width, slot.at))]
 
 
-def _callouts(slot: Slot, view: View) -> tuple[Callout, ...]:
+def _callouts(slot: Slot, view: SheetView) -> tuple[Callout, ...]:
     text = f"slot {view.number(slot.width)} × {view.number(slot.length)}"
     size = Callout(text, f"across {view.degrees(slot.at)}", view.openings["slot"].middle, 0.0, 0.0)
     return size, view.circle("slot circle", slot.circle, 0.87)

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from camgeo.cams.family import Cam
-    from camgeo.schema.fields import Table
+    from camgeo.schema.fields import FieldTable
     from camgeo.schema.reader import Reader, Values
 
-CAMS: Mapping[str, Table] = OnDemand(tuple(FAMILIES), lambda kind: FAMILIES[kind].table)
+CAMS: Mapping[str, FieldTable] = OnDemand(tuple(FAMILIES), lambda kind: FAMILIES[kind].table)
 MADE = (
     "cams are made for one roller, also in a groove, for one knife edge, curved shoe or flat face on a stem or an arm, "
     "or for two on conjugate discs (disc), for a yoke of two parallel faces (constant-breadth, support) or two "

@@ -10,7 +10,7 @@ from camgeo.recipe.machining import COMPENSATION, Compensation, alterations, bui
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS, variant
 from camgeo.schema.errors import quote
-from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
+from camgeo.schema.fields import MOST_FILES, Field, FieldTable, Kind, OwnForm, either, length, mapping
 from camgeo.schema.yaml_source import Mapping, Scalar, describe, is_empty, join
 from kin.numeric.records import dataclass
 
@@ -131,7 +131,7 @@ class Export:
         return tuple(dict.fromkeys(names))
 
 
-class Options(collections.abc.Mapping[str, Table]):
+class Options(collections.abc.Mapping[str, FieldTable]):
     """Table of the options of each format, those of capabilities first."""
 
     def __init__(
@@ -140,10 +140,10 @@ class Options(collections.abc.Mapping[str, Table]):
         self._formats = formats
         self._more = more
 
-    def __getitem__(self, name: str) -> Table:
+    def __getitem__(self, name: str) -> FieldTable:
         """Table of a format; raises KeyError."""
         record = self._formats[name]
-        return Table(
+        return FieldTable(
             (*(extension.option for extension in self._more if extension.offered(record)), *record.options.fields)
         )
 
@@ -196,7 +196,7 @@ def _files_schema(options: Options, _: Field) -> Schema:
     from camgeo.schema.json_schema import table_schema
 
     fields = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in options.items()]
-    items = {"anyOf": [{"enum": list(options)}, *(table_schema(Table((item,))) for item in fields)]}
+    items = {"anyOf": [{"enum": list(options)}, *(table_schema(FieldTable((item,))) for item in fields)]}
     return {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_FILES}
 
 
@@ -213,7 +213,7 @@ def export_of(
     `more` adds options of capabilities to those of formats; `unfit` are formats known only for the remedy in an error.
     """
     options = Options(formats, more)
-    form = Form(
+    form = OwnForm(
         "a list of files",
         "a list of files such as [dxf, stl]" if "dxf" in formats else f"a list of files such as {default}",
         partial(read_files, options),

@@ -100,7 +100,7 @@ def lift_key(usual: float) -> tuple[Field]:
 
 
 @dataclass(frozen=True)
-class Figure:
+class DesignFigure:
     """One figure of a design.
 
     `kind` is the kind of its values: degrees for an angle, the recipe's unit for a length, and for a motion either, as
@@ -128,33 +128,33 @@ class Figure:
     after: str = ""
 
 
-def _of_lobe(about: str, kind: Kind, best: Literal["most", "least"], lift: float, per: str = "") -> Figure:
-    return Figure(about, kind, best, OF_STEM, per, keys=lift_key(lift), at_lift=lift)
+def _of_lobe(about: str, kind: Kind, best: Literal["most", "least"], lift: float, per: str = "") -> DesignFigure:
+    return DesignFigure(about, kind, best, OF_STEM, per, keys=lift_key(lift), at_lift=lift)
 
 
-def _peak(about: str, per: str, needs: Need = NOTHING) -> Figure:
-    return Figure(about, Kind.MOTION, "least", needs, per, dear=True, eased_by="motion")
+def _peak(about: str, per: str, needs: Need = NOTHING) -> DesignFigure:
+    return DesignFigure(about, Kind.MOTION, "least", needs, per, dear=True, eased_by="motion")
 
 
-def _of_size(about: str, kind: Kind, needs: Need, *, dear: bool = True) -> Figure:
+def _of_size(about: str, kind: Kind, needs: Need, *, dear: bool = True) -> DesignFigure:
     """Figure that a larger cam makes less."""
-    return Figure(about, kind, "least", needs, dear=dear, eased_by="size")
+    return DesignFigure(about, kind, "least", needs, dear=dear, eased_by="size")
 
 
-def _of_file(about: str, kind: Kind, needs: Need = NOTHING) -> Figure:
-    return Figure(about, kind, "least", needs, of="file", swept=False)
+def _of_file(about: str, kind: Kind, needs: Need = NOTHING) -> DesignFigure:
+    return DesignFigure(about, kind, "least", needs, of="file", swept=False)
 
 
-_CORE: dict[str, Figure] = {
-    DWELL: Figure("longest dwell over the shaft angle, at the band of `dwell`", Kind.ANGLE, "most", OF_DWELL),
-    DWELL_RELATIVE: Figure(
+_CORE: dict[str, DesignFigure] = {
+    DWELL: DesignFigure("longest dwell over the shaft angle, at the band of `dwell`", Kind.ANGLE, "most", OF_DWELL),
+    DWELL_RELATIVE: DesignFigure(
         "longest dwell over the relative angle, at that band", Kind.ANGLE, "most", OF_DWELL, dear=True
     ),
-    "swing": Figure("swing or stroke of the output, without a linkage of the follower", Kind.MOTION, "most"),
+    "swing": DesignFigure("swing or stroke of the output, without a linkage of the follower", Kind.MOTION, "most"),
     PEAKS[0]: _peak("its greatest velocity, per radian of shaft angle", "/rad"),
     PEAKS[1]: _peak("its greatest acceleration, per radian squared", "/rad^2"),
     PEAKS[2]: _peak("the follower's greatest jerk, per radian cubed", "/rad^3", OF_FOLLOWER),
-    PRESSURE_ANGLE: Figure(
+    PRESSURE_ANGLE: DesignFigure(
         "greatest angle between the contact's normal and the follower's way; 0 of a flat face",
         Kind.ANGLE,
         "least",
@@ -167,61 +167,61 @@ _CORE: dict[str, Figure] = {
     VELOCITY_RATIO: _of_size(
         "greatest angular velocity of the arm over that of the shaft", Kind.NUMBER, OF_SWING, dear=False
     ),
-    LAW_ERROR: Figure(
+    LAW_ERROR: DesignFigure(
         "greatest distance of the swing from delta.law, over the turn", Kind.ANGLE, "least", OF_WANTED_LAW
     ),
     CONTACT_TRAVEL: _of_size("how far the contact travels along the face", Kind.LENGTH, OF_FACE),
     FACE_WIDTH: _of_size(
         "least width of a face, centred on the stem's axis, that the contact does not leave", Kind.LENGTH, OF_STEM_FACE
     ),
-    ROLLER_SPEED: Figure(
+    ROLLER_SPEED: DesignFigure(
         "greatest speed of the roller, turns per turn of the shaft", Kind.NUMBER, "least", OF_ROLLING, dear=True
     ),
-    PIVOT_CLEARANCE: Figure(
+    PIVOT_CLEARANCE: DesignFigure(
         "least distance of the arm's pivot from the contour over the turn, below 0 where the disc passes over it",
         Kind.LENGTH,
         "most",
         OF_ARM,
         dear=True,
     ),
-    PRELOAD_LEAST: Figure(
+    PRELOAD_LEAST: DesignFigure(
         "least force of a preload by interference over the turn, along the travel, N; N m where it turns",
         Kind.THRUST,
         "most",
         OF_STIFFNESS,
         dear=True,
     ),
-    PRELOAD_GREATEST: Figure("its greatest force", Kind.THRUST, "least", OF_STIFFNESS, dear=True),
-    TRANSMISSION_ANGLE: Figure("least transmission angle", Kind.ANGLE, "most", OF_LINKAGE),
-    FORCE_ANGLE: Figure(
+    PRELOAD_GREATEST: DesignFigure("its greatest force", Kind.THRUST, "least", OF_STIFFNESS, dear=True),
+    TRANSMISSION_ANGLE: DesignFigure("least transmission angle", Kind.ANGLE, "most", OF_LINKAGE),
+    FORCE_ANGLE: DesignFigure(
         "least angle between the force at the joint and the rocker", Kind.ANGLE, "most", OF_LINKAGE, dear=True
     ),
-    MARGIN: Figure("least distance from binding", Kind.LENGTH, "most", OF_LINKAGE),
-    SHAFT_RATE: Figure(
+    MARGIN: DesignFigure("least distance from binding", Kind.LENGTH, "most", OF_LINKAGE),
+    SHAFT_RATE: DesignFigure(
         "least turn of the shaft per turn of the cam against the frame", Kind.NUMBER, "most", OF_LINKAGE
     ),
-    RADIUS: Figure("least radius of curvature of the contour", Kind.LENGTH, "most"),
-    HOLLOW_RADIUS: Figure(
+    RADIUS: DesignFigure("least radius of curvature of the contour", Kind.LENGTH, "most"),
+    HOLLOW_RADIUS: DesignFigure(
         "least radius of the contour's hollows, infinite without one", Kind.LENGTH, "most", OF_ROLLER, dear=True
     ),
-    PITCH_RADIUS: Figure(
+    PITCH_RADIUS: DesignFigure(
         "least radius of curvature of the pitch curve, in a ring that of its hollows, infinite without one",
         Kind.LENGTH,
         "most",
         OF_ROLLER,
     ),
-    BASE_RADIUS: Figure("radius of the base circle, which `sizing` may find", Kind.LENGTH, "least", OF_GUIDED),
-    OFFSET: Figure("eccentricity of the stem's line, likewise", Kind.LENGTH, "least", OF_STEM),
-    PIVOT: Figure("distance of the arm's pivot from the shaft, likewise", Kind.LENGTH, "least", OF_ARM),
-    SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
-    MASS: Figure("mass of a disc, kg", Kind.MASS, "least", OF_DENSITY, per="kg", dear=True),
-    ECCENTRICITY: Figure(
+    BASE_RADIUS: DesignFigure("radius of the base circle, which `sizing` may find", Kind.LENGTH, "least", OF_GUIDED),
+    OFFSET: DesignFigure("eccentricity of the stem's line, likewise", Kind.LENGTH, "least", OF_STEM),
+    PIVOT: DesignFigure("distance of the arm's pivot from the shaft, likewise", Kind.LENGTH, "least", OF_ARM),
+    SIZE: DesignFigure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
+    MASS: DesignFigure("mass of a disc, kg", Kind.MASS, "least", OF_DENSITY, per="kg", dear=True),
+    ECCENTRICITY: DesignFigure(
         "distance of a disc's centre of mass from the shaft", Kind.LENGTH, "least", OF_DENSITY, dear=True
     ),
-    INERTIA: Figure(
+    INERTIA: DesignFigure(
         "moment of inertia of a disc about the shaft, kg mm²", Kind.NUMBER, "least", OF_DENSITY, "kg mm^2", dear=True
     ),
-    UNBALANCE: Figure(
+    UNBALANCE: DesignFigure(
         "mass of a disc times the distance of its centre of mass, kg mm",
         Kind.NUMBER,
         "least",
@@ -234,7 +234,7 @@ _CORE: dict[str, Figure] = {
     LOBE_CENTRE: _of_lobe("cam angle midway between the crossings of 1.27 mm of lift", Kind.ANGLE, "most", 1.27),
     RAMP_VELOCITY: _of_lobe("velocity at a lift of 0.1524 mm, a cam degree", Kind.LENGTH, "least", 0.1524, "/deg"),
     LIFT_AREA: _of_lobe("lift over the turn, times cam degrees", Kind.LENGTH, "most", 0.0, " deg"),
-    LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", OF_WALL, swept=False),
+    LEAST_WALL: DesignFigure("least wall between any two edges of the part", Kind.LENGTH, "most", OF_WALL, swept=False),
     CONTOUR_ERROR: _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
     DWELL_ERROR: _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
@@ -246,5 +246,5 @@ _CORE: dict[str, Figure] = {
 }
 
 
-FIGURES: Gathered[Figure] = Gathered(_CORE, lambda capability: capability.figures)
+FIGURES: Gathered[DesignFigure] = Gathered(_CORE, lambda capability: capability.figures)
 """Every figure by name, the core's and those of capabilities."""

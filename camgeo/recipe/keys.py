@@ -18,7 +18,7 @@ from camgeo.recipe.track import check_track
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.registry.gathered import Gathered
-from camgeo.schema.fields import MOST, Field, Kind, Table, mapping
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, mapping
 from camgeo.schema.reader import kind_of
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, describe, entries
 from kin.numeric.records import replace
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 MOST_ANGLES = 1_000_000  # of a turn at which files are judged
 UNITS = {"mm": 1.0, "inch": 25.4}  # of length, in mm
 
-CORE = Table(
+CORE = FieldTable(
     (
         Field("name", Kind.NAME, "name of the output folder and of the files in it", default="the file's stem"),
         Field("about", Kind.TEXT, "a note that travels into the files", default="none"),
@@ -101,26 +101,26 @@ _KEYS: Gathered[Field] = Gathered(
 )
 
 
-def recipe_table(capabilities: Collection[str] | None = None) -> Table:
+def recipe_table(capabilities: Collection[str] | None = None) -> FieldTable:
     """Table of a recipe's keys: the core's and those of some capabilities, or of all."""
     return _table(registry.names_with_record() if capabilities is None else tuple(capabilities))
 
 
 @cache
-def _table(capabilities: tuple[str, ...]) -> Table:
+def _table(capabilities: tuple[str, ...]) -> FieldTable:
     used = registry.in_order(capabilities)
     more = [option for record in used for option in (record.variant, record.alteration) if option is not None]
     keys = _KEYS.among(capabilities)
     if more:
         keys[EXPORT.name] = export_of(FORMATS, more=more)
-    table = Table(tuple(keys.values()))
+    table = FieldTable(tuple(keys.values()))
     for capability in used:
         for path, fields in capability.below.items():
             table = _with_fields(table, path.split("."), fields)
     return table
 
 
-def _with_fields(table: Table, path: list[str], more: Collection[Field]) -> Table:
+def _with_fields(table: FieldTable, path: list[str], more: Collection[Field]) -> FieldTable:
     """The table with more fields in the mapping at a path of it."""
     if not path:
         return replace(table, fields=(*table.fields, *more))

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from camgeo.recipe.figures import FIGURES, ON_RETURN, ON_RISE
 from camgeo.recipe.words import words_of
 from camgeo.schema.errors import suggestion
-from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, Sequence, describe, entries, join, keys
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.recipe.figures import Figure
+    from camgeo.recipe.figures import DesignFigure
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
@@ -52,9 +52,9 @@ class Limit:
         return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{own}"
 
 
-def bounds(figure: Figure) -> Table:
+def bounds(figure: DesignFigure) -> FieldTable:
     """Table of the bounds of a figure, without the further keys that some have in a recipe's own limits."""
-    return Table(
+    return FieldTable(
         tuple(
             Field(name, Kind.NUMBER, about, at_least=-(MOST**2), at_most=MOST**2, unit=figure.kind)
             for name, about in (("at_least", "least value accepted"), ("at_most", "greatest value accepted"))
@@ -62,15 +62,15 @@ def bounds(figure: Figure) -> Table:
     )
 
 
-def own_bounds(name: str) -> Table:
+def own_bounds(name: str) -> FieldTable:
     """Table of the bounds of a figure in a recipe's own `limits`."""
     figure = FIGURES[name]
-    return Table((*bounds(figure).fields, *figure.keys))
+    return FieldTable((*bounds(figure).fields, *figure.keys))
 
 
-def limits_form(*, swept: bool) -> Form[Reader]:
+def limits_form(*, swept: bool) -> OwnForm[Reader]:
     """Form of limits by figures: a recipe's own, or a sweep's, which has `swept` figures and bounds alone."""
-    return Form(
+    return OwnForm(
         "limits",
         "a mapping from figures to bounds, such as {transmission-angle: {at_least: 40}}",
         partial(_read_limits, swept),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
-from camgeo.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, either, length
+from camgeo.schema.fields import MOST, MOST_DYADS, Field, FieldTable, Kind, OwnForm, coordinate, either, length
 from camgeo.schema.json_schema import one_of_schema, table_schema
 from camgeo.schema.readers import form_of_kinds
 from camgeo.schema.yaml_source import Scalar, describe, join
@@ -136,8 +136,8 @@ _POINT = Field("point", Kind.POINT, "the first joint [x, y] in the axes of that 
 _PIVOT = Field("ground", Kind.POINT, "the fixed pivot [x, y] in the fixed axes, the shaft at [0, 0]", required=True)
 
 
-DYADS: dict[str, Table] = {
-    "rrr": Table(
+DYADS: dict[str, FieldTable] = {
+    "rrr": FieldTable(
         (
             _ON,
             _POINT,
@@ -148,7 +148,7 @@ DYADS: dict[str, Table] = {
             ),
         )
     ),
-    "rrp": Table(
+    "rrp": FieldTable(
         (
             _ON,
             _POINT,
@@ -160,7 +160,7 @@ DYADS: dict[str, Table] = {
             replace(_ASSEMBLY, about="open: of two places on the line the slide takes the one farther along it"),
         )
     ),
-    "rpr": Table(
+    "rpr": FieldTable(
         (
             _ON,
             _POINT,
@@ -176,7 +176,7 @@ DYADS: dict[str, Table] = {
 
 
 _DYAD = form_of_kinds("dyad", DYADS)
-_LIST = Form(
+_LIST = OwnForm(
     "a list of dyads",
     "a list of dyads such as [{kind: rrr, point: [80, 0], ground: [140, 80], links: [100, 30]}]",
     read_dyads,
@@ -212,14 +212,14 @@ def read_traces(reader: Reader, field: Field, node: Node, path: str) -> list[Tra
     return [TracedPoint(value["on"], value["point"]) for value in values]
 
 
-_TRACE = Table(
+_TRACE = FieldTable(
     (
         Field(
             "on",
             Kind.OWN,
             "the link that carries the point; dyads[k], from 0, is the output link of a dyad",
             required=True,
-            form=Form(
+            form=OwnForm(
                 "a link",
                 "coupler, output or dyads[k]",
                 _read_link,
@@ -235,7 +235,7 @@ _TRACES = Field(
     "points of moving links whose paths are shown: on the page, in DXF for reference, in tables",
     default="none",
     table=_TRACE,
-    form=Form(
+    form=OwnForm(
         "a list of points",
         "a list of points such as [{on: coupler, point: [40, 10]}]",
         read_traces,
@@ -257,8 +257,8 @@ _JOINT_OFFSET = coordinate(
 )
 
 
-LINKAGES: dict[str, Table] = {
-    "four-bar": Table(
+LINKAGES: dict[str, FieldTable] = {
+    "four-bar": FieldTable(
         (
             _GROUND,
             _COUPLER,
@@ -269,7 +269,7 @@ LINKAGES: dict[str, Table] = {
             _TRACES,
         )
     ),
-    "inverted-slider-crank": Table(
+    "inverted-slider-crank": FieldTable(
         (
             _GROUND,
             Field(
@@ -286,7 +286,7 @@ LINKAGES: dict[str, Table] = {
             _TRACES,
         )
     ),
-    "slider-crank": Table(
+    "slider-crank": FieldTable(
         (
             _COUPLER,
             coordinate("offset", "distance of the slide's line from the shaft, along +y", required=True),

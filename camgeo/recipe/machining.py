@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from camgeo.registry import registry
 from camgeo.registry.formats import Altered
-from camgeo.schema.fields import Field, Kind, Table, length
+from camgeo.schema.fields import Field, FieldTable, Kind, length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ MOST_RPM = 1_000_000
 COARSEST, FINEST = 10.0, 1e-3  # degrees between rows of a grinder's table: one with finer ones is too large to read
 
 
-MANUFACTURE = Table(
+MANUFACTURE = FieldTable(
     (
         length("cutter", "diameter of the cutter that mills the contour"),
         length("feed", "feed along the contour, a minute; needed by a milling program"),

@@ -13,7 +13,7 @@ from camgeo.recipe.track import OF_A_DISC
 from camgeo.registry.gathered import Gathered
 from camgeo.registry.root import CAM, root
 from camgeo.schema.errors import suggestion
-from camgeo.schema.fields import Field, Kind, Table, either
+from camgeo.schema.fields import Field, FieldTable, Kind, either
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -274,7 +274,7 @@ def starter(kind: str) -> str:
     return "\n".join([f"# {chosen.title} Lengths in mm, angles in degrees.", *lines, ""])
 
 
-def _recipe(name: str, chosen: Starter) -> Table:
+def _recipe(name: str, chosen: Starter) -> FieldTable:
     """Table of a starter's recipe, with its kinds of cam and linkage; without a linkage, without its keys."""
     linkage = chosen.more.get("linkage")
     kinds = {"cam": _with_forms(_kind_table("the kind of cam", CAMS, chosen.kind), chosen)}
@@ -286,13 +286,13 @@ def _recipe(name: str, chosen: Starter) -> Table:
         if name not in item.unshown
     )
     if linkage:
-        return Table(tuple(fields))
+        return FieldTable(tuple(fields))
     unfit = {*chosen.unfit, "dwell", "output_error"}
     unfit |= set() if "plate" in FAMILIES[chosen.kind].arrangement.offers else {"linkage"}
-    return Table(tuple(_leave_out(item, unfit) for item in fields if item.name not in unfit))
+    return FieldTable(tuple(_leave_out(item, unfit) for item in fields if item.name not in unfit))
 
 
-def _with_forms(table: Table, chosen: Starter) -> Table:
+def _with_forms(table: FieldTable, chosen: Starter) -> FieldTable:
     """The table in which each field with kinds has the keys of the starter's kind."""
 
     def shown(item: Field) -> Field:
@@ -311,17 +311,17 @@ def _leave_out(item: Field, unfit: set[str]) -> Field:
     return replace(item, table=_without(item.table, unfit))
 
 
-def _without(table: Table, unfit: set[str]) -> Table:
+def _without(table: FieldTable, unfit: set[str]) -> FieldTable:
     return replace(table, fields=tuple(item for item in table.fields if item.name not in unfit))
 
 
-def _kind_table(about: str, tables: Mapping[str, Table], kind: str) -> Table:
+def _kind_table(about: str, tables: Mapping[str, FieldTable], kind: str) -> FieldTable:
     """Table of one kind with the field `kind` before the others."""
     first = Field("kind", Kind.CHOICE, f"{about}: {either(tuple(tables))}")
     return replace(tables[kind], fields=(first, *tables[kind].fields))
 
 
-def _lines(table: Table, values: Given, indent: str) -> Iterator[str]:
+def _lines(table: FieldTable, values: Given, indent: str) -> Iterator[str]:
     """Lines of a table's fields: those given, the others as comments, alternatives in one line."""
     rivals = tuple(name for name, _ in table.alternatives if name not in values)
     chosen = tuple(name for name, _ in table.alternatives if name in values)

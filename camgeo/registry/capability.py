@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.measured import Measured
-    from camgeo.measures.remarks import Remark
+    from camgeo.measures.remarks import RuleRemark
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.figures import Figure
+    from camgeo.recipe.figures import DesignFigure
     from camgeo.recipe.recipe import Order, Recipe
     from camgeo.recipe.starter import Starter
     from camgeo.registry.formats import Alteration, Form, Variant
@@ -55,7 +55,7 @@ class Results(NamedTuple):
     skipped: Sequence[tuple[str, str]] = ()
 
 
-class Moved(Protocol):
+class MovedBody(Protocol):
     """Body that a follower on a stem moves besides itself, such as a valve; lifts in mm."""
 
     @property
@@ -265,10 +265,10 @@ class Capability:
     profile: Callable[[Recipe], tuple[str, float] | None] = always(None)
     starters: Callable[[], Mapping[str, Starter]] = always(EMPTY)
     roots: Mapping[str, Root[Any]] = EMPTY
-    figures: Mapping[str, Figure] = EMPTY
+    figures: Mapping[str, DesignFigure] = EMPTY
     measure: Callable[[Recipe, Design, Sequence[str], Mapping[str, float]], Mapping[str, Measured]] = always(EMPTY)
     measure_at: Callable[[Recipe, Design, str, float], Measured] = no_figure_at
-    moved: Callable[[Recipe, Design], Moved | None] = always(None)
+    moved: Callable[[Recipe, Design], MovedBody | None] = always(None)
     on_metal: Callable[[Recipe, Design, MadeMotion], MadeFigures] = always(MadeFigures())
     estimates: Callable[[], Mapping[str, Estimate]] = always(EMPTY)
     checks: Callable[[], Sequence[Declared]] = always(())
@@ -277,7 +277,7 @@ class Capability:
     demand: Callable[[Recipe], None] = NO_CHECK
     look: Callable[[Recipe, Design, Sequence[FileResult], Sequence[Check], Clock], Results] = always(Results())
     examine: Callable[[Recipe, Design, Sequence[FileResult], Clock], Results] = always(Results())
-    remarks: Mapping[str, Callable[[Recipe, Design], Sequence[Remark]]] = EMPTY
+    remarks: Mapping[str, Callable[[Recipe, Design], Sequence[RuleRemark]]] = EMPTY
     lines: Callable[[dict[str, Any]], str] = always("")
     panel: Callable[[dict[str, Any]], str] = always("")
     plots: Callable[[Recipe, Design], Sequence[Plot]] = always(())

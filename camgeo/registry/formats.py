@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from camgeo.common.on_demand import OnDemand
 from camgeo.registry import registry
 from camgeo.registry.capability import NO_CHECK, always
-from camgeo.schema.fields import Table
+from camgeo.schema.fields import FieldTable
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from camgeo.common.clock import Clock
     from camgeo.files.mesh import Item
     from camgeo.files.precision import Precision
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Order, Recipe
     from camgeo.registry.capability import ShaftCam
@@ -49,7 +49,7 @@ def has_holes(recipe: Recipe, /) -> bool:
     return recipe.part.holed
 
 
-class Run(NamedTuple):
+class RunResults(NamedTuple):
     """Results of a run, for files that report on all others; `job` is None where no cam is made."""
 
     recipe: Recipe
@@ -76,7 +76,7 @@ class Variant:
     tag: Callable[[Format], str]
     check: Callable[[FileRequest, Values, Reader, str], None]
     foresee: Callable[[Job, FileRequest], None]
-    make: Callable[[Job, FileRequest, Path], Made]
+    make: Callable[[Job, FileRequest, Path], MadeFiles]
 
     def chosen(self, file: Values) -> bool:
         """Whether the values of a file have the option at another value than its default."""
@@ -138,7 +138,7 @@ class Form:
     curve: bool = False
     takes: tuple[str, ...] = ()
     check: Callable[[Values, Values, Reader], None] = NO_CHECK
-    make: Callable[[Job, FileRequest, Path], Made] | None = None
+    make: Callable[[Job, FileRequest, Path], MadeFiles] | None = None
     after: str = ""
 
 
@@ -189,7 +189,7 @@ class Format:
     name: str
     suffix: str = ""
     tail: str = ""
-    options: Table = Table(())
+    options: FieldTable = FieldTable(())
     named: tuple[str, ...] = ()
     forms: Mapping[str, Form] = field(default_factory=lambda: WHOLE)
     check: Callable[[Values, Values, Reader], None] = NO_CHECK
@@ -200,8 +200,8 @@ class Format:
     units: bool = True
     turning: bool = False
     path: bool = False
-    make: Callable[[Job, FileRequest, Path], Made] | None = None
-    summarise: Callable[[Run, FileRequest, Path], Made] | None = None
+    make: Callable[[Job, FileRequest, Path], MadeFiles] | None = None
+    summarise: Callable[[RunResults, FileRequest, Path], MadeFiles] | None = None
     foresee: Callable[[Job, FileRequest], None] = NO_CHECK
     intent: Callable[[Recipe, Design], PartIntent] = designed_intent
     bored: Callable[[Recipe], bool] = always(True)

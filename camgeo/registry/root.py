@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.recipe import Order
     from camgeo.registry.capability import FileCall
-    from camgeo.schema.fields import Table
+    from camgeo.schema.fields import FieldTable
     from camgeo.schema.yaml_source import Source
     from camgeo.synthesis.expected_checks import Foreseen
 
@@ -55,7 +55,7 @@ class Root(Generic[R]):
     instead  remedy for a command that takes recipes of one cam alone
     """
 
-    table: Callable[[], Table]
+    table: Callable[[], FieldTable]
     read: Callable[[Source, Path], R]
     design: Callable[[R], Designed]
     export: Callable[[R, Path, tuple[str, ...], Callable[[str], None]], Outcome]

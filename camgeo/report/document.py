@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from camgeo.curve.measures import Measures
     from camgeo.measures.balance import Balance
     from camgeo.measures.file_result import FileResult
-    from camgeo.measures.remarks import Remark
+    from camgeo.measures.remarks import RuleRemark
     from camgeo.recipe.recipe import Order
     from kin.follower.motion_error import MotionError, Play
     from kin.judge.check import Check
     from kin.judge.verdict import ClosureVerdict, SurfaceVerdict
-    from kin.law.joints import Joint
+    from kin.law.joints import DerivativeJump
     from kin.law.sources.motion import Kept
 
 BELOW = "below rounding"
@@ -54,8 +54,8 @@ class Findings:
     kept: tuple[str, ...] = ()
     linkage: dict[str, Any] | None = None
     preload: dict[str, object] | None = None
-    remarks: tuple[Remark, ...] = ()
-    joints: tuple[Joint, ...] = ()
+    remarks: tuple[RuleRemark, ...] = ()
+    joints: tuple[DerivativeJump, ...] = ()
     table: Kept | None = None
     displacements: tuple[float, str] = (1.0, "mm")
     contours: Mapping[str, Measures] = field(default_factory=dict)
@@ -136,7 +136,7 @@ def _check(recipe: Order, check: Check) -> dict[str, Any]:
     return entry
 
 
-def _remark(recipe: Order, remark: Remark) -> dict[str, Any]:
+def _remark(recipe: Order, remark: RuleRemark) -> dict[str, Any]:
     value, unit = in_units(recipe, remark.value, remark.unit)
     rule, _ = in_units(recipe, remark.rule, remark.unit)
     return {
@@ -149,7 +149,7 @@ def _remark(recipe: Order, remark: Remark) -> dict[str, Any]:
     }
 
 
-def _jumps(findings: Findings, joint: Joint) -> list[dict[str, Any]]:
+def _jumps(findings: Findings, joint: DerivativeJump) -> list[dict[str, Any]]:
     """Entries for the jumps at a joint of the motion, one for each derivative."""
     scale, unit = findings.displacements
     per = ("", "/rad", "/rad^2", "/rad^3")

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.linkage import Driven
+    from camgeo.synthesis.linkage import DesignedLinkage
     from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError, Play
-    from kin.linkage.extremes import Figures, Place
+    from kin.linkage.extremes import ExtremePlace, Figures
 
 
-def linkage_section(recipe: Recipe, driven: Driven, files: Sequence[FileResult]) -> dict[str, Any]:
+def linkage_section(recipe: Recipe, driven: DesignedLinkage, files: Sequence[FileResult]) -> dict[str, Any]:
     """Section of the report on the linkage of a recipe, as plain data; `error` is that of the worst file."""
     mechanism, mobility = driven.mechanism, driven.mechanism.mobility()
     length_unit = in_units(recipe, None, "mm")[1]
@@ -56,7 +56,7 @@ def _spans(spans: Sequence[tuple[float, float]]) -> list[list[float]]:
     return [[math.degrees(begin), math.degrees(end)] for begin, end in spans]
 
 
-def _place(place: Place, scale: float) -> dict[str, float]:
+def _place(place: ExtremePlace, scale: float) -> dict[str, float]:
     return {
         "value": place.value * scale,
         "shaft_deg": math.degrees(place.shaft),
@@ -98,7 +98,7 @@ def _figures(figures: Figures, scale: float, unit: str) -> dict[str, Any]:
 
 
 def _dwells(
-    recipe: Recipe, driven: Driven, judged: Sequence[tuple[str, LinkageVerdict]], scale: float
+    recipe: Recipe, driven: DesignedLinkage, judged: Sequence[tuple[str, LinkageVerdict]], scale: float
 ) -> list[dict[str, Any]]:
     """Rows of the dwells; those over the angle that the recipe names come first."""
     demanded = recipe.dwell

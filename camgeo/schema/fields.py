@@ -72,7 +72,7 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Form(Generic[R]):
+class OwnForm(Generic[R]):
     """Form of a field of `Kind.OWN`, declared by the module that knows it.
 
     `noun` and `wanted` are for messages; `read` notes a fault and gives None for a faulty value; `schema` makes the
@@ -84,10 +84,10 @@ class Form(Generic[R]):
     wanted: str
     read: Callable[[R, Field, Node, str], Any]
     schema: Callable[[Field], Schema]
-    tables: Mapping[str, Table] | None = None
+    tables: Mapping[str, FieldTable] | None = None
     group: str = ""
     others: str = ""  # said of a `kind` that is none of them
-    instead: Table | None = None  # of a mapping that may stand in place of a list
+    instead: FieldTable | None = None  # of a mapping that may stand in place of a list
 
 
 @dataclass(frozen=True)
@@ -110,9 +110,9 @@ class Field:
     odd: bool = False
     choices: Collection[str] = ()
     variable: str = "t"
-    table: Table | None = None  # of a mapping, or of each segment of a motion
+    table: FieldTable | None = None  # of a mapping, or of each segment of a motion
     unit: Kind | None = None  # of the coefficients of harmonics, of a list of numbers, or of a form of its own
-    form: Form[Any] | None = None  # of a field of Kind.OWN
+    form: OwnForm[Any] | None = None  # of a field of Kind.OWN
     most: int = MOST_COEFFICIENTS  # entries of a list of numbers
     after: str = ""
     unshown: Collection[str] = ()
@@ -130,7 +130,7 @@ class Field:
         return Field("", unit, "", at_least=least, at_most=most)
 
     @property
-    def inner(self) -> Table:
+    def inner(self) -> FieldTable:
         """Table of a field that has one; an AssertionError elsewhere."""
         if self.table is None:
             raise AssertionError(self.name)
@@ -181,7 +181,7 @@ class Field:
 
 
 @dataclass(frozen=True)
-class Table:
+class FieldTable:
     """Fields of a mapping.
 
     A recipe gives exactly one of the `alternatives`, or none where they are `optional`; each is a key with the keys
@@ -214,16 +214,16 @@ def coordinate(name: str, about: str, *, required: bool = False, default: str = 
 
 def mapping(name: str, about: str, *fields: Field) -> Field:
     """Field of a mapping with these fields."""
-    return Field(name, Kind.TABLE, about, table=Table(fields))
+    return Field(name, Kind.TABLE, about, table=FieldTable(fields))
 
 
-def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
+def field_at(root: FieldTable, path: str, kinds: Mapping[str, str]) -> Field | None:
     """Field at a path such as `cam.shaft[0]`, the same for every entry of a list; None where the schema has none.
 
     `kinds` has the kind of each mapping with kinds, by its key; a mapping it does not name may be of any kind. An entry
     of points, numbers and harmonics has the field of the whole.
     """
-    table: Table | None = root
+    table: FieldTable | None = root
     field: Field | None = None
     for part in path.split("."):
         name, bracket, index = part.partition("[")
@@ -238,15 +238,15 @@ def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
         instead = field.form.instead if field.form else None
         if tables is None:
             lists = field.table.fields if field.table else ()
-            table = Table((*lists, *instead.fields)) if instead else field.table
+            table = FieldTable((*lists, *instead.fields)) if instead else field.table
         elif field.name in kinds:
             table = tables.get(kinds[field.name])
         else:
-            table = Table(tuple(item for kind_table in tables.values() for item in kind_table.fields))
+            table = FieldTable(tuple(item for kind_table in tables.values() for item in kind_table.fields))
     return field
 
 
-def place_of_key(root: Table, name: str, table: Table) -> str:
+def place_of_key(root: FieldTable, name: str, table: FieldTable) -> str:
     """Place where a misplaced key belongs, `it belongs under part`, or else the keys of this table, as a remedy."""
     below = tuple(item.name for item in table.fields if item.table and name in item.table.keys)
     if below and table is not root:
@@ -265,17 +265,17 @@ def place_of_key(root: Table, name: str, table: Table) -> str:
     return f"the keys here are {either(table.keys, 'and')}" if table.keys else "there are no keys here"
 
 
-def belongs_to_other_kind(root: Table, path: str) -> bool:
+def belongs_to_other_kind(root: FieldTable, path: str) -> bool:
     """Whether a key that the kind of its mapping lacks belongs to another kind: `cam.swing` of a disc cam."""
     parent, _, name = path.rpartition(".")
     return any(group.split()[0] == parent and name in table.keys for group, _, table in _grouped(root))
 
 
-def _grouped(table: Table) -> list[tuple[str, str, Table]]:
+def _grouped(table: FieldTable) -> list[tuple[str, str, FieldTable]]:
     """Group, kind and table of every table that a kind chooses: files before cams, linkages and their dyads."""
-    forms: dict[str, Form[Any]] = {}
+    forms: dict[str, OwnForm[Any]] = {}
 
-    def walk(within: Table) -> None:
+    def walk(within: FieldTable) -> None:
         for item in within.fields:
             if item.form and item.form.group and item.form.tables:
                 forms.setdefault(item.form.group, item.form)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from camgeo.schema.fields import MOST, Field, Kind, Table, length
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, length
 from camgeo.schema.quantity import ANGLES, FORCES, LENGTHS, MASSES, MOMENTS, PRESSURES, RATES
 from camgeo.schema.scalars import MOST_TEXT
 
@@ -30,13 +30,13 @@ _NAME = r"^[A-Za-z0-9_][A-Za-z0-9._-]{0,63}$"
 _RATIO = r"^[0-9]+(/[0-9]+)?$"
 
 
-def json_schema(root: Table) -> Schema:
+def json_schema(root: FieldTable) -> Schema:
     """JSON schema of a recipe with these keys; `load` refuses all that it refuses, and more."""
     draft = "https://json-schema.org/draft/2020-12/schema"
     return {"$schema": draft, "title": "camgeo recipe", **table_schema(root)}
 
 
-def table_schema(table: Table) -> Schema:
+def table_schema(table: FieldTable) -> Schema:
     """JSON schema of a mapping with the keys of a table."""
     schema: Schema = {
         "type": "object",
@@ -53,7 +53,7 @@ def table_schema(table: Table) -> Schema:
     return schema
 
 
-def _alternative(table: Table, chosen: str) -> Schema:
+def _alternative(table: FieldTable, chosen: str) -> Schema:
     """Schema of one alternative with its companions and no other alternative."""
     companions = dict(table.alternatives)
     with_it = (chosen, *companions[chosen])
@@ -122,7 +122,7 @@ def number_schema(field: Field | None = None, unit: Kind | None = None) -> Schem
     return {"anyOf": [number, {"type": "string", "pattern": text}]}
 
 
-def one_of_schema(noun: str, tables: Mapping[str, Table]) -> Schema:
+def one_of_schema(noun: str, tables: Mapping[str, FieldTable]) -> Schema:
     """JSON schema of a mapping whose `kind` chooses one of the tables; `noun` is what the mapping describes."""
     kinds = []
     for kind, table in tables.items():

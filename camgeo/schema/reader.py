@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.schema.errors import RecipeError, quote, suggestion
-from camgeo.schema.fields import Field, Kind, Table, belongs_to_other_kind, either, place_of_key
+from camgeo.schema.fields import Field, FieldTable, Kind, belongs_to_other_kind, either, place_of_key
 from camgeo.schema.quantity import split_unit
 from camgeo.schema.scalars import Complaint, read_number
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, describe, entries, is_empty, join, keys
@@ -50,7 +50,7 @@ class Reader:
     offers   figures that its cam has
     """
 
-    def __init__(self, source: Source, readers: Readers, root: Table) -> None:
+    def __init__(self, source: Source, readers: Readers, root: FieldTable) -> None:
         self.source = source
         self.readers = readers
         self.root = root
@@ -121,7 +121,7 @@ class Reader:
                 lines[key.text] = key.mark[0]
                 self.survey(value, below)
 
-    def table(self, table: Table, node: Mapping, path: str) -> Values:
+    def table(self, table: FieldTable, node: Mapping, path: str) -> Values:
         """Values of a mapping by key, without faulty ones; unknown, missing and conflicting keys are faults."""
         nodes = entries(node)
         self._refuse_unknown(table, node, path)
@@ -146,7 +146,7 @@ class Reader:
         read_field = field.form.read if field.form else self.readers[field.kind]
         return read_field(self, field, node, path)
 
-    def _refuse_unknown(self, table: Table, node: Mapping, path: str) -> None:
+    def _refuse_unknown(self, table: FieldTable, node: Mapping, path: str) -> None:
         known_keys = table.keys
         for name, key in keys(node).items():
             below = join(path, name)
@@ -165,7 +165,7 @@ class Reader:
                     near = ""  # a key of another kind is no slip of the pen, unless it is a part of the near word
                 self.fault(key.mark, below, "unknown key", None, near or place_of_key(self.root, name, table))
 
-    def _refuse_alternatives(self, table: Table, nodes: dict[str, Node], node: Mapping, path: str) -> None:
+    def _refuse_alternatives(self, table: FieldTable, nodes: dict[str, Node], node: Mapping, path: str) -> None:
         names = [name for name, _ in table.alternatives]
         chosen = [name for name, _ in table.alternatives if name in nodes]
         if names and not chosen and not table.optional:
@@ -206,10 +206,10 @@ class Reader:
         kind = Field("kind", Kind.CHOICE, about, required=True, choices=tuple(tables), others=hint)
         if chosen := kind_of(node, tables):
             table = tables[chosen]
-            return self.table(Table((kind, *table.fields), table.alternatives), node, path)
+            return self.table(FieldTable((kind, *table.fields), table.alternatives), node, path)
         # Without a kind only keys that no table has are faults; the kind is not guessed.
         all_fields = {item.name: item for table in tables.values() for item in table.fields}
-        self._refuse_unknown(Table((kind, *all_fields.values())), node, path)
+        self._refuse_unknown(FieldTable((kind, *all_fields.values())), node, path)
         if "kind" in entries(node):
             self.field(kind, entries(node)["kind"], join(path, "kind"))
         else:
@@ -241,7 +241,7 @@ def _other_measure(name: str, node: Node, names: collections.abc.Collection[str]
     return ""
 
 
-def kind_of(node: Node | None, tables: collections.abc.Mapping[str, Table]) -> str:
+def kind_of(node: Node | None, tables: collections.abc.Mapping[str, FieldTable]) -> str:
     """Kind of a mapping, if `tables` has it; empty for any other node."""
     kind = entries(node).get("kind") if isinstance(node, Mapping) else None
     return kind.text if isinstance(kind, Scalar) and kind.text in tables else ""

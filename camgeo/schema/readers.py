@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.schema.fields import MOST, MOST_HARMONIC, Field, Form, Kind, coordinate, length
+from camgeo.schema.fields import MOST, MOST_HARMONIC, Field, Kind, OwnForm, coordinate, length
 from camgeo.schema.json_schema import one_of_schema
 from camgeo.schema.read_scalar import read_choice, read_formula, read_numeric, read_text, read_truth
 from camgeo.schema.reader import Reader
@@ -13,7 +13,7 @@ from camgeo.schema.yaml_source import Mapping, Sequence, describe, entries, join
 if TYPE_CHECKING:
     import collections.abc
 
-    from camgeo.schema.fields import Table
+    from camgeo.schema.fields import FieldTable
     from camgeo.schema.reader import Readers
     from camgeo.schema.yaml_source import Node
 
@@ -92,10 +92,10 @@ READERS: Readers = {
 
 
 def form_of_kinds(
-    noun: str, tables: collections.abc.Mapping[str, Table], group: str = "", others: str = ""
-) -> Form[Reader]:
-    """Form of a mapping whose `kind` chooses the table of its keys; see `Form` for `group` and `others`."""
-    return Form(
+    noun: str, tables: collections.abc.Mapping[str, FieldTable], group: str = "", others: str = ""
+) -> OwnForm[Reader]:
+    """Form of a mapping whose `kind` chooses the table of its keys; see `OwnForm` for `group` and `others`."""
+    return OwnForm(
         f"a {noun}",
         f"a mapping with the kind of {noun} and its fields",
         Reader.one_of,

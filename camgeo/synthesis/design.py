@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from camgeo.part.part import Part
     from camgeo.part.shapes import Opening
     from camgeo.recipe.recipe import Recipe
-    from camgeo.synthesis.linkage import Driven
+    from camgeo.synthesis.linkage import DesignedLinkage
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
 
@@ -102,7 +102,7 @@ class Design:
     exact: ExactCam
     discs: tuple[Disc, ...]
     checks: tuple[Check, ...]
-    driven: Driven | None = None
+    driven: DesignedLinkage | None = None
 
     @property
     def surfaces(self) -> tuple[SurfaceDesign, ...]:

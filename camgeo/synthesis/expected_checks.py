@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.checks.declared import Scene, declarations
+from camgeo.checks.declared import CheckFacts, declarations
 
 if TYPE_CHECKING:
     from camgeo.cams.follower import Follower
@@ -29,7 +29,7 @@ class Foreseen(NamedTuple):
 
 def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     """Tell the checks of a recipe, those of each file last; raises kin.law.programme.IntentError."""
-    scene = Scene(recipe, _follower(recipe))
+    scene = CheckFacts(recipe, _follower(recipe))
     every = declarations(recipe)
     expected = [Foreseen(check.name) for check in every if check.exact is not None and check.exact(scene)]
     # of a file, what its contour is in itself comes before what is left between it and the follower

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from kin.linkage.extremes import Figures
     from kin.linkage.mechanism import Mechanism, OutsideError
     from kin.numeric.arrays import Array
-    from kin.numeric.longest_window import Dwell
+    from kin.numeric.longest_window import Window
 
 Over: TypeAlias = Literal["shaft", "relative"]
 LOOKS = 360  # relative angles at which a changed linkage is looked at first
@@ -132,7 +132,7 @@ def _spans(spans: Sequence[tuple[float, float]]) -> str:
     return " and ".join(f"from {math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in spans)
 
 
-def _dwell_check(dwell: DwellLimits, longest: Dwell) -> list[Check]:
+def _dwell_check(dwell: DwellLimits, longest: Window) -> list[Check]:
     """Check that the intended output dwells for as long as the recipe wants; none if it wants no certain length."""
     if dwell.at_least is None:
         return []
@@ -147,7 +147,7 @@ def _dwell_check(dwell: DwellLimits, longest: Dwell) -> list[Check]:
 
 
 @dataclass(frozen=True)
-class Driven:
+class DesignedLinkage:
     """The linkage of a recipe: mechanism, checks, and dwells over the shaft and the relative angle, if asked for.
 
     `figures` are those of its motion, None where it does not turn.
@@ -155,7 +155,7 @@ class Driven:
 
     mechanism: Mechanism
     checks: tuple[Check, ...]
-    dwells: Mapping[Over, tuple[Dwell, ...]]
+    dwells: Mapping[Over, tuple[Window, ...]]
     figures: Figures | None
 
     @property
@@ -164,7 +164,7 @@ class Driven:
         return self.mechanism.mobility().turns
 
 
-def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
+def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> DesignedLinkage:
     """Mechanism of a recipe that has a linkage, with its checks; `breadth` (mm) is that of the cam, None if it varies.
 
     Raises RecipeErrors where no square frame holds the cam, or the shaft does not lie within it, where a dyad's output
@@ -192,10 +192,10 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
         raise recipe.error("linkage", problem, None, remedy) from error
 
 
-def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:
+def _driven(recipe: Recipe, mechanism: Mechanism) -> DesignedLinkage:
     mobile = mechanism.mobility()
     checks = mobility_checks(mechanism, "" if mobile.turns else _length_that_turns(recipe, mechanism))
-    dwells: dict[Over, tuple[Dwell, ...]] = {}
+    dwells: dict[Over, tuple[Window, ...]] = {}
     limits = recipe.dwell
     if limits is not None and mechanism.mobility().turns:
         try:
@@ -209,7 +209,7 @@ def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:
             failed(DWELL.name, "the mechanism does not turn", unit="deg", limit=math.degrees(limits.at_least))
         )
     figures = mechanism.figures() if mechanism.mobility().turns else None
-    return Driven(mechanism, tuple(checks), dwells, figures)
+    return DesignedLinkage(mechanism, tuple(checks), dwells, figures)
 
 
 def motion_table(recipe: Recipe, mechanism: Mechanism) -> tuple[tuple[str, ...], Array]:

@@ -29,7 +29,7 @@ from kin.numeric.arrays import paired
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from kin.clearance.pose import Course
+    from kin.clearance.pose import PoseCourse
     from kin.contour.arcs import Arcs
     from kin.contour.region import Gaps, Region
     from kin.numeric.arrays import Array, Indices, Mask
@@ -59,7 +59,7 @@ class Relative:
     half: Array
 
     @staticmethod
-    def of(home: Course, body: Course, half: Array) -> Relative:
+    def of(home: PoseCourse, body: PoseCourse, half: Array) -> Relative:
         """Work out the motion of `body` as seen from `home`, over the intervals of both courses."""
         back = -home.pose[:, 2]
         gap = body.pose[:, :2] - home.pose[:, :2]
@@ -148,7 +148,7 @@ class Encounter:
     back: Relative
 
     @staticmethod
-    def of(regions: tuple[Region, Region], home: Course, body: Course, half: Array) -> Encounter:
+    def of(regions: tuple[Region, Region], home: PoseCourse, body: PoseCourse, half: Array) -> Encounter:
         """Make the encounter of regions on the courses `home` and `body`, over intervals of half width `half`, rad."""
         return Encounter(*regions, Relative.of(home, body, half), Relative.of(body, home, half))
 

@@ -20,13 +20,13 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Course", "PlaneMotion", "Sampled", "Still", "Turning", "alike"]
+__all__ = ["PlaneMotion", "PoseCourse", "Sampled", "Still", "Turning", "alike"]
 
 FEWEST = 8  # samples of a turn, below which an interpolation says nothing
 CLOSED = 1e-6  # mm and rad, by which the last sample may miss the first, whole turns apart
 
 
-class Course(NamedTuple):
+class PoseCourse(NamedTuple):
     """Poses (n, 3) at the middle of n intervals, and rates over each: every rate within `spread` of `rate`, (n, 3)."""
 
     pose: Array
@@ -37,7 +37,7 @@ class Course(NamedTuple):
 class PlaneMotion(Protocol):
     """A body's motion over one turn of the shaft."""
 
-    def over(self, phi: Array, half: Array) -> Course:
+    def over(self, phi: Array, half: Array) -> PoseCourse:
         """Give the course over the intervals [phi - half, phi + half], (n,) each, rad."""
         ...
 
@@ -57,10 +57,10 @@ class Still:
 
     slack = (0.0, 0.0)
 
-    def over(self, phi: Array, half: Array) -> Course:  # noqa: ARG002
+    def over(self, phi: Array, half: Array) -> PoseCourse:  # noqa: ARG002
         """Give the course, (n,) rows, over the intervals [phi - half, phi + half], (n,) each, rad: at rest."""
         pose = np.broadcast_to(np.array([self.x, self.y, self.angle]), (len(phi), 3))
-        return Course(pose, np.zeros_like(pose), np.zeros_like(pose))
+        return PoseCourse(pose, np.zeros_like(pose), np.zeros_like(pose))
 
 
 @dataclass(frozen=True)
@@ -74,14 +74,14 @@ class Turning:
 
     slack = (0.0, 0.0)
 
-    def over(self, phi: Array, half: Array) -> Course:  # noqa: ARG002
+    def over(self, phi: Array, half: Array) -> PoseCourse:  # noqa: ARG002
         """Give the course, (n,) rows, over the intervals [phi - half, phi + half], (n,) each, rad.
 
         The rates are constant: `spread` is 0.
         """
         pose = np.stack([np.full_like(phi, self.x), np.full_like(phi, self.y), self.angle + self.rate * phi], axis=1)
         rate = np.broadcast_to(np.array([0.0, 0.0, self.rate]), pose.shape)
-        return Course(pose, rate, np.zeros_like(pose))
+        return PoseCourse(pose, rate, np.zeros_like(pose))
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +162,7 @@ class Sampled:
             bends[at] = np.maximum(table[begin[at]], table[begin[at] + count[at] - 2**k])
         return bends
 
-    def over(self, phi: Array, half: Array) -> Course:
+    def over(self, phi: Array, half: Array) -> PoseCourse:
         """Give the course over the intervals [phi - half, phi + half], (n,) each, rad.
 
         `spread` is half times the greatest second derivative of the cubics within the interval.
@@ -177,7 +177,7 @@ class Sampled:
         c, d = 3.0 * rise - 2.0 * slope - end, slope + end - 2.0 * rise
         pose = start + x * (slope + x * (c + x * d)) + turns[:, None] * (self.pose[-1] - self.pose[0])
         rate = (slope + x * (2.0 * c + 3.0 * x * d)) / width
-        return Course(pose, rate, half[:, None] * self._bend(u - half / width, u + half / width))
+        return PoseCourse(pose, rate, half[:, None] * self._bend(u - half / width, u + half / width))
 
 
 def alike(first: PlaneMotion, other: PlaneMotion) -> bool:

@@ -22,7 +22,7 @@ from kin.dynamics.cycle import ContactSamples, Log, Turn
 from kin.dynamics.events import FREE, LOWER, UPPER, Driven, Pressed, SpentError, Work, dips, first, windows
 from kin.dynamics.flight import Flight, Path
 from kin.dynamics.peaks import ResponseFigure
-from kin.dynamics.response import Response, Samples, response
+from kin.dynamics.response import Response, ResponsePlaces, response
 from kin.dynamics.train import DynamicsError, Running, Train
 from kin.numeric.arrays import Array
 from kin.numeric.chebyshev import AT_START, DERIVATIVE, evaluated, together
@@ -45,7 +45,7 @@ _SETTLED = 1e-9
 _Event = tuple[int, int, float, Array]  # the state that begins, stretch and time in it, z and z' there
 
 
-class State(NamedTuple):
+class ContactState(NamedTuple):
     """Contact, and z and z' over the face that bears; over the lower face where none does. By radian of shaft."""
 
     contact: int
@@ -61,7 +61,7 @@ class Course:
     """
 
     turns: tuple[Turn, ...]
-    end: State
+    end: ContactState
     settled: bool
     stopped: str | None
     places: int
@@ -72,7 +72,7 @@ def course(
     faces: tuple[Drive, Drive | None],
     rpm: float,
     turns: int,
-    start: State | None = None,
+    start: ContactState | None = None,
     *,
     most: int = MOST_WORK,
 ) -> Course:
@@ -121,7 +121,7 @@ class _Course:
         self.limit = -_LEVEL * (scale + running.train.preload)
         self.work = Work(most)
 
-    def run(self, turns: int, start: State | None) -> Course:
+    def run(self, turns: int, start: ContactState | None) -> Course:
         state, settled = start or self._rest(), False
         done: list[Turn] = []
         while len(done) < turns and not settled:
@@ -144,27 +144,27 @@ class _Course:
             "critical damping; more damping, less stiffness or a faster shaft takes fewer"
         )
 
-    def _rest(self) -> State:
+    def _rest(self) -> ContactState:
         position = float(self.lower.position[0] @ AT_START)
         # before the jump at 0, which belongs to the first stretch
         velocity = float(self.lower.velocity[0] @ AT_START - self.lower.jumps[0])
         if self.upper is None:
-            return State(LOWER, self.running.static(position), -velocity)
-        return State(FREE, 0.5 * float(self.upper.position[0] @ AT_START - position), -velocity)
+            return ContactState(LOWER, self.running.static(position), -velocity)
+        return ContactState(FREE, 0.5 * float(self.upper.position[0] @ AT_START - position), -velocity)
 
-    def _alike(self, state: State, other: State) -> bool:
+    def _alike(self, state: ContactState, other: ContactState) -> bool:
         natural = self.running.bound.natural
         size = max(abs(state.z), abs(state.v) / natural, abs(other.z), abs(other.v) / natural)
         return bool(math.hypot(state.z - other.z, (state.v - other.v) / natural) <= _SETTLED * size)
 
-    def _turn(self, state: State, log: Log) -> State:
+    def _turn(self, state: ContactState, log: Log) -> ContactState:
         contact, place, time = state.contact, 0, 0.0
         current = np.array([state.z, state.v - self.responses[contact].drive.jumps[0]])
         # a state that has just begun may not end at once by rounding, but a jump may end it
         while True:
             event = self._run_on(contact, place, time, current, log)
             if not isinstance(event, tuple):
-                return State(contact, float(event[0]), float(event[1]))
+                return ContactState(contact, float(event[0]), float(event[1]))
             begins, place, time, current = event
             phi = float(self.responses[contact].drive.knots[place]) + time
             current = self._relative_to_face(current, contact, begins, phi)
@@ -297,7 +297,7 @@ class _Course:
         log.see(contact, samples, span_of)
         return None
 
-    def _far(self, starts: Array, samples: Samples, log: Log) -> _Event | None:
+    def _far(self, starts: Array, samples: ResponsePlaces, log: Log) -> _Event | None:
         """Fly along whole stretches; those on which a face may be met between two samples are looked along alone."""
         here = self.responses[FREE]
         knots = here.drive.knots

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.dynamics.response import Response, Samples
+from kin.dynamics.response import Response, ResponsePlaces
 from kin.numeric.chebyshev import evaluated
 from kin.numeric.records import dataclass
 
@@ -23,7 +23,7 @@ _FOR_VALUE = 3  # rounds after which its height is good to 1e-11 of a swing, if 
 _AT_ONCE = 400_000  # samples, which bounds the memory
 
 
-class Peaks(NamedTuple):
+class PeaksOverTurn(NamedTuple):
     """Greatest and least value, in the unit of the figure, each with the shaft angle, rad, at which it is reached."""
 
     greatest: float
@@ -54,7 +54,7 @@ class ResponseFigure:
             series = series + more
         return ResponseFigure(response, series, z, v)
 
-    def at(self, starts: Array, samples: Samples) -> Array:
+    def at(self, starts: Array, samples: ResponsePlaces) -> Array:
         """Values (n,) of the figure at the samples, from the states (2, m) at the starts of all stretches."""
         response, stretch = self.response, samples.stretch
         first, second = self._free(starts)
@@ -74,26 +74,26 @@ class ResponseFigure:
         """Factors (m,) of the two motions of `Oscillator.basis` in the free part of the figure on each stretch."""
         return self.response.oscillator.factors(starts - self.response.ends[0].T, self.z, self.v)
 
-    def peaks(self, starts: Array, stretches: Indices) -> Peaks:
+    def peaks(self, starts: Array, stretches: Indices) -> PeaksOverTurn:
         """Extremes over the given stretches, ends included, from the states at their starts.
 
         Found by sampling every swing, and closer and closer between the neighbours of each sample that may be the
         highest.
         """
-        parts: list[tuple[Samples, Array]] = []
+        parts: list[tuple[ResponsePlaces, Array]] = []
         for chosen in np.array_split(stretches, max(1, len(stretches) * 64 // _AT_ONCE)):
             at = self.response.samples(starts, chosen)
             for first in range(0, len(at.time), _AT_ONCE):
-                part = Samples(at.stretch[first : first + _AT_ONCE + 2], at.time[first : first + _AT_ONCE + 2])
+                part = ResponsePlaces(at.stretch[first : first + _AT_ONCE + 2], at.time[first : first + _AT_ONCE + 2])
                 parts.append((part, self.at(starts, part)))
-        return Peaks(*self._highest(starts, parts, 1.0), *self._highest(starts, parts, -1.0))
+        return PeaksOverTurn(*self._highest(starts, parts, 1.0), *self._highest(starts, parts, -1.0))
 
-    def least(self, starts: Array, samples: Samples) -> float:
+    def least(self, starts: Array, samples: ResponsePlaces) -> float:
         """Least value at samples (n,) in time order that show every swing, and between neighbours."""
         return self._highest(starts, [(samples, self.at(starts, samples))], -1.0, _FOR_VALUE)[0]
 
     def _highest(
-        self, starts: Array, parts: list[tuple[Samples, Array]], sign: float, rounds: int = _ROUNDS
+        self, starts: Array, parts: list[tuple[ResponsePlaces, Array]], sign: float, rounds: int = _ROUNDS
     ) -> tuple[float, float]:
         """Greatest value times sign, and where."""
         best = max(float((sign * values).max()) for _, values in parts)
@@ -121,7 +121,7 @@ class ResponseFigure:
 
 
 def narrowed(
-    value: Callable[[Samples], Array],
+    value: Callable[[ResponsePlaces], Array],
     stretch: Indices,
     between: tuple[Array, Array],
     sign: float,
@@ -133,7 +133,7 @@ def narrowed(
     best, where = np.empty(len(stretch)), low
     for _ in range(rounds):
         time = low[:, None] + (high - low)[:, None] * grid
-        values = value(Samples(np.repeat(stretch, _GRID), time.ravel())).reshape(time.shape)
+        values = value(ResponsePlaces(np.repeat(stretch, _GRID), time.ravel())).reshape(time.shape)
         top = np.argmax(sign * values, axis=1)
         best, where = values[rows, top], time[rows, top]
         before, after = np.maximum(top - 1, 0), np.minimum(top + 1, _GRID - 1)

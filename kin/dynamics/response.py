@@ -49,7 +49,7 @@ class StiffnessError(CamgeoError, ValueError):
     """A response that needs more parts than can be held: so strong a damping that one root lies far below the other."""
 
 
-class Samples(NamedTuple):
+class ResponsePlaces(NamedTuple):
     """Places in time order: stretch (n,) and time since its start (n,)."""
 
     stretch: Indices
@@ -181,7 +181,7 @@ class Response:
         fine = np.where(lasting > 0.0, np.ceil(lasting / self.step) + 1.0, 0.0).astype(np.intp)
         return lasting, fine
 
-    def samples(self, starts: Array, stretches: Indices) -> Samples:
+    def samples(self, starts: Array, stretches: Indices) -> ResponsePlaces:
         """Places that show every swing of z on the given stretches, ends included, from the states at all starts."""
         width = 2.0 * self.half[stretches]
         lasting, fine = self.swings(starts, stretches)
@@ -193,7 +193,7 @@ class Response:
             swinging = lasting[owner] * (number - _SAMPLES + 1) / (fine[owner] + 1.0)
             time = np.where(number < _SAMPLES, time, swinging)
             time = time[np.lexsort((time, owner))]
-        return Samples(stretches[owner], time)
+        return ResponsePlaces(stretches[owner], time)
 
 
 def response(oscillator: Oscillator, drive: Drive, forcing: Forcing) -> Response:

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.dynamics.response import Samples
+from kin.dynamics.response import ResponsePlaces
 from kin.dynamics.train import periodic
 from kin.numeric.angles import TURN
 from kin.numeric.chebyshev import AT_START, DERIVATIVE, ORDERS, polynomials
@@ -245,7 +245,7 @@ class Look:
         windows = np.flatnonzero(self.lowest.ravel() <= self._forces.min())
         return self._figure.least(self.states, self._samples(windows))
 
-    def _samples(self, windows: Indices) -> Samples:
+    def _samples(self, windows: Indices) -> ResponsePlaces:
         """Places on windows (n,), rising, of all stretches in their order, each with a swing to either side."""
         stretch, part = np.divmod(windows, PARTS)
         begins = np.flatnonzero(np.diff(windows, prepend=-2) != 1)
@@ -261,7 +261,7 @@ class Look:
         each = np.repeat(np.arange(len(owner)), count)
         number = np.arange(len(each)) - np.repeat(np.cumsum(count) - count, count)
         time = low[each] + (high - low)[each] * number / (count[each] - 1)
-        return Samples(owner[each], time)
+        return ResponsePlaces(owner[each], time)
 
 
 @dataclass(frozen=True)

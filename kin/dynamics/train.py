@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.dynamics.oscillator import Oscillator
-from kin.dynamics.peaks import Peaks, ResponseFigure
-from kin.dynamics.response import Forcing, Response, Samples, response
+from kin.dynamics.peaks import PeaksOverTurn, ResponseFigure
+from kin.dynamics.response import Forcing, Response, ResponsePlaces, response
 from kin.numeric.angles import TURN
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
@@ -171,7 +171,7 @@ class Steady:
     response    for values in between
     """
 
-    force: Peaks
+    force: PeaksOverTurn
     residual: tuple[Residual, ...]
     state: tuple[float, float]
     response: Response
@@ -191,7 +191,7 @@ class Steady:
         knots = self.response.drive.knots
         at = np.mod(shaft, TURN)
         stretch = np.minimum(np.searchsorted(knots, at, side="right") - 1, len(self.response) - 1)
-        return running.force(self.response).at(self.starts, Samples(stretch, at - knots[stretch]))
+        return running.force(self.response).at(self.starts, ResponsePlaces(stretch, at - knots[stretch]))
 
 
 def steady(train: Train, drive: Drive, rpm: float, rests: Sequence[tuple[float, float]] = ()) -> Steady:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kin.follower.envelope import Envelope
     from kin.follower.laws import ByLaw, Swing
     from kin.follower.motion_error import Judged, Play
-    from kin.follower.tracking import Law
+    from kin.follower.tracking import IntendedLaw
     from kin.law.contacts import Contact, Guide, Touch, Unit
     from kin.law.piecewise import Piecewise
     from kin.law.transmission import Transmission
@@ -198,7 +198,7 @@ class Moved(Follower):
 
     @property
     @abstractmethod
-    def course(self) -> Law:
+    def course(self) -> IntendedLaw:
         """The intended motion over the shaft angle, as contact is followed along it."""
 
     @property

@@ -21,7 +21,7 @@ from kin.follower.envelope import ArmPitch, FlatEnvelope, support_rows
 from kin.follower.flat import NEAR, TRAVEL_STEPS
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.rests import dwell_angles
-from kin.follower.support import Bearing, bearing_of
+from kin.follower.support import FlatContacts, bearing_of
 from kin.law.bounds import cubic_cells
 from kin.law.contacts import Flat, Oscillating
 from kin.numeric.angles import TURN, degrees
@@ -62,7 +62,7 @@ class ArmFace:
             raise TypeError("a flat face on an arm has a pivot")
         return ArmFace(contact.guide.pivot, contact.guide.side, -contact.touch.nearer)
 
-    def bearing(self, contour: Contour) -> Bearing:
+    def bearing(self, contour: Contour) -> FlatContacts:
         """Contacts of a contour with the face all round.
 
         Raises ContactError if the face's contact reaches the pivot.
@@ -85,7 +85,7 @@ class ArmFace:
         rates = 1.0 - self.side * slope / sine, -self.side * (bend * sine * sine + w * slope * slope) / sine**3
         return np.stack([angle, *rates])
 
-    def starts(self, bearing: Bearing) -> Array:
+    def starts(self, bearing: FlatContacts) -> Array:
         """Shaft angle at which each stretch of the contour begins to bear on the face, rising (m,).
 
         It rises with theta as long as the contact stays on its side of the pivot.
@@ -94,7 +94,7 @@ class ArmFace:
         start: Array = self.shaft(bearing.breaks, q)[0]
         return start
 
-    def touch(self, bearing: Bearing, phi: Array, middle: Array | None = None) -> Array:
+    def touch(self, bearing: FlatContacts, phi: Array, middle: Array | None = None) -> Array:
         """Face normal theta and its two derivatives by phi (3, n), for the face held in contact.
 
         `middle` (n,) are shaft angles that tell which stretch is meant where phi is the end of one.
@@ -141,7 +141,7 @@ class OfArmFace:
     """Swing of a flat face on an arm, away from the cam, as it rests on a contour; `datum`, radians, where it is 0."""
 
     face: ArmFace
-    bearing: Bearing
+    bearing: FlatContacts
     datum: float
     smooth: ClassVar[bool] = False
 
@@ -196,7 +196,7 @@ class _OnArm(Moved):
         """The exact contour, over the parameter of the pitch."""
         return FlatEnvelope(self.pitch, self.faces[0].out)
 
-    def bearing(self, contour: Contour) -> Bearing:
+    def bearing(self, contour: Contour) -> FlatContacts:
         """Where a contour bears all round; ContactError if it reaches the pivot."""
         for face in self.faces:
             bearing = face.bearing(contour)
@@ -228,7 +228,7 @@ class _OnArm(Moved):
             )
         return touches
 
-    def _rows(self, bearing: Bearing, i: int, phi: Array, middle: Array | None = None) -> Array:
+    def _rows(self, bearing: FlatContacts, i: int, phi: Array, middle: Array | None = None) -> Array:
         """Position and two derivatives by phi, (3, n), with face i resting; `middle` as in `ArmFace.touch`."""
         face, contact = self.faces[i], self.contacts[i]
         rows = face.touch(bearing, phi, middle)
@@ -252,7 +252,7 @@ class _OnArm(Moved):
         motion = motion_error(worst, errors, max(flatness, default=None), "deg")
         return Judged(motion, self._play(bearing) if len(self.faces) > 1 else None)
 
-    def _error_extremes(self, bearing: Bearing, i: int) -> Extremes:
+    def _error_extremes(self, bearing: FlatContacts, i: int) -> Extremes:
         """Extremes of the error of face i over the shaft angle, between its passages and the breaks of the motion."""
         breaks = np.mod(self.motion.breaks, TURN)
         nodes, middle = _stretches(np.concatenate([self.faces[i].starts(bearing), breaks, self.cells]))
@@ -272,7 +272,7 @@ class _OnArm(Moved):
         at_low, at_high = error_at(slice(None, -1), 1), error_at(slice(1, None), -1)
         return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=self.resolution)
 
-    def _play(self, bearing: Bearing) -> Play:
+    def _play(self, bearing: FlatContacts) -> Play:
         """How much farther face B would swing than face A, at rest on the contour."""
         starts = [face.starts(bearing) for face in self.faces]
         nodes, middle = _stretches(np.concatenate(starts))

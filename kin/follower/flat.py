@@ -16,7 +16,7 @@ from kin.follower.base import Closure, Follower, Rests
 from kin.follower.envelope import FlatEnvelope, LiftPitch
 from kin.follower.motion_error import Judged, MotionError, Play, motion_error, with_steps
 from kin.follower.rests import dwells
-from kin.follower.support import Bearing, bearing_of
+from kin.follower.support import FlatContacts, bearing_of
 from kin.law.bounds import cubic_cells
 from kin.law.contacts import METRE, Flat, Translating
 from kin.law.support_function import Lift
@@ -40,7 +40,7 @@ class OfFace:
     on which it stands askew it is q over `share`, the cosine.
     """
 
-    bearing: Bearing
+    bearing: FlatContacts
     turned: float = 0.0
     share: float = 1.0
     smooth: ClassVar[bool] = False  # over an edge the contact leaps from end to end
@@ -143,7 +143,7 @@ class FlatFace(Follower):
         reach = self._reach(bearing)
         return Judged(self._error(bearing, theta, reach), self._play(bearing), reach)
 
-    def _error(self, bearing: Bearing, theta: Array, reach: Extremes) -> MotionError:
+    def _error(self, bearing: FlatContacts, theta: Array, reach: Extremes) -> MotionError:
         (worst, at), share, ahead = reach.worst, self._share, self.ahead
         angle = with_steps(theta)
         position = self.contacts[0].position(bearing.derivatives(angle + ahead, bearing.find(angle + ahead))[0] / share)
@@ -151,7 +151,7 @@ class FlatFace(Follower):
         errors = position - self.intended(angle)
         return motion_error((worst / share, at), errors, max(ranges, default=None), "mm")
 
-    def _reach(self, bearing: Bearing) -> Extremes:
+    def _reach(self, bearing: FlatContacts) -> Extremes:
         """Extremes over the shaft angle of how far the contour reaches beyond the intended face, along its normal."""
         lift, share, ahead = self.distance, self._share, self.ahead
         nodes = bearing.nodes(0.0, TURN, self._cells, ahead)
@@ -174,7 +174,7 @@ class FlatFace(Follower):
         """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
         return tolerance / self._share
 
-    def _play(self, bearing: Bearing) -> Play | None:  # noqa: ARG002 - a single face has none
+    def _play(self, bearing: FlatContacts) -> Play | None:  # noqa: ARG002 - a single face has none
         return None
 
 
@@ -199,7 +199,7 @@ class Yoke(FlatFace):
         """Greatest play or interference of a contour within `tolerance` of the exact one, mm: both sides may be off."""
         return 2.0 * tolerance
 
-    def _play(self, bearing: Bearing) -> Play:
+    def _play(self, bearing: FlatContacts) -> Play:
         breadths = bearing.breadth_extremes(resolution(bearing.contour.vertices))
         return Play(
             self.breadth - breadths.greatest,
@@ -210,7 +210,7 @@ class Yoke(FlatFace):
         )
 
 
-def lift_range(bearing: Bearing, begin: float, end: float) -> float:
+def lift_range(bearing: FlatContacts, begin: float, end: float) -> float:
     """Greatest less least q over the angles [begin, end], mm."""
     nodes = bearing.nodes(begin, end, np.empty(0))
     stretch, at_low, at_high = bearing.between(nodes)

@@ -68,9 +68,9 @@ def follower_of(
 
         return RollerYoke(placed, side, raised)
     if not flat:
-        from kin.follower.roller import Roller
+        from kin.follower.roller import GuidedRoller
 
-        return Roller(placed, side, raised)
+        return GuidedRoller(placed, side, raised)
     if arm:
         from kin.follower.faces_on_arm import SwingingFace
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from kin.contour.contour import Contour
     from kin.follower.frame_contact import Resting
-    from kin.follower.support import Bearing
+    from kin.follower.support import FlatContacts
     from kin.law.contacts import Unit
     from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
@@ -202,7 +202,7 @@ def judge_frame(
 
 
 def _judged(
-    bearing: Bearing, intended: _Intended, shaft: Array, tolerance: float, *, band: float | None, over: Over
+    bearing: FlatContacts, intended: _Intended, shaft: Array, tolerance: float, *, band: float | None, over: Over
 ) -> LinkageVerdict:
     mechanism = intended.mechanism
     unit: Unit = "deg" if mechanism.unit == "deg" else "mm"
@@ -310,7 +310,7 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
     return False
 
 
-def _plays(bearing: Bearing, breadth: float, centred: Resting) -> tuple[Play, Play]:
+def _plays(bearing: FlatContacts, breadth: float, centred: Resting) -> tuple[Play, Play]:
     """Play across and along the frame: one figure of the contour, a quarter turn on."""
     breadths = bearing.breadth_extremes(RESOLUTION * breadth)
     least, most = breadth - 2.0 * bearing.back - breadths.greatest, breadth - 2.0 * bearing.back - breadths.least

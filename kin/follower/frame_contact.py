@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kin.follower.support import Bearing
+    from kin.follower.support import FlatContacts
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array, Indices
 
@@ -47,7 +47,7 @@ class FrameError(CamgeoError, ValueError):
 
 
 @dataclass(frozen=True)
-class Rest:
+class FrameRest:
     """A way in which the frame lies on the cam, by weights 0 to 1 of the faces that place it.
 
     first    weight of face 1; face 3 has the rest
@@ -60,13 +60,13 @@ class Rest:
 
 
 WAYS = (
-    Rest("on faces 1 and 2", 1.0, 1.0),
-    Rest("on faces 1 and 4", 1.0, 0.0),
-    Rest("on faces 3 and 2", 0.0, 1.0),
-    Rest("on faces 3 and 4", 0.0, 0.0),
+    FrameRest("on faces 1 and 2", 1.0, 1.0),
+    FrameRest("on faces 1 and 4", 1.0, 0.0),
+    FrameRest("on faces 3 and 2", 0.0, 1.0),
+    FrameRest("on faces 3 and 4", 0.0, 0.0),
 )
 # With the relative angle given, the least squares of the four gaps place the frame midway between opposite contacts.
-CENTRED = Rest("centred", 0.5, 0.5)
+CENTRED = FrameRest("centred", 0.5, 0.5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +77,7 @@ class Resting:
     the ends of the intervals, seen from within. These are so short that quintics follow both, over either angle.
     """
 
-    rest: Rest
+    rest: FrameRest
     nodes: Array
     low: Array
     high: Array
@@ -123,7 +123,7 @@ class Resting:
         return np.stack([function.within(interval, theta, 2) for function in (self.turned, self.over_relative)])
 
 
-def laid(mechanism: Mechanism, bearing: Bearing, rests: Sequence[Rest]) -> list[Resting]:
+def laid(mechanism: Mechanism, bearing: FlatContacts, rests: Sequence[FrameRest]) -> list[Resting]:
     """Lay the frame on the contour all round, in each of the ways. FrameError where the mechanism binds or turns back.
 
     UnsettledError where rounding hides the motion. All ways go through the linkage together.
@@ -171,7 +171,7 @@ def laid(mechanism: Mechanism, bearing: Bearing, rests: Sequence[Rest]) -> list[
     return _parted(rests, way[order], begin[order], low[..., order], high[..., order])
 
 
-def _parted(rests: Sequence[Rest], way: Indices, begin: Array, low: Array, high: Array) -> list[Resting]:
+def _parted(rests: Sequence[FrameRest], way: Indices, begin: Array, low: Array, high: Array) -> list[Resting]:
     """Give each way its intervals of all, (n,)."""
     ends = np.searchsorted(way, np.arange(len(rests) + 1))
     parts = [slice(*pair) for pair in pairwise(ends.tolist())]
@@ -232,7 +232,7 @@ def driven(mechanism: Mechanism, theta: Array, s: Array, s1: Array, lies: Callab
     return np.stack([shaft, output.derivatives()])
 
 
-def _nodes(bearing: Bearing, rest: Rest, breaks: Array) -> Array:
+def _nodes(bearing: FlatContacts, rest: FrameRest, breaks: Array) -> Array:
     """0, 2 pi and, between them, the breaks of all faces that place the frame, those of the intent, and equal steps."""
     shares = (rest.first, rest.second, 1.0 - rest.first, 1.0 - rest.second)
     angles = [bearing.breaks - k * QUARTER for k, share in enumerate(shares) if share]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.numeric.longest_window import Dwell, doubled, dwells, longest_of_each
+from kin.numeric.longest_window import Window, doubled, dwells, longest_of_each
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -63,7 +63,7 @@ class _Span(NamedTuple):
         return _Span(self.begin, max(self.core, other.core), min(self.rest, other.rest), max(self.end, other.end))
 
 
-def longest_dwells(outputs: Sequence[Output], band: float) -> list[Dwell]:
+def longest_dwells(outputs: Sequence[Output], band: float) -> list[Window]:
     """Longest window of each output over which it stays within the band; each begins in one period from 0."""
     spans = [_spans(output, band) for output in outputs]
     within = _within([(output, span) for output, some in zip(outputs, spans, strict=True) for span in some], band)
@@ -71,14 +71,14 @@ def longest_dwells(outputs: Sequence[Output], band: float) -> list[Dwell]:
     for output, some in zip(outputs, spans, strict=True):
         dwells = [next(within) for _ in some] or [_anywhere(output, band)]
         best = max(dwells, key=lambda dwell: round(dwell.length, ALIKE))
-        longest.append(Dwell(best.start % output.period, best.length, best.least, best.greatest))
+        longest.append(Window(best.start % output.period, best.length, best.least, best.greatest))
     return longest
 
 
-def _anywhere(output: Output, band: float) -> Dwell:
+def _anywhere(output: Output, band: float) -> Window:
     begin = float(output.x[0])
     best = dwells(lambda t, _: output.f(t + begin)[None], output.x[1:-1] - begin, band, output.period, 1)[0]
-    return Dwell(best.start + begin, best.length, best.least, best.greatest)
+    return Window(best.start + begin, best.length, best.least, best.greatest)
 
 
 class _Cut(NamedTuple):
@@ -119,7 +119,7 @@ class _Cut(NamedTuple):
         return value
 
 
-def _within(spans: Sequence[tuple[Output, _Span]], band: float) -> Iterator[Dwell]:
+def _within(spans: Sequence[tuple[Output, _Span]], band: float) -> Iterator[Window]:
     """Find the longest window in each span, which may go on beyond the period's end; at its ends it leaves the band.
 
     The spans stand side by side as one function, roofs between them that quickly leave the band.
@@ -146,7 +146,7 @@ def _within(spans: Sequence[tuple[Output, _Span]], band: float) -> Iterator[Dwel
     breaks = [cut.breaks - cut.begin + low for low, cut in zip(edges.tolist(), cuts, strict=False)]
     best = longest_of_each(joined, np.concatenate([*breaks, roofs]), band, edges)
     for low, cut, dwell in zip(edges.tolist(), cuts, best, strict=False):
-        yield Dwell(dwell.start - low + cut.begin, dwell.length, dwell.least, dwell.greatest)
+        yield Window(dwell.start - low + cut.begin, dwell.length, dwell.least, dwell.greatest)
 
 
 def _spans(output: Output, band: float) -> list[_Span]:

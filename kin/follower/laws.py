@@ -88,7 +88,7 @@ def leeway(slope: Array, sag: Array, tolerance: float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class ByLaw:
-    """A position that is a law over the shaft angle, as a `kin.follower.tracking.Law`."""
+    """A position that is a law over the shaft angle, as a `kin.follower.tracking.IntendedLaw`."""
 
     law: Piecewise
 

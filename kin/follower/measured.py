@@ -30,7 +30,7 @@ CLOSER, ROUNDS = 16, 5  # angles on either side of an extreme, and how often the
 LEAP = 1e-9  # rad, on either side of an angle at which the contact may leap
 
 
-class Dwell(NamedTuple):
+class MeasuredDwell(NamedTuple):
     """A stretch without motion: shaft angles from `begin` to `end`, rad, end > begin; level and flatness, mm or rad."""
 
     begin: float
@@ -71,7 +71,7 @@ class MeasuredMotion:
         """Greatest less least position, mm or rad."""
         return self.most[0] - self.least[0]
 
-    def dwells(self, reading: float) -> list[Dwell]:
+    def dwells(self, reading: float) -> list[MeasuredDwell]:
         """Stretches of at least 10 degrees that rest within `reading`, mm or rad, of their middle position.
 
         A stretch that is much longer at four times the depth is the top of a nose, and none. A dwell ends where the
@@ -79,7 +79,7 @@ class MeasuredMotion:
         """
         position, free = self.rows[0], np.ones(len(self.phi), dtype=bool)
         n, step = len(position), TURN / len(position)
-        dwells: list[Dwell] = []
+        dwells: list[MeasuredDwell] = []
         while True:
             start, count = _longest_flat(position, free, 2.0 * reading)
             if count * step < LEAST_DWELL:
@@ -98,7 +98,7 @@ class MeasuredMotion:
                 continue
             begin = start % n
             flatness = float(np.ptp(rest[low : high + 1]))
-            dwells.append(Dwell((begin + low) * step, (begin + high) * step, level, flatness))
+            dwells.append(MeasuredDwell((begin + low) * step, (begin + high) * step, level, flatness))
 
 
 def measured(

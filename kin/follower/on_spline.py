@@ -18,7 +18,7 @@ import numpy as np
 
 from kin.contour.arcs import cross, dot, right
 from kin.follower.laws import own_rows
-from kin.follower.tracking import RESOLUTION, State, bounds_of_error
+from kin.follower.tracking import RESOLUTION, CentreState, bounds_of_error
 from kin.numeric.angles import TURN
 from kin.numeric.bernstein import bernstein_product, cross_product, derivative, restrict
 from kin.numeric.errors import UnsettledError
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from kin.contour.bezier import Beziers
     from kin.contour.contour import Contour
     from kin.follower.guide import Guide
-    from kin.follower.tracking import Law, Limits
+    from kin.follower.tracking import DerivativeBounds, IntendedLaw
     from kin.law.contacts import Contact
     from kin.numeric.arrays import Array, Indices
 
@@ -73,7 +73,7 @@ class SplinePath:
         """Greatest motion error, mm or rad, that rounding may feign; the former is a share of the extent."""
         return RESOLUTION * (float(np.abs(self.beziers.control).max()) if self.guide.unit == "mm" else 1.0)
 
-    def at(self, row: Indices, t: Array) -> tuple[State, Array]:
+    def at(self, row: Indices, t: Array) -> tuple[CentreState, Array]:
         """State of the centre on pieces `row` at t (n,), and the derivative of its path's arc length by t (n,)."""
         x, v, w = self.beziers.rows(row, t)
         speed = np.hypot(v[:, 0], v[:, 1])
@@ -81,7 +81,7 @@ class SplinePath:
             tangent = v / speed[:, None]
             curvature = cross(v, w) / speed**3
             growth = 1.0 + self.offset * curvature
-            state = State.of(x + self.offset * right(tangent), tangent, curvature / growth, self.guide)
+            state = CentreState.of(x + self.offset * right(tangent), tangent, curvature / growth, self.guide)
         return state, speed * growth
 
     def demand_smooth(self) -> None:
@@ -97,7 +97,7 @@ class SplinePath:
             state, rate = self.at(row, 0.5 * (low + high))
             if not (state.angle[0] * rate > 0.0).all():
                 raise UnsettledError("the shaft angle falls along the contour")
-            shape = Shape.of(restrict(self.beziers.control[row], low, high), self.offset)
+            shape = CurvatureBounds.of(restrict(self.beziers.control[row], low, high), self.offset)
             _, curved, _ = state.limits(shape.half, shape.curvature, shape.change).angle
             open_ = ~(state.angle[0] > curved * shape.half)
             if not open_.any():
@@ -192,7 +192,7 @@ class _Table(NamedTuple):
     before: Array
 
 
-class Shape(NamedTuple):
+class CurvatureBounds(NamedTuple):
     """Bounds over n stretches of a path: of its curvature, and of that's derivative by arc length; inf where unknown.
 
     half, inner  bounds of the arc length from the middle to either end, from above and from below
@@ -204,7 +204,7 @@ class Shape(NamedTuple):
     inner: Array
 
     @staticmethod
-    def of(control: Array, offset: float) -> Shape:
+    def of(control: Array, offset: float) -> CurvatureBounds:
         """Bounds of the path that lies `offset`, mm, beside stretches of a contour of control points (n, d + 1, 2)."""
         v = derivative(control)  # first to third derivative, as polynomials of the parameter
         w = derivative(v)
@@ -225,7 +225,7 @@ class Shape(NamedTuple):
             curvature, change = np.abs(bends).max(axis=0) / growth[0], change / growth[0] ** 3
         known = (least > 0.0) & (growth[0] > 0.0)
         curvature, change, half = np.where(known, np.stack([curvature, change, 0.5 * most * growth[1]]), np.inf)
-        return Shape(curvature, change, half, np.where(known, 0.5 * least * growth[0], 0.0))
+        return CurvatureBounds(curvature, change, half, np.where(known, 0.5 * least * growth[0], 0.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,12 +239,12 @@ class BezierSpans:
     piece: Indices
     low: Array
     high: Array
-    shape: Shape
+    shape: CurvatureBounds
 
     @staticmethod
     def over(path: SplinePath, row: Indices, low: Array, high: Array) -> BezierSpans:
         """Make the stretches of pieces `row` (n,) from parameter `low` to `high`, (n,) each."""
-        shape = Shape.of(restrict(path.beziers.control[row], low, high), path.offset)
+        shape = CurvatureBounds.of(restrict(path.beziers.control[row], low, high), path.offset)
         return BezierSpans(path, row, low, high, shape)
 
     @property
@@ -265,7 +265,7 @@ class BezierSpans:
         """Stretch i alone."""
         return BezierSpans.over(self.path, self.piece[[i]], self.low[[i]], self.high[[i]])
 
-    def summit(self, law: Law, where: float) -> Array:
+    def summit(self, law: IntendedLaw, where: float) -> Array:
         """Shaft angles, (2,): `where` off the middle of a single span, and a Newton step on to its greatest error."""
         path = self.path
         _, rate = path.at(self.piece, self.middle)
@@ -276,15 +276,15 @@ class BezierSpans:
         near, _ = path.at(self.piece, np.clip(t + step / rate, self.low, self.high))
         return np.concatenate([state.phi, near.phi])
 
-    def state(self) -> State:
+    def state(self) -> CentreState:
         """Roller centre and its derivatives at the middles of the stretches."""
         return self.path.at(self.piece, self.middle)[0]
 
-    def limits(self, state: State) -> Limits:
+    def limits(self, state: CentreState) -> DerivativeBounds:
         """Bounds of the derivatives over the stretches."""
         return state.limits(self.half, self.shape.curvature, self.shape.change)
 
-    def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
+    def bounds(self, state: CentreState, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
         """Upper bounds of the absolute error, one reached in each span, and where, off the middle: (n,) each."""
         error = state.error(own_rows(self.path.contact, rows))
         (up, high, at), (down, low, other) = (

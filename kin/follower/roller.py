@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
     from kin.contour.contour import Contour
     from kin.follower.guide import Guide
-    from kin.follower.tracking import Law
+    from kin.follower.tracking import IntendedLaw
     from kin.law.contacts import Contact, Side
     from kin.numeric.arrays import Array, Indices
 
@@ -268,7 +268,7 @@ class _Guided(OfLaw, _Rollers):
 
 
 @dataclass(frozen=True, eq=False)
-class Roller(_Guided):
+class GuidedRoller(_Guided):
     """A roller on a guide that stands at the shaft angle in the cam's frame.
 
     Its position, of which `law` is the intended one over the shaft angle, grows as the roller moves outwards: the angle
@@ -372,7 +372,9 @@ def hold_roller(obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[An
     return Held(search, phi, *contact_distances(search, phi), contact)
 
 
-def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
+def settled(
+    rollers: Sequence[Held], law: IntendedLaw, sampled: Array, few: bool
+) -> tuple[tuple[float, float], float | None]:
     """Greatest absolute error of rollers held in contact, and its shaft angle; and by how much it may be exceeded.
 
     `sampled` are the errors (k, n) at the first n angles of each. That is all that is known where pieces are not few;
@@ -390,7 +392,7 @@ def settled(rollers: Sequence[Held], law: Law, sampled: Array, few: bool) -> tup
     return _closely(rollers, law, np.concatenate([*(roller.phi for roller in rollers), *passing])), None
 
 
-def _closely(rollers: Sequence[Held], law: Law, looked: Array) -> tuple[float, float]:
+def _closely(rollers: Sequence[Held], law: IntendedLaw, looked: Array) -> tuple[float, float]:
     """Greatest absolute error, and its shaft angle, at shaft angles `looked` (n,) and more closely about the worst.
 
     Among these is where a piece by itself, touched or not, would put the roller out the most: so much is sure. And

@@ -31,7 +31,7 @@ FLATTEST = 1e9  # mm; larger radii of curvature are all alike
 
 
 @dataclass(frozen=True, eq=False)
-class Bearing:
+class FlatContacts:
     """Contacts of a contour with flat faces in all directions, on m stretches of the normal's angle.
 
     Stretch k runs from breaks[k] to breaks[k+1], the last over 2 pi to the first; breaks rise in [0, 2 pi). `point` (m,
@@ -135,7 +135,7 @@ def _radius(beziers: Beziers, row: Indices, t: Array) -> Array:
     return radius
 
 
-def bearing_of(contour: Contour) -> Bearing:
+def bearing_of(contour: Contour) -> FlatContacts:
     """Find what bears in every direction. Cost: one support evaluation for each break of the contour's support."""
     breaks = contour.normals
     middle = np.mod(breaks + 0.5 * np.diff(breaks, append=breaks[:1] + TURN), TURN)
@@ -146,7 +146,7 @@ def bearing_of(contour: Contour) -> Bearing:
     low, width = np.zeros(len(contour)), np.full(len(contour), -1.0)
     low[ranges.piece], width[ranges.piece] = ranges.low, ranges.width
     curved = np.mod(middle - low[support.piece], TURN) <= width[support.piece]
-    return Bearing(contour, breaks, support.point, np.where(curved, support.piece, -1))
+    return FlatContacts(contour, breaks, support.point, np.where(curved, support.piece, -1))
 
 
 def _overlap(contour: Contour) -> bool:
@@ -162,7 +162,7 @@ def _overlap(contour: Contour) -> bool:
     return bool((felt > 4.0 * np.finfo(float).eps * float(np.abs(contour.vertices).max())).any())
 
 
-def _of_convex(contour: Contour, breaks: Array, middle: Array) -> Bearing:
+def _of_convex(contour: Contour, breaks: Array, middle: Array) -> FlatContacts:
     """In order: each piece bears over its own normals, its end from there to the first normal of the next piece."""
     first = np.mod(contour.directions[0] - 0.5 * np.pi, TURN)
     first = np.where(first > TURN - ROUNDED, first - TURN, first)
@@ -172,4 +172,4 @@ def _of_convex(contour: Contour, breaks: Array, middle: Array) -> Bearing:
     piece = order[np.searchsorted(np.maximum.accumulate(first[order]), middle, side="right") - 1]
     own = np.mod(middle - first[piece], TURN) < contour.turns[piece]
     own &= contour.kind[piece] != LINE
-    return Bearing(contour, breaks, contour.end[piece], np.where(own, piece, -1))
+    return FlatContacts(contour, breaks, contour.end[piece], np.where(own, piece, -1))

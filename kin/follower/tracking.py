@@ -50,7 +50,7 @@ STEPS = 14  # towards the crossing of two pieces
 DOUBT = 1e-9  # of a radian, or of the cam's extent: pieces that are farther apart change over elsewhere
 
 
-class Law(Protocol):
+class IntendedLaw(Protocol):
     """Intended motion over the shaft angle, with bounds of its derivatives."""
 
     def rows(self, phi: Array) -> Array:
@@ -85,16 +85,16 @@ class Stretches(Protocol):
     def one(self, i: int) -> Stretches:
         """Stretch i alone."""
 
-    def summit(self, law: Law, where: float) -> Array:
+    def summit(self, law: IntendedLaw, where: float) -> Array:
         """Shaft angles (2,) near the greatest error of a single one, about `where` off its middle."""
 
-    def state(self) -> State:
+    def state(self) -> CentreState:
         """Roller centre and its derivatives at the middles of the stretches."""
 
-    def limits(self, state: State) -> Limits:
+    def limits(self, state: CentreState) -> DerivativeBounds:
         """Bounds of the derivatives over the stretches, from the state at their middles."""
 
-    def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
+    def bounds(self, state: CentreState, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
         """Upper bounds of the error, an error reached in each, and where, off the middle: (n,) each.
 
         `most` bounds the error's three derivatives, `rows` (3, n) are the law's at the middles.
@@ -323,7 +323,7 @@ class Spans:
         """Stretch i alone."""
         return Spans(self.held, self.sign[[i]], self.piece[[i]], self.middle[[i]], self.half[[i]])
 
-    def summit(self, law: Law, where: float) -> Array:
+    def summit(self, law: IntendedLaw, where: float) -> Array:
         """Shaft angles, (2,): `where` off the middle of a single span, and a Newton step on to its greatest error."""
         state = replace(self, middle=self.middle + where).state()
         _, slope, bend = self.sign * state.error(own_rows(self.held.contact, law.rows(state.phi)))
@@ -331,16 +331,18 @@ class Spans:
         near = replace(self, middle=self.middle + np.clip(where + step, -self.half, self.half))
         return np.concatenate([state.phi, near.state().phi])
 
-    def state(self) -> State:
+    def state(self) -> CentreState:
         """Roller centre and its derivatives at the middles of the stretches."""
         pieces = self.held.pieces.take(self.piece)
-        return State.of(pieces.points(self.middle), pieces.tangents(self.middle), pieces.curvature, self.held.guide)
+        return CentreState.of(
+            pieces.points(self.middle), pieces.tangents(self.middle), pieces.curvature, self.held.guide
+        )
 
-    def limits(self, state: State) -> Limits:
+    def limits(self, state: CentreState) -> DerivativeBounds:
         """Bounds of the derivatives over the stretches."""
         return state.limits(self.half, np.abs(state.k))
 
-    def bounds(self, state: State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
+    def bounds(self, state: CentreState, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
         """Upper bounds of sign * error, one reached in each span, and where, off the middle: (n,) each."""
         return bounds_of_error(self.sign * state.error(own_rows(self.held.contact, rows)), most, self.half, self.half)
 
@@ -351,7 +353,7 @@ def greatest(error: Array, phi: Array) -> tuple[float, float]:
     return float(abs(error[i])), float(phi[i])
 
 
-def greatest_error(rollers: Sequence[Tracked], law: Law, sampled: Greatest, tries: int = MORE) -> Greatest:
+def greatest_error(rollers: Sequence[Tracked], law: IntendedLaw, sampled: Greatest, tries: int = MORE) -> Greatest:
     """Greatest absolute error of rollers, which is at least that `floor`. UnsettledError where it is not proved.
 
     Where pieces hide one another after all `tries`, what a hidden one could do is in the remainder.
@@ -402,7 +404,7 @@ def greatest_error(rollers: Sequence[Tracked], law: Law, sampled: Greatest, trie
     return sampled._replace(remainder=max(ceiling - sampled.error, 0.0))
 
 
-def outward(roller: Held, law: Law) -> tuple[Array, Array]:
+def outward(roller: Held, law: IntendedLaw) -> tuple[Array, Array]:
     """Error (n,) by which each of n pieces, touched or not, puts the roller out midway along it, and shaft angle."""
     spans = Spans(roller, np.ones(0), np.arange(len(roller.pieces)), 0.5 * roller.pieces.length, np.zeros(0))
     state = spans.state()
@@ -435,7 +437,7 @@ def bounds_of_error(
     return np.where(np.isnan(bound), np.inf, bound), np.where(better, reached, f), np.where(better, where, 0.0)
 
 
-class Limits(NamedTuple):
+class DerivativeBounds(NamedTuple):
     """Bounds of the magnitudes of three derivatives by s of the position and of the shaft angle, over spans: (n,)."""
 
     position: tuple[Array, Array, Array]
@@ -454,7 +456,7 @@ class Limits(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class CentreState:
     """The centre at n places on pieces: what position and shaft angle and their derivatives by s are made of.
 
     With P, T and k point, tangent and curvature of the piece: r = |P|, a = P.T, c = P x T, b = 1 - k c, so that
@@ -472,7 +474,7 @@ class State:
     angle: tuple[Array, Array]
 
     @staticmethod
-    def of(point: Array, tangent: Array, k: Array, guide: Guide) -> State:
+    def of(point: Array, tangent: Array, k: Array, guide: Guide) -> CentreState:
         """State at points (n, 2) where the path has tangents (n, 2) and curvatures k (n,): see the guide's module."""
         a, c, r = dot(point, tangent), cross(point, tangent), np.hypot(point[:, 0], point[:, 1])
         b, u = 1.0 - k * c, r * r
@@ -485,7 +487,7 @@ class State:
             phi_2 = (k * a + m_slope * q + m * q_1 - 2.0 * a * phi_1) / u
         phi = np.nan_to_num(np.arctan2(point[:, 1], point[:, 0]) - guide.lead(r))
         away = guide.away
-        return State(guide, k, r, a, c, b, phi, (guide.position(r), away * q, away * q_1), (phi_1, phi_2))
+        return CentreState(guide, k, r, a, c, b, phi, (guide.position(r), away * q, away * q_1), (phi_1, phi_2))
 
     def error(self, intended: Array) -> Array:
         """Error and two derivatives by s, (3, n), from the intended position's rows (3, n) by the shaft angle."""
@@ -495,7 +497,7 @@ class State:
                 [place - intended[0], q - intended[1] * phi_1, q_1 - intended[2] * phi_1**2 - intended[1] * phi_2]
             )
 
-    def limits(self, half: Array, k: Array, change: float | Array = 0.0) -> Limits:
+    def limits(self, half: Array, k: Array, change: float | Array = 0.0) -> DerivativeBounds:
         """Bounds of three derivatives by s of the position, and of the shaft angle, within `half` (n,): (n,) each.
 
         The magnitudes of the curvature and of its derivative by s are at most k and `change`, (n,) each, there.
@@ -522,4 +524,4 @@ class State:
             phi_3 = (
                 k * b + change * a + m_2 * q + 2.0 * m_1 * q_1 + m * q_2 + 2.0 * b * phi_1 + 4.0 * a * phi_2
             ) / least
-        return Limits((q, q_1, q_2), (phi_1, phi_2, phi_3))
+        return DerivativeBounds((q, q_1, q_2), (phi_1, phi_2, phi_3))

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from kin.judge.intent import Limits, SurfaceIntent
     from kin.numeric.arrays import Array
     from kin.read.formats import AnySolid
-    from kin.read.nesting import Chain
+    from kin.read.nesting import ClosedContour
 
 COARSE = 720  # shaft angles at which a lobe's phase is first looked for
 STEPS = 20  # of Newton's method
@@ -100,7 +100,7 @@ class _Sections(NamedTuple):
     solid: AnySolid
     mirrored: bool
 
-    def at(self, z: float) -> Sequence[Chain]:
+    def at(self, z: float) -> Sequence[ClosedContour]:
         return scaled(self.solid.section(z).chains, 1.0, mirrored=self.mirrored)
 
 
@@ -157,14 +157,14 @@ def _worst(checks: Sequence[Check]) -> Check:
     return max(checks, key=lambda check: (not check.ok, np.inf if check.value is None else check.value))
 
 
-def _lobe(outline: Chain, lobe: LobeIntent, phi: Array, uneven: float) -> tuple[SurfaceVerdict, list[Check]]:
+def _lobe(outline: ClosedContour, lobe: LobeIntent, phi: Array, uneven: float) -> tuple[SurfaceVerdict, list[Check]]:
     """Judge a lobe's section, turned back to where its motion begins; its phase first."""
     chain = outline._replace(contour=outline.contour.turned(-lobe.at))
     verdict, checks = judge_contour(chain, lobe.surface, phi, lobe.limits, uneven)
     return replace(verdict, name=lobe.name), [_phase(chain, lobe), *checks]
 
 
-def _phase(chain: Chain, lobe: LobeIntent) -> Check:
+def _phase(chain: ClosedContour, lobe: LobeIntent) -> Check:
     """Check the angle by which a lobe is turned against the intended one, in degrees of the shaft.
 
     It is that by which the intended motion fits the measured one best, by least squares; its limit is the permitted

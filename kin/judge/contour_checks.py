@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kin.follower.envelope import Envelope
     from kin.judge.intent import Limits, LinkageIntent, SurfaceIntent
     from kin.numeric.arrays import Array
-    from kin.read.nesting import Chain
+    from kin.read.nesting import ClosedContour
 
 
 PLACED = np.linspace(0.0, TURN, 720, endpoint=False)  # parameters at which a contour that is wrong is looked for
@@ -39,7 +39,7 @@ class Fine(NamedTuple):
 
 
 def judge_contour(
-    chain: Chain,
+    chain: ClosedContour,
     surface: SurfaceIntent,
     phi: Array,
     limits: Limits,

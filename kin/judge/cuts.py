@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from kin.judge.intent import Milling
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
-    from kin.read.gcode import Move, Program
+    from kin.read.gcode import Program, ToolMove
 
     Key = frozenset[tuple[object, ...]]
 
@@ -43,9 +43,9 @@ class Cut:
     """Moves at one height: on the way to the closed path, round it, and away from it."""
 
     z: float
-    entry: list[Move]
-    loop: list[Move]
-    exit: list[Move]
+    entry: list[ToolMove]
+    loop: list[ToolMove]
+    exit: list[ToolMove]
 
     @cached_property
     def path(self) -> Arcs:
@@ -66,7 +66,7 @@ class Cut:
         return frozenset(map(trace, self.loop))
 
 
-class Edge(NamedTuple):
+class CutEdge(NamedTuple):
     """Edge that a closed path cuts: the contour, its side on which the metal lies (1 inside, -1 outside), the path."""
 
     contour: Contour
@@ -79,13 +79,13 @@ class Feature(NamedTuple):
 
     cuts: list[Cut]
     depth: float
-    edges: tuple[Edge, ...]
+    edges: tuple[CutEdge, ...]
 
 
 def cuts_of(program: Program) -> Iterator[Cut]:
     """Cuts of a program: the moves at depth between plunge and retract, one `Cut` each time the cutter is down."""
-    down: list[Move] = []
-    plunge: Move | None = None
+    down: list[ToolMove] = []
+    plunge: ToolMove | None = None
     for move in (*program.moves, None):
         if move is not None and not move.rapid and move.start[2] == move.end[2] < 0.0:
             if move.start != move.end or move.centre is not None:
@@ -102,21 +102,21 @@ def cuts_of(program: Program) -> Iterator[Cut]:
             plunge = move if move.end[2] < move.start[2] else None
 
 
-def across(move: Move) -> bool:
+def across(move: ToolMove) -> bool:
     """Whether a move ends beside the place where it starts."""
     return move.start[:2] != move.end[:2]
 
 
-def trace(move: Move) -> tuple[object, ...]:
+def trace(move: ToolMove) -> tuple[object, ...]:
     """Key of a move's path in the plane, whatever its height: ends, centre, whether it turns counter-clockwise."""
     return (*move.start[:2], *move.end[:2], move.centre, move.sweep > 0.0)
 
 
-def _unread(program: Program, move: Move, what: str) -> ReadError:
+def _unread(program: Program, move: ToolMove, what: str) -> ReadError:
     return ReadError("unsupported", f"line {move.line} {what}, which is not read", program.path)
 
 
-def _cut(program: Program, down: list[Move]) -> Cut:
+def _cut(program: Program, down: list[ToolMove]) -> Cut:
     """Take a path apart where it comes back to a place it has been at."""
     places: dict[tuple[float, float], int] = {}
     best = (0, 0)
@@ -134,13 +134,13 @@ def _cut(program: Program, down: list[Move]) -> Cut:
 def features_of(program: Program, cuts: list[Cut], milling: Milling, tolerance: float) -> Iterator[Feature]:
     """Features that the cuts mill, each with its cuts in order. Raises ReadError for a path that leaves nothing."""
 
-    def edge(cut: Cut, side: Side) -> Edge:
+    def edge(cut: Cut, side: Side) -> CutEdge:
         inward = side if cut.area > 0.0 else -side
         try:
             contour = parallel(cut.path, inward * milling.radius, FINE * tolerance)
         except TightError as error:
             raise ReadError("open", f"the cutter's path from line {cut.loop[0].line}: {error}", program.path) from error
-        return Edge(counter_clockwise(contour), side, cut)
+        return CutEdge(counter_clockwise(contour), side, cut)
 
     if milling.pocket is not None:
         beside, cuts = _side_by_side(cuts, milling.radius)

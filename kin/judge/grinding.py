@@ -24,7 +24,7 @@ from kin.judge.check import Check, at_most
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.formats import contents
-from kin.read.nesting import Chain
+from kin.read.nesting import ClosedContour
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -74,7 +74,7 @@ class Ground(NamedTuple):
     radius   of the wheel or roller, mm
     """
 
-    chain: Chain
+    chain: ClosedContour
     units: float
     off: float
     faults: tuple[str, ...]
@@ -103,7 +103,7 @@ def ground(path: Path, grinding: Grinding, tolerance: float) -> Ground:
     centres = table.distance[:, None] * _unit(table.angles)
     normals = None if table.normal is None else _unit(table.normal)
     faults, stated = _head_faults(table, grinding), min(_lengths(table.head, ERROR), default=None)
-    chain = Chain(edge, pieces=len(table.angles))
+    chain = ClosedContour(edge, pieces=len(table.angles))
     return Ground(chain, table.units, off, faults, stated, centres, normals, table.radius)
 
 

@@ -20,13 +20,13 @@ from kin.numeric.lengths import UNIT, length_words, place_words
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.gcode import ARC_MM, arcs_of
-from kin.read.nesting import Chain, Nest
+from kin.read.nesting import ClosedContour, Nest
 
 if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
-    from kin.judge.cuts import Edge, Feature, Key
+    from kin.judge.cuts import CutEdge, Feature, Key
     from kin.judge.intent import Milling
-    from kin.read.gcode import Move, Program
+    from kin.read.gcode import Program, ToolMove
 
 STEP = 0.05  # of the cutter's radius: places at which two paths side by side are looked at
 KINK = 0.5  # degrees between the ways in and out and the path: what rounding makes of a tangent on a small part
@@ -54,7 +54,7 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
         raise ReadError("empty", "the program cuts nothing below the top of the stock", program.path)
     features = list(features_of(program, cuts, milling, tolerance))
     edges = [edge for feature in features for edge in feature.edges]
-    chains = [Chain(edge.contour, pieces=len(edge.cut.loop)) for edge in edges]
+    chains = [ClosedContour(edge.contour, pieces=len(edge.cut.loop)) for edge in edges]
     falling = sorted(range(len(chains)), key=lambda k: (not _is_outline(edges[k], milling), -edges[k].contour.area))
     checks = (
         _cutter_check(program, milling),
@@ -69,7 +69,7 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
     return Milled(tuple(chains[k] for k in falling), checks)
 
 
-def _is_outline(edge: Edge, milling: Milling) -> bool:
+def _is_outline(edge: CutEdge, milling: Milling) -> bool:
     """Whether an edge is that of the part itself."""
     return milling.outline and edge.side > 0
 
@@ -108,7 +108,7 @@ def _hub_check(program: Program, milling: Milling) -> Check | None:
     return failed("gouge", f"line {bad[0].line} cuts into the hub", unit="mm") if bad else None
 
 
-def _into_hub(program: Program, milling: Milling) -> list[Move]:
+def _into_hub(program: Program, milling: Milling) -> list[ToolMove]:
     """Moves on which the cutter comes to the hub below its top."""
     if milling.hub is None:
         return []
@@ -117,7 +117,7 @@ def _into_hub(program: Program, milling: Milling) -> list[Move]:
     return [move for move in low if _from_shaft(move) < radius + milling.radius]
 
 
-def _from_shaft(move: Move) -> float:
+def _from_shaft(move: ToolMove) -> float:
     """Least distance of a move from the shaft in the plane."""
     if not across(move) and move.centre is None:
         return float(np.hypot(*move.start[:2]))

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.judge.check import Check
     from kin.judge.intent import PartIntent, SurfaceIntent
-    from kin.read.nesting import Chain
+    from kin.read.nesting import ClosedContour
 
 SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's size is looked at
 
@@ -32,14 +32,14 @@ SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's siz
 class SortedChains(NamedTuple):
     """Chains of a part told apart: one for each surface, the holes besides, and the checks of a round outline."""
 
-    surfaces: tuple[Chain, ...]
+    surfaces: tuple[ClosedContour, ...]
     holes: tuple[Contour, ...]
     checks: tuple[Check, ...]
 
 
 def sort_chains(
-    outline: Chain | None,
-    others: Sequence[Chain],
+    outline: ClosedContour | None,
+    others: Sequence[ClosedContour],
     part: PartIntent,
     tolerance: float,
     path: Path,
@@ -61,7 +61,7 @@ def sort_chains(
     round_shaft = (chain for chain in others if chain is outline or goes_round(chain.contour))
     layers = {chain.layer for chain in others} - {""}
     by_layer = any(surface.layer in layers for surface in surfaces)
-    chosen: dict[str, Chain] = {}
+    chosen: dict[str, ClosedContour] = {}
     for surface in outermost_first(surfaces):
         there = [chain for chain in others if chain.layer == surface.layer] if by_layer else [*islice(round_shaft, 1)]
         if not there:

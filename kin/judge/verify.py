@@ -26,7 +26,7 @@ from kin.read.bodies import Sought
 from kin.read.errors import ReadError
 from kin.read.files import read_bodies, read_drawing, read_solid
 from kin.read.formats import FORMATS, format_of
-from kin.read.nesting import Chain, scaled
+from kin.read.nesting import ClosedContour, scaled
 from kin.read.point_list import is_point_list
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def verify_points(path: Path, part: PartIntent, angles: int, limits: Limits, mm:
         if len(part.surfaces) > 1:
             raise ReadError("unsupported", f"a list of points has one contour, the part {len(part.surfaces)}", path)
         contour, count = spline_of_points(path, mm)
-        chains = scaled((Chain(contour, pieces=count),), 1.0, mirrored=part.mirrored)
+        chains = scaled((ClosedContour(contour, pieces=count),), 1.0, mirrored=part.mirrored)
         return [(part, _Read([], tuple(chains), chains, mm))]
 
     return _verdict(path, read, angles, limits, FORMATS["csv"])
@@ -157,8 +157,8 @@ class _Read(NamedTuple):
     """
 
     checks: list[Check]
-    surfaces: tuple[Chain, ...]
-    chains: Sequence[Chain]
+    surfaces: tuple[ClosedContour, ...]
+    chains: Sequence[ClosedContour]
     units: float
     uneven: float = 0.0
     stated_error: float | None = None
@@ -185,7 +185,7 @@ def _of_drawing(path: Path, part: PartIntent, limits: Limits, units: float | Non
     joined = max(chain.gap for chain in parts.surfaces) if drawing.openings else 0.0
     uneven = joined if limits.gap is None else max(joined, limits.gap)
     checks = [_units_check(drawing.units_mm, units, part, parts), _closed_check(drawing, parts, limits, uneven)]
-    marks = scaled([Chain(contour) for contour in drawing.engraved], scale, mirrored=part.mirrored)
+    marks = scaled([ClosedContour(contour) for contour in drawing.engraved], scale, mirrored=part.mirrored)
     checks += [*parts.checks, *_opening_checks(parts.holes, [mark.contour for mark in marks], part, limits)]
     return _Read(checks, parts.surfaces, chains, scale if drawing.units_mm is None else drawing.units_mm, uneven)
 

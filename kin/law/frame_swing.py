@@ -27,7 +27,7 @@ import numpy as np
 from kin.law.bounds import undecided
 from kin.law.formula.expression import FormulaError
 from kin.law.formula.formula import Formula
-from kin.law.joints import ORDERS, Joint, joints_of
+from kin.law.joints import ORDERS, DerivativeJump, joints_of
 from kin.law.programme import IntentError
 from kin.law.segment import Constant, Series, Stretch
 from kin.law.sources.motion import Motion, joined
@@ -121,7 +121,7 @@ class FrameSwing:
         return shaft.c[0], shaft.c[1]
 
     @cached_property
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Shaft angles of the law at which psi - psi_0 or its derivatives jump; at 0 it follows its own image."""
         looks = self.output(np.linspace(0.0, TURN, _LOOKS, endpoint=False), ORDERS).derivatives()
         before = Jet(self._later(np.array([TURN]), ORDERS)).derivatives()[:, 0]

@@ -20,7 +20,7 @@ _NAMES = ("S", "S'", "S''", "S'''")
 
 
 @dataclass(frozen=True)
-class Joint:
+class DerivativeJump:
     """An angle (rad) at which derivatives jump: for each that does its order, and the limits before and after."""
 
     at: float
@@ -32,12 +32,12 @@ class Joint:
         parts = [f"{_NAMES[k]} jumps from {a:.6g} to {b:.6g} {unit}{per[k]}" for k, a, b in self.jumps]
         return f"{' and '.join(parts)} at {math.degrees(self.at):.6g} degrees"
 
-    def scaled(self, by: float) -> Joint:
+    def scaled(self, by: float) -> DerivativeJump:
         """The joint with displacements times `by`: in another unit."""
-        return Joint(self.at, tuple((k, a * by, b * by) for k, a, b in self.jumps))
+        return DerivativeJump(self.at, tuple((k, a * by, b * by) for k, a, b in self.jumps))
 
 
-def joints_of(meetings: Iterable[tuple[float, Array, Array]], size: Array) -> tuple[Joint, ...]:
+def joints_of(meetings: Iterable[tuple[float, Array, Array]], size: Array) -> tuple[DerivativeJump, ...]:
     """Give the joints among angles (rad) with the derivatives 0 to `ORDERS` before and after each, (ORDERS + 1,).
 
     `size` has the greatest value of each derivative.
@@ -51,5 +51,5 @@ def joints_of(meetings: Iterable[tuple[float, Array, Array]], size: Array) -> tu
         jumps = np.flatnonzero(np.abs(after - before) > _JOIN * size)
         if len(jumps):
             limits = ((k, without_rounding(before, k), without_rounding(after, k)) for k in jumps.tolist())
-            joints.append(Joint(at, tuple(limits)))
+            joints.append(DerivativeJump(at, tuple(limits)))
     return tuple(joints)

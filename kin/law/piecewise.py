@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.law.formula.expression import Expression
-from kin.law.segment import Affine, Alike, Round, moved
+from kin.law.segment import AffineStretch, Alike, Harmonic, moved
 from kin.numeric.arrays import Array, Indices
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import BallJet, DomainError, Jet, cos, sin
@@ -89,7 +89,7 @@ def _ways(members: list[Stretch], places: list[int], count: int) -> Array:
     ways = np.empty((4, count))
     for place, member in zip(places, members, strict=True):
         ways[:, place] = _AS_IS
-        if isinstance(member, Affine):
+        if isinstance(member, AffineStretch):
             ways[:, place] = member.offset, member.scale, member.start, 1 / member.width
     return ways
 
@@ -298,7 +298,7 @@ class Piecewise:
         owner = np.zeros(len(self.functions), dtype=np.intp)
         parts, arcs = np.zeros((3, owner.size)), []
         for i, function in enumerate(self.functions):
-            if isinstance(function, Round):
+            if isinstance(function, Harmonic):
                 parts[:, i] = function.first_harmonic
                 arcs.append(i)
             else:
@@ -316,7 +316,7 @@ class Piecewise:
                 )
                 groups.append(_Alike(first, rows, ways))
             else:
-                as_is = not any(isinstance(member, Affine) for member in stretches)
+                as_is = not any(isinstance(member, AffineStretch) for member in stretches)
                 groups.append(_Group(first, None if as_is else ways))
         if arcs:
             owner[arcs] = len(groups)
@@ -364,7 +364,7 @@ class Piecewise:
 
 
 def _bare(function: Stretch) -> Stretch:
-    return function.function if isinstance(function, Affine) else function
+    return function.function if isinstance(function, AffineStretch) else function
 
 
 def _innermost(function: object) -> object:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from kin.law.piecewise import Piecewise
-from kin.law.segment import Affine, Alike, Series, Stretch
+from kin.law.segment import AffineStretch, Alike, Series, Stretch
 from kin.numeric.elementary import Jet, cos, sin
 from kin.numeric.errors import CamgeoError
 from kin.numeric.jet import finite, horner
@@ -167,7 +167,7 @@ class _Accelerated:
             return finite(out, "overflow")
 
 
-def first_harmonic(stretch: Affine) -> tuple[float, float, float] | None:
+def first_harmonic(stretch: AffineStretch) -> tuple[float, float, float] | None:
     """Mean, and coefficients of cos t and sin t, where a stretch of a programme is nothing else; None where it is not.
 
     That is the harmonic law over a half turn: the eccentric, of which the radius of curvature is constant.
@@ -183,7 +183,7 @@ def first_harmonic(stretch: Affine) -> tuple[float, float, float] | None:
 
 def mirrored(function: Stretch) -> Stretch:
     """1 - f(1 - u): the other half of a symmetric law."""
-    return Affine(function, offset=1.0, scale=-1.0, start=1.0, width=-1.0)
+    return AffineStretch(function, offset=1.0, scale=-1.0, start=1.0, width=-1.0)
 
 
 def symmetric(

@@ -30,7 +30,7 @@ class Stretch(Protocol):
         """Apply the function to a jet or ball jet."""
 
 
-class Round(ABC):
+class Harmonic(ABC):
     """A stretch mean + x cos t + y sin t. Stretches of this class are evaluated together."""
 
     @property
@@ -58,7 +58,7 @@ class Alike(ABC):
 
 
 @dataclass(frozen=True)
-class Constant(Round):
+class Constant(Harmonic):
     """A constant function."""
 
     value: float
@@ -74,7 +74,7 @@ class Constant(Round):
 
 
 @dataclass(frozen=True)
-class Affine:
+class AffineStretch:
     """offset + scale f((t - start)/width): a function moved and stretched along both axes."""
 
     function: Stretch
@@ -86,11 +86,11 @@ class Affine:
     @staticmethod
     def of(
         function: Stretch, *, offset: float = 0.0, scale: float = 1.0, start: float = 0.0, width: float = 1.0
-    ) -> Affine:
+    ) -> AffineStretch:
         """Move a function; one that is already moved is moved once, not twice."""
-        if not isinstance(function, Affine):
-            return Affine(function, offset, scale, start, width)
-        return Affine(
+        if not isinstance(function, AffineStretch):
+            return AffineStretch(function, offset, scale, start, width)
+        return AffineStretch(
             function.function,
             offset + scale * function.offset,
             scale * function.scale,
@@ -115,7 +115,7 @@ def moved(
     """Give offset + scale f((t - start)/width); a constant stays a constant."""
     if isinstance(function, Constant):
         return Constant(offset + scale * function.value)
-    return Affine.of(function, offset=offset, scale=scale, start=start, width=width)
+    return AffineStretch.of(function, offset=offset, scale=scale, start=start, width=width)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import numpy as np
 
 from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError, first_harmonic
-from kin.law.segment import Affine, Constant, Harmonics, Round, Series, Stretch
+from kin.law.segment import AffineStretch, Constant, Harmonic, Harmonics, Series, Stretch
 from kin.numeric.elementary import BallJet, cos, sin
 from kin.numeric.interval import Ball
 from kin.numeric.records import dataclass
@@ -37,7 +37,7 @@ _SAME_CIRCLE = 16 * 2.0**-52
 
 
 @dataclass(frozen=True)
-class Circle(Round):
+class Circle(Harmonic):
     """p of a circular arc: radius + centre . u(t), the centre (x, y) seen from the shaft. Here rho is the radius."""
 
     radius: float
@@ -355,6 +355,6 @@ def _raised(function: Stretch, offset: float, sense: float, start: float) -> Str
     """Give offset + sense S(t - start); of a dwell the circle about the shaft, of a harmonic half turn an eccentric."""
     if isinstance(function, Constant):
         return Circle(offset + sense * function.value)
-    raised = Affine.of(function, offset=offset, scale=sense, start=start)
+    raised = AffineStretch.of(function, offset=offset, scale=sense, start=start)
     harmonic = first_harmonic(raised)
     return Circle(*harmonic) if harmonic is not None else raised

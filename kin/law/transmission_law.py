@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.joints import ORDERS, Joint, joints_of
+from kin.law.joints import ORDERS, DerivativeJump, joints_of
 from kin.law.piecewise import Piecewise, Places, Side
 from kin.law.routes import DeltaDistance, FromDelta, FromExpression, FromLeaf
-from kin.law.segment import Affine, Constant, Series
+from kin.law.segment import AffineStretch, Constant, Series
 from kin.numeric.elementary import Ball, BallJet, Jet, cos
 from kin.numeric.jet import derivatives_by
 from kin.numeric.newton import zeros
@@ -179,7 +179,7 @@ class Transmission:
 
         As `Lift.rounding`, at `_LOOKS` parameters of the law's period.
         """
-        bare = [f.function if isinstance(f, Affine) else f for f in self.psi.functions]
+        bare = [f.function if isinstance(f, AffineStretch) else f for f in self.psi.functions]
         if not any(isinstance(f, FromLeaf | FromExpression) for f in bare):
             return 0.0
         tau = self.psi.knots[0] + np.arange(_LOOKS) * (2 * self.delta / _LOOKS)
@@ -196,7 +196,7 @@ class Transmission:
         return np.stack([row.c[0] for row in derivatives_by(psi, shaft)])
 
     @cached_property
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Shaft angles of the law's period at which psi or its derivatives by phi jump, with what jumps."""
         tau = self.psi.breaks
         if not len(tau):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
 
-__all__ = ["Figures", "Place", "Rows", "figures"]
+__all__ = ["ExtremePlace", "Figures", "Quantities", "figures"]
 
 # What is resolved, as a part of the greatest value of each row.
 _SHARE = 1e-12
@@ -24,7 +24,7 @@ _SHARE = 1e-12
 _ROUNDED = 64.0 * 2.0**-52
 
 
-class Place(NamedTuple):
+class ExtremePlace(NamedTuple):
     """A value, rad or mm or their derivatives by rad, and where: relative angle and shaft angle, rad in [0, 2 pi)."""
 
     value: float
@@ -46,18 +46,18 @@ class Figures:
                               it rests there, both ends of the rest. Each with the value 0
     """
 
-    least: Place
-    greatest: Place
-    frame_least: Place
-    frame_greatest: Place
-    transmission_least: Place
-    transmission_greatest: Place
-    force_least: Place
-    velocity: Place
-    acceleration: Place
-    velocity_relative: Place
-    acceleration_relative: Place
-    dead_centres: tuple[Place, ...]
+    least: ExtremePlace
+    greatest: ExtremePlace
+    frame_least: ExtremePlace
+    frame_greatest: ExtremePlace
+    transmission_least: ExtremePlace
+    transmission_greatest: ExtremePlace
+    force_least: ExtremePlace
+    velocity: ExtremePlace
+    acceleration: ExtremePlace
+    velocity_relative: ExtremePlace
+    acceleration_relative: ExtremePlace
+    dead_centres: tuple[ExtremePlace, ...]
 
     @property
     def swing(self) -> float:
@@ -65,7 +65,7 @@ class Figures:
         return self.greatest.value - self.least.value
 
 
-class Rows(NamedTuple):
+class Quantities(NamedTuple):
     """Quantities at relative angles (n,) of which the figures are extremes; each (n,).
 
     output                        position of the output, in its unit
@@ -91,16 +91,16 @@ class Rows(NamedTuple):
 _OF_OUTPUT = {"output", "velocity_relative", "acceleration_relative", "velocity", "acceleration"}
 
 
-def figures(rows: Callable[[Array], Rows], shaft: Callable[[Array], Array], breaks: Array) -> Figures:
+def figures(rows: Callable[[Array], Quantities], shaft: Callable[[Array], Array], breaks: Array) -> Figures:
     """Find the figures from `rows`, smooth between breaks (k,), at relative angles.
 
     `shaft` gives the shaft angles of these.
     """
     places = between(0.0, TURN, breaks.tolist())
     size = max(1.0, float(np.abs(rows(0.5 * (places[:-1] + places[1:])).output).max()))
-    rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Rows._fields])
+    rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Quantities._fields])
     curves = cells(lambda theta: np.stack(rows(theta)), places, rounded, share=_SHARE)
-    row = {name: k for k, name in enumerate(Rows._fields)}
+    row = {name: k for k, name in enumerate(Quantities._fields)}
 
     def peak(name: str) -> tuple[float, float]:
         least, greatest = extremes(curves, row[name])
@@ -132,13 +132,13 @@ def figures(rows: Callable[[Array], Rows], shaft: Callable[[Array], Array], brea
     angles = np.mod(angles, TURN)
     turned = np.mod(shaft(angles), TURN)
     turned[turned >= TURN] = 0.0
-    marks = [Place(*numbers) for numbers in zip(values.tolist(), angles.tolist(), turned.tolist(), strict=True)]
+    marks = [ExtremePlace(*numbers) for numbers in zip(values.tolist(), angles.tolist(), turned.tolist(), strict=True)]
     return Figures(**dict(zip(extreme, marks, strict=False)), dead_centres=_once(marks[len(extreme) :]))
 
 
-def _once(places: list[Place]) -> tuple[Place, ...]:
+def _once(places: list[ExtremePlace]) -> tuple[ExtremePlace, ...]:
     """Leave out the one at 2 pi where 0 has been found too; rising."""
-    kept: list[Place] = []
+    kept: list[ExtremePlace] = []
     for place in sorted(places, key=lambda place: place.relative):
         if not any(abs(math.remainder(place.relative - other.relative, TURN)) < 1e-9 for other in kept):
             kept.append(place)

@@ -16,7 +16,7 @@ import numpy as np
 
 from kin.law.programme import IntentError
 from kin.linkage.chain import Chain
-from kin.linkage.extremes import Figures, Rows, figures
+from kin.linkage.extremes import Figures, Quantities, figures
 from kin.linkage.loop import BindingError
 from kin.linkage.mobility import Mobility, mobility
 from kin.numeric.angles import TURN
@@ -24,7 +24,7 @@ from kin.numeric.bernstein import values
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet
 from kin.numeric.jet import derivatives_by
-from kin.numeric.longest_window import Dwell, dwells
+from kin.numeric.longest_window import Window, dwells
 from kin.numeric.monotone import between, cells, extremes
 from kin.numeric.records import dataclass, field
 from kin.numeric.taylor import factorials
@@ -236,11 +236,11 @@ class Mechanism:
         return figures(self._rows, lambda theta: self.at(theta, 0).shaft[0], self.breaks)
 
     @cached_property
-    def _dwells(self) -> dict[tuple[float, str, int], tuple[Dwell, ...]]:
+    def _dwells(self) -> dict[tuple[float, str, int], tuple[Window, ...]]:
         """Dwells that were found, by band, angle and number: the judge of a file asks for those of the design."""
         return {}
 
-    def dwells(self, band: float, over: Literal["shaft", "relative"] = "shaft", most: int = 8) -> tuple[Dwell, ...]:
+    def dwells(self, band: float, over: Literal["shaft", "relative"] = "shaft", most: int = 8) -> tuple[Window, ...]:
         """Find the longest dwells of the output, band in rad or mm, over either angle (`longest_window.dwells`).
 
         PlaceError unless the mechanism turns (over the relative angle: unless its loops can be closed all round).
@@ -250,20 +250,20 @@ class Mechanism:
             self._dwells[key] = self._longest(band, over, most)
         return self._dwells[key]
 
-    def _longest(self, band: float, over: Literal["shaft", "relative"], most: int) -> tuple[Dwell, ...]:
+    def _longest(self, band: float, over: Literal["shaft", "relative"], most: int) -> tuple[Window, ...]:
         if over == "relative":
             return dwells(lambda theta, _: self._relation.at(theta)[1:], self.breaks, band, TURN, most)
 
         shaft = self.at(self.breaks, 0).shaft[0] if len(self.breaks) else self.breaks
         return dwells(lambda phi, _: self.output(phi)[None], shaft, band, TURN, most)
 
-    def _rows(self, theta: Array) -> Rows:
+    def _rows(self, theta: Array) -> Quantities:
         motion = self.at(theta, 2)
         at, (s, s1) = motion.solved.linkage, motion.solved.lifts
         over = motion.over_shaft(motion.output)
         sine, cosine = self.linkage.transmission(at)
         force_sine, force_cosine = self.linkage.force_angle(at, s.c[1], s1.c[1])
-        return Rows(
+        return Quantities(
             output=motion.output[0],
             velocity_relative=motion.output[1],
             acceleration_relative=motion.output[2],

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.monotone import SAME, Cells, Pieces, RoughError, between, cells, extremes, pieces
+from kin.numeric.monotone import SAME, Cells, MonotonePieces, RoughError, between, cells, extremes, pieces
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) ->
     return cells(f, between(0.0, TURN, breaks.tolist()), resolution)
 
 
-def _below(pieces: Pieces, level: float) -> tuple[Span, ...]:
+def _below(pieces: MonotonePieces, level: float) -> tuple[Span, ...]:
     """Spans of a turn in which a function is at or below a level."""
     places = pieces.crossings(level).tolist()
     if len(places) > 1 and places[0] + TURN - places[-1] <= _BESIDE:

@@ -161,7 +161,7 @@ class Errors:
 
 
 @dataclass(frozen=True, eq=False)
-class Play:
+class MadePlay:
     """Play of a follower between opposite contacts, mm or rad, at shaft angles (n,); below 0 they interfere."""
 
     shaft: Array
@@ -232,7 +232,7 @@ def _beside(shaft: Array, breaks: Array, width: float) -> NDArray[np.bool_]:
     return near
 
 
-def between(pushing: Errors, stopping: Errors) -> tuple[Errors, Play]:
+def between(pushing: Errors, stopping: Errors) -> tuple[Errors, MadePlay]:
     """Motion midway between two opposite contacts, and the play that they leave; the first bounds it from below."""
     rows = 0.5 * (pushing.rows + stopping.rows)
     sds = 0.5 * np.hypot(pushing.sds, stopping.sds)
@@ -240,10 +240,10 @@ def between(pushing: Errors, stopping: Errors) -> tuple[Errors, Play]:
     gain = np.maximum(np.abs(pushing.gain), np.abs(stopping.gain))
     felt = tuple(half._replace(gain=0.5 * half.gain) for half in (*pushing.felt, *stopping.felt))
     middle = Errors(pushing.shaft, rows, sds, gain, pushing.intended, felt)
-    return middle, Play(pushing.shaft, gap, np.hypot(pushing.sds[0], stopping.sds[0]))
+    return middle, MadePlay(pushing.shaft, gap, np.hypot(pushing.sds[0], stopping.sds[0]))
 
 
-def paired(follower: Follower, errors: Sequence[Errors]) -> tuple[Errors, Play | None]:
+def paired(follower: Follower, errors: Sequence[Errors]) -> tuple[Errors, MadePlay | None]:
     """Motion of a follower on one surface, and its play where two contacts hold it from both sides."""
     if len(errors) == 1:
         return errors[0], None

@@ -28,7 +28,7 @@ ODD = 0.5  # of what lies far off: from which on a cam may stand off the others
 NEAR = 1.2  # ratio of sizes within which rows may be of these cams
 
 
-class Words(NamedTuple):
+class OutlierWords(NamedTuple):
     """Words for rows that lie far off: the share of their size from which on they do, the problem, and remedies.
 
     `turned_over` is the remedy of a shaft that is counted from its other end, None where rows do not show that.
@@ -42,7 +42,7 @@ class Words(NamedTuple):
     turned_over: str | None
 
 
-OF_POINTS = Words(
+OF_POINTS = OutlierWords(
     FAR,
     "the points lie {0:.3g} mm off the contours on average",
     "mm",
@@ -50,7 +50,7 @@ OF_POINTS = Words(
     "measure it with the upper end up, as the file is drawn, or turn y round",
     "count z from the recipe's end, and turn y round",
 )
-OF_LIFTS = Words(
+OF_LIFTS = OutlierWords(
     UNLIKE,
     "the lifts are off by {0:.2g} of their strokes on average",
     "",
@@ -60,7 +60,7 @@ OF_LIFTS = Words(
 )
 
 
-class Rows(NamedTuple):
+class LobeRows(NamedTuple):
     """Rows over LOOKS equal angles, mm or rad: of what was measured of each cam (m, k), and of every cam (n, k).
 
     `owner` (m,) is which cam each is of, `names` those of the cams, `sizes` (n,) of their rows and `measured_sizes`
@@ -75,7 +75,7 @@ class Rows(NamedTuple):
     sizes: Array
     measured_sizes: Array
     other_end: Indices
-    words: Words
+    words: OutlierWords
 
     def off(self, measured: Array, nominal: Array, turns: dict[int, float] | None = None) -> Array:
         """Root mean square (m,) of measured less nominal rows, each as a share of the size of its cam.
@@ -102,7 +102,7 @@ def radii(places: Array) -> Array:
     return row(np.arctan2(places[:, 1], places[:, 0]), np.hypot(*places.T))
 
 
-def lone_turns(rows: Rows, *, aligned: bool) -> dict[int, float]:
+def lone_turns(rows: LobeRows, *, aligned: bool) -> dict[int, float]:
     """Turns, rad, of cams that are turned on their own against the shaft, by their index.
 
     Of those that a turn explains.
@@ -123,7 +123,7 @@ def lone_turns(rows: Rows, *, aligned: bool) -> dict[int, float]:
     return {rank: turn for rank, turn in alone.items() if left[rank] <= near[rank]}
 
 
-def standing_together(rows: Rows) -> Mask:
+def standing_together(rows: LobeRows) -> Mask:
     """Mask (m,) of the cams that stand in the same turn of the shaft, if these are more than half of them.
 
     Else of all.
@@ -131,7 +131,7 @@ def standing_together(rows: Rows) -> Mask:
     return _together(rows, rows.measured, rows.nominal[rows.owner])[1]
 
 
-def _together(rows: Rows, measured: Array, nominal: Array) -> tuple[float, Mask]:
+def _together(rows: LobeRows, measured: Array, nominal: Array) -> tuple[float, Mask]:
     """Turn of the shaft, rad, in which most cams stand, and which those are (m,): all where none has most of them."""
     count = len(measured)
     turns = [_turn(measured / rows.sizes[rows.owner, None], nominal / rows.sizes[rows.owner, None])]
@@ -145,7 +145,7 @@ def _together(rows: Rows, measured: Array, nominal: Array) -> tuple[float, Mask]
     return turns[best], standing[best]
 
 
-def _demand_shaft(rows: Rows, nominal: Array, off: Array, *, aligned: bool) -> None:
+def _demand_shaft(rows: LobeRows, nominal: Array, off: Array, *, aligned: bool) -> None:
     """Raise UnlikePointsError for rows that lie far off as those of another shaft do."""
     far = _mean(off * rows.sizes[rows.owner]) if rows.words.unit else _mean(off)
     problem = rows.words.problem.format(far)
@@ -167,7 +167,7 @@ class _Look(NamedTuple):
     words: str
 
 
-def _shaft_looks(rows: Rows, nominal: Array, *, aligned: bool) -> Iterator[_Look]:
+def _shaft_looks(rows: LobeRows, nominal: Array, *, aligned: bool) -> Iterator[_Look]:
     """The shaft as one turned, mirrored, or measured from its other end, by the cams that stand together."""
     words = rows.words
     candidates = [(False, nominal, "", ""), (True, nominal, words.mirrored, words.mirrored_remedy)]
@@ -187,7 +187,7 @@ def _shaft_looks(rows: Rows, nominal: Array, *, aligned: bool) -> Iterator[_Look
         yield _Look(left * (MIRRORED if mirrored else 1.0), text)
 
 
-def _swap_looks(rows: Rows, off: Array) -> Iterator[_Look]:
+def _swap_looks(rows: LobeRows, off: Array) -> Iterator[_Look]:
     """Cams that stand for one another."""
     each = np.stack(
         [rows.off(rows.measured, np.broadcast_to(nominal, rows.measured.shape)) for nominal in rows.nominal], axis=1

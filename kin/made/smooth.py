@@ -130,7 +130,7 @@ class Smooth:
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class SmoothFit:
     """A smooth curve, and how the points lie about it.
 
     curve             the curve
@@ -145,7 +145,7 @@ class Fit:
     correlation: float
 
 
-def fit(t: Array, e: Array, spans: int | None = None) -> Fit:
+def fit(t: Array, e: Array, spans: int | None = None) -> SmoothFit:
     """Fit a smooth curve to values e (n,), mm, at parameters t (n,), rad; outliers are left out.
 
     `spans` is the number of spans, chosen by cross-validation between 12 and n/5 where None. Raises GapError where a
@@ -173,7 +173,7 @@ def fit(t: Array, e: Array, spans: int | None = None) -> Fit:
     back = np.empty_like(order)
     back[order] = np.arange(len(order))
     curve = Smooth(coefficients, sigma, widened, system.inverse(len(coefficients)))
-    return Fit(curve, residuals[back], ~kept[back], correlation)
+    return SmoothFit(curve, residuals[back], ~kept[back], correlation)
 
 
 def _gross(value: Array) -> NDArray[np.bool_]:

@@ -22,7 +22,7 @@ import numpy as np
 
 from kin.numeric.angles import TURN
 from kin.numeric.distinct import distinct
-from kin.numeric.monotone import Pieces, between, cells, pieces
+from kin.numeric.monotone import MonotonePieces, between, cells, pieces
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ _FLAT = 1e-150
 
 
 @dataclass(frozen=True)
-class Dwell:
+class Window:
     """A window of the input: from `start` in [0, period) over `length`, the output from `least` to `greatest`."""
 
     start: float
@@ -75,7 +75,7 @@ def dwells(
     band: float,
     period: float = TURN,
     most: int = 8,
-) -> tuple[Dwell, ...]:
+) -> tuple[Window, ...]:
     """Find the longest windows over which f stays within `band`, the longest first.
 
     f(x (n,), order) gives (order + 1, n) derivatives, of which the values alone are asked for, at 0 <= x <= period
@@ -87,7 +87,7 @@ def dwells(
     search = _search(f, breaks, band, period)
     (least, _), (greatest, _) = search.of.least(), search.of.greatest()
     if greatest - least <= band + 2.0 * search.of.noise:  # a run from a little above the least takes in all of it
-        return (Dwell(0.0, period, least, greatest),)
+        return (Window(0.0, period, least, greatest),)
     at_nodes = search.node_windows()
     shortest = float((at_nodes.b - at_nodes.a).max(initial=0.0)) if most == 1 else 0.0
     return _polished(_disjoint(search.maximal_windows(at_nodes, shortest), period, most), f, search)
@@ -95,7 +95,7 @@ def dwells(
 
 def longest_of_each(
     f: Callable[[Array, int], Array], breaks: Sequence[float] | Array, band: float, edges: Array
-) -> tuple[Dwell, ...]:
+) -> tuple[Window, ...]:
     """Find the longest window of each section between `edges` (m + 1,), the period's 0 and end among them.
 
     As `dwells`; f leaves the band about each edge, so that no window reaches from one section into the next.
@@ -122,7 +122,7 @@ def _search(f: Callable[[Array, int], Array], breaks: Sequence[float] | Array, b
     return _Search.through(function, band, period)
 
 
-def _demand_continuous(pieces: Pieces, band: float) -> None:
+def _demand_continuous(pieces: MonotonePieces, band: float) -> None:
     """Refuse jumps between pieces or over the seam; less than this of the band is a matter of resolution."""
     jump = np.abs(np.roll(pieces.coefficients[:, 0], -1) - pieces.coefficients[:, -1])
     worst = int(np.argmax(jump))
@@ -170,7 +170,7 @@ class _Windows(NamedTuple):
 class _Search:
     """The n pieces, their nodes through three periods (3 n + 1,), and tables of extremes over runs of 2^k nodes."""
 
-    of: Pieces
+    of: MonotonePieces
     band: float
     period: float
     x: Array
@@ -179,7 +179,7 @@ class _Search:
     highest: list[Array]
 
     @staticmethod
-    def through(pieces: Pieces, band: float, period: float) -> _Search:
+    def through(pieces: MonotonePieces, band: float, period: float) -> _Search:
         x = np.concatenate([pieces.x[:-1] - period, pieces.x[:-1], pieces.x[:-1] + period, [pieces.x[-1] + period]])
         value = np.concatenate([np.tile(pieces.values[:-1], 3), pieces.values[:1]])
         return _Search(pieces, band, period, x, value, doubled(value, np.minimum), doubled(value, np.maximum))
@@ -421,7 +421,7 @@ def _disjoint(windows: _Windows, period: float, most: int) -> _Windows:
     return windows.take(np.array(chosen, dtype=np.intp))
 
 
-def _polished(w: _Windows, f: Callable[[Array, int], Array], search: _Search) -> tuple[Dwell, ...]:
+def _polished(w: _Windows, f: Callable[[Array, int], Array], search: _Search) -> tuple[Window, ...]:
     """Put the ends where f itself, not its polynomial, crosses the edges of the band."""
 
     def value(x: Array) -> Array:
@@ -437,7 +437,7 @@ def _polished(w: _Windows, f: Callable[[Array, int], Array], search: _Search) ->
     start = np.mod(a, search.period)
     start[start >= search.period] = 0.0
     windows = zip(start.tolist(), (b - a).tolist(), low.tolist(), strict=True)
-    return tuple(Dwell(at, length, least, least + search.band) for at, length, least in windows)
+    return tuple(Window(at, length, least, least + search.band) for at, length, least in windows)
 
 
 def _moved(x: Array, piece: Indices, level: Array, f: Callable[[Array], Array], search: _Search) -> Array:

@@ -156,7 +156,7 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array 
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class MonotonePieces:
     """A function on n pieces between nodes x (n + 1,), each a polynomial, monotone and with a monotone slope.
 
     `coefficients` (n, k + 1) are Bernstein coefficients over each piece, `blur` (n,) how far rounding may put them off.
@@ -229,14 +229,14 @@ class Pieces:
         return float(ends[k, end]), float(self.x[k + end])
 
 
-def pieces(cells: Cells, row: int = 0) -> Pieces:
+def pieces(cells: Cells, row: int = 0) -> MonotonePieces:
     """Cut one of the functions into pieces."""
     least = LEAST_CELL * (cells.high[-1] - cells.low[0])
     low, high, c, noise = _single(cells.low, cells.high, cells.coefficients[row], cells.noise[row], least)
     for order in (1, 2):
         low, high, c, noise = _cut(low, high, c, noise, order)
     rank = np.argsort(low)
-    return Pieces(np.append(low[rank], high.max()), c[rank], noise[rank])
+    return MonotonePieces(np.append(low[rank], high.max()), c[rank], noise[rank])
 
 
 def extremes(cells: Cells, row: int = 0) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -41,7 +41,7 @@ _GROUP_OF = {code: group for group, codes in _GROUPS.items() for code in codes}
 _SPINDLE, _END = ("3", "5"), ("2", "30")
 
 
-class Move(NamedTuple):
+class ToolMove(NamedTuple):
     """One move, mm: its line in the file, from where to where, and what the cutter does meanwhile.
 
     sweep       of an arc in the plane, rad, counter-clockwise positive; 0 for a straight move
@@ -67,7 +67,7 @@ class Program:
     """The moves of a program in order, mm in its unit (25.4 or 1), and its comments in order."""
 
     path: Path
-    moves: tuple[Move, ...]
+    moves: tuple[ToolMove, ...]
     units_mm: float
     comments: tuple[str, ...]
 
@@ -95,7 +95,7 @@ def read_gcode(path: Path | str) -> Program:
     return Program(path, tuple(machine.moves), machine.unit, tuple(machine.comments))
 
 
-def arcs_of(moves: tuple[Move, ...] | list[Move]) -> Arcs:
+def arcs_of(moves: tuple[ToolMove, ...] | list[ToolMove]) -> Arcs:
     """The moves' paths in the plane, each a line or arc through both of its ends; none may be without length."""
     start = np.array([move.start[:2] for move in moves])
     chord = np.array([move.end[:2] for move in moves]) - start
@@ -121,7 +121,7 @@ class _Machine:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.moves: list[Move] = []
+        self.moves: list[ToolMove] = []
         self.comments: list[str] = []
         self.modes: dict[str, str] = {}
         self.at: list[float | None] = [None, None, None]
@@ -259,10 +259,10 @@ class _Machine:
         known = [now if was is None else was for was, now in zip(before, (x, y, z), strict=True)]
         first = (known[0], known[1], max(known[2], z) if None in before else known[2])
         rapid = motion == "0"
-        move = Move(number, rapid, first, (x, y, z), 0.0, None, 0.0 if rapid else self.feed, self.turning)
+        move = ToolMove(number, rapid, first, (x, y, z), 0.0, None, 0.0 if rapid else self.feed, self.turning)
         self.moves.append(self._bent(move, numbers, motion) if centred else move)
 
-    def _bent(self, move: Move, numbers: dict[str, float], motion: str) -> Move:
+    def _bent(self, move: ToolMove, numbers: dict[str, float], motion: str) -> ToolMove:
         """The arc of a move."""
         number, (x, y, z), (x2, y2, z2) = move.line, move.start, move.end
         centre = (

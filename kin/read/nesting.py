@@ -21,7 +21,7 @@ MOST_CONTOURS = 2000
 MOST_PIECES = 1_000_000  # of all contours: a polygon within 1e-9 mm may have more than half of that
 
 
-class Place(NamedTuple):
+class NestingPlace(NamedTuple):
     """Number of a contour, how many others it lies inside, and the rank of the smallest of these by falling area."""
 
     number: int
@@ -29,7 +29,7 @@ class Place(NamedTuple):
     inside: int | None
 
 
-class Chain(NamedTuple):
+class ClosedContour(NamedTuple):
     """A closed contour, counter-clockwise, mm.
 
     depth   how many others it lies inside
@@ -51,7 +51,7 @@ class Chain(NamedTuple):
 class Nest:
     """Closed chains by falling area, the first of which holds all others."""
 
-    chains: tuple[Chain, ...]
+    chains: tuple[ClosedContour, ...]
 
     @property
     def contour(self) -> Contour:
@@ -69,7 +69,7 @@ class Nest:
         return self.chains[0].pieces
 
 
-def scaled(chains: Sequence[Chain], factor: float, *, mirrored: bool = False) -> tuple[Chain, ...]:
+def scaled(chains: Sequence[ClosedContour], factor: float, *, mirrored: bool = False) -> tuple[ClosedContour, ...]:
     """Return chains enlarged about the origin, and mirrored in the x axis."""
     enlarged = []
     for chain in chains:
@@ -102,7 +102,7 @@ def met(place: tuple[float, float], path: Path) -> ReadError:
     return ReadError("crossing", f"two closed contours cross or touch at {place_text(x, y, digits=9)}", path, place)
 
 
-def nested(contours: list[Contour], path: Path, deepest: int = 1) -> list[Place]:
+def nested(contours: list[Contour], path: Path, deepest: int = 1) -> list[NestingPlace]:
     """Order contours, which do not meet, by falling area: the first holds all others.
 
     Raises ReadError "several" for one that lies outside the first, "island" for one inside more than `deepest` others.
@@ -134,4 +134,4 @@ def nested(contours: list[Contour], path: Path, deepest: int = 1) -> list[Place]
             raise ReadError("island", f"{what} lies inside a hole; it is {size}", path, (x, y))
         raise ReadError("several", f"{what} does not lie inside the largest one; it is {size}", path, (x, y))
     places = zip(order, depth.tolist(), inside_of.tolist(), strict=True)
-    return [Place(k, deep, None if outer < 0 else outer) for k, deep, outer in places]
+    return [NestingPlace(k, deep, None if outer < 0 else outer) for k, deep, outer in places]

@@ -1,4 +1,7 @@
-"""The command's entry: numpy starts with one thread there, and the environment of a program stays its own."""
+"""The command's entry: numpy starts with one thread there, and the environment of a program stays its own.
+
+Holds: camgeo.__main__.
+"""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from camgeo.curve.curve import Bounds, Cells, Curve, CurveError, Run
+from camgeo.curve.curve import Bounds, Cells, Curve, CurveError, SmoothRun
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
 
@@ -35,7 +35,7 @@ def test_breaks_that_are_neighbours_of_rounding_leave_no_cell_without_width(firs
         breaks.append(place)
     low, high = 0.0, 6.0
     with np.errstate(divide="raise", invalid="raise"):
-        cells = Cells.of(Curve(contour().shape, (Run(low, high, tuple(breaks), closed=False),)))
+        cells = Cells.of(Curve(contour().shape, (SmoothRun(low, high, tuple(breaks), closed=False),)))
     assert (cells.low[0], cells.high[-1]) == (low, high)
     assert np.array_equal(cells.low[1:], cells.high[:-1])
     assert (cells.high > cells.low).all()
@@ -60,6 +60,6 @@ class Boundless:
 def test_a_curve_without_a_finite_bound_is_refused_once_its_cells_cannot_be_halved() -> None:
     """Its first cells are as narrow as breaks of a motion may be, 1e-9 rad: halved 24 times they have no width."""
     place = 3.0
-    run = Run(1.0, 5.0, (place, place + 1e-9), closed=False)
+    run = SmoothRun(1.0, 5.0, (place, place + 1e-9), closed=False)
     with np.errstate(divide="raise"), pytest.raises(CurveError, match="no finite bound on the curvature can be proved"):
         Cells.of(Curve(Boundless(contour().shape, place + 5e-10), (run,)))

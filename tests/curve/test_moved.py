@@ -7,7 +7,7 @@ import pytest
 from support.measured import MOTION, RECIPES, disc
 
 from camgeo.curve.curve import Curve
-from camgeo.curve.moved import AlongNormals, BySupport, Spline
+from camgeo.curve.moved import AlongNormals, BySupport, PeriodicPolynomials
 from camgeo.recipe.recipe import read
 from camgeo.synthesis.design import designed
 
@@ -24,7 +24,9 @@ def spline(spans=30, height=0.03):
 
     (a, da, dda), (b, db, ddb) = rows(knots), rows(knots + h)
     r, s, q = b - a - da - 0.5 * dda, db - da - dda, ddb - dda
-    return Spline(np.stack([a, da, 0.5 * dda, 10 * r - 4 * s + 0.5 * q, -15 * r + 7 * s - q, 6 * r - 3 * s + 0.5 * q]))
+    return PeriodicPolynomials(
+        np.stack([a, da, 0.5 * dda, 10 * r - 4 * s + 0.5 * q, -15 * r + 7 * s - q, 6 * r - 3 * s + 0.5 * q])
+    )
 
 
 def moved(kind, by):

@@ -20,7 +20,7 @@ from camgeo.synthesis.design import designed
 from kin.dynamics.drive import drives
 from kin.dynamics.events import FREE, LOWER, UPPER
 from kin.dynamics.excitation import intended_faces
-from kin.dynamics.impacts import MOST_WORK, State, course, least_gap
+from kin.dynamics.impacts import MOST_WORK, ContactState, course, least_gap
 from kin.dynamics.train import DynamicsError, Train, steady
 from kin.follower.drive import Shifted
 from kin.follower.roller import DoubleRoller
@@ -42,7 +42,7 @@ def test_a_follower_that_falls_on_a_still_face(stiffness):
     mass, preload, height, rpm = 0.5, 20.0, 1e-3, 600.0
     train = Train(mass, 0.0, stiffness, preload)
     w = rpm * TURN / 60.0
-    found = course(train, faces(Still()), rpm, 1, State(FREE, height, 0.0)).turns[0]
+    found = course(train, faces(Still()), rpm, 1, ContactState(FREE, height, 0.0)).turns[0]
     speed = math.sqrt(2.0 * height * preload / mass)
     assert found.velocity == pytest.approx(speed, rel=1e-10)
     # a half swing about -F/k from 0 with that speed
@@ -59,7 +59,7 @@ def test_play_between_two_still_faces_is_crossed_to_and_fro():
     mass, stiffness, play, rpm, speed = 0.2, 1e6, 2e-4, 600.0, 0.05
     train = Train(mass, 0.0, stiffness)
     w = rpm * TURN / 60.0
-    found = course(train, faces(Still(), Still(play)), rpm, 1, State(FREE, 0.5 * play, speed / w))
+    found = course(train, faces(Still(), Still(play)), rpm, 1, ContactState(FREE, 0.5 * play, speed / w))
     turn = found.turns[0]
     assert turn.velocity == pytest.approx(speed, rel=1e-10)
     assert turn.greatest == pytest.approx(speed * math.sqrt(stiffness * mass), rel=1e-9)
@@ -73,7 +73,7 @@ def test_play_between_two_still_faces_is_crossed_to_and_fro():
 def test_damping_ends_contact_before_the_spring_is_slack():
     """From a press-in that is let go: N = -(k z + c z') reaches 0 while z is still below 0."""
     train = Train(1.0, 600.0, 1e5, 0.0)
-    found = course(train, faces(Still()), 60.0, 1, State(LOWER, -1e-3, 0.0))
+    found = course(train, faces(Still()), 60.0, 1, ContactState(LOWER, -1e-3, 0.0))
     a, b = 300.0, math.sqrt(1e5 - 300.0**2)
     t = math.atan2(b, a) / b  # N = m z'', and from rest z'' goes as cos bt - (a/b) sin bt
     w = TURN
@@ -142,7 +142,7 @@ def test_a_touch_between_two_samples_is_met():
         time = np.linspace(0.0, TURN, 1_000_001)[1:]
         z = start[0] + (start[1] + rate) * time - face.rows(time)[0]
         assert (z.min() < 0.0) == bool(meets)
-        found = course(Train(0.4, 0.0, 1e13), faces(face), 300.0, 1, State(FREE, 0.0, rate))
+        found = course(Train(0.4, 0.0, 1e13), faces(face), 300.0, 1, ContactState(FREE, 0.0, rate))
         assert found.turns[0].impacts == meets
         if meets:
             first = time[int(np.argmax(z < 0.0))]

@@ -8,7 +8,7 @@ from support.dynamics_oracle import Cycloid
 from support.trains import stiff
 
 from kin.dynamics.drive import drives
-from kin.dynamics.response import Samples
+from kin.dynamics.response import ResponsePlaces
 from kin.dynamics.train import steady
 
 TURN = 2.0 * math.pi
@@ -26,7 +26,7 @@ def test_extremes_are_those_of_a_dense_sampling(r, zeta):
     rng = np.random.default_rng(3)
     phi = rng.uniform(0.0, TURN, 40_000)
     stretch = np.clip(np.searchsorted(response_.drive.knots, phi, side="right") - 1, 0, len(response_) - 1)
-    at = Samples(stretch, phi - response_.drive.knots[stretch])
+    at = ResponsePlaces(stretch, phi - response_.drive.knots[stretch])
     force = train.at(600.0).force(response_).at(found.starts, at)
     spread = force.max() - force.min()
     assert force.max() <= found.force.greatest + 1e-11 * spread

@@ -10,7 +10,7 @@ from support.trains import moved, oscillator, states
 
 from kin.dynamics.drive import drives
 from kin.dynamics.peaks import ResponseFigure
-from kin.dynamics.response import Forcing, Samples, StiffnessError, response
+from kin.dynamics.response import Forcing, ResponsePlaces, StiffnessError, response
 
 TURN = 2.0 * math.pi
 RATIOS = (1.25, 3.3, 10.3, 97.3, 1000.5, 1e4 + 0.3, 1e5 + 0.3)
@@ -22,7 +22,7 @@ def answer(oscillator, drive, phi):
     found = response(oscillator, drive, Forcing())
     starts = found.starts(found.periodic(), 0, len(found))
     stretch = np.clip(np.searchsorted(found.drive.knots, phi, side="right") - 1, 0, len(found) - 1)
-    return states(found, starts, Samples(stretch, phi - found.drive.knots[stretch]))
+    return states(found, starts, ResponsePlaces(stretch, phi - found.drive.knots[stretch]))
 
 
 @pytest.mark.thin(8)
@@ -68,7 +68,7 @@ def test_a_cycloidal_rise_and_what_rings_on_in_the_dwell(r, zeta):
         for share in (0.0, 0.31, 0.77):
             phi = at + share * float(duration)
             i = found.drive.find(phi)
-            got = states(found, starts, Samples(np.array([i]), np.array([phi - found.drive.knots[i]])))
+            got = states(found, starts, ResponsePlaces(np.array([i]), np.array([phi - found.drive.knots[i]])))
             want = oracle.run(z, v, terms, share * duration)
             assert abs(float(got[0, 0] - want[0])) <= 1e-10 * max(scale, abs(float(want[0])))
         if not terms and zeta == 0.0:  # the amplitude in the dwell is r times smaller, and right by itself

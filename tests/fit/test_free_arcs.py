@@ -25,7 +25,7 @@ from camgeo.fit import arcs as fitting
 from camgeo.fit import free_arcs
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.deviation import Chain, chain_deviation
-from camgeo.fit.parts import Part
+from camgeo.fit.parts import MonotonePart
 from camgeo.output.pipeline import check
 from camgeo.recipe.loading import load
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
@@ -240,7 +240,7 @@ def test_what_newton_claims_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> 
 
     monkeypatch.setattr(free_arcs, "_level_out", boasting)
     monkeypatch.setattr(
-        Part, "count", lambda part, tolerance: max(2, math.floor(0.7 * part.total / math.cbrt(tolerance)))
+        MonotonePart, "count", lambda part, tolerance: max(2, math.floor(0.7 * part.total / math.cbrt(tolerance)))
     )
     monkeypatch.setattr(free_arcs, "RAISED", 1)
     parts = [part for stretch in fitting._between_extrema(curve, 1e-4, 1e-4) for part in stretch.parts]

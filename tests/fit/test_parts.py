@@ -8,7 +8,7 @@ from camgeo.fit import arcs as fitting
 from camgeo.fit import free_arcs
 from camgeo.fit.arcs import FLOOR, fit_arcs
 from camgeo.fit.nodes import rounding
-from camgeo.fit.parts import CONSTANT, Part, refine
+from camgeo.fit.parts import CONSTANT, MonotonePart, refine
 from camgeo.recipe.loading import load
 
 
@@ -81,7 +81,7 @@ def test_a_finer_grid_has_the_share_of_a_density_that_is_known():
         value = np.cbrt(np.abs(frame.turn_slope * frame.speed - frame.turn * frame.speed_slope) / CONSTANT)
         return np.append(0.0, np.cumsum(0.5 * (value[1:] + value[:-1]) * np.diff(grid)))
 
-    part = Part(coarse, share(coarse), 1.0)
+    part = MonotonePart(coarse, share(coarse), 1.0)
     (finer,) = refine(curve, [part], 1e-9)
     grid = np.linspace(low, high, 1_000_001)
     truth = np.interp(finer.grid, grid, share(grid))

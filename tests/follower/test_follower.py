@@ -331,9 +331,9 @@ def test_roller_on_its_own_envelope():
 
 
 def raised(function, offset):
-    from kin.law.segment import Affine
+    from kin.law.segment import AffineStretch
 
-    return Affine(function, offset)
+    return AffineStretch(function, offset)
 
 
 DOUBLES = {

@@ -11,7 +11,7 @@ from support.square_frame import CENTRED, RESTS, Bars, Bench
 
 from kin.contour.contour import Contour
 from kin.follower.frame import FrameError, _output, implied_limit, judge_frame
-from kin.follower.frame_contact import WAYS, Rest
+from kin.follower.frame_contact import WAYS, FrameRest
 from kin.follower.frame_contact import laid as all_laid
 from kin.follower.frame_dwell import Output, _runs, longest_dwells
 from kin.follower.support import bearing_of
@@ -84,7 +84,7 @@ def test_outputs_by_vertices(pair):
     """In every way of resting, at given shaft angles: the same output as of the turned vertices in a rigid frame."""
     mechanism, bench = pair
     vertices = uneven()
-    for rest in (*(Rest(name, *shares) for name, shares in RESTS.items()), Rest("centred", *CENTRED)):
+    for rest in (*(FrameRest(name, *shares) for name, shares in RESTS.items()), FrameRest("centred", *CENTRED)):
         expected = bench.measured(vertices, SHAFT, (rest.first, rest.second))
         found = laid(mechanism, vertices, rest).over_shaft(SHAFT, 0)[0]
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * max(1.0, np.abs(expected).max()))
@@ -124,7 +124,7 @@ def test_play_by_vertices():
     for play, sampled in ((verdict.play_across, across), (verdict.play_along, along)):
         assert play.least <= sampled.min() <= play.least + 2e-4
         assert play.most - 2e-4 <= sampled.max() <= play.most
-    centred = laid(FOUR_BAR, vertices, Rest("centred", *CENTRED))
+    centred = laid(FOUR_BAR, vertices, FrameRest("centred", *CENTRED))
     for row, play in enumerate((verdict.play_across, verdict.play_along)):
         places = np.radians([play.least_at_deg, play.most_at_deg])
         theta = np.interp(places, centred.shaft, centred.nodes)

@@ -20,7 +20,7 @@ from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.contacts import LEADING, TRAILING
 from kin.law.piecewise import Piecewise
-from kin.law.segment import Affine, Constant
+from kin.law.segment import AffineStretch, Constant
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta, from_law
 from kin.numeric.errors import UnsettledError
@@ -67,7 +67,7 @@ def rising(stroke, base, names=("cycloidal", "polynomial-345")):
         ],
         2 * np.pi,
     ).motion
-    return Piecewise(found.knots, tuple(Affine(f, base) for f in found.functions), 2 * np.pi)
+    return Piecewise(found.knots, tuple(AffineStretch(f, base) for f in found.functions), 2 * np.pi)
 
 
 def proved(motion, reached, scale):
@@ -303,7 +303,7 @@ def test_a_frame_of_rollers_tells_its_dwells_and_how_flat_they_are():
     back = [Segment("return", np.radians(110), 8.0, law("cycloidal")), Segment("dwell", np.radians(70))]
     found = programme(half + back, 2 * np.pi).motion
     yoke = followers.roller_yoke(
-        8.0, Piecewise(found.knots, tuple(Affine(f, 36.0) for f in found.functions), 2 * np.pi), 80.0
+        8.0, Piecewise(found.knots, tuple(AffineStretch(f, 36.0) for f in found.functions), 2 * np.pi), 80.0
     )
     assert yoke.motion.derivatives(PHI, 0)[0] + yoke.motion.derivatives(PHI + np.pi, 0)[0] == pytest.approx(80.0)
     assert np.degrees(yoke.rests) == pytest.approx(np.array([[110.0, 180.0], [290.0, 360.0]]))

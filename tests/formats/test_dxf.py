@@ -20,7 +20,7 @@ from support.splines import closed_spline, periodic_spline
 
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.fit.pieces import ArcSpline, Bound, Polygon
-from camgeo.formats.dxf import APPLICATION, VERSIONS, Circle, Point, Trace, write_dxf
+from camgeo.formats.dxf import APPLICATION, VERSIONS, Point, ReferenceCircle, Trace, write_dxf
 
 NONE = Bound(0.0, 0.0)
 TWO = (13.000000000000004, 13.000000000000005)  # differ in mm, the same in inches
@@ -29,7 +29,7 @@ T = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
 POLYGON = Polygon(np.column_stack((25.0 * np.cos(T) + 2.0 / 3.0, 20.0 * np.sin(T) + 1e-17)), NONE)
 ARCS = ArcSpline(POLYGON.vertices, np.where(np.arange(40) % 5 == 0, 0.0, np.tan(np.pi / 80.0)), NONE)
 REFERENCE = (
-    Circle("prime circle", (0.0, 0.0), 30.0),
+    ReferenceCircle("prime circle", (0.0, 0.0), 30.0),
     Point("shaft", (0.0, 0.0)),
     Trace("pitch curve", ArcSpline(POLYGON.vertices * 1.25, np.full(40, np.tan(np.pi / 80.0)), NONE)),
 )
@@ -133,7 +133,9 @@ def test_layers_hold_what_they_are_named_for(tmp_path, version):
 
 def test_reference_that_coincides_is_drawn_once_under_all_its_names(tmp_path):
     path = tmp_path / "cam.dxf"
-    circles = [Circle(name, (0.0, 0.0), radius) for name, radius in (("prime circle", 9), ("pivots", 9), ("base", 8))]
+    circles = [
+        ReferenceCircle(name, (0.0, 0.0), radius) for name, radius in (("prime circle", 9), ("pivots", 9), ("base", 8))
+    ]
     write_dxf(path, bored(ARCS), reference=[*circles, Point("shaft", (0.0, 0.0)), Point("centre", (0.0, 0.0))])
     names = [[tag.value for tag in e.get_xdata(APPLICATION)] for e in on(read(path), "REFERENCE")]
     assert names == [["prime circle", "pivots"], ["base"], ["shaft", "centre"]]
@@ -219,7 +221,10 @@ def test_comments_are_single_lines_of_any_text(tmp_path):
         ({"mm": 10.0}, "a drawing unit must be 1.0 or 25.4 mm, not 10.0"),
         ({"more": [LayerOutline("BORE", ARCS, ((0.0, 0.0), 0.0))]}, "BORE: radius must be > 0, not 0.0"),
         ({"more": [LayerOutline("BORE", ARCS, ((0.0, 0.0), float("nan")))]}, "BORE: radius must be > 0, not nan"),
-        ({"reference": [Circle("prime circle", (0.0, 0.0), 0.0)]}, "prime circle: radius must be > 0, not 0.0"),
+        (
+            {"reference": [ReferenceCircle("prime circle", (0.0, 0.0), 0.0)]},
+            "prime circle: radius must be > 0, not 0.0",
+        ),
         (
             {"outline": Polygon(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 0.0]]), NONE)},
             "the contour comes twice through (1.0, 0.0)",

@@ -27,7 +27,7 @@ from camgeo.curve.moving_frame import Oscillating
 from camgeo.fit.spline import fit_spline
 from camgeo.formats.dxf import write_dxf as drawn_spline
 from kin.follower.guide import Line
-from kin.follower.roller import Roller
+from kin.follower.roller import GuidedRoller
 from kin.judge.holes import round_hole
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
@@ -40,12 +40,12 @@ DENSE = TURN / 4000 * np.arange(4000)
 
 
 def intent(follower, **other):
-    ring = isinstance(follower, Roller) and follower.side < 0
+    ring = isinstance(follower, GuidedRoller) and follower.side < 0
     return part_of(follower, outline=OUTER if ring else None, **other)
 
 
 def drawn(path, points, bulges, follower):
-    ring = isinstance(follower, Roller) and follower.side < 0
+    ring = isinstance(follower, GuidedRoller) and follower.side < 0
     return write_dxf(path, points, bulges, bores=[(0.0, 0.0, 0.5 * OUTER)] if ring else ())
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from kin.law.bounds import cubic_cells, highest, unbounded, undecided
 from kin.law.piecewise import Piecewise
-from kin.law.segment import Affine, Constant
+from kin.law.segment import AffineStretch, Constant
 from kin.numeric.angles import TURN
 from kin.numeric.elementary import sin
 
@@ -59,13 +59,13 @@ def test_poles_are_unbounded_and_placed():
 
 
 def test_highest_is_found_by_weight_and_side():
-    law = Piecewise(np.array([0.0, 2.0, 4.0]), (sin, Affine(sin, scale=3.0, start=2.0)))
+    law = Piecewise(np.array([0.0, 2.0, 4.0]), (sin, AffineStretch(sin, scale=3.0, start=2.0)))
     assert highest(law, [1.0, 1.0], 0)[0] == pytest.approx(2 + math.pi / 2, abs=1e-7)
     assert highest(law, [1.0, 1.0], 0)[1] == pytest.approx(3.0, rel=1e-15)
     assert highest(law, [1.0, 0.1], 0)[0] == pytest.approx(math.pi / 2, abs=1e-7)
     assert highest(law, [1.0, 0.1], 0)[1] == pytest.approx(1.0, rel=1e-15)
     assert highest(law, [1.0, 1.0], 1) == (2.0, 3.0)
-    falling = Piecewise(np.array([0.0, 1.0, 2.0]), (Affine(Constant(1.0)), Constant(0.5)))
+    falling = Piecewise(np.array([0.0, 1.0, 2.0]), (AffineStretch(Constant(1.0)), Constant(0.5)))
     assert highest(falling, [1.0, 4.0], 0)[1] == 2.0
 
 

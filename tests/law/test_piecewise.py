@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kin.law.piecewise import Piecewise
-from kin.law.segment import Affine, Constant, Harmonics
+from kin.law.segment import AffineStretch, Constant, Harmonics
 from kin.numeric.elementary import BallJet, DomainError, Jet, log, sin
 
 TURN = 2 * math.pi
@@ -172,7 +172,7 @@ def test_a_domain_error_names_the_points_as_given():
 
 
 def test_moved_and_stretched():
-    f = Affine(Harmonics(0.5, ((1, 0.0, 2.0), (3, 1.0, 0.0))), offset=10.0, scale=-2.0, start=0.3, width=-1.5)
+    f = AffineStretch(Harmonics(0.5, ((1, 0.0, 2.0), (3, 1.0, 0.0))), offset=10.0, scale=-2.0, start=0.3, width=-1.5)
     t = np.linspace(-2, 2, 7)
     x = (t - 0.3) / -1.5
     value = 10 - 2 * (0.5 + 2 * np.sin(x) + np.cos(3 * x))

@@ -12,7 +12,7 @@ from support.programmes import Segment, law, programme
 
 from kin.law.piecewise import Piecewise
 from kin.law.programme import LAWS, AcceleratedPiece, IntentError, polynomial_law
-from kin.law.segment import Affine
+from kin.law.segment import AffineStretch
 from kin.numeric.elementary import BallJet, Jet
 
 # Rothbart, Cam Design Handbook (2004), chapters 2, 3: peak velocity, acceleration, jerk for unit stroke and interval.
@@ -295,7 +295,9 @@ def test_pieces_of_one_shape_together_are_what_each_is_alone(shape):
         AcceleratedPiece(1.25, 0.3, -0.7, 5.0, 2.0, shape),
         AcceleratedPiece(2.0, 0.0, 0.4, -1.5, 0.9, shape),
     ]
-    members = [Affine(piece, offset=k, scale=2.0 - k, start=0.1 * k, width=1.0 + k) for k, piece in enumerate(pieces)]
+    members = [
+        AffineStretch(piece, offset=k, scale=2.0 - k, start=0.1 * k, width=1.0 + k) for k, piece in enumerate(pieces)
+    ]
     knots = np.arange(4.0)
     t = np.linspace(0.01, 2.99, 40)
     together, owner = Piecewise(knots, tuple(members)).derivatives(t, 4), t.astype(int)

@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from kin.linkage.extremes import Rows, figures
+from kin.linkage.extremes import Quantities, figures
 from kin.numeric.angles import TURN
 
 
 def rows(theta):
     sine, cosine = np.sin(theta), np.cos(theta)
-    return Rows(
+    return Quantities(
         output=0.3 * sine,
         velocity_relative=0.3 * cosine,
         acceleration_relative=-0.3 * sine,

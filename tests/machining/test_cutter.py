@@ -9,7 +9,7 @@ from support.cases import few
 from support.heavy import ezdxf, shapely
 
 from camgeo.curve.backwards import Backwards, least_hollow
-from camgeo.curve.curve import Curve, Run
+from camgeo.curve.curve import Curve, SmoothRun
 from camgeo.curve.undercut.causes import UndercutError
 from camgeo.machining.cutter import cutter_path
 from camgeo.output import pipeline
@@ -157,7 +157,7 @@ def test_no_hollow_and_none_trimmed():
     assert least_hollow(design.only_surface.contour)[0] == np.inf
     _, design = design_of(DEEP)
     low = design.only_surface.contour.runs[0].low
-    part = Curve(design.only_surface.contour.shape, (Run(low, low + 6.0, (), closed=False),))
+    part = Curve(design.only_surface.contour.shape, (SmoothRun(low, low + 6.0, (), closed=False),))
     assert cutter_path(part, 4.0).corners
     with pytest.raises(UndercutError, match="no wider than its roller, 8 mm"):
         cutter_path(part, 4.1)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.cams.disc_cams import DiscCam
     from camgeo.curve.moving_frame import Displacement
     from camgeo.measures.measured import Measured
-    from camgeo.measures.remarks import Remark
+    from camgeo.measures.remarks import RuleRemark
     from camgeo.recipe.recipe import Recipe
     from kin.judge.check import Check
     from kin.numeric.arrays import Array
@@ -54,7 +54,7 @@ def checks(text: str) -> dict[str, Check]:
     return {check.name: check for check in (*design.checks, *limit_checks(recipe, design, design.checks, (), None))}
 
 
-def remarks(text: str) -> dict[str, Remark]:
+def remarks(text: str) -> dict[str, RuleRemark]:
     recipe = load_text(text, "cam.yaml")
     return {remark.name: remark for remark in remarks_of(recipe, designed(recipe))}
 
@@ -436,7 +436,7 @@ def test_a_guide_without_a_stem() -> None:
 @pytest.mark.slow
 def test_a_sweep_ranks_and_limits_by_them() -> None:
     from camgeo.capabilities.sweep.figures import compute_figures as searched
-    from camgeo.capabilities.sweep.task import Task
+    from camgeo.capabilities.sweep.task import SweepTask
 
     text = disc("kind: roller, radius: 9, offset: 6", more=TRAIN + "\n")
     text += """\
@@ -449,7 +449,7 @@ sweep:
   rank: roller-speed
 """
     recipe = load_text(text, "cam.yaml")
-    task = Task.from_recipe(recipe)
+    task = SweepTask.from_recipe(recipe)
     columns = searched(task.scene(task.figures), task.plan.values(0, 3))
     names = ["pressure-angle-return", "peak-acceleration-at-speed", "jam-margin", "roller-speed"]
     for i, base in enumerate((30, 35, 40)):

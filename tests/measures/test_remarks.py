@@ -17,7 +17,7 @@ from camgeo.synthesis.design import designed
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.measures.remarks import Remark
+    from camgeo.measures.remarks import RuleRemark
 
 FLAT = "cam: {kind: support, p: 30 + 3*cos(2*t)}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
@@ -43,7 +43,7 @@ INCH = "units: inch\ncam: {kind: support, p: 1.5 + 0.1*cos(2*t)}\n"
 KEYED = "part: {bore: %s, keyway: %s}\n"
 
 
-def remarks(text: str) -> list[Remark]:
+def remarks(text: str) -> list[RuleRemark]:
     recipe = load_text(text, "cam.yaml")
     return list(remarks_of(recipe, designed(recipe)))
 

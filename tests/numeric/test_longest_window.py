@@ -11,7 +11,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from kin.numeric.longest_window import Dwell, _Family, dwells, longest_of_each
+from kin.numeric.longest_window import Window, _Family, dwells, longest_of_each
 
 TURN = 2 * math.pi
 SAMPLES = 3000
@@ -194,7 +194,7 @@ def test_an_interior_wiggle_smaller_than_the_band_is_within_the_dwell_and_a_larg
 
 
 def test_a_constant_output_is_one_dwell_of_a_whole_period():
-    assert dwells(lambda x, _: np.full((1, len(x)), 3.0), [1.0], 1e-3) == (Dwell(0.0, TURN, 3.0, 3.0),)
+    assert dwells(lambda x, _: np.full((1, len(x)), 3.0), [1.0], 1e-3) == (Window(0.0, TURN, 3.0, 3.0),)
     (whole,) = dwells(lambda x, _: 0.4999 * np.sin(3 * x)[None], [], 1.0)
     assert whole.length == TURN
     assert (whole.least, whole.greatest) == pytest.approx((-0.4999, 0.4999), abs=1e-12)

@@ -9,7 +9,7 @@ from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from kin.law.sources.laws import named, scca, split
-from kin.law.sources.programme import Dwell, Matched, Move, State, programme
+from kin.law.sources.programme import Dwell, JointState, Matched, Move, programme
 
 rad = math.radians
 
@@ -64,7 +64,7 @@ def test_inches_scale_strokes_formulas_and_states():
     first = displacement(intent(mm), theta)
     head = "kind: constant-breadth, base_radius: 2.4"
     assert displacement(intent(inch, head, "inch"), theta) == pytest.approx(first, abs=1e-12)
-    turning = State(0.0, -12.7)
+    turning = JointState(0.0, -12.7)
     motion = programme(
         [Move(rad(80), Matched(at_end=turning), by=5.08), Move(rad(60), Matched(), by=-5.08), Dwell(rad(40))],
         math.pi,

@@ -47,7 +47,7 @@ from camgeo.synthesis.design import designed
 from kin.law.contacts import Flat, Oscillating, Roller, Shoe, Translating
 from kin.law.programme import IntentError
 from kin.law.sources.laws import named as named_law
-from kin.law.sources.programme import Dwell, Matched, RiseAndFall, State
+from kin.law.sources.programme import Dwell, JointState, Matched, RiseAndFall
 from kin.law.support_function import Lift
 
 MM = 25.4
@@ -390,7 +390,7 @@ def test_a_segment_gives_its_step() -> None:
     assert (to.by, to.to) == (None, 2.0)
     assert to.law.peaks.velocity == pytest.approx(named_law("scca-20").peaks.velocity, rel=1e-12)
     match = MotionSegment("rise", 1.0, 2.0, "match", at_end=(0.0, -3.0)).step()
-    assert match.law == Matched(at_end=State(0.0, -3.0))
+    assert match.law == Matched(at_end=JointState(0.0, -3.0))
     assert MotionSegment("rise_fall", 1.0, 2.0).step() == RiseAndFall(1.0, 2.0)
     assert MotionSegment("displacement", 1.0, formula="u**3", scale=25.4).step().scale == 25.4
     with pytest.raises(IntentError, match="only a matched segment takes a state at its end"):

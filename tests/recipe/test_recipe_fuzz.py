@@ -30,7 +30,7 @@ from camgeo.schema.yaml_source import _Loader
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
-    from camgeo.schema.fields import Table
+    from camgeo.schema.fields import FieldTable
 
 NEW = {f"new {kind}": starter(kind).encode() for kind in OF_CAMS}
 SHIPPED = NEW | {path.name: path.read_bytes() for path in SHIPPED_FILES}
@@ -110,7 +110,7 @@ def test_yaml_signs(text: str) -> None:
     outcome(text.encode())
 
 
-def _keys(table: Table) -> set[str]:
+def _keys(table: FieldTable) -> set[str]:
     tables = [each for field in table.fields for each in (field.table, field.form and field.form.instead) if each]
     below = {key for each in tables for key in _keys(each)}
     return {*table.keys, *below}
@@ -140,7 +140,7 @@ structures = st.recursive(
 )
 
 
-def kinded(kinds: dict[str, Table]) -> st.SearchStrategy[object]:
+def kinded(kinds: dict[str, FieldTable]) -> st.SearchStrategy[object]:
     return st.sampled_from(sorted(kinds)).flatmap(
         lambda kind: st.fixed_dictionaries(
             {"kind": st.just(kind)}, optional={field.name: structures for field in kinds[kind].fields}

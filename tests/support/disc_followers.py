@@ -14,14 +14,16 @@ from kin.contour.contour import Contour
 from kin.follower.guide import Arm, Line
 from kin.law.contacts import LEADING, TRAILING
 from kin.law.piecewise import Piecewise
-from kin.law.segment import Affine, Constant
+from kin.law.segment import AffineStretch, Constant
 from kin.law.support_function import Lift
 from support import followers
 from support.discs import CONTOURS, DEGREE, M01, M02, M03, M05, M06, M07, M08, arm, offset
 
 
 def raised(over, by):
-    functions = tuple(Constant(f.value + by) if isinstance(f, Constant) else Affine(f, by) for f in over.functions)
+    functions = tuple(
+        Constant(f.value + by) if isinstance(f, Constant) else AffineStretch(f, by) for f in over.functions
+    )
     return Piecewise(over.knots, functions, over.period, over.smooth_seam)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from kin.judge.contour_checks import judge_contour
 from kin.judge.intent import LinkageIntent, PartIntent, SurfaceIntent
 from kin.judge.verdict import Verdict
-from kin.read.nesting import Chain
+from kin.read.nesting import ClosedContour
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
@@ -45,5 +45,5 @@ def gauge_of(part: PartIntent) -> Follower:
 def findings(contour: Contour, part: PartIntent, phi: Array, limits: Limits, uneven: float = 0.0) -> Verdict:
     """What is found on the contour of a part of one surface."""
     (surface,) = part.surfaces
-    found, checks = judge_contour(Chain(contour), surface, phi, limits, uneven, linkage=part.linkage)
+    found, checks = judge_contour(ClosedContour(contour), surface, phi, limits, uneven, linkage=part.linkage)
     return Verdict("dxf", tuple(checks), (found,))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.clearance.pose import Course
+from kin.clearance.pose import PoseCourse
 from kin.numeric.elementary import BallJet, Jet
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class Formula:
 
     slack = (0.0, 0.0)
 
-    def over(self, phi: Array, half: Array) -> Course:
+    def over(self, phi: Array, half: Array) -> PoseCourse:
         """Give the course over intervals; ValueError where the rates cannot be bounded."""
         point, stretch = Jet.variable(phi, 0), BallJet.variable(phi - half, phi + half, 1)
         columns = [c if isinstance(c, Jet) else point.constant(_number(c)) for c in self.function(point)]
@@ -42,7 +42,7 @@ class Formula:
             raise ValueError(
                 "the rates of a motion cannot be bounded over an interval: its formula may have a pole there"
             )
-        return Course(np.stack([c.c[0] for c in columns], axis=1), 0.5 * (low + high), 0.5 * (high - low))
+        return PoseCourse(np.stack([c.c[0] for c in columns], axis=1), 0.5 * (low + high), 0.5 * (high - low))
 
 
 def _number(value: Coordinate) -> float:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.page.scene import Body
+    from camgeo.report.page.scene import MovingBody
 
 SHOWN = ("shu-wu", "as-figure-9-2a", "six-bar", "slider-crank", "oscillating-yoke", "w-law", "w-ellipse")
 SHAFT = 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
@@ -52,7 +52,7 @@ class Made:
 
 
 @cache
-def overlaid(name: str, names: str) -> dict[str, Body]:
+def overlaid(name: str, names: str) -> dict[str, MovingBody]:
     """Overlays of a shipped recipe's page by the names of their bodies, without its files.
 
     The shaft turns clockwise, and the pivot or the normal of face 1 is on the x axis.
@@ -64,12 +64,12 @@ def overlaid(name: str, names: str) -> dict[str, Body]:
     return {body.name: body for body in scene.bodies if body.kind == "overlays"}
 
 
-def origin(body: Body) -> np.ndarray:
+def origin(body: MovingBody) -> np.ndarray:
     """Where the origin of a body stands over the turn, complex."""
     return body.pose[:, 0] + 1j * body.pose[:, 1]
 
 
-def along(body: Body) -> np.ndarray:
+def along(body: MovingBody) -> np.ndarray:
     """The direction of its x axis over the turn, complex."""
     return np.exp(1j * body.pose[:, 2])
 

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.sweep.chunks import Job
+from camgeo.capabilities.sweep.chunks import SweepJob
 from camgeo.capabilities.sweep.figures import Evaluator
 from camgeo.capabilities.sweep.gather import REASON, Ranking
 from camgeo.capabilities.sweep.keys import Axis, varied_fields
 from camgeo.capabilities.sweep.plan import Plan
 from camgeo.capabilities.sweep.search import Procedures
-from camgeo.capabilities.sweep.task import Task
+from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import read
 
@@ -55,7 +55,7 @@ export: {{tolerance: 0.01, files: [dxf]}}
 
 def task(comment="", *, margin=1.0, rank="dwell", refine="false", path="four-bar.yaml"):
     text = FOUR_BAR.format(comment=comment, margin=margin, rank=rank, refine=refine)
-    return Task.from_recipe(read(text.encode(), path))
+    return SweepTask.from_recipe(read(text.encode(), path))
 
 
 def hills(scene, values):
@@ -127,8 +127,8 @@ class Aside(str):
         return "aside"
 
 
-def job(plan: Plan = GRID, scene: str = "", compute=hills) -> Job:
-    return Job(plan, Aside(scene), compute)
+def job(plan: Plan = GRID, scene: str = "", compute=hills) -> SweepJob:
+    return SweepJob(plan, Aside(scene), compute)
 
 
 def calls(folder: Path) -> list[str]:

@@ -101,7 +101,7 @@ def test_pressure_angles_are_those_of_the_limits(tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", ["roller", "flat", "arm", "plate", "knife edge"])
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_polar_radii_are_those_of_the_drawn_contour(kind: str, rotation: str, tmp_path: Path) -> None:
-    from camgeo.api.run import design
+    from camgeo.api.designing import design
 
     text = f"rotation: {rotation}\n" + KINDS[kind] + "verify: {angles: 90}\n"
     table = exported(text, tmp_path)["polar"]

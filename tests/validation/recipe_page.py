@@ -20,7 +20,7 @@ from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.registry import registry
 from camgeo.registry.capability import Capability
 from camgeo.registry.formats import FORMATS, MODULES
-from camgeo.schema.fields import Kind, Table, either
+from camgeo.schema.fields import FieldTable, Kind, either
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "recipe.md"
@@ -144,14 +144,14 @@ def tables():
 def of_capability(name):
     """The same of the keys and figures that a capability adds, and what `page.py` beside its tests has more."""
     record = registry.capability(name) if registry.labels()[name].record else Capability()
-    own = Table(tuple(record.fields()))
+    own = FieldTable(tuple(record.fields()))
     found = dict(below(own, ""))
     if any(field.table is None for field in own.fields):
         found["keys"] = own
-    found.update({path: Table(tuple(fields)) for path, fields in record.below.items()})
+    found.update({path: FieldTable(tuple(fields)) for path, fields in record.below.items()})
     found.update({f"file {kind}": FORMATS[kind].options for kind in registry.labels()[name].formats})
     if record.variant is not None:
-        found["file"] = Table((record.variant.option,))
+        found["file"] = FieldTable((record.variant.option,))
     more = ROOT / "tests" / "capabilities" / name / "page.py"
     if more.is_file():
         found.update(run_path(str(more))["TABLES"])

@@ -67,7 +67,7 @@ def _limits(ranges: tuple[tuple[float, float], ...], size: float) -> tuple[float
 
 
 @dataclass(frozen=True)
-class Fit:
+class ShaftFit:
     """Fit of the cam on its shaft: radial play of the bore, mm, and half the play of the key, rad, None without one."""
 
     bore: float
@@ -76,7 +76,7 @@ class Fit:
 
 def fit_of(
     diameter: float, hole: str, shaft: str, keyways: tuple[str, str] | None = None, width: float | None = None
-) -> Fit:
+) -> ShaftFit:
     """Greatest play of a cam on a shaft: that of the bore on its radius, of the key to either side of its middle.
 
     `keyways` are the classes of the hub's and the shaft's keyway of a `width`, mm; a fit that may be tight has no play.
@@ -84,6 +84,6 @@ def fit_of(
     """
     radial = 0.5 * max(clearance(hole, shaft, diameter).most, 0.0)
     if keyways is None or width is None:
-        return Fit(radial, None)
+        return ShaftFit(radial, None)
     play = sum(max(key_clearance(keyway, width).most, 0.0) for keyway in keyways)
-    return Fit(radial, play / diameter)
+    return ShaftFit(radial, play / diameter)

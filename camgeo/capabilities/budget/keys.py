@@ -16,10 +16,10 @@ from camgeo.capabilities.budget.dimensions import (
     dimension_names,
     traits,
 )
-from camgeo.capabilities.budget.fits import KEYWAYS, SHAFTS, UPPER_ENDS, Fit, fit_of
+from camgeo.capabilities.budget.fits import KEYWAYS, SHAFTS, UPPER_ENDS, ShaftFit, fit_of
 from camgeo.part.din6885 import key_for
 from camgeo.schema.errors import suggestion
-from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either
 from camgeo.schema.json_schema import number_schema
 from camgeo.schema.read_scalar import read_numeric
 from camgeo.schema.yaml_source import Mapping, Scalar, describe, entries, join, keys
@@ -73,7 +73,7 @@ class Budget:
     zero: float | None = None
     play: float | None = None
     guide: float | None = None
-    fit: Fit | None = None
+    fit: ShaftFit | None = None
     sums: Literal["worst", "rss"] = "worst"
     waves: int | None = None
     runs: int = RUNS
@@ -165,32 +165,32 @@ def _schema_of_words(value: Schema) -> Schema:
 _ZERO_ANGLE = Field("zero", Kind.ANGLE, "shaft angle at which the machine is set", at_least=-360, at_most=360)
 _AMOUNT = number_schema(Field("", Kind.LENGTH, "", at_least=0, at_most=MOST))
 _TURNED = number_schema(Field("", Kind.ANGLE, "", at_least=0, at_most=MOST_OFF))
-_TOLERANCES = Form(
+_TOLERANCES = OwnForm(
     "tolerances",
     "a mapping from dimensions to plus and minus, such as {profile: 0.01, shaft: 0.02}, or to free",
     _read_tolerances,
     lambda _: _schema_of_words({"anyOf": [{"const": FREE}, _AMOUNT, _TURNED]}),
 )
-_COST = Form(
+_COST = OwnForm(
     "costs",
     "a mapping from dimensions to costs, such as {profile: 1, follower.radius: 0.3}",
     _read_cost,
     lambda _: _schema_of_words(number_schema(Field("", Kind.NUMBER, "", above=0, at_most=MOST))),
 )
-_ZERO = Form(
+_ZERO = OwnForm(
     "a setting",
     "a shaft angle, or none",
     _read_zero,
     lambda _: {"anyOf": [{"const": NO_ZERO}, number_schema(_ZERO_ANGLE)]},
 )
-_KEY = Table(
+_KEY = FieldTable(
     tuple(
         Field(name, Kind.CHOICE, f"tolerance class of the {name}'s keyway", required=True, choices=tuple(KEYWAYS))
         for name in ("hub", "shaft")
     )
 )
 
-BUDGET = Table(
+BUDGET = FieldTable(
     (
         Field(
             "permitted",
@@ -352,7 +352,7 @@ def build_budget(values: Values) -> Budget | None:
     )
 
 
-def _fit(budget: Values, part: Values) -> Fit | None:
+def _fit(budget: Values, part: Values) -> ShaftFit | None:
     """The play of bore and key, where their fits are stated."""
     if "fit" not in budget:
         return None

@@ -14,7 +14,7 @@ from kin.numeric.angles import degrees
 if TYPE_CHECKING:
     from os import PathLike
 
-    from camgeo.capabilities.budget.outcome import Outcome
+    from camgeo.capabilities.budget.outcome import BudgetOutcome
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
@@ -41,7 +41,7 @@ def budget(recipe: Recipe, *files: str | PathLike[str]) -> dict[str, Any]:
     return {"recipe": recipe.name, "units": recipe.units, "ok": entry["kept"], **entry}
 
 
-def _parts(recipe: Recipe, design: Design, result: Outcome, files: list[Path]) -> dict[str, Any]:
+def _parts(recipe: Recipe, design: Design, result: BudgetOutcome, files: list[Path]) -> dict[str, Any]:
     """Report entry of the simulation of made parts; `runs` 0 with the reason `why` where a part has no contact."""
     from camgeo.capabilities.budget.contact import LostError
     from camgeo.capabilities.budget.parts import sample_angles, simulate

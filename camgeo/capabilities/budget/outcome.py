@@ -28,7 +28,7 @@ SUMS: tuple[Sum, ...] = tuple(POWERS)
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class BudgetOutcome:
     """Budget of a design at even shaft angles: influences of its dimensions, greatest sums, and free tolerances.
 
     `budget` has tolerances for all its dimensions, those found among them. `left` (n,) is what is left at each angle
@@ -57,7 +57,7 @@ class Outcome:
         return kept and (budget.play is None or self.play is None or self.play[1] <= budget.play * (1.0 + ROUNDING))
 
 
-def outcome(recipe: Recipe, design: Design, budget: Budget) -> Outcome:
+def outcome(recipe: Recipe, design: Design, budget: Budget) -> BudgetOutcome:
     """Work out the budget of a design; raises RecipeErrors where nothing is left for a free dimension."""
     try:
         return _outcome(recipe, design, budget)
@@ -65,7 +65,7 @@ def outcome(recipe: Recipe, design: Design, budget: Budget) -> Outcome:
         raise _taken(recipe, budget, error) from error
 
 
-def _outcome(recipe: Recipe, design: Design, budget: Budget) -> Outcome:
+def _outcome(recipe: Recipe, design: Design, budget: Budget) -> BudgetOutcome:
     free, left, splits = budget.to_be_found, None, None
     shaft = equal_steps(recipe.verify.angles)
     rows = influence(recipe, design, budget, shaft)
@@ -81,7 +81,7 @@ def _outcome(recipe: Recipe, design: Design, budget: Budget) -> Outcome:
         budget = budget.split([(name, value if math.isfinite(value) else 0.0) for name, value in chosen.items()])
         rows = influence(recipe, design, budget, shaft)
     sums = {kind: worst(rows, kind) for kind in SUMS}
-    return Outcome(budget, rows, sums, free, left, splits, _play(rows, budget.sums))
+    return BudgetOutcome(budget, rows, sums, free, left, splits, _play(rows, budget.sums))
 
 
 def _play(rows: Influence, kind: Sum) -> tuple[float, float] | None:

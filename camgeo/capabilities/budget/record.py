@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.capabilities.budget.dimensions import PROFILE
 from camgeo.capabilities.budget.keys import Budget, build_budget, check_budget, fields
 from camgeo.measures.measured import Measured
-from camgeo.recipe.figures import Figure, Need
+from camgeo.recipe.figures import DesignFigure, Need
 from camgeo.registry.capability import Capability, Results
 from camgeo.schema.fields import Kind
 from kin.numeric.angles import degrees
@@ -16,7 +16,7 @@ from kin.numeric.angles import degrees
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from camgeo.capabilities.budget.outcome import Outcome
+    from camgeo.capabilities.budget.outcome import BudgetOutcome
     from camgeo.common.clock import Clock
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 WORST, RSS = "budget-worst", "budget-rss"
 OF_BUDGET = Need("a budget", lambda _, paths: "budget" in paths)
 FIGURES = {
-    WORST: Figure(
+    WORST: DesignFigure(
         "greatest error of follower or output, in the worst case of the budget", Kind.MOTION, "least", OF_BUDGET
     ),
-    RSS: Figure("the same as root of the sum of squares", Kind.MOTION, "least", OF_BUDGET),
+    RSS: DesignFigure("the same as root of the sum of squares", Kind.MOTION, "least", OF_BUDGET),
 }
 
 
-def _outcome(recipe: Recipe, design: Design) -> Outcome | None:
+def _outcome(recipe: Recipe, design: Design) -> BudgetOutcome | None:
     """The outcome of a recipe's budget; None without one, and of a linkage that does not turn."""
     from camgeo.capabilities.budget.outcome import outcome
 

@@ -17,7 +17,7 @@ from kin.numeric.angles import TURN, degrees
 if TYPE_CHECKING:
     from camgeo.capabilities.budget.influence import Output
     from camgeo.capabilities.budget.inverse import Split
-    from camgeo.capabilities.budget.outcome import Outcome
+    from camgeo.capabilities.budget.outcome import BudgetOutcome
     from camgeo.recipe.recipe import Recipe
     from kin.numeric.arrays import Array
 
@@ -25,7 +25,7 @@ SHARES_STEP = 5  # degrees from one angle of the shares to the next
 LEFT_STEP = 10  # degrees from one angle of what is left to the next
 
 
-def section(recipe: Recipe, outcome: Outcome) -> dict[str, Any]:
+def section(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
     """Entry `budget` of a report: lengths in the recipe's unit, angles in degrees."""
     budget, (scale, unit) = outcome.budget, motion_unit(recipe)
     entry: dict[str, Any] = {
@@ -75,13 +75,13 @@ def _rate(recipe: Recipe, rate: Worst) -> dict[str, Any]:
     return {**entry, "unit": f"{entry['unit']}/rad"}
 
 
-def _greatest(recipe: Recipe, outcome: Outcome, output: Output) -> dict[str, float]:
+def _greatest(recipe: Recipe, outcome: BudgetOutcome, output: Output) -> dict[str, float]:
     """The greatest sums of one output over the angles."""
     scale, _ = motion_unit(recipe)
     return {kind: scale * float(total(outcome.influence, output, kind).max()) for kind in SUMS}
 
 
-def _dimension(recipe: Recipe, outcome: Outcome, name: str, tolerance: float | None) -> dict[str, Any]:
+def _dimension(recipe: Recipe, outcome: BudgetOutcome, name: str, tolerance: float | None) -> dict[str, Any]:
     """Row of the report on one dimension: its tolerance, its influence at the worst angle, and its greatest influence.
 
     Influences are in the motion's unit by the dimension's unit; `share` is the dimension's part of the worst sum.
@@ -104,7 +104,7 @@ def _dimension(recipe: Recipe, outcome: Outcome, name: str, tolerance: float | N
     }
 
 
-def _left(recipe: Recipe, outcome: Outcome, left: Array) -> dict[str, Any]:
+def _left(recipe: Recipe, outcome: BudgetOutcome, left: Array) -> dict[str, Any]:
     (name,), shaft = outcome.free, outcome.influence.shaft
     per, unit = size_unit(recipe, name)
     step, least = max(len(shaft) * LEFT_STEP // 360, 1), int(left.argmin())
@@ -125,7 +125,7 @@ def _split(recipe: Recipe, split: Split) -> dict[str, Any]:
     return {"tolerances": rows, "binding_deg": [degrees(at) for at in split.binding]}
 
 
-def _over_turn(recipe: Recipe, outcome: Outcome) -> dict[str, Any]:
+def _over_turn(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
     """Part of each dimension in the worst case every `SHARES_STEP` degrees, at the worst contact, in mm or degrees."""
     rows, (scale, _) = outcome.influence, motion_unit(recipe)
     step = max(len(rows.shaft) * SHARES_STEP // 360, 1)
@@ -134,7 +134,7 @@ def _over_turn(recipe: Recipe, outcome: Outcome) -> dict[str, Any]:
     return {"at_deg": at, "worst": {name: (scale * values).tolist() for name, values in added.items()}}
 
 
-def sums_over_turn(recipe: Recipe, outcome: Outcome, shaft: Array) -> dict[Sum, Array]:
+def sums_over_turn(recipe: Recipe, outcome: BudgetOutcome, shaft: Array) -> dict[Sum, Array]:
     """Worst case and root of the sum of squares (n,) at shaft angles (n,), rad, in the unit of `motion_unit`.
 
     They are those at the contact that is worst of all, linear between the angles of the outcome.

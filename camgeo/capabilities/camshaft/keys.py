@@ -16,7 +16,7 @@ from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, of_source
 from camgeo.registry.formats import FORMATS
 from camgeo.schema.errors import RecipeErrors, suggestion
-from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length, mapping
+from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, coordinate, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
@@ -121,7 +121,7 @@ class CamshaftRecipe(Order):
 # --- keys -------------------------------------------------------------------------------------------------------------
 
 
-def _rows(table: Table, reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
+def _rows(table: FieldTable, reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
     """Read a list of mappings with the keys of one table."""
     row = Field("", Kind.TABLE, field.about, table=table)
     items = enumerate(reader.items(field, node, path, MOST_LOBES))
@@ -130,8 +130,8 @@ def _rows(table: Table, reader: Reader, field: Field, node: Node, path: str) -> 
     return whole if len(whole) == len(rows) else None
 
 
-def _list_of(name: str, table: Table, about: str, example: str, *, required: bool = False) -> Field:
-    form = Form(
+def _list_of(name: str, table: FieldTable, about: str, example: str, *, required: bool = False) -> Field:
+    form = OwnForm(
         f"a list of {name}",
         f"a list of {name} such as {example}",
         partial(_rows, table),
@@ -144,13 +144,13 @@ def _angle(name: str, about: str, least: float, most: float, *, required: bool =
     return Field(name, Kind.ANGLE, about, required, default=default, at_least=least, at_most=most)
 
 
-_PATH = Form(
+_PATH = OwnForm(
     "the path of a recipe",
     "the path of a lobe's recipe, such as intake.yaml",
     read_path,
     lambda _: {"type": "string", "minLength": 1},
 )
-LOBE = Table(
+LOBE = FieldTable(
     (
         Field("recipe", Kind.OWN, "recipe of the lobe's cam, from this file's folder", required=True, form=_PATH),
         _angle(
@@ -167,14 +167,14 @@ LOBE = Table(
     ),
     alternatives=(("at", ()), ("cylinder", ("valve",))),
 )
-JOURNAL = Table(
+JOURNAL = FieldTable(
     (
         coordinate("z", "height of the journal's lower face", required=True),
         length("length", "length along the shaft", required=True),
         length("diameter", "diameter", required=True),
     )
 )
-ENGINE = Table(
+ENGINE = FieldTable(
     (
         Field(
             "order", Kind.NUMBERS, "firing order", required=True, unit=Kind.INTEGER, at_least=1, at_most=MOST_CYLINDERS
@@ -202,7 +202,7 @@ CAMSHAFT = Field(
     Kind.TABLE,
     "lobes of several recipes on one shaft",
     required=True,
-    table=Table(
+    table=FieldTable(
         (
             mapping(
                 "shaft",
@@ -230,12 +230,12 @@ def _plain(name: str) -> Format:
     """Give the record of a format whose options are unit and tolerance alone."""
     record = FORMATS[name]
     kept = tuple(field for field in record.options.fields if field.name in {"units", "tolerance"})
-    return replace(record, options=Table(kept))
+    return replace(record, options=FieldTable(kept))
 
 
 def _only(whole: Field, *names: str) -> Field:
     """Give a mapping with some of its keys."""
-    return replace(whole, table=Table(tuple(key for key in whole.inner.fields if key.name in names)))
+    return replace(whole, table=FieldTable(tuple(key for key in whole.inner.fields if key.name in names)))
 
 
 INSPECTION = "inspection"
@@ -247,7 +247,7 @@ def _own(name: str, *words: str, more: tuple[Field, ...] = ()) -> Format:
     """Give the record of a format whose forms are a camshaft's own, with more options."""
     about = "which table it is" if name == "csv" else "what is drawn"
     form = Field("as", Kind.CHOICE, about, default=words[0], choices=words)
-    return replace(FORMATS[name], options=Table((form, *more)))
+    return replace(FORMATS[name], options=FieldTable((form, *more)))
 
 
 DRAWN = "svg"
@@ -267,9 +267,9 @@ SHAFT_FILES = {
     "csv": _own("csv", "motion", "events", INSPECTION, more=(STEP,)),
     **{name: record for name, record in FORMATS.items() if record.shaft is not None},
     DRAWN: _own(DRAWN, *DIAGRAMS),
-    **{name: replace(FORMATS[name], options=Table(())) for name in ("html", *OF_A_LOBE)},
+    **{name: replace(FORMATS[name], options=FieldTable(())) for name in ("html", *OF_A_LOBE)},
 }
-SHAFT = Table(
+SHAFT = FieldTable(
     (
         *(CORE.field(name) for name in ("name", "about", "units", "rotation")),
         CAMSHAFT,
@@ -362,7 +362,7 @@ def _built(values: Values, document: Document) -> CamshaftRecipe:
     shaft, rotation = camshaft["shaft"], values.get("rotation", "cw")
     rows, bars = camshaft["lobes"], camshaft.get("journals", [])
     low, high = shaft.get("from", 0.0), shaft["to"]
-    level = Levels([low, high, *(row["z"] for row in (*rows, *bars))])
+    level = ShaftHeights([low, high, *(row["z"] for row in (*rows, *bars))])
     low, high = level(low), level(high)
     journals = [
         Bar(f"journal {i + 1}", level(row["z"]), level(row["z"] + row["length"]), row["diameter"])
@@ -400,7 +400,7 @@ def _built(values: Values, document: Document) -> CamshaftRecipe:
     )
 
 
-class Levels:
+class ShaftHeights:
     """Heights along a shaft, mm, of which two that differ by no more than rounding are one.
 
     A lobe that ends where the next begins is given by a sum, such as 20.1 + 12.3, that need not round to the 32.4 of

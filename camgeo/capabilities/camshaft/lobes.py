@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.keys import Bar, CamshaftRecipe, Engine, Lobe
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
-    from camgeo.registry.capability import Moved
+    from camgeo.registry.capability import MovedBody
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.expected_checks import Foreseen
     from kin.judge.check import Check
@@ -74,7 +74,7 @@ class PlacedLobe:
         return self.events[lift]
 
     @property
-    def moved(self) -> Moved | None:
+    def moved(self) -> MovedBody | None:
         """Motion of the part that its follower drives, such as a valve; None without one."""
         return moved_by(self.lobe.recipe, self.design)
 

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.starter import Starter
     from camgeo.registry.capability import FileCall
-    from camgeo.schema.fields import Table
+    from camgeo.schema.fields import FieldTable
     from camgeo.schema.yaml_source import Source
     from camgeo.synthesis.expected_checks import Foreseen
 
 
-def _table() -> Table:
+def _table() -> FieldTable:
     from camgeo.capabilities.camshaft.keys import SHAFT
 
     return SHAFT

@@ -10,27 +10,27 @@ from camgeo.capabilities.dynamics.remedies import stronger_spring
 from camgeo.checks.declared import FACE_WIDTH, OUTPUT, Declared, run_with
 
 if TYPE_CHECKING:
-    from camgeo.checks.declared import Scene
+    from camgeo.checks.declared import CheckFacts
 
 
-def _guided(scene: Scene) -> bool:
+def _guided(scene: CheckFacts) -> bool:
     train = scene.recipe.of(Dynamics)
     return train is not None and train.guide is not None
 
 
-def _sprung(scene: Scene) -> bool:
+def _sprung(scene: CheckFacts) -> bool:
     train = scene.recipe.of(Dynamics)
     if train is None or train.backlash is not None:
         return False
     return train.stiffness is not None or not scene.follower.closure
 
 
-def _elastic(scene: Scene) -> bool:
+def _elastic(scene: CheckFacts) -> bool:
     train = scene.recipe.of(Dynamics)
     return _sprung(scene) and train is not None and train.stiffness is not None
 
 
-def _loose(scene: Scene) -> bool:
+def _loose(scene: CheckFacts) -> bool:
     train = scene.recipe.of(Dynamics)
     return train is not None and train.backlash is not None
 

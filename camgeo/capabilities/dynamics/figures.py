@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.figures import ON_RETURN, PEAKS, PRELOAD_GREATEST, Figure, Need
+from camgeo.recipe.figures import ON_RETURN, PEAKS, PRELOAD_GREATEST, DesignFigure, Need
 from camgeo.schema.fields import MOST, Field, Kind
 
 if TYPE_CHECKING:
@@ -59,12 +59,12 @@ def _is_rigid(paths: AbstractSet[str]) -> bool:
     return "dynamics" in paths and _STIFF not in paths
 
 
-_force = partial(Figure, dear=True, after=PRELOAD_GREATEST)
-_of_run = partial(Figure, of="run", swept=False)
+_force = partial(DesignFigure, dear=True, after=PRELOAD_GREATEST)
+_of_run = partial(DesignFigure, of="run", swept=False)
 
-FIGURES: dict[str, Figure] = {
+FIGURES: dict[str, DesignFigure] = {
     **{
-        name: Figure(
+        name: DesignFigure(
             about, Kind.MOTION, "least", OF_SPEED, per=per, dear=True, eased_by="motion", keys=(_RPM,), after=PEAKS[2]
         )
         for name, about, per in zip(
@@ -78,7 +78,7 @@ FIGURES: dict[str, Figure] = {
             strict=True,
         )
     },
-    JAM_MARGIN: Figure(
+    JAM_MARGIN: DesignFigure(
         "by how much the pressure angle stays below that at which the stem jams in its guide",
         Kind.ANGLE,
         "most",
@@ -94,9 +94,9 @@ FIGURES: dict[str, Figure] = {
     ),
     GUIDE_FORCE: _force("greatest reaction of the stem's guide, N", Kind.FORCE, "least", OF_REACTION),
     MEAN_FORCE: _force("mean force of a roller over its own turns, exponent 10/3, N", Kind.FORCE, "least", OF_BEARING),
-    SEAT_LOAD: Figure("force of the spring where the follower is lowest, N", Kind.FORCE, "most", OF_COIL),
-    OPEN_LOAD: Figure("force of the spring where it is highest, N", Kind.FORCE, "least", OF_COIL),
-    COIL_BIND: Figure("what is left to the spring's coils where it is highest", Kind.LENGTH, "most", OF_SOLID),
+    SEAT_LOAD: DesignFigure("force of the spring where the follower is lowest, N", Kind.FORCE, "most", OF_COIL),
+    OPEN_LOAD: DesignFigure("force of the spring where it is highest, N", Kind.FORCE, "least", OF_COIL),
+    COIL_BIND: DesignFigure("what is left to the spring's coils where it is highest", Kind.LENGTH, "most", OF_SOLID),
     LEAST_FORCE: _of_run("least contact force, N; N m where it turns", Kind.THRUST, "most", OF_SPRING),
     PEAK_FORCE: _of_run("greatest contact force, N; N m where it turns", Kind.THRUST, "least", OF_SPRING),
     BACKLASH_LEFT: _of_run("least backlash that the dynamics leave between the faces", Kind.ERROR, "most", OF_BACKLASH),

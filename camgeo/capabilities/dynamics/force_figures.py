@@ -10,7 +10,7 @@ from camgeo.capabilities.dynamics.checks import FLOAT
 from camgeo.capabilities.dynamics.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
 from camgeo.capabilities.dynamics.keys import BOUNDS
 from camgeo.capabilities.dynamics.running_forces import running_of
-from camgeo.measures.forces import Extreme
+from camgeo.measures.forces import ExtremeAtAngle
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.measures.units import pounds
 from kin.judge.check import Check
@@ -37,11 +37,11 @@ FORCES = {
 class Extremes:
     """Least and greatest value of each force over the turn: contacts, torque, F, reactions and pressures."""
 
-    contacts: tuple[tuple[Extreme, Extreme], ...]
-    torque: tuple[Extreme, Extreme]
-    along: tuple[Extreme, Extreme]
-    reactions: Mapping[str, tuple[Extreme, Extreme]]
-    pressure: tuple[tuple[Extreme, Extreme], ...]
+    contacts: tuple[tuple[ExtremeAtAngle, ExtremeAtAngle], ...]
+    torque: tuple[ExtremeAtAngle, ExtremeAtAngle]
+    along: tuple[ExtremeAtAngle, ExtremeAtAngle]
+    reactions: Mapping[str, tuple[ExtremeAtAngle, ExtremeAtAngle]]
+    pressure: tuple[tuple[ExtremeAtAngle, ExtremeAtAngle], ...]
 
 
 def extremes_of(running: Running) -> Extremes:
@@ -56,7 +56,7 @@ def extremes_of(running: Running) -> Extremes:
     extremes = running.turn.extremes(values)
     names = tuple(running.at(running.turn.places[:1]).reactions)
     rest = extremes[count + 2 :]
-    contacts = tuple((Extreme(max(least.value, 0.0), least.at_deg), most) for least, most in extremes[:count])
+    contacts = tuple((ExtremeAtAngle(max(least.value, 0.0), least.at_deg), most) for least, most in extremes[:count])
     if count == 1:  # a spring that does not hold it pulls
         contacts = (extremes[0],)
     return Extremes(
@@ -169,7 +169,7 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
         return {name: Measured(None, unit, detail=ABRUPT) for name, unit in FORCES.items()}
     names = running.turn.names
 
-    def worst(pairs: Sequence[tuple[Extreme, Extreme]], unit: str) -> Measured:
+    def worst(pairs: Sequence[tuple[ExtremeAtAngle, ExtremeAtAngle]], unit: str) -> Measured:
         value, name = max((extreme[1], name) for name, extreme in zip(names, pairs, strict=True))
         return Measured(value.value, unit, value.at_deg, surface=name if len(names) > 1 else "")
 
@@ -192,7 +192,7 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
     return figures
 
 
-def _range(extremes: tuple[Extreme, Extreme], unit: str) -> dict[str, object]:
+def _range(extremes: tuple[ExtremeAtAngle, ExtremeAtAngle], unit: str) -> dict[str, object]:
     least, most = extremes
     return {
         "min": least.value,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.dynamics.running import Lost, Pull, Running, State, lost
+from camgeo.capabilities.dynamics.running import LossSpeed, Pull, Running, State, lost
 from camgeo.measures.forces import PER_MM, Turn
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from camgeo.capabilities.dynamics.keys import Dynamics
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from camgeo.synthesis.linkage import Driven
+    from camgeo.synthesis.linkage import DesignedLinkage
     from kin.dynamics.contact_forces import Elastic
     from kin.linkage.mechanism import LinkageMotion, Mechanism
     from kin.linkage.statics import FrameForces
     from kin.numeric.arrays import Array
-    from kin.numeric.monotone import Pieces
+    from kin.numeric.monotone import MonotonePieces
 
 QUARTER = 0.5 * math.pi
 PAIRS = {"across": ("face 1", "face 3"), "along": ("face 4", "face 2")}  # the face that pushes where V or H is above 0
@@ -134,7 +134,7 @@ class FrameRunning(Running):
         """
         return np.maximum([pair, -pair], 0.0) if self.pressed is None else self.pressed.split(pair)
 
-    def lost_rpm(self) -> list[Lost]:
+    def lost_rpm(self) -> list[LossSpeed]:
         """Speed at which each preloaded face first loses contact somewhere in the turn; empty without preload."""
         pressed = self.pressed
         if pressed is None:
@@ -170,13 +170,13 @@ class FrameRunning(Running):
         pieces = self.turn.pieces(lambda t: np.array([self.at(t).reactions[name] for name in PAIRS]))
         return {"pairs": [self._changes(name, piece) for name, piece in zip(PAIRS, pieces, strict=True)]}
 
-    def _changes(self, name: str, piece: Pieces) -> dict[str, object]:
+    def _changes(self, name: str, piece: MonotonePieces) -> dict[str, object]:
         both = piece.least()[0] < 0.0 < piece.greatest()[0]
         places = {self.turn.degrees(at) for at in piece.crossings(0.0)} if both else set()
         return {"pair": name, "faces": PAIRS[name], "changes_at_deg": sorted(places)}
 
 
-def frame_running(recipe: Recipe, design: Design, driven: Driven, train: Dynamics) -> FrameRunning:
+def frame_running(recipe: Recipe, design: Design, driven: DesignedLinkage, train: Dynamics) -> FrameRunning:
     """Forces of a linkage that runs; raises RecipeErrors for one that does not turn right round."""
     mobile = driven.mechanism.mobility()
     if not mobile.turns:

@@ -11,7 +11,7 @@ from camgeo.part.features import edge_of, values_read
 from camgeo.recipe.discs import is_pair
 from camgeo.recipe.linkage import TURNING
 from camgeo.recipe.track import is_groove
-from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either, length, mapping
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either, length, mapping
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.yaml_source import Mapping, Sequence, describe, join
 from kin.numeric.records import dataclass
@@ -156,7 +156,7 @@ MATERIALS = {
 """Round figures of handbooks, for the pressure of contacts alone; none has a limit of its own."""
 
 
-OWN_MATERIAL = Table(
+OWN_MATERIAL = FieldTable(
     (
         Field("E", Kind.NUMBER, "Young's modulus, N/mm²", required=True, above=0, at_most=MOST, unit=Kind.PRESSURE),
         Field("nu", Kind.NUMBER, "Poisson's ratio", required=True, at_least=0, at_most=0.5),
@@ -205,13 +205,13 @@ def _read_loads(reader: Reader, field: Field, node: Node, path: str) -> tuple[tu
 
 _PAIR = 2
 _MOST = MOST**2  # of figures in SI: a bound against slips
-_LOADS: Form[Reader] = Form(
+_LOADS: OwnForm[Reader] = OwnForm(
     "two loads",
     "two lengths with their forces, such as [[40, 250 N], [32, 560 N]]",
     _read_loads,
     lambda _: {"type": "array", "items": {"type": "array", "minItems": 2, "maxItems": 2}, "minItems": 2, "maxItems": 2},
 )
-_MATERIAL: Form[Reader] = Form(
+_MATERIAL: OwnForm[Reader] = OwnForm(
     "a material",
     f"{either(tuple(MATERIALS))}, or {{E: 210000, nu: 0.3}}",
     _read_material,
@@ -220,7 +220,7 @@ _MATERIAL: Form[Reader] = Form(
 )
 
 
-COIL = Table(
+COIL = FieldTable(
     (
         length("seat_length", "length where the follower is lowest", required=True),
         Field("rate", Kind.RATE, "its rate, N/m; a unit may stand behind it: 30 N/mm", above=0, at_most=_MOST),
@@ -230,7 +230,7 @@ COIL = Table(
     ),
     alternatives=(("rate", ("free_length",)), ("loads", ())),
 )
-DYNAMICS = Table(
+DYNAMICS = FieldTable(
     (
         Field(
             "mass",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.motions.lift_table import SHEET, TABLE, read_rows
-from camgeo.schema.fields import MOST, Field, Form, Kind, Table
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.quantity import split_unit
 from camgeo.schema.yaml_source import Mapping, Scalar, join
@@ -50,7 +50,7 @@ class LoadTable:
         return angles
 
 
-LOADS = Table(
+LOADS = FieldTable(
     (
         Field(
             "table",
@@ -103,7 +103,7 @@ def _table(reader: Reader, values: Values, path: str) -> LoadTable | None:
     return LoadTable(file, tuple(rows.theta.tolist()), tuple(rows.s.tolist()))
 
 
-LOAD = Form(
+LOAD = OwnForm(
     "a formula, or a mapping with a table",
     "a formula in t, or {table: load.csv}",
     _read,

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.measures.file_result import FileResult
     from camgeo.measures.measured import Measured
-    from camgeo.measures.remarks import Remark
+    from camgeo.measures.remarks import RuleRemark
     from camgeo.recipe.recipe import Recipe
     from camgeo.registry.capability import Estimate, MadeFigures, MadeMotion
     from camgeo.registry.formats import Form
@@ -95,10 +95,10 @@ def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     return of_limit(recipe, figure, value, bound)
 
 
-def _lost(recipe: Recipe, design: Design) -> Sequence[Remark]:
+def _lost(recipe: Recipe, design: Design) -> Sequence[RuleRemark]:
     """Remark on a preloaded contact that inertia and load lift off at the train's speed, which leaves play there."""
     from camgeo.capabilities.dynamics.running_forces import running_of
-    from camgeo.measures.remarks import Remark
+    from camgeo.measures.remarks import RuleRemark
 
     if design.exact.preload is None:
         return []
@@ -111,7 +111,7 @@ def _lost(recipe: Recipe, design: Design) -> Sequence[Remark]:
     rpm, loss = min(losses)
     begins = f"from {rpm:.6g} rpm" if rpm > 0.0 else "by its load alone"
     remark = f"the preload does not hold {loss.contact} at {running.train.rpm:.6g} rpm: it is lost {begins}"
-    return [Remark("lost-contact", rpm, running.train.rpm, "rpm", remark, loss.at_deg)]
+    return [RuleRemark("lost-contact", rpm, running.train.rpm, "rpm", remark, loss.at_deg)]
 
 
 def _panel(report: dict[str, Any]) -> str:

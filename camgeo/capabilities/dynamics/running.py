@@ -54,7 +54,7 @@ class State(NamedTuple):
     roller_rpm: Array | None = None
 
 
-class Lost(NamedTuple):
+class LossSpeed(NamedTuple):
     """Speed, turns a minute, from which a preloaded contact is lost, and the shaft angle, degrees.
 
     None where it never is.
@@ -99,7 +99,7 @@ class Running(ABC):
         """Mean force that the roller of a contact bears over its own turns, N, and its turns per turn of the shaft."""
         return None
 
-    def lost_rpm(self) -> list[Lost]:
+    def lost_rpm(self) -> list[LossSpeed]:
         """Speed at which each preloaded contact is first lost somewhere in the turn; empty without preload."""
         return []
 
@@ -216,7 +216,7 @@ class Pull(NamedTuple):
     loses_second: Array
 
 
-def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> list[Lost]:
+def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> list[LossSpeed]:
     """The speeds from which two contacts under preload are lost over the turn.
 
     Omega^2 J + W reaches the force that takes a contact away first where J over what is left is greatest.
@@ -231,11 +231,11 @@ def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> lis
     losses = []
     for name, share, left in zip(names, (first, second), (lower, upper), strict=True):
         if left.value <= 0.0:  # at rest already
-            losses.append(Lost(name, 0.0, left.at_deg))
+            losses.append(LossSpeed(name, 0.0, left.at_deg))
         elif share.value > 0.0:
-            losses.append(Lost(name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
+            losses.append(LossSpeed(name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
         else:
-            losses.append(Lost(name, None, None))
+            losses.append(LossSpeed(name, None, None))
     return losses
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from camgeo.capabilities.dynamics.frame_forces import frame_running
 from camgeo.capabilities.dynamics.keys import Dynamics
-from camgeo.capabilities.dynamics.running import Lost, Pull, Running, State, lost
+from camgeo.capabilities.dynamics.running import LossSpeed, Pull, Running, State, lost
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic_contacts
 from kin.dynamics.contact_forces import Guided
 from kin.numeric.angles import TURN, degrees
@@ -262,7 +262,7 @@ class FollowerRunning(Running):
         ]
         return section
 
-    def lost_rpm(self) -> list[Lost]:
+    def lost_rpm(self) -> list[LossSpeed]:
         """Speed at which each preloaded contact is first lost somewhere in the turn; empty without preload."""
         preload = self.held_by
         if preload is None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.follow.follower import Track
     from kin.contour.contour import Contour
-    from kin.read.nesting import Chain
+    from kin.read.nesting import ClosedContour
 
 MOST_NAMED = 3  # holes that a message offers for the shaft
 DEEPEST = {"external": MOST_CONTOURS, "internal": 1, "groove": MOST_CONTOURS}  # what is drawn in a bore is passed over
@@ -88,7 +88,7 @@ def read_outline(path: Path, units: float | None, at: tuple[float, float], track
     return Outline(contour, outer, bore, blank, rest)
 
 
-def _read_drawing(path: Path, units: float | None, track: Track) -> Sequence[Chain]:
+def _read_drawing(path: Path, units: float | None, track: Track) -> Sequence[ClosedContour]:
     """Closed chains of a drawing, mm; raises CallError without a unit, or with two."""
     drawing = read_drawing(path, deepest=DEEPEST[track])
     if drawing.units_mm is None:
@@ -99,7 +99,7 @@ def _read_drawing(path: Path, units: float | None, track: Track) -> Sequence[Cha
     return drawing.chains
 
 
-def _read_section(path: Path, units: float | None, track: Track) -> Sequence[Chain]:
+def _read_section(path: Path, units: float | None, track: Track) -> Sequence[ClosedContour]:
     """Chains of a solid's section: that of the plain disc, or of a groove the one below the top face."""
     if format_of(path).units:
         _require_same_unit(path, units, None)
@@ -116,7 +116,7 @@ def _require_same_unit(path: Path, units: float | None, stated: float | None) ->
         raise CallError(f"{escaped(str(path))}: the file states its unit itself: leave units out")
 
 
-def _remedy(chains: Sequence[Chain]) -> str:
+def _remedy(chains: Sequence[ClosedContour]) -> str:
     """Remedy: the middles of round holes as places of the shaft."""
     boxes = [(chain.contour, chain.contour.box) for chain in chains[1:]]
     middles = [(hole, 0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)) for hole, box in boxes]

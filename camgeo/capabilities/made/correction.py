@@ -21,7 +21,7 @@ from camgeo.capabilities.made.refusal import refused_at
 from camgeo.common.errors import CallError
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
-from camgeo.curve.moved import AlongNormals, BySupport, Spline
+from camgeo.curve.moved import AlongNormals, BySupport, PeriodicPolynomials
 from camgeo.curve.parallel import Parallel
 from kin.made.corrected import Corrected
 from kin.made.smooth import POINTS_A_SPAN, Smooth, fit
@@ -151,7 +151,7 @@ class CorrectedCam(AlteredCam):
         return tuple(self._corrected(surface) for surface in self.nominal.surfaces)
 
     def _corrected(self, surface: Surface) -> Surface:
-        by = Spline(surface.side * self.deviations[surface.name].pieces)
+        by = PeriodicPolynomials(surface.side * self.deviations[surface.name].pieces)
         if not self.follower.contacts[0].touch.centred:
             return replace(surface, curve=Curve.whole(BySupport(surface.curve.shape, by)))
         pitch = AlongNormals(surface.base.shape, by)

@@ -18,7 +18,7 @@ from camgeo.formats.tables.tabled import check_step
 from camgeo.measures.contact_points import contact_points
 from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.registry.formats import Format
-from camgeo.schema.fields import Field, Kind, Table
+from camgeo.schema.fields import Field, FieldTable, Kind
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from camgeo.cams.surface import Surface
     from camgeo.curve.curve import Curve
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest, Length
     from camgeo.recipe.recipe import Order, Recipe
     from camgeo.registry.capability import ShaftCam
@@ -44,7 +44,7 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
     check_step(file, reader)
 
 
-def _make(job: Job, request: FileRequest, path: Path) -> Made:
+def _make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     from camgeo.output.job import unjudged
 
     recipe = job.recipe.in_units_of(request)
@@ -129,7 +129,7 @@ def _places(recipe: Order, disc: _Disc, shaft: Array) -> Iterator[tuple[list[flo
 FORMAT = Format(
     name="dmis",
     suffix="dmi",
-    options=Table(
+    options=FieldTable(
         (
             Field(
                 "step",

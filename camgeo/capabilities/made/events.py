@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.made.made_part import PartMade
     from camgeo.capabilities.made.options import PointOptions
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import Moved
+    from camgeo.registry.capability import MovedBody
     from camgeo.synthesis.design import Design
     from kin.made.events import Estimate
     from kin.numeric.arrays import Array
@@ -35,7 +35,7 @@ ANGLES, DURATION = ("opens_deg", "closes_deg", "centre_deg"), "duration_crank_de
 class StatedLift(NamedTuple):
     """A lift at which there are events, mm or rad: of what is `moved`, or of the follower, and the follower's there."""
 
-    moved: Moved | None
+    moved: MovedBody | None
     lift: float
     follower: float
 
@@ -43,7 +43,7 @@ class StatedLift(NamedTuple):
 def stated_lifts(recipe: Recipe, design: Design, events: float | None = None) -> list[StatedLift]:
     """Lifts at which a recipe has figures, and that of a shaft's events; each once, above 0."""
     moved = {name: registry.capability(name).moved(recipe, design) for name in recipe.uses}
-    lifts: list[tuple[Moved | None, float]] = []
+    lifts: list[tuple[MovedBody | None, float]] = []
     for limit in recipe.limits:
         if FIGURES[limit.figure].at_lift is not None:
             owner = FIGURES.owner(limit.figure)
@@ -89,7 +89,7 @@ def events_section(
     return {"events": entry}
 
 
-def _name(moved: Moved | None) -> str:
+def _name(moved: MovedBody | None) -> str:
     return "follower" if moved is None else moved.name
 
 
@@ -97,13 +97,13 @@ def _row(scale: float, made: float, intended: float, uncertainty: float) -> dict
     return {"made": scale * made, "intended": scale * intended, "uncertainty": scale * uncertainty}
 
 
-def _greatest_lift(moved: Moved | None, highest: Estimate, options: PointOptions, scale: float) -> dict[str, Any]:
+def _greatest_lift(moved: MovedBody | None, highest: Estimate, options: PointOptions, scale: float) -> dict[str, Any]:
     made, intended = (_moving(moved, np.array([[lift], [1.0], [0.0]])) for lift in highest[:2])
     ratio = float(made[1, 0])  # velocity of what is moved, by that of the follower
     return _row(scale, float(made[0, 0]), float(intended[0, 0]), ratio * options.expanded(highest.influence))
 
 
-def _greatest_velocity(moved: Moved | None, made: MadeMotion, scale: float) -> dict[str, Any]:
+def _greatest_velocity(moved: MovedBody | None, made: MadeMotion, scale: float) -> dict[str, Any]:
     rows, intended = made.lifts
     velocity = np.abs(_moving(moved, rows)[1])
     at = int(np.argmax(velocity))
@@ -112,7 +112,7 @@ def _greatest_velocity(moved: Moved | None, made: MadeMotion, scale: float) -> d
     return _row(scale, float(velocity[at]), float(np.abs(_moving(moved, intended)[1]).max()), uncertain)
 
 
-def _moving(moved: Moved | None, rows: Array) -> Array:
+def _moving(moved: MovedBody | None, rows: Array) -> Array:
     """Lift, velocity and acceleration (3, n) by those of the follower."""
     return rows if moved is None else moved.rows(rows)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.motions.lift_table import read_path
 from camgeo.part.features import with_records
-from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
+from camgeo.schema.fields import MOST_FILES, Field, FieldTable, Kind, OwnForm, either, length, mapping
 from camgeo.schema.scalars import MOST_TEXT
 from camgeo.schema.yaml_source import Mapping, describe, join
 from camgeo.schema.yaml_source import Sequence as YamlSequence
@@ -69,13 +69,13 @@ class Made:
 
 # --- the key ----------------------------------------------------------------------------------------------------------
 
-_FILE = Form(
+_FILE = OwnForm(
     "the path of a file",
     "the path of a file of points, such as run1.csv",
     read_path,
     lambda _: {"type": "string", "minLength": 1, "maxLength": MOST_TEXT},
 )
-POINT_FILE = Table(
+POINT_FILE = FieldTable(
     (
         Field("file", Kind.OWN, "its path as seen from the recipe", required=True, form=_FILE),
         Field("units", Kind.CHOICE, "unit of a file whose heading states none", default="the recipe's", choices=UNITS),
@@ -131,7 +131,7 @@ POINTS = Field(
     "points",
     Kind.OWN,
     "files of points of parts, in the order made, each from the export before it; of one run in a list",
-    form=Form(
+    form=OwnForm(
         "a list of files of points",
         "a list of files of points such as [run1.csv, [run2a.csv, run2b.csv]]",
         _read,

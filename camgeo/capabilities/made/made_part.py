@@ -12,9 +12,9 @@ from camgeo.capabilities.made.keys import Made, datum_of, zone_of
 from camgeo.capabilities.made.part_points import demand_points, name_of, part_points, read_tables
 from camgeo.synthesis.intent import closures_between, permitted
 from kin.judge.check import Check
-from kin.made.motion import COVERAGE, Errors, OutputErrors, Play, between, contact_errors, output_errors, paired
+from kin.made.motion import COVERAGE, Errors, MadePlay, OutputErrors, between, contact_errors, output_errors, paired
 from kin.made.points import FREE, profile, settled
-from kin.made.smooth import Fit, fit
+from kin.made.smooth import SmoothFit, fit
 from kin.numeric.angles import degrees
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
@@ -40,9 +40,9 @@ class SurfaceMade:
     """Result for one surface: its points, its smoothed deviation, the errors of its follower, and the play."""
 
     measured: MeasuredSurface
-    fit: Fit
+    fit: SmoothFit
     errors: Errors
-    play: Play | None
+    play: MadePlay | None
 
     @property
     def gauge(self) -> Gauge:
@@ -83,7 +83,7 @@ class PartMade:
 
     discs: tuple[DiscMade, ...]
     motion: Errors
-    play: Play | None
+    play: MadePlay | None
     output: OutputErrors | None
     lifts: tuple[float, float] | None
     remarks: tuple[str, ...]
@@ -165,7 +165,9 @@ def _uncertain(surface: SurfaceMade, options: PointOptions) -> Array:
     return uncertain
 
 
-def follower_motion(design: Design, each: Mapping[str, tuple[Errors, Play | None]]) -> tuple[Errors, Play | None]:
+def follower_motion(
+    design: Design, each: Mapping[str, tuple[Errors, MadePlay | None]]
+) -> tuple[Errors, MadePlay | None]:
     """Motion errors and play of the follower: on its only surface, or midway between the two that hold it."""
     for closure in closures_between(design):
         return between(each[closure.pushes][0], each[closure.stops][0])

@@ -36,7 +36,7 @@ from kin.made.axis import LEAST_CAMS
 from kin.made.causes import shift_of
 from kin.made.motion import Influence
 from kin.made.points import FACTORS, Placing, UnlikePointsError, turned_at
-from kin.made.shaft_alike import LOOKS, OF_LIFTS, OF_POINTS, Rows, lone_turns, radii, standing_together
+from kin.made.shaft_alike import LOOKS, OF_LIFTS, OF_POINTS, LobeRows, lone_turns, radii, standing_together
 from kin.made.smooth import fit
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
@@ -169,7 +169,7 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOp
         measured, halved = _at_cam_degrees(measured, scale, probing)
     measured = [points.turned(-points.cam.zero if lifts else -points.cam.at) for points in measured]
 
-    def rows() -> Rows:
+    def rows() -> LobeRows:
         return _lift_rows(measured, scale, probing) if lifts else _radii(cams, measured, scale, probing)
 
     late, together = None, []
@@ -351,7 +351,7 @@ def _on_surface(points: CamPoints, scale: float, probing: Probing) -> MeasuredSu
     return surface
 
 
-def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float, probing: Probing) -> Rows:
+def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float, probing: Probing) -> LobeRows:
     """Radii of the points of each cam, and of every cam's contour."""
     contours = []
     for cam in cams:
@@ -366,7 +366,7 @@ def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float
     order = np.argsort([cam.low for cam in cams])
     rank_if_reversed = np.empty_like(order)  # which cam stands at the place of each if the shaft is turned end for end
     rank_if_reversed[order] = order[::-1]
-    return Rows(
+    return LobeRows(
         own,
         nominal,
         np.array([names.index(points.cam.name) for points in measured], dtype=np.intp),
@@ -378,14 +378,14 @@ def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float
     )
 
 
-def _lift_rows(measured: Sequence[CamPoints], scale: float, probing: Probing) -> Rows:
+def _lift_rows(measured: Sequence[CamPoints], scale: float, probing: Probing) -> LobeRows:
     """Lifts of each cam that was measured over the shaft's angle, as read and as meant."""
     from kin.made.lifts import rows_of_lifts
 
     readings = [_readings(points, scale, probing) for points in measured]
     names = [points.cam.name for points in measured]
     own, exact = rows_of_lifts(readings, [points.cam.zero for points in measured])
-    return Rows(
+    return LobeRows(
         own,
         exact,
         np.arange(len(measured)),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.assembly import GROUND, Assembly, Fit, Member, Plate
+from camgeo.capabilities.mechanism.assembly import GROUND, Assembly, BodyFit, Member, Plate
 from camgeo.capabilities.mechanism.poses import Turning, rocking_place
 from camgeo.capabilities.mechanism.shaft import CLIP_COLOUR, base, bearing, least_pad_radius, shaft_fits, shaft_members
 from camgeo.capabilities.mechanism.shapes import bar, box, disc, eye, pin, retainer, transformed
@@ -34,7 +34,7 @@ SIDES = ((-1.0, "a"), (1.0, "b"))
 
 
 @dataclass(frozen=True)
-class Levels:
+class ArmHeights:
     """Heights, mm: of the carrier, from `low` to `high`, of the cam's disc, and of what touches the cam."""
 
     low: float
@@ -45,7 +45,7 @@ class Levels:
     touch_high: float
 
     @staticmethod
-    def over_base(drive: Drive) -> Levels:
+    def over_base(drive: Drive) -> ArmHeights:
         """Levels with the carrier over the base and the cam over both; with a groove the carrier is over the cam.
 
         Raises BodyError for a groove too shallow for a roller.
@@ -56,12 +56,12 @@ class Levels:
             cam_low = s.plate + s.gap - disk.bottom
             cam_high = cam_low + disk.thickness
             low = cam_high + s.gap
-            return Levels(low, low + s.link, cam_low, cam_high, cam_high - disk.pocket + s.gap, cam_high)
+            return ArmHeights(low, low + s.link, cam_low, cam_high, cam_high - disk.pocket + s.gap, cam_high)
         low = s.plate + s.gap
         high = low + s.link
         cam_low = max(high + s.gap, s.plate + s.gap - disk.bottom)
         cam_high = cam_low + disk.thickness
-        return Levels(low, high, cam_low, cam_high, cam_low, cam_high)
+        return ArmHeights(low, high, cam_low, cam_high, cam_low, cam_high)
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def roller_foot(
 
     `names` are those of the roller and of its retainer. In a groove the roller is under the carrier, without retainer.
     """
-    s, z = drive.sizes, Levels.over_base(drive)
+    s, z = drive.sizes, ArmHeights.over_base(drive)
     (group, place), (name, clip_name) = carrier, names
     wheel = Plate(disc(radius, *centre), (eye(s, *centre),), z.touch_low, z.touch_high)
     roller = Member(name, (wheel,), name, place, ROLLER_COLOUR)
@@ -125,13 +125,13 @@ def arm_assembly(
     drive: Drive,
     remarks: tuple[str, ...] = (),
     *,
-    fits: Sequence[Fit] = (),
+    fits: Sequence[BodyFit] = (),
 ) -> Assembly:
     """Bodies of an arm with its feet, about a pivot `away` mm from the shaft; the feet are in the arm's axes.
 
     `fits` are those of the feet on the cam.
     """
-    s, z, pivot = drive.sizes, Levels.over_base(drive), (away, 0.0)
+    s, z, pivot = drive.sizes, ArmHeights.over_base(drive), (away, 0.0)
     plates = [Plate(bar((0.0, 0.0), foot.end, s.bar), (eye(s),), z.low, z.high) for foot in feet]
     plates += [plate for foot in feet for plate in foot.plates]
     running = [member for foot in feet for member in foot.members]
@@ -142,18 +142,18 @@ def arm_assembly(
     foot_plates = bearing(drive, [bar((0.0, 0.0), pivot, width)], z.cam_low + drive.disk.bottom - s.gap)
     ground = base((*foot_plates, *pin(s, pivot, s.plate, z.low, z.high, crowned=not under)))
     members = (Member("arm", tuple(plates), "arm", place, ARM_COLOUR), *running, ground, *clips)
-    every = (*fits, *shaft_fits(drive), Fit("arm on the pivot", s.clearance), *roller_fits(feet, drive))
+    every = (*fits, *shaft_fits(drive), BodyFit("arm on the pivot", s.clearance), *roller_fits(feet, drive))
     touching = frozenset(frozenset({"cam", foot.touches}) for foot in feet)
     if under:
         remarks = ("the cam passes over the pivot: it keeps the arm on its pin, which has no retainer", *remarks)
     return Assembly((*shaft_members(drive, z.cam_low, Turning(), members), *members), every, s, touching, remarks)
 
 
-def roller_fits(feet: Sequence[Foot], drive: Drive, *, clipped: bool = True) -> list[Fit]:
+def roller_fits(feet: Sequence[Foot], drive: Drive, *, clipped: bool = True) -> list[BodyFit]:
     """Fits of rollers, where feet are rollers, and of retainers, where any are `clipped`."""
     s = drive.sizes
-    running = [Fit("rollers on their pins", s.clearance)] if any(foot.members for foot in feet) else []
-    return [*running, Fit("retainers on pins", s.press, pressed=True)] if clipped else running
+    running = [BodyFit("rollers on their pins", s.clearance)] if any(foot.members for foot in feet) else []
+    return [*running, BodyFit("retainers on pins", s.press, pressed=True)] if clipped else running
 
 
 def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
@@ -180,7 +180,9 @@ def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
             Plate(transformed(box(inner, y0, float(lever.max()) + s.bar, y1), 0.0, 0.0, along), (), low, high)
         )
     pair = Member("pair", tuple(plates), "pair", rocking_place(view.design.motion, away), ARM_COLOUR)
-    return pivoted_assembly(pair, away, (low, high), drive, fits=(Fit("the pair's faces about the cam", s.clearance),))
+    return pivoted_assembly(
+        pair, away, (low, high), drive, fits=(BodyFit("the pair's faces about the cam", s.clearance),)
+    )
 
 
 def pivoted_assembly(
@@ -189,7 +191,7 @@ def pivoted_assembly(
     heights: tuple[float, float],
     drive: Drive,
     *,
-    fits: tuple[Fit, ...] = (),
+    fits: tuple[BodyFit, ...] = (),
     touching: frozenset[frozenset[str]] = frozenset(),
     remarks: tuple[str, ...] = (),
 ) -> Assembly:
@@ -204,7 +206,7 @@ def pivoted_assembly(
     every = (
         *fits,
         *shaft_fits(drive),
-        Fit(f"{follower.name} on the pivot", s.clearance),
-        Fit("retainer on the pivot", s.press, pressed=True),
+        BodyFit(f"{follower.name} on the pivot", s.clearance),
+        BodyFit("retainer on the pivot", s.press, pressed=True),
     )
     return Assembly((*shaft_members(drive, low, Turning(), members), *members), every, s, touching, remarks)

@@ -113,7 +113,7 @@ class Member:
 
 
 @dataclass(frozen=True)
-class Fit:
+class BodyFit:
     """The fit of two bodies: `clearance` between them, mm, or the interference of `pressed` ones.
 
     `excess` is that of the shaft's width over the opening in which it would have to turn to slip, mm; None elsewhere.
@@ -133,7 +133,7 @@ class Assembly:
     """
 
     members: tuple[Member, ...]
-    fits: tuple[Fit, ...]
+    fits: tuple[BodyFit, ...]
     sizes: Sizes
     touching: frozenset[frozenset[str]] = frozenset()
     remarks: tuple[str, ...] = ()

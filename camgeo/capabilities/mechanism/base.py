@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.assembly import GROUND, Fit, Member, Plate
+from camgeo.capabilities.mechanism.assembly import GROUND, BodyFit, Member, Plate
 from camgeo.capabilities.mechanism.shaft import CLIP_COLOUR
 from camgeo.capabilities.mechanism.shapes import bar, bars, box, pin, retainer, transformed
 from camgeo.capabilities.mechanism.sizes import BodyError
@@ -62,14 +62,14 @@ class Mount(NamedTuple):
     carrier: Carrier
     point: Point
 
-    def add_pin(self, site: Site, name: str, low: float, high: float) -> None:
+    def add_pin(self, site: BodyStack, name: str, low: float, high: float) -> None:
         """Add a pin there for a body between z = `low` and `high`, with its retainer."""
         self.carrier.plates += pin(site.s, self.point, self.carrier.high, low, high)
         site.add_retainer(name, self.carrier.name, self.point, high, self.carrier.place)
 
 
 @dataclass()
-class Site:
+class BodyStack:
     """Bodies of a linkage under construction, one above another; mm.
 
     `next_low` is the z from which the next one may begin, `width` that of the base plate's arms. `ground` are plates on
@@ -84,7 +84,7 @@ class Site:
     members: list[Member] = field(default_factory=list)
     ground: list[Plate] = field(default_factory=list)
     pads: list[ArcSpline] = field(default_factory=list)
-    fits: list[Fit] = field(default_factory=list)
+    fits: list[BodyFit] = field(default_factory=list)
 
     def level(self) -> tuple[float, float]:
         """Lower and upper face of the next link, z in mm; the one after it is above the retainers of this one."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from camgeo.checks.declared import LAST_EXACT, READABLE, Declared
 
 if TYPE_CHECKING:
-    from camgeo.checks.declared import Scene
+    from camgeo.checks.declared import CheckFacts
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
 
@@ -15,7 +15,7 @@ NAME = "mechanism"  # of this capability
 IN_PLAN = ("wall", "bar", "pin", "knob")  # sizes that decide whether bodies meet
 
 
-def _has_bodies(scene: Scene) -> bool:
+def _has_bodies(scene: CheckFacts) -> bool:
     return any(request.variant == NAME for request in scene.recipe.export.files)
 
 

@@ -15,15 +15,15 @@ import numpy as np
 
 from camgeo.capabilities.mechanism.arms import (
     ARM_COLOUR,
+    ArmHeights,
     Foot,
-    Levels,
     arm_assembly,
     overlap,
     pivoted_assembly,
     roller_fits,
     roller_foot,
 )
-from camgeo.capabilities.mechanism.assembly import Assembly, Fit, Member, Plate
+from camgeo.capabilities.mechanism.assembly import Assembly, BodyFit, Member, Plate
 from camgeo.capabilities.mechanism.guide import guide_length, guided_assembly
 from camgeo.capabilities.mechanism.poses import arm_place, stem_place
 from camgeo.capabilities.mechanism.shapes import bar, box, disc, eye, transformed
@@ -67,7 +67,7 @@ def shoe_maker(radius: float, angle: Array) -> FootMaker:
     """Function that makes a shoe: the arc that pressure angles (n,), rad, use, and more for a bar behind it."""
 
     def make(centre: Point, ahead: float, carrier: tuple[str, Place], drive: Drive) -> Foot:
-        s, z = drive.sizes, Levels.over_base(drive)
+        s, z = drive.sizes, ArmHeights.over_base(drive)
         most = 0.5 * math.pi
         bar_half = math.asin(min(1.0, 0.5 * s.bar / radius))
         margin = s.space / radius
@@ -87,7 +87,7 @@ def shoe_maker(radius: float, angle: Array) -> FootMaker:
 
 def on_stem(view: View[Translating, Round], drive: Drive) -> Assembly:
     """Bodies of a roller or a shoe on a stem. Raises BodyError for a knife edge."""
-    s, z, line = drive.sizes, Levels.over_base(drive), view.guide.offset
+    s, z, line = drive.sizes, ArmHeights.over_base(drive), view.guide.offset
     place = stem_place(view.design.motion, view.datum, line)
     x = view.datum + view.travel(SHAFT)[0]
     foot = foot_maker(view)((0.0, 0.0), 0.0, (STEM, place), drive)
@@ -114,10 +114,10 @@ def _contact_remarks(view: View[Guide, Round]) -> tuple[str, ...]:
     return (SPRING,) if len(view.contacts) == 1 else (NO_RETAINER,)
 
 
-def _groove_fits(view: View[Guide, Round]) -> list[Fit]:
+def _groove_fits(view: View[Guide, Round]) -> list[BodyFit]:
     """Fit of a roller between two flanks, whose radii differ by its clearance; none without a groove."""
     first, *others = view.contacts
-    return [Fit("roller in the groove", other.touch.radius - first.touch.radius) for other in others]
+    return [BodyFit("roller in the groove", other.touch.radius - first.touch.radius) for other in others]
 
 
 def _greatest_x(*feet: Foot) -> float:
@@ -150,7 +150,7 @@ def roller_frame(view: View[Translating, Roller], drive: Drive) -> Assembly:
 
     Raises BodyError where the slot round the shaft leaves no wall before their pins.
     """
-    s, z, shaft = drive.sizes, Levels.over_base(drive), drive.shaft
+    s, z, shaft = drive.sizes, ArmHeights.over_base(drive), drive.shaft
     foot, radius = view.datum, view.touch.radius
     apart = foot + view.contacts[1].datum
     place = stem_place(view.design.motion, foot)

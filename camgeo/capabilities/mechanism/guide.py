@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.mechanism.assembly import GROUND, Assembly, Fit, Member, Plate
+from camgeo.capabilities.mechanism.assembly import GROUND, Assembly, BodyFit, Member, Plate
 from camgeo.capabilities.mechanism.poses import Turning
 from camgeo.capabilities.mechanism.shaft import (
     GROUND_COLOUR,
@@ -62,7 +62,7 @@ def guided_assembly(
     cam_low: float,
     drive: Drive,
     *,
-    fits: Sequence[Fit] = (),
+    fits: Sequence[BodyFit] = (),
     touching: frozenset[frozenset[str]] = frozenset(),
     remarks: tuple[str, ...] = (),
     line: float = 0.0,
@@ -90,7 +90,7 @@ def guided_assembly(
     every = (
         *fits,
         *shaft_fits(drive),
-        Fit("stem in its guide", s.clearance),
-        Fit("cap on its pegs", s.press, pressed=True),
+        BodyFit("stem in its guide", s.clearance),
+        BodyFit("cap on its pegs", s.press, pressed=True),
     )
     return Assembly((*shaft_members(drive, cam_low, Turning(), members), *members), every, s, touching, remarks)

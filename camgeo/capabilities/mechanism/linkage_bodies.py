@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.assembly import Assembly, Fit, Plate
+from camgeo.capabilities.mechanism.assembly import Assembly, BodyFit, Plate
 from camgeo.capabilities.mechanism.base import (
     BLOCK,
     BLOCK_COLOUR,
     FRAME_COLOUR,
+    BodyStack,
     Carrier,
     Mount,
-    Site,
     block,
     slotted_bar,
 )
@@ -47,7 +47,7 @@ def linkage_assembly(mechanism: Mechanism, drive: Drive) -> Assembly:
     low = max(low, s.plate + s.gap - disk.bottom)
     high = low + disk.thickness
     links = Links(mechanism)
-    site = Site(s, links, high + s.gap, 2.0 * max(s.bar, least_pad_radius(drive)))
+    site = BodyStack(s, links, high + s.gap, 2.0 * max(s.bar, least_pad_radius(drive)))
     frame = site.add(Carrier("frame", _frame(mechanism.breadth, s, low, high), links.frame(), low, high))
     frame.colour = FRAME_COLOUR
     carriers = maker.make(site, frame, linkage)
@@ -57,17 +57,17 @@ def linkage_assembly(mechanism: Mechanism, drive: Drive) -> Assembly:
     foot = bearing(drive, [disc(support), *site.pads], low + disk.bottom - s.gap)
     ground = base((*foot, *_support(support, drive, low - s.gap), *site.ground))
     fits = (
-        Fit("the frame's faces about the cam", s.clearance),
+        BodyFit("the frame's faces about the cam", s.clearance),
         *shaft_fits(drive),
         *site.fits,
-        Fit("retainers on pins", s.press, pressed=True),
+        BodyFit("retainers on pins", s.press, pressed=True),
     )
     members = (*site.all_members(), ground)
     place = Turning(mechanism.start + 0.25 * TURN)
     return Assembly((*shaft_members(drive, low, place, members), *members), fits, s)
 
 
-def _mount(site: Site, carriers: tuple[Carrier, ...], loop: int) -> Mount:
+def _mount(site: BodyStack, carriers: tuple[Carrier, ...], loop: int) -> Mount:
     """Point to which a dyad is attached, its carrier extended to it.
 
     Raises BodyError where that is a block or a slide, or the bar to the point would cut a hole.
@@ -97,7 +97,7 @@ def _support(radius: float, drive: Drive, high: float) -> list[Plate]:
     return [Plate(disc(radius), (disc(inner),), s.plate, high)]
 
 
-def _coupler(frame: Carrier, linkage: FourBar | SliderCrank, site: Site) -> None:
+def _coupler(frame: Carrier, linkage: FourBar | SliderCrank, site: BodyStack) -> None:
     """Add the bar from the frame to D, which becomes the origin of the link's axes.
 
     It runs along the frame, or slants from the end of the frame's side where D is beyond that. Raises BodyError.
@@ -112,7 +112,7 @@ def _coupler(frame: Carrier, linkage: FourBar | SliderCrank, site: Site) -> None
     frame.plates.append(Plate(bar((start, max(-half, min(y, half))), frame.origin, s.bar), (), frame.low, frame.high))
 
 
-def _four_bar(site: Site, frame: Carrier, linkage: FourBar) -> tuple[Carrier, ...]:
+def _four_bar(site: BodyStack, frame: Carrier, linkage: FourBar) -> tuple[Carrier, ...]:
     """Add the coupler to the frame, and the rocker."""
     s = site.s
     _coupler(frame, linkage, site)
@@ -122,7 +122,7 @@ def _four_bar(site: Site, frame: Carrier, linkage: FourBar) -> tuple[Carrier, ..
     return frame, _rocker(site, linkage, low, high)
 
 
-def _rocker(site: Site, linkage: FourBar | InvertedSliderCrank, low: float, high: float) -> Carrier:
+def _rocker(site: BodyStack, linkage: FourBar | InvertedSliderCrank, low: float, high: float) -> Carrier:
     """Add the rocker from its post B to D. Raises BodyError where it is too short."""
     s = site.s
     holes = ((0.0, 0.0), (linkage.rocker, 0.0))
@@ -130,12 +130,12 @@ def _rocker(site: Site, linkage: FourBar | InvertedSliderCrank, low: float, high
         remedy = "give at least {least}, or a smaller mechanism.bar"
         raise BodyError("linkage.rocker", "too short for two pins", remedy, least=s.bar)
     site.add_post("b", (linkage.ground, 0.0), low, high)
-    site.fits += [Fit("rocker on the pivot B", s.clearance), Fit("rocker on the joint D", s.clearance)]
+    site.fits += [BodyFit("rocker on the pivot B", s.clearance), BodyFit("rocker on the joint D", s.clearance)]
     plates = bars(s, [holes], holes, low, high)
     return site.add(Carrier("rocker", plates, site.links.output(0), low, high, holes=holes))
 
 
-def _slider_crank(site: Site, frame: Carrier, linkage: SliderCrank) -> tuple[Carrier, ...]:
+def _slider_crank(site: BodyStack, frame: Carrier, linkage: SliderCrank) -> tuple[Carrier, ...]:
     """Add the coupler to the frame, and the slide between its rails."""
     s = site.s
     _coupler(frame, linkage, site)
@@ -148,23 +148,23 @@ def _slider_crank(site: Site, frame: Carrier, linkage: SliderCrank) -> tuple[Car
     site.add_rails(place, (0.0, linkage.offset), 0.0)
     site.add_retainer("d", slide.name, (0.0, 0.0), frame.high, place)
     site.next_low += s.gap + s.clip
-    site.fits += [Fit("slide between its rails", s.clearance), Fit("coupler on the joint D", s.clearance)]
+    site.fits += [BodyFit("slide between its rails", s.clearance), BodyFit("coupler on the joint D", s.clearance)]
     return (frame,)
 
 
-def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> tuple[Carrier, ...]:
+def _inverted(site: BodyStack, frame: Carrier, linkage: InvertedSliderCrank) -> tuple[Carrier, ...]:
     """Add the slotted bar to the frame, and the block in it, which turns on the post B or carries a rocker's end."""
     s = site.s
     place = site.links.joint(0, "D")
     _slot(site, frame, place, linkage.joint_offset)
     plates = [Plate(block(s), () if linkage.rocker else (eye(s),), frame.low, frame.high)]
-    site.fits.append(Fit("block in the frame's slot", s.clearance))
+    site.fits.append(BodyFit("block in the frame's slot", s.clearance))
     if linkage.rocker == 0.0:
         # its retainer alone keeps the frame down, and so reaches to the slot's outer edges
         radius = 0.5 * s.bar + s.gap_each_side + s.wall
         site.add_post("b", (linkage.ground, 0.0), frame.low, frame.high, radius=radius)
         site.next_low += s.gap + s.clip
-        site.fits.append(Fit("block on the pivot B", s.clearance))
+        site.fits.append(BodyFit("block on the pivot B", s.clearance))
         site.add(Carrier("block", plates, place, frame.low, frame.high, BLOCK_COLOUR))
         return ()
     low, high = site.level()
@@ -174,7 +174,7 @@ def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> tuple
     return (_rocker(site, linkage, low, high),)
 
 
-def _slot(site: Site, frame: Carrier, block_place: Place, offset: float) -> None:
+def _slot(site: BodyStack, frame: Carrier, block_place: Place, offset: float) -> None:
     """Add the slotted bar on the side of the frame where the block is, and a tie to a bar beyond the side's end.
 
     Raises BodyError where the block would run into the frame.
@@ -201,7 +201,7 @@ def _slot(site: Site, frame: Carrier, block_place: Place, offset: float) -> None
     frame.plates += [Plate(tie, (), frame.low, frame.high) for tie in ties]
 
 
-def rod_and_rocker(site: Site, loop: int, dyad: RRR, mount: Mount) -> tuple[Carrier]:
+def rod_and_rocker(site: BodyStack, loop: int, dyad: RRR, mount: Mount) -> tuple[Carrier]:
     """Add the bar PQ and the rocker GQ above it."""
     s = site.s
     rod = _rod(site, loop, dyad.links[0], mount)
@@ -211,12 +211,12 @@ def rod_and_rocker(site: Site, loop: int, dyad: RRR, mount: Mount) -> tuple[Carr
     site.add_retainer(f"q{loop}", rod.name, end, high, rod.place)
     site.add_post(f"g{loop}", dyad.ground, low, high)
     holes = ((0.0, 0.0), (dyad.links[1], 0.0))
-    site.fits.append(Fit(f"rocker {loop} on its pins", s.clearance))
+    site.fits.append(BodyFit(f"rocker {loop} on its pins", s.clearance))
     place = site.links.output(loop)
     return (site.add(Carrier(f"rocker-{loop}", bars(s, [holes], holes, low, high), place, low, high, holes=holes)),)
 
 
-def rod_and_slide(site: Site, loop: int, dyad: RRP, mount: Mount) -> tuple[()]:
+def rod_and_slide(site: BodyStack, loop: int, dyad: RRP, mount: Mount) -> tuple[()]:
     """Add the bar PQ and the slide on the base."""
     rod = _rod(site, loop, dyad.link, mount, (dyad.link, 0.0))
     place = site.links.joint(loop, "Q")
@@ -224,22 +224,22 @@ def rod_and_slide(site: Site, loop: int, dyad: RRP, mount: Mount) -> tuple[()]:
     site.add(slide)
     site.add_rails(place, dyad.through, dyad.direction)
     site.add_retainer(f"q{loop}", slide.name, (0.0, 0.0), rod.high, place)
-    site.fits.append(Fit(f"slide {loop} between its rails", site.s.clearance))
+    site.fits.append(BodyFit(f"slide {loop} between its rails", site.s.clearance))
     return ()
 
 
-def _rod(site: Site, loop: int, length: float, mount: Mount, *holes: tuple[float, float]) -> Carrier:
+def _rod(site: BodyStack, loop: int, length: float, mount: Mount, *holes: tuple[float, float]) -> Carrier:
     """Add the bar PQ, with a hole at P and at other points of its axes."""
     s = site.s
     low, high = site.level()
     mount.add_pin(site, f"p{loop}", low, high)
     start = (0.0, 0.0)
     plates = bars(s, [(start, (length, 0.0))], (start, *holes), low, high)
-    site.fits.append(Fit(f"rod {loop} on its pins", s.clearance))
+    site.fits.append(BodyFit(f"rod {loop} on its pins", s.clearance))
     return site.add(Carrier(f"rod-{loop}", plates, site.links.rod(loop), low, high))
 
 
-def slotted_rocker(site: Site, loop: int, dyad: RPR, mount: Mount) -> tuple[Carrier]:
+def slotted_rocker(site: BodyStack, loop: int, dyad: RPR, mount: Mount) -> tuple[Carrier]:
     """Add the block on the pin P and the slotted rocker about G. Raises BodyError where they come too near."""
     s, place = site.s, site.links.output(loop)
     low, high = site.level()
@@ -255,7 +255,7 @@ def slotted_rocker(site: Site, loop: int, dyad: RPR, mount: Mount) -> tuple[Carr
         remedy = "move the pivot away, or give a smaller mechanism.bar"
         raise BodyError(f"linkage.dyads[{loop - 1}].ground", message, remedy, short=0.5 * s.bar - start)
     site.add_post(f"g{loop}", dyad.ground, low, high)
-    site.fits.append(Fit(f"block {loop} in its slot and on its pin", s.clearance))
+    site.fits.append(BodyFit(f"block {loop} in its slot and on its pin", s.clearance))
     holes = ((0.0, 0.0),)
     outer, slot = slotted_bar(first, last, dyad.offset, s)
     plates = bars(s, [((0.0, 0.0), (start, dyad.offset))], holes, low, high)

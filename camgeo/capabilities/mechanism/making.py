@@ -16,7 +16,7 @@ from camgeo.capabilities.mechanism.shaft import Drive, cam_disk, require_drive, 
 from camgeo.capabilities.mechanism.sizes import BodyError, derive_sizes, require_clearance
 from camgeo.files.solid import need_booleans
 from camgeo.fit.pieces import ArcSpline
-from camgeo.output.job import Made
+from camgeo.output.job import MadeFiles
 from camgeo.synthesis.view import Drawer, entry, view_of
 from kin.contour.contour import Contour
 from kin.contour.region import farthest
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 
-def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
+def make_mechanism(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Write and judge every body; the checks of the mechanism itself are reported with its first file.
 
     There is no file of a mechanism that does not turn. Raises RecipeErrors for bodies that cannot be made, or
@@ -41,7 +41,7 @@ def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
     """
     driven = job.design.driven
     if driven is not None and not driven.turns:
-        return Made(())
+        return MadeFiles(())
     first = NAME not in job.kept
     if first:
         job.kept[NAME] = _build(job, request)
@@ -51,7 +51,7 @@ def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
         return made
     with job.clock.stage("collision"):  # last, as it takes longest
         checks = collision_checks(assembly)
-    return Made(made.files, (*checks, *made.checks))
+    return MadeFiles(made.files, (*checks, *made.checks))
 
 
 def foresee_mechanism(job: Job, request: FileRequest) -> None:

@@ -14,7 +14,7 @@ from camgeo.files.errors import RegionError
 from camgeo.files.mesh import Item
 from camgeo.fit.pieces import Bound
 from camgeo.measures.file_result import FileResult
-from camgeo.output.job import Made
+from camgeo.output.job import MadeFiles
 from camgeo.output.solid import cam_mesh, numbers
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class MeshedBody(NamedTuple):
         return matrix
 
 
-def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[PrintBody]) -> Made:
+def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[PrintBody]) -> MadeFiles:
     """Write and judge all bodies, drawn for a shaft that turns clockwise; one of them is named "cam".
 
     A format that has one file for each disc writes one for each body. A format of contours writes two files of all
@@ -87,7 +87,7 @@ def _mesh(job: Job, request: FileRequest, body: PrintBody) -> MeshedBody:
     return MeshedBody(body, mesh, Bound(error_mm, error_mm))
 
 
-def write_each(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> Made:
+def write_each(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> MadeFiles:
     """Write and judge a file for each body: the cam's at `path`, others as `<name>-<body>` beside it, lying flat."""
     from kin.read.files import read_meshes
 
@@ -109,17 +109,17 @@ def write_each(job: Job, request: FileRequest, path: Path, parts: Sequence[Meshe
             made = _judge_body(job, request, beside, part, (built.corners - shift) @ rotation)
         files += made.files
         checks += made.checks
-    return Made(tuple(files), tuple(checks))
+    return MadeFiles(tuple(files), tuple(checks))
 
 
-def write_together(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> Made:
+def write_together(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> MadeFiles:
     """Write and judge two files of all bodies: laid out for printing at `path`, assembled in `<name>-assembly`."""
     from kin.read.files import read_meshes
 
     recipe, mm, write = job.recipe, job.recipe.in_units_of(request).mm, _writer(request)
     on_plate = layout([part.mesh for part in parts])
     assembled = path.with_name(f"{recipe.name}-assembly.{request.format.ending}")
-    made = Made(())
+    made = MadeFiles(())
     for file_path, places in ((path, on_plate), (assembled, [part.place for part in parts])):
         items = [Item(p.body.name, p.mesh, place) for p, place in zip(parts, places, strict=True)]
         write(file_path, items, recipe.name, mm, recipe.about)
@@ -134,11 +134,11 @@ def write_together(job: Job, request: FileRequest, path: Path, parts: Sequence[M
                 checks += _judge_body(job, request, file_path, part, built[part.body.name].corners).checks
         if file_path is assembled:
             files = tuple(replace(file, body="assembly") for file in files)
-        made = Made((*made.files, *files), (*made.checks, *checks))
+        made = MadeFiles((*made.files, *files), (*made.checks, *checks))
     return made
 
 
-def write_moving(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> Made:
+def write_moving(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> MadeFiles:
     """Write a file of all bodies in motion, for viewers."""
     from camgeo.formats.glb import Actor, write_glb
     from camgeo.output.job import unjudged
@@ -154,11 +154,11 @@ def _writer(request: FileRequest) -> Callable[[Path, Sequence[Item], str, float,
     return request.format.write
 
 
-def _judge_cam(job: Job, request: FileRequest, path: Path, part: MeshedBody) -> Made:
+def _judge_cam(job: Job, request: FileRequest, path: Path, part: MeshedBody) -> MadeFiles:
     return job.judge(request, path, part.bound, part.pieces or 0)
 
 
-def _judge_body(job: Job, request: FileRequest, path: Path, part: MeshedBody, corners: Array) -> Made:
+def _judge_body(job: Job, request: FileRequest, path: Path, part: MeshedBody, corners: Array) -> MadeFiles:
     from kin.judge.check import about
     from kin.judge.printed import judge_body
 
@@ -166,4 +166,4 @@ def _judge_body(job: Job, request: FileRequest, path: Path, part: MeshedBody, co
     with job.clock.stage(f"judge {request.kind}"):
         checks = judge_body(part.body.name, corners, slabs(part.body.plates), tolerance, path)
     file = FileResult(path, request, tolerance, None, part.bound, part.body.name, units)
-    return Made((file,), tuple(about(check, path.name) for check in checks))
+    return MadeFiles((file,), tuple(about(check, path.name) for check in checks))

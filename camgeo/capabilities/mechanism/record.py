@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.mechanism.keys import PARTS, build, check, fields
-from camgeo.recipe.figures import LEAST_WALL, Figure, Need
+from camgeo.recipe.figures import LEAST_WALL, DesignFigure, Need
 from camgeo.registry.capability import Capability
 from camgeo.registry.formats import Variant
 from camgeo.schema.fields import Kind
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.checks.declared import Declared
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
     from camgeo.registry.formats import Format
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 OF_BODIES = Need("a file with `parts: all`", lambda _, fields: "parts: all" in fields)
 CLEARANCE, COLLISION = "clearance", "collision"
 FIGURES = {
-    CLEARANCE: Figure(
+    CLEARANCE: DesignFigure(
         "least running clearance of the bodies", Kind.LENGTH, "most", OF_BODIES, swept=False, after=LEAST_WALL
     ),
-    COLLISION: Figure(
+    COLLISION: DesignFigure(
         "least distance between bodies over the turn", Kind.LENGTH, "most", OF_BODIES, swept=False, after=LEAST_WALL
     ),
 }
@@ -51,7 +51,7 @@ def _foresee(job: Job, request: FileRequest) -> None:
     foresee_mechanism(job, request)
 
 
-def _make(job: Job, request: FileRequest, path: Path) -> Made:
+def _make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     from camgeo.capabilities.mechanism.making import make_mechanism
 
     return make_mechanism(job, request, path)

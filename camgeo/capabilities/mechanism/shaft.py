@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.assembly import GROUND, Fit, Member, Plate
+from camgeo.capabilities.mechanism.assembly import GROUND, BodyFit, Member, Plate
 from camgeo.capabilities.mechanism.shapes import disc, retainer
 from camgeo.capabilities.mechanism.sizes import THIN, BodyError, require_thickness
 from camgeo.fit.pieces import ArcSpline
@@ -265,12 +265,12 @@ def _passing(member: Member, low: float, within: float) -> list[float]:
     return faces
 
 
-def shaft_fits(drive: Drive) -> tuple[Fit, ...]:
+def shaft_fits(drive: Drive) -> tuple[BodyFit, ...]:
     """Fits of the shaft in base, cam and retainer."""
     s, name = drive.sizes, "shaft in the cam's bore"
-    pressed, running = Fit(name, s.press, pressed=True), Fit(name, s.clearance, excess=drive.shaft.excess)
+    pressed, running = BodyFit(name, s.press, pressed=True), BodyFit(name, s.clearance, excess=drive.shaft.excess)
     in_cam = pressed if drive.shaft.pressed else running
-    return (Fit("shaft in the base", s.clearance), in_cam, Fit("retainer on the shaft", s.press, pressed=True))
+    return (BodyFit("shaft in the base", s.clearance), in_cam, BodyFit("retainer on the shaft", s.press, pressed=True))
 
 
 def base(plates: Sequence[Plate]) -> Member:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.mechanism.assembly import Assembly, Fit, Member, Plate
+from camgeo.capabilities.mechanism.assembly import Assembly, BodyFit, Member, Plate
 from camgeo.capabilities.mechanism.guide import guide_length, guided_assembly
 from camgeo.capabilities.mechanism.poses import stem_place
 from camgeo.capabilities.mechanism.shapes import box, transformed
@@ -50,7 +50,7 @@ def yoke(view: View[Translating, Flat], drive: Drive) -> Assembly:
     boxes = (box(right, -half, ends[0], half), box(ends[1], -half, left, half))
     stems = [Plate(outline, (), low, high) for outline in boxes]
     follower = Member("yoke", (frame, *stems), "yoke", stem_place(view.design.motion), FOLLOWER_COLOUR)
-    faces = [Fit("the yoke's faces about the cam", s.clearance)]
+    faces = [BodyFit("the yoke's faces about the cam", s.clearance)]
     guides = [("right", first), ("left", last - guide_length(s))]
     return guided_assembly([follower], guides, (low, high), low, drive, fits=faces)
 

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 from camgeo.checks.declared import WATERTIGHT, Declared
 
 if TYPE_CHECKING:
-    from camgeo.checks.declared import Scene
+    from camgeo.checks.declared import CheckFacts
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
 
 
-def _program(_: Scene, file: FileRequest) -> bool:
+def _program(_: CheckFacts, file: FileRequest) -> bool:
     return file.format.program
 
 
-def _pocketed(scene: Scene, file: FileRequest) -> bool:
+def _pocketed(scene: CheckFacts, file: FileRequest) -> bool:
     """Whether a milling program cuts the groove between two surfaces that one touch runs on."""
     follower = scene.follower
     return file.format.program and follower.arrangement.contacts < len(follower.contacts)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from camgeo.capabilities.milling.keys import check_boss, check_milling, check_slight
 from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
 from camgeo.registry.formats import Format
-from camgeo.schema.fields import Table
+from camgeo.schema.fields import FieldTable
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.machining import Manufacture
     from camgeo.recipe.recipe import Recipe
@@ -28,7 +28,7 @@ def _check(file: Values, values: Values, reader: Reader) -> None:
     check_milling(file["path"], reader)
 
 
-def _make(job: Job, request: FileRequest, path: Path) -> Made:
+def _make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     from camgeo.capabilities.milling.program import make_gcode
 
     return make_gcode(job, request, path)
@@ -88,7 +88,7 @@ def _least_hole(manufacture: Manufacture) -> float:
 FORMAT = Format(
     name="gcode",
     suffix="ngc",
-    options=Table((RECIPE_UNITS, TOLERANCE)),
+    options=FieldTable((RECIPE_UNITS, TOLERANCE)),
     check=_check,
     part=False,
     by_disc=True,

@@ -25,7 +25,7 @@ from camgeo.fit.cache import Fits
 from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.cutter import CutterPath
 from camgeo.machining.reach import cutter_paths, path_arcs, reach_checks
-from camgeo.output.job import Made
+from camgeo.output.job import MadeFiles
 from kin.judge.check import about
 from kin.numeric.records import replace
 
@@ -46,7 +46,7 @@ LEAD = 0.4  # of the room between two paths, at most, for the ways to either
 LEAST_LEAD = 1e-2  # mm: radius of a way in below which there is none
 
 
-def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
+def make_gcode(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit, write, read back and judge one program; none is made for a cutter that does not reach all it must."""
     recipe, manufacture = job.recipe, job.recipe.manufacture
     if manufacture is None:
@@ -55,7 +55,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     with job.refusals(request), job.clock.stage("cutter path"):
         checks = tuple(about(check, path.name) for check, _ in reach_checks(recipe, job.design))
     if not all(check.ok for check in checks):
-        return Made((), checks)
+        return MadeFiles((), checks)
     mm = recipe.in_units_of(request).mm
     with job.refusals(request):
         places_apart, mill = _told_apart(job, manufacture), _contour if pocket_of(job.design) is None else _pocket
@@ -65,7 +65,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
             _write(job, request, path, [*_holes(job, manufacture), (FEATURE, steps)], count)
     bound = reduce(Bound.wider, (outline.bound for outline in fine)).widened(rounding(count, mm))
     made = job.judge(request, path, bound, sum(outline.count for outline in fine))
-    return Made(made.files, (*checks, *made.checks))
+    return MadeFiles(made.files, (*checks, *made.checks))
 
 
 def _told_apart(job: Job, manufacture: Manufacture) -> list[float]:

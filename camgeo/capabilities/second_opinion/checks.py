@@ -8,7 +8,7 @@ from camgeo.checks.declared import Declared
 from camgeo.common.rounding import upward
 
 if TYPE_CHECKING:
-    from camgeo.checks.declared import OfFile, Scene
+    from camgeo.checks.declared import CheckFacts, OfFile
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
@@ -39,7 +39,7 @@ def reason_without(record: Format) -> str:
 def _judged_by(library: str) -> OfFile:
     """Predicate whether a library judges a file; a file of all bodies is left out."""
 
-    def judged(_: Scene, file: FileRequest) -> bool:
+    def judged(_: CheckFacts, file: FileRequest) -> bool:
         return library in libraries(file.format) and not file.holds_other_bodies
 
     return judged

@@ -12,13 +12,13 @@ from camgeo.capabilities.sheet.frame import Facts, LongTextError, footer, framed
 from camgeo.capabilities.sheet.lettering import unknown, wrap
 from camgeo.capabilities.sheet.options import Sheet, build_sheet
 from camgeo.capabilities.sheet.pages import LINE, full_size, motion_page, polar_table, table_pages
-from camgeo.capabilities.sheet.part import Drawn, disc_loops, number
+from camgeo.capabilities.sheet.part import DrawnDisc, disc_loops, number
 from camgeo.capabilities.sheet.pdf import write_pdf
 from camgeo.capabilities.sheet.views import NoRoomError, Tolerance, disc_sizes, draw_views, lay_out
 from camgeo.fit.bound import Bound
 from camgeo.formats.dxf import write_dxf
 from camgeo.measures.file_result import FileResult
-from camgeo.output.job import Made
+from camgeo.output.job import MadeFiles
 from camgeo.output.part_geometry import contours_of, openings_of, remarks, rim_of
 from camgeo.part.keyway import Keyway
 from camgeo.recipe.export import FileRequest, disc_filename
@@ -30,28 +30,28 @@ if TYPE_CHECKING:
     from camgeo.capabilities.sheet.marks import Page
     from camgeo.output.job import Job
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.formats import Run
+    from camgeo.registry.formats import RunResults
 
 ARCS = FileRequest("dxf", "arcs", units="mm")
 
 
-def make_sheets(run: Run, request: FileRequest, path: Path) -> Made:
+def make_sheets(run: RunResults, request: FileRequest, path: Path) -> MadeFiles:
     """Write the drawing of each disc as PDF at `path`, or beside it, and as DXF, which is judged as any drawing is.
 
     Nothing is drawn where no cam is made. Raises RecipeErrors for what cannot be drawn.
     """
     if run.job is None:
-        return Made(())
+        return MadeFiles(())
     jobs = run.job.single
     paths = [path.with_name(disc_filename(path.name, k)) for k in range(len(jobs))] if len(jobs) > 1 else [path]
     pairs = enumerate(zip(jobs, paths, strict=True))
     sheet = build_sheet(request.own)
     drawings = [_make_sheet(run, job, request, there, sheet=sheet, rank=rank) for rank, (job, there) in pairs]
     judged = drawings[0] if len(drawings) == 1 else run.job.combine_discs(ARCS, drawings)
-    return Made((*(FileResult(there, request) for there in paths), *judged.files), judged.checks)
+    return MadeFiles((*(FileResult(there, request) for there in paths), *judged.files), judged.checks)
 
 
-def _make_sheet(run: Run, job: Job, request: FileRequest, path: Path, *, sheet: Sheet, rank: int) -> Made:
+def _make_sheet(run: RunResults, job: Job, request: FileRequest, path: Path, *, sheet: Sheet, rank: int) -> MadeFiles:
     recipe, field = run.recipe, f"{run.recipe.field_of(request)}.sheet"
     name = recipe.name if len(run.design.discs) == 1 else f"{recipe.name}, disc {rank + 1}"
     sheet = sheet if sheet.title else replace(sheet, words=tuple({**sheet.texts, "title": name}.items()))
@@ -62,7 +62,9 @@ def _make_sheet(run: Run, job: Job, request: FileRequest, path: Path, *, sheet: 
     with job.refusals(ARCS), job.clock.stage("sheet"):
         contours = job.outlines("arcs", job.tolerance(ARCS))
         outlines = [*contours_of(job.design, contours), *rim_of(job.body), *openings_of(job.body)]
-        drawn = Drawn(disc_loops(outlines, job.body, len(contours)), job.body, recipe.part, recipe.rotation == "ccw")
+        drawn = DrawnDisc(
+            disc_loops(outlines, job.body, len(contours)), job.body, recipe.part, recipe.rotation == "ccw"
+        )
         pages = _pages(run, job, sheet, drawn, tolerance=tolerance, field=field, rank=rank)
         write_pdf(path, pages.all, sheet.title)
         drawing = path.with_suffix(".dxf")
@@ -111,7 +113,9 @@ class Pages(NamedTuple):
         return self.annotated if self.last is None else [*self.annotated, self.last]
 
 
-def _pages(run: Run, job: Job, sheet: Sheet, drawn: Drawn, *, tolerance: Tolerance, field: str, rank: int) -> Pages:
+def _pages(
+    run: RunResults, job: Job, sheet: Sheet, drawn: DrawnDisc, *, tolerance: Tolerance, field: str, rank: int
+) -> Pages:
     recipe, contours = run.recipe, job.design.contours
     sizes = disc_sizes(drawn, _base(job), tolerance)
     names = [(surface.name if len(contours) > 1 else "", contour) for surface, contour in contours]
@@ -163,7 +167,7 @@ def _base(job: Job) -> tuple[str, float] | None:
     return ("least circle", least) if least > job.recipe.export.tolerance else None
 
 
-def _mass(run: Run, rank: int) -> str:
+def _mass(run: RunResults, rank: int) -> str:
     """Mass of a disc in words, empty where no density is given."""
     balances = run.findings.balances
     if len(balances) != len(run.design.discs):
@@ -172,7 +176,7 @@ def _mass(run: Run, rank: int) -> str:
     return f"{1000.0 * mass:.4g} g" if mass < 1.0 else f"{mass:.4g} kg"
 
 
-def _notes(drawn: Drawn, recipe: Recipe, *, wide: float, full: bool) -> list[str]:
+def _notes(drawn: DrawnDisc, recipe: Recipe, *, wide: float, full: bool) -> list[str]:
     """Notes on the first page, in words."""
     body, part = drawn.body, drawn.part
     sense = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.sheet.lettering import SMALL
-from camgeo.capabilities.sheet.marks import ARROW, BEYOND, GAP, Circle, Dimension, Line, Text
+from camgeo.capabilities.sheet.marks import ARROW, BEYOND, GAP, CircleMark, Dimension, LineMark, Text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -72,9 +72,9 @@ class _Pen:
         """Draw marks; lines on the layer "" are left out, as they stand in the drawing already."""
         for mark in marks:
             match mark:
-                case Line() if mark.layer:
+                case LineMark() if mark.layer:
                     self._line(self._space, mark)
-                case Circle():
+                case CircleMark():
                     attributes = {
                         "layer": mark.layer,
                         "linetype": PATTERNS[mark.pattern],
@@ -89,7 +89,7 @@ class _Pen:
     def _at(self, point: Point) -> Point:
         return (point[0] + self._x) / self._scale, (point[1] + self._y) / self._scale
 
-    def _line(self, layout: BaseLayout, line: Line) -> None:
+    def _line(self, layout: BaseLayout, line: LineMark) -> None:
         points = [self._at((x, y)) for x, y in line.points.tolist()]
         attributes = {"layer": line.layer, "linetype": PATTERNS[line.pattern], "lineweight": _hundredths(line.weight)}
         if line.filled:

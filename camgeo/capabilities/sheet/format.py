@@ -10,9 +10,9 @@ from camgeo.registry.formats import Format
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
-    from camgeo.registry.formats import Run
+    from camgeo.registry.formats import RunResults
 
 
 def _foresee(_job: Job, _request: FileRequest) -> None:
@@ -24,7 +24,7 @@ def _foresee(_job: Job, _request: FileRequest) -> None:
         raise MissingExtraError(f"a shop drawing needs fpdf2: {install('sheet')}")
 
 
-def _summarise(run: Run, request: FileRequest, path: Path) -> Made:
+def _summarise(run: RunResults, request: FileRequest, path: Path) -> MadeFiles:
     from camgeo.capabilities.sheet.drawing import make_sheets
 
     return make_sheets(run, request, path)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width
-from camgeo.capabilities.sheet.marks import BORDER, THICK, THIN, Circle, Page
+from camgeo.capabilities.sheet.marks import BORDER, THICK, THIN, CircleMark, Page
 from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
@@ -156,4 +156,4 @@ def _projection(page: Page, x: float, y: float, projection: str) -> None:
     page.line((side, y - small), (side + 6.0, y - large), (side + 6.0, y + large), (side, y + small), (side, y - small),
               weight=THIN, layer="FRAME")  # fmt: skip
     for radius in (small, large):
-        page.marks.append(Circle((end + 2.4, y), radius, THIN, "FRAME"))
+        page.marks.append(CircleMark((end + 2.4, y), radius, THIN, "FRAME"))

@@ -27,7 +27,7 @@ LETTERS, BELOW = 1.0, 0.3  # of a text's height: what it reaches above and below
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class LineMark:
     """A line through points (n, 2); what is on the layer "" stands in a DXF already, as a contour."""
 
     points: Array
@@ -39,7 +39,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Circle:
+class CircleMark:
     """A circle; `weight` is the width of its line, mm, `pattern` that of its dashes, solid by default."""
 
     centre: Point
@@ -85,11 +85,11 @@ class Dimension:
     base: Point
     value: float
     text: Text
-    lines: tuple[Line, ...]
+    lines: tuple[LineMark, ...]
     direction: float | None = None
 
 
-Mark: TypeAlias = Line | Circle | Text | Dimension
+Mark: TypeAlias = LineMark | CircleMark | Text | Dimension
 
 
 @dataclass(frozen=True)
@@ -103,13 +103,13 @@ class Page:
 
     def line(self, *points: Point, weight: float = THIN, layer: Layer = "DIM", pattern: Pattern = "") -> None:
         """Add an open line."""
-        self.marks.append(Line(np.array(points), weight, layer, pattern))
+        self.marks.append(LineMark(np.array(points), weight, layer, pattern))
 
     def box(self, corner: Point, wide: float, high: float, weight: float = THIN, layer: Layer = "DIM") -> None:
         """Add a rectangle from its lower left corner."""
         x, y = corner
         corners = np.array([(x, y), (x + wide, y), (x + wide, y + high), (x, y + high)])
-        self.marks.append(Line(corners, weight, layer, closed=True))
+        self.marks.append(LineMark(corners, weight, layer, closed=True))
 
     def text(
         self,
@@ -132,13 +132,13 @@ class Page:
         return [mark for mark in marks if isinstance(mark, Text)]
 
 
-def arrow(tip: Point, angle: float) -> Line:
+def arrow(tip: Point, angle: float) -> LineMark:
     """Arrow whose tip points in a direction, rad."""
     c, s = math.cos(angle), math.sin(angle)
     x, y = tip
     back = (x - ARROW * c, y - ARROW * s)
     sides = [(back[0] - SLENDER * s, back[1] + SLENDER * c), (back[0] + SLENDER * s, back[1] - SLENDER * c)]
-    return Line(np.array([tip, *sides]), closed=True, filled=True)
+    return LineMark(np.array([tip, *sides]), closed=True, filled=True)
 
 
 def across(
@@ -201,13 +201,13 @@ def round_size(centre: Point, radius: float, label: Text, value: float) -> Dimen
     return Dimension((x + radius, y), (x - radius, y), (x - radius, y), value, label, ())
 
 
-def leader(tip: Point, start: Point) -> tuple[Line, ...]:
+def leader(tip: Point, start: Point) -> tuple[LineMark, ...]:
     """Leader from the end of a text to the tip of its arrow."""
     return _line(start, tip), arrow(tip, math.atan2(tip[1] - start[1], tip[0] - start[0]))
 
 
-def _line(*points: Point) -> Line:
-    return Line(np.array(points))
+def _line(*points: Point) -> LineMark:
+    return LineMark(np.array(points))
 
 
 def shifted(points: Sequence[Point] | Array, scale: float, origin: Point) -> Array:

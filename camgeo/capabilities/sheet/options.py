@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from camgeo.common.rounding import NOISE
-from camgeo.schema.fields import Field, Kind, Table, length
+from camgeo.schema.fields import Field, FieldTable, Kind, length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class Sheet:
         return self.texts["title"]
 
 
-OPTIONS = Table(
+OPTIONS = FieldTable(
     (
         Field(
             "paper",

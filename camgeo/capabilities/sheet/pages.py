@@ -9,14 +9,14 @@ import numpy as np
 
 from camgeo.capabilities.sheet.frame import EDGE, SIZES, framed_page, free_area
 from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width, wrap
-from camgeo.capabilities.sheet.marks import THICK, THIN, Line, Page, shifted
+from camgeo.capabilities.sheet.marks import THICK, THIN, LineMark, Page, shifted
 from camgeo.capabilities.sheet.part import number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.sheet.marks import Point
-    from camgeo.capabilities.sheet.part import Drawn
+    from camgeo.capabilities.sheet.part import DrawnDisc
     from camgeo.curve.curve import Curve
     from camgeo.report.document import Findings
     from camgeo.synthesis.design import Design
@@ -28,7 +28,7 @@ BETWEEN = 16  # places in each step at which interpolation is looked at
 BAR = 100.0  # mm
 
 
-class Table(NamedTuple):
+class SheetTable(NamedTuple):
     """Table of a contour on the drawing: headings of its columns, numbers (n, columns), and notes."""
 
     heads: tuple[str, ...]
@@ -36,7 +36,7 @@ class Table(NamedTuple):
     notes: tuple[str, ...]
 
 
-def polar_table(contours: Sequence[tuple[str, Curve]], step: float, *, ccw: bool) -> Table:
+def polar_table(contours: Sequence[tuple[str, Curve]], step: float, *, ccw: bool) -> SheetTable:
     """Table of polar radii of the contours, by name, at every step, rad; notes give the error of interpolation.
 
     Where a ray may cross a contour more than once, places X, Y stand instead. The angles run as the disc is drawn:
@@ -56,7 +56,7 @@ def polar_table(contours: Sequence[tuple[str, Curve]], step: float, *, ccw: bool
             notes.append(_error(name, off))
     except StarError:
         return _places(contours, count, ccw=ccw)
-    return Table(tuple(heads), np.column_stack(columns), tuple(notes))
+    return SheetTable(tuple(heads), np.column_stack(columns), tuple(notes))
 
 
 def _error(name: str, off: float) -> str:
@@ -65,7 +65,7 @@ def _error(name: str, off: float) -> str:
     return f"A periodic cubic spline through the rows{whose} is off by {seen}."
 
 
-def _places(contours: Sequence[tuple[str, Curve]], count: int, *, ccw: bool) -> Table:
+def _places(contours: Sequence[tuple[str, Curve]], count: int, *, ccw: bool) -> SheetTable:
     from camgeo.curve.measures import touched
 
     columns: list[Array] = [np.arange(1, count + 1, dtype=np.float64)]
@@ -83,7 +83,7 @@ def _places(contours: Sequence[tuple[str, Curve]], count: int, *, ccw: bool) -> 
             notes.append(
                 "Rows without numbers are places that were trimmed away; interpolation across them is not estimated."
             )
-    return Table(tuple(heads), np.column_stack(columns), tuple(notes))
+    return SheetTable(tuple(heads), np.column_stack(columns), tuple(notes))
 
 
 def _spline(rows: Array, between: int) -> Array:
@@ -98,7 +98,7 @@ def _spline(rows: Array, between: int) -> Array:
     return splined.reshape(n * between, -1)
 
 
-def table_pages(table: Table, paper: str) -> list[Page]:
+def table_pages(table: SheetTable, paper: str) -> list[Page]:
     """Pages of the table, as many as it takes."""
     area = free_area(paper, block=False)
     cells = [[_cell(value, k) for k, value in enumerate(row)] for row in table.rows.tolist()]
@@ -202,7 +202,7 @@ def _draw_motion(page: Page, design: Design, place: tuple[float, float, float, f
         y = low + (high - low) * k * step / (top - bottom)
         page.line((left, y), (right, y), layer="HATCH")
         page.text((left - 1.5, y - 0.5 * SMALL), number(bottom + k * step), SMALL, "right")
-    page.marks.append(Line(placed(np.degrees(shaft), values), THICK, "VIEW"))
+    page.marks.append(LineMark(placed(np.degrees(shaft), values), THICK, "VIEW"))
     page.text((0.5 * (left + right), low - 9.5), "shaft angle, degrees", SMALL, "middle")
     page.text((left, high + 2.5), f"Motion: {position.title} of the follower, {position.unit}", PLAIN)
 
@@ -216,7 +216,7 @@ def _round_step(span: float) -> float:
 # --- 1 : 1 ------------------------------------------------------------------------------------------------------------
 
 
-def full_size(drawn: Drawn) -> Page | None:
+def full_size(drawn: DrawnDisc) -> Page | None:
     """The face at 1 : 1 on the least paper that holds it, with a bar of 100 mm; None where no ISO paper does."""
     points = np.concatenate([loop.points for loop in drawn.loops])
     (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
@@ -230,7 +230,7 @@ def full_size(drawn: Drawn) -> Page | None:
     x = 0.5 * (area.left + area.right) - 0.5 * (x0 + x1)
     y = 0.5 * (area.low + 14.0 + area.high - 8.0) - 0.5 * (y0 + y1)
     for loop in drawn.loops:
-        page.marks.append(Line(shifted(loop.points, 1.0, (x, y)), THIN, "", closed=True))
+        page.marks.append(LineMark(shifted(loop.points, 1.0, (x, y)), THIN, "", closed=True))
     for u, v in ((4.0, 0.0), (0.0, 4.0)):
         page.line((x - u, y - v), (x + u, y + v), layer="CENTRE")
     page.text((area.left, area.high - PLAIN), "1 : 1, to be printed at actual size", PLAIN)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.pieces import ArcSpline
-from camgeo.part.feature import View
+from camgeo.part.feature import SheetView
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Loop:
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class DrawnDisc:
     """Disc as it is drawn, in mm: loops, body, and part of the recipe; with `ccw` it is mirrored."""
 
     loops: tuple[Loop, ...]
@@ -54,10 +54,10 @@ class Drawn:
         return self.body.top - self.body.bottom
 
     @property
-    def view(self) -> View:
+    def view(self) -> SheetView:
         """View by which features write their own sizes."""
         openings = {opening.name: opening for opening in self.body.openings}
-        return View(self.part, openings, number, self.degrees, self.direction)
+        return SheetView(self.part, openings, number, self.degrees, self.direction)
 
     def direction(self, at: float) -> float:
         """Direction of a feature in the drawing, rad, from that in the recipe."""
@@ -110,7 +110,7 @@ def disc_loops(outlines: Sequence[LayerOutline], body: Body, contours: int) -> t
 
 
 @dataclass(frozen=True)
-class Metal:
+class SectionMetal:
     """Metal in the section from y `low` to `high`; whether its ends lie on a contour."""
 
     low: float
@@ -119,7 +119,7 @@ class Metal:
     high_contour: bool
 
 
-def metal(loops: Sequence[Loop]) -> list[Metal]:
+def metal(loops: Sequence[Loop]) -> list[SectionMetal]:
     """Stretches of the y axis, mm, within an odd number of loops, which are metal."""
     ends = []
     for loop in loops:
@@ -130,10 +130,10 @@ def metal(loops: Sequence[Loop]) -> list[Metal]:
             ends.append((float(y[k] + t * (after_y[k] - y[k])), loop.surface))
     ends.sort()
     pairs = zip(ends[::2], ends[1::2], strict=True)
-    return [Metal(low, high, at_low, at_high) for (low, at_low), (high, at_high) in pairs]
+    return [SectionMetal(low, high, at_low, at_high) for (low, at_low), (high, at_high) in pairs]
 
 
-def sections(drawn: Drawn) -> list[list[tuple[float, float]]]:
+def sections(drawn: DrawnDisc) -> list[list[tuple[float, float]]]:
     """Outlines of the cut metal, as closed chains of points (z, y), z from the lower face of the disc.
 
     A groove is as deep as its pocket. A chamfer is drawn as if the section met the contour at right angles.
@@ -157,8 +157,8 @@ def sections(drawn: Drawn) -> list[list[tuple[float, float]]]:
 
 
 def _side(
-    stretch: Metal,
-    raised: Sequence[Metal],
+    stretch: SectionMetal,
+    raised: Sequence[SectionMetal],
     heights: tuple[float, float],
     boss: tuple[float, tuple[float, float]],
     chamfer: float,

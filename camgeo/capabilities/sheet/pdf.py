@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.sheet.lettering import FAMILY, font_points, new_pdf
-from camgeo.capabilities.sheet.marks import Circle, Dimension, Line, Text
+from camgeo.capabilities.sheet.marks import CircleMark, Dimension, LineMark, Text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,14 +45,14 @@ def _draw(pdf: FPDF, height: float, mark: Mark) -> None:
             _draw(pdf, height, text)
         case Text():
             _letter(pdf, height, mark)
-        case Circle() if not mark.pattern:
+        case CircleMark() if not mark.pattern:
             _pen(pdf, mark)
             pdf.circle(mark.centre[0], height - mark.centre[1], mark.radius)
-        case Circle():
+        case CircleMark():
             turn = np.linspace(0.0, 2.0 * np.pi, AROUND + 1)
             points = np.array(mark.centre) + mark.radius * np.column_stack([np.cos(turn), np.sin(turn)])
-            _draw(pdf, height, Line(points, mark.weight, mark.layer, mark.pattern))
-        case Line():
+            _draw(pdf, height, LineMark(points, mark.weight, mark.layer, mark.pattern))
+        case LineMark():
             _pen(pdf, mark)
             for piece in _pieces(mark):
                 pdf.polyline(
@@ -62,7 +62,7 @@ def _draw(pdf: FPDF, height: float, mark: Mark) -> None:
                 )
 
 
-def _pieces(line: Line) -> list[Array]:
+def _pieces(line: LineMark) -> list[Array]:
     """Give the dashes of a line; all of it where it has no pattern."""
     pattern = PATTERNS[line.pattern]
     if not pattern:
@@ -88,6 +88,6 @@ def _letter(pdf: FPDF, height: float, mark: Text) -> None:
         pdf.text(mark.at[0], height - y0, mark.text)
 
 
-def _pen(pdf: FPDF, mark: Circle | Line) -> None:
+def _pen(pdf: FPDF, mark: CircleMark | LineMark) -> None:
     pdf.set_line_width(mark.weight)
     pdf.set_fill_color(0)

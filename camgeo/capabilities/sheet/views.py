@@ -16,8 +16,8 @@ from camgeo.capabilities.sheet.marks import (
     ARROW,
     THICK,
     THIN,
-    Circle,
-    Line,
+    CircleMark,
+    LineMark,
     Page,
     Text,
     across,
@@ -39,7 +39,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from camgeo.capabilities.sheet.frame import Area
     from camgeo.capabilities.sheet.marks import Point
-    from camgeo.capabilities.sheet.part import Drawn
+    from camgeo.capabilities.sheet.part import DrawnDisc
     from kin.numeric.arrays import Array
 
 ROUND = 17.0  # mm of paper round the face: zero mark, sense of rotation, ends of the section line
@@ -66,7 +66,7 @@ class NoRoomError(CamgeoError, ValueError):
         self.largest = largest
 
 
-class Callout(NamedTuple):
+class ColumnCallout(NamedTuple):
     """A callout of the column: what it points at, as centre, radius and angle (rad) of a circle of the part or a point.
 
     Its first line is `text`, boxed where the size is theoretically exact; `note` is the second, empty for none. `value`
@@ -137,42 +137,44 @@ class Tolerance(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Sizes:
+class Dimensions:
     """Every dimension of a disc by where it stands.
 
     `column` are callouts of the face; `under` lengths along the shaft; `right` diameters beside the section, smallest
     first; `bore` that on its left; `tolerance` the contour's.
     """
 
-    column: tuple[Callout, ...]
+    column: tuple[ColumnCallout, ...]
     under: tuple[Along, ...]
     right: tuple[Across, ...]
     bore: Across | None
     tolerance: Tolerance
 
 
-def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Tolerance) -> Sizes:
+def disc_sizes(drawn: DrawnDisc, base: tuple[str, float] | None, tolerance: Tolerance) -> Dimensions:
     """Sort every size of a disc; `base` is the name and radius of a circle that the contour is described from."""
     part, body = drawn.part, drawn.body
-    column: list[Callout] = []
+    column: list[ColumnCallout] = []
     origin = (0.0, 0.0)
     if base is not None:
         name, radius = base
         column.append(
-            Callout(f"Ø{number(2.0 * radius)}", name, origin, radius, 0.8 * math.pi, 2.0 * radius, boxed=True)
+            ColumnCallout(f"Ø{number(2.0 * radius)}", name, origin, radius, 0.8 * math.pi, 2.0 * radius, boxed=True)
         )
     features = ((feature.callouts, value) for feature, value in with_records(part.features))
     sizes = [callouts(value, drawn.view) for callouts, value in features if callouts is not None]
-    column += [Callout(*size) for each in sizes for size in each]
+    column += [ColumnCallout(*size) for each in sizes for size in each]
     thick = body.thickness
     plain = part.bore is not None and not part.sides
     if thick is None:
         if plain and part.bore is not None:
             text = f"Ø{number(part.bore)} {part.fit}".rstrip()
-            column.append(Callout(text, "bore", origin, 0.5 * part.bore, 1.1 * math.pi, part.bore, datum="A"))
+            column.append(ColumnCallout(text, "bore", origin, 0.5 * part.bore, 1.1 * math.pi, part.bore, datum="A"))
         if part.outer is not None:
-            column.append(Callout(f"Ø{number(part.outer)}", "", origin, 0.5 * part.outer, 0.9 * math.pi, part.outer))
-        return Sizes(tuple(column), (), (), None, tolerance)
+            column.append(
+                ColumnCallout(f"Ø{number(part.outer)}", "", origin, 0.5 * part.outer, 0.9 * math.pi, part.outer)
+            )
+        return Dimensions(tuple(column), (), (), None, tolerance)
     under = [Along(0.0, thick, number(thick))]
     if body.pocket is not None:
         under.append(Along(thick - body.pocket, thick, f"{number(body.pocket)} groove"))
@@ -188,7 +190,7 @@ def disc_sizes(drawn: Drawn, base: tuple[str, float] | None, tolerance: Toleranc
     bore = None
     if plain and part.bore is not None:
         bore = Across(body.bottom, part.bore, f"Ø{number(part.bore)} {part.fit}".rstrip())
-    return Sizes(
+    return Dimensions(
         tuple(column), tuple(sorted(under, key=lambda length: length.high - length.low)), tuple(right), bore, tolerance
     )
 
@@ -213,7 +215,7 @@ class Layout(NamedTuple):
     sense: float = 1.0
 
 
-def lay_out(drawn: Drawn, sizes: Sizes, area: Area, scale: str | None, sense: float) -> Layout:
+def lay_out(drawn: DrawnDisc, sizes: Dimensions, area: Area, scale: str | None, sense: float) -> Layout:
     """Place the views at a scale, or at the largest that fits; `sense` is the direction of view.
 
     Raises NoRoomError, which names the largest scale that fits, if there is one.
@@ -228,7 +230,7 @@ def lay_out(drawn: Drawn, sizes: Sizes, area: Area, scale: str | None, sense: fl
     raise NoRoomError("" if scale is None else next(fits, ""))
 
 
-def _lay_out_at(drawn: Drawn, sizes: Sizes, area: Area, word: str, *, beside: bool) -> Layout | None:
+def _lay_out_at(drawn: DrawnDisc, sizes: Dimensions, area: Area, word: str, *, beside: bool) -> Layout | None:
     """Place the views at a scale, the bore's own view beside the others or below; None where there is no room."""
     k = SCALES[word]
     reach = k * drawn.reach
@@ -250,7 +252,7 @@ def _lay_out_at(drawn: Drawn, sizes: Sizes, area: Area, word: str, *, beside: bo
     return Layout(word, k, (x, y), (start + face + bore, y), middle, start - NARROW, area)
 
 
-def _beyond(sizes: Sizes, k: float) -> float:
+def _beyond(sizes: Dimensions, k: float) -> float:
     """Width to the right of the section, mm on the paper: lanes of dimensions, or texts beyond their lines."""
     texts = (text_beyond(k * (length.high - length.low), length.text) for length in sizes.under)
     return max(LANE * len(sizes.right), *texts) + 1.0
@@ -264,7 +266,7 @@ class BoreView(NamedTuple):
     below: float
 
 
-def _bore_view(drawn: Drawn, k: float) -> BoreView:
+def _bore_view(drawn: DrawnDisc, k: float) -> BoreView:
     """Give the size of the bore's own view at a scale; none for a round bore."""
     part = drawn.part
     if part.bore is None or part.round_bore:
@@ -279,7 +281,7 @@ def _bore_view(drawn: Drawn, k: float) -> BoreView:
     )
 
 
-def _bore_label(drawn: Drawn) -> tuple[float, str]:
+def _bore_label(drawn: DrawnDisc) -> tuple[float, str]:
     """Direction of a bore's keyway, flat or side in the recipe, rad, and the words under its own view."""
     part = drawn.part
     at, what = part.bore_at, f"{'square' if part.sides == 4 else 'hexagon'}, a flat's normal"
@@ -293,7 +295,7 @@ def _bore_label(drawn: Drawn) -> tuple[float, str]:
 # --- drawing it -------------------------------------------------------------------------------------------------------
 
 
-def draw_views(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
+def draw_views(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) -> None:
     """Draw all views with their dimensions on a page."""
     _draw_face(page, drawn, sizes, layout)
     _draw_column(page, drawn, sizes, layout)
@@ -304,16 +306,16 @@ def draw_views(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
         _draw_bore(page, drawn, layout, sizes.tolerance)
 
 
-def _draw_face(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
+def _draw_face(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) -> None:
     k, (x, y) = layout.scale, layout.face
     reach = k * drawn.reach
     for loop in drawn.loops:
-        page.marks.append(Line(shifted(loop.points, k, layout.face), THICK, "", closed=True))
+        page.marks.append(LineMark(shifted(loop.points, k, layout.face), THICK, "", closed=True))
     boss = drawn.body.boss
     if boss is not None:
         pattern = "" if boss.above else "dashed"
         page.marks.append(
-            Circle(layout.face, 0.5 * k * boss.diameter, THIN if pattern else THICK, "VIEW", pattern)  # type: ignore[arg-type]
+            CircleMark(layout.face, 0.5 * k * boss.diameter, THIN if pattern else THICK, "VIEW", pattern)  # type: ignore[arg-type]
         )
     page.line((x - reach - 4.0, y), (x + reach + 2.0, y), layer="CENTRE", pattern="chain")
     solid = drawn.body.thickness is not None
@@ -321,7 +323,7 @@ def _draw_face(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
     page.line((x, y - end), (x, y + end), layer="CENTRE", pattern="chain")
     for callout in sizes.column:
         if callout.value is not None and callout.centre == (0.0, 0.0) and not callout.datum:
-            page.marks.append(Circle(layout.face, k * callout.radius, THIN, "CENTRE", "chain"))
+            page.marks.append(CircleMark(layout.face, k * callout.radius, THIN, "CENTRE", "chain"))
     for opening in drawn.body.openings:
         if opening.circle is not None and opening.name != "bore":
             (cx, cy), r = opening.circle
@@ -335,19 +337,19 @@ def _draw_face(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
         _draw_plane(page, drawn, layout)
 
 
-def _draw_rotation(page: Page, drawn: Drawn, layout: Layout) -> None:
+def _draw_rotation(page: Page, drawn: DrawnDisc, layout: Layout) -> None:
     """Arc with an arrow: the sense in which the shaft turns."""
     (x, y), radius = layout.face, layout.scale * drawn.reach + 5.0
     start, end = (14.0, 40.0) if drawn.ccw else (40.0, 14.0)
     angles = np.radians(np.linspace(start, end, 24))
     points = np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
-    page.marks.append(Line(points))
+    page.marks.append(LineMark(points))
     sense = 0.5 * math.pi if drawn.ccw else -0.5 * math.pi
     tip = (float(points[-1, 0]), float(points[-1, 1]))
     page.marks.append(arrow(tip, float(angles[-1]) + sense))
 
 
-def _draw_plane(page: Page, drawn: Drawn, layout: Layout) -> None:
+def _draw_plane(page: Page, drawn: DrawnDisc, layout: Layout) -> None:
     """Ends of the cutting plane, with arrows in the direction of view."""
     (x, y), reach = layout.face, layout.scale * drawn.reach
     sense = layout.sense
@@ -359,7 +361,7 @@ def _draw_plane(page: Page, drawn: Drawn, layout: Layout) -> None:
         page.text((x, outer + 1.3 if side > 0.0 else outer - 1.0 - PLAIN), "A", PLAIN, "middle")
 
 
-def _draw_column(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
+def _draw_column(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) -> None:
     """Callouts of the column, each as near to the height of its feature as the others let it."""
     k, (x, y) = layout.scale, layout.face
     rows = sorted(sizes.column, key=lambda row: -row.tip[1])
@@ -395,12 +397,12 @@ def _draw_datum(page: Page, at: Point, direction: Point, letter: str) -> None:
     """Datum symbol of ISO 5459: a filled triangle at a point, and its letter in a box some way along a direction."""
     (x, y), (u, v) = at, direction
     base = [(x - 1.2 * v, y + 1.2 * u), (x + 1.2 * v, y - 1.2 * u), (x + 2.0 * u, y + 2.0 * v)]
-    page.marks.append(Line(np.array(base), closed=True, filled=True))
+    page.marks.append(LineMark(np.array(base), closed=True, filled=True))
     page.line((x + 2.0 * u, y + 2.0 * v), (x + 4.5 * u, y + 4.5 * v))
     _draw_letter(page, (x + 7.0 * u, y + 7.0 * v), letter)
 
 
-def _draw_tolerance(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -> None:
+def _draw_tolerance(page: Page, drawn: DrawnDisc, layout: Layout, tolerance: Tolerance) -> None:
     """Profile of a surface with its tolerance, all around, by the datums; or that none is stated."""
     k, (x, y) = layout.scale, layout.face
     low = y + k * drawn.reach + ROUND + 2.0
@@ -415,12 +417,12 @@ def _draw_tolerance(page: Page, drawn: Drawn, layout: Layout, tolerance: Toleran
     knee = (left + 0.3 * KNEE, low + 0.5 * CELL)
     page.line(tip, knee, (left + KNEE, knee[1]))
     page.marks.append(arrow(tip, math.atan2(tip[1] - knee[1], tip[0] - knee[0])))
-    page.marks.append(Circle(knee, 1.4, THIN, "DIM"))
+    page.marks.append(CircleMark(knee, 1.4, THIN, "DIM"))
     x = left + KNEE
     page.box((x, low), CELL, CELL)
     arc = np.linspace(0.0, math.pi, 17)
     symbol = np.column_stack([x + 0.5 * CELL + 2.0 * np.cos(arc), low + 2.4 + 2.0 * np.sin(arc)])
-    page.marks.append(Line(symbol, closed=True))
+    page.marks.append(LineMark(symbol, closed=True))
     x += CELL
     for text, wide in tolerance.cells:
         page.box((x, low), wide, CELL)
@@ -428,7 +430,7 @@ def _draw_tolerance(page: Page, drawn: Drawn, layout: Layout, tolerance: Toleran
         x += wide
 
 
-def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> None:
+def _draw_section(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) -> None:
     """The section A-A, its lower face on the left in the first angle, on the right in the third."""
     k, (left, y) = layout.scale, layout.section
     body, sense = drawn.body, layout.sense
@@ -439,9 +441,9 @@ def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> Non
 
     chains = [[placed(*point) for point in chain] for chain in sections(drawn)]
     for chain in chains:
-        page.marks.append(Line(np.array(chain), THICK, "VIEW", closed=True))
+        page.marks.append(LineMark(np.array(chain), THICK, "VIEW", closed=True))
     for ends in hatching(chains, HATCH):
-        page.marks.append(Line(ends, THIN, "HATCH"))
+        page.marks.append(LineMark(ends, THIN, "HATCH"))
     behind = [[placed(*point) for point in edges] for edges in _behind(drawn, sense)]
     for edges in behind:
         page.line(*edges, weight=THICK, layer="VIEW")
@@ -472,7 +474,7 @@ def _draw_section(page: Page, drawn: Drawn, sizes: Sizes, layout: Layout) -> Non
         _draw_datum(page, (base, y - half - (0.0 if has_room(2.0 * half) else 2.0 * ARROW)), (0.0, -1.0), "A")
 
 
-def _behind(drawn: Drawn, sense: float) -> list[tuple[Point, ...]]:
+def _behind(drawn: DrawnDisc, sense: float) -> list[tuple[Point, ...]]:
     """Edges behind the cutting plane: rims of the bore, and what stands out further than the cut."""
     body = drawn.body
     edges: list[tuple[Point, ...]] = []
@@ -491,14 +493,14 @@ def _behind(drawn: Drawn, sense: float) -> list[tuple[Point, ...]]:
     return edges
 
 
-def _draw_bore(page: Page, drawn: Drawn, layout: Layout, tolerance: Tolerance) -> None:
+def _draw_bore(page: Page, drawn: DrawnDisc, layout: Layout, tolerance: Tolerance) -> None:
     """A bore that is not round, turned so that its keyway or flat is on the right, and its sizes."""
     part, k, (x, y) = drawn.part, layout.scale, layout.bore
     bore = part.bore or 0.0
     points = next(loop.points for loop in drawn.loops if loop.layer == "BORE")
     at, words = _bore_label(drawn)
     turned = _turned(points, -drawn.direction(at))
-    page.marks.append(Line(shifted(turned, k, layout.bore), THICK, "VIEW", closed=True))
+    page.marks.append(LineMark(shifted(turned, k, layout.bore), THICK, "VIEW", closed=True))
     low, high = k * float(turned[:, 1].min()), k * float(turned[:, 1].max())
     left, right = k * float(turned[:, 0].min()), k * float(turned[:, 0].max())
     page.line((x + left - 3.0, y), (x + right + 3.0, y), layer="CENTRE", pattern="chain")

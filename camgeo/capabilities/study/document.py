@@ -13,7 +13,7 @@ from camgeo.version import __version__
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.capabilities.study.margins import Margin
+    from camgeo.capabilities.study.margins import FailureMargin
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
     from kin.judge.check import Check
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def document(
     recipe: Recipe,
     steps: Sequence[Rung | End],
-    margins: Sequence[Margin],
+    margins: Sequence[FailureMargin],
     skipped: Sequence[tuple[str, str]],
     *,
     failed: Sequence[Check] = (),
@@ -77,7 +77,7 @@ def _row(recipe: Recipe, rung: Rung) -> Entry:
     return entry
 
 
-def _margin(recipe: Recipe, margin: Margin) -> Entry:
+def _margin(recipe: Recipe, margin: FailureMargin) -> Entry:
     value, unit = in_units(recipe, margin.value, margin.unit)
     if margin.unit == "deg/mm":
         value, unit = margin.value * recipe.mm, f"deg/{in_units(recipe, None, 'mm')[1]}"

@@ -19,7 +19,7 @@ EPS = float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True)
-class Margin:
+class FailureMargin:
     """Distance from a failure, at which it is 0; or, where `grows` is true, a factor by which errors grow.
 
     `unit` is mm, deg, deg/mm or none; `of` says in words what happens at 0, or what grows.
@@ -32,21 +32,21 @@ class Margin:
     grows: bool = False
 
 
-def margins(recipe: Recipe, design: Design) -> list[Margin]:
+def margins(recipe: Recipe, design: Design) -> list[FailureMargin]:
     """All margins and factors that a design has, in mm and degrees."""
     margins = _undercut_margins(design)
-    margins += [Margin(*margin) for margin in design.exact.margins]
+    margins += [FailureMargin(*margin) for margin in design.exact.margins]
     for check in design.checks:
         if check.name == PRESSURE.name and check.value is not None:
             what = f"{check.surface} the cam cannot drive the roller".strip()
-            margins.append(Margin(PRESSURE.name, 90.0 - check.value, "deg", what))
+            margins.append(FailureMargin(PRESSURE.name, 90.0 - check.value, "deg", what))
         if check.name == WALL.name and check.value is not None:
             what = f"{check.surface} the bore breaks through the contour".strip()
-            margins.append(Margin(WALL.name, check.value, "mm", what))
+            margins.append(FailureMargin(WALL.name, check.value, "mm", what))
     return [*margins, *_linkage_margins(design), *_error_factors(recipe, design)]
 
 
-def _undercut_margins(design: Design) -> list[Margin]:
+def _undercut_margins(design: Design) -> list[FailureMargin]:
     """Distance of each surface from undercut: mm, and as a share of the roller radius or of the size."""
     margins = []
     for drawn in design.surfaces:
@@ -55,36 +55,38 @@ def _undercut_margins(design: Design) -> list[Margin]:
             continue
         roller = surface.radius
         what = f"{surface.name} {'the roller undercuts' if roller else 'the flat face loses contact'}".strip()
-        margins.append(Margin("undercut", value - roller, "mm", f"{what} (least radius of curvature)"))
+        margins.append(FailureMargin("undercut", value - roller, "mm", f"{what} (least radius of curvature)"))
         base = roller or surface.curve.size
-        margins.append(Margin("undercut-relative", (value - roller) / base, "", f"{what}, as a part of the size"))
+        margins.append(
+            FailureMargin("undercut-relative", (value - roller) / base, "", f"{what}, as a part of the size")
+        )
     return margins
 
 
-def _linkage_margins(design: Design) -> list[Margin]:
+def _linkage_margins(design: Design) -> list[FailureMargin]:
     """Distances of a linkage from binding, reversal and a force along the link; the factor of its output's error."""
     if design.driven is None:
         return []
     mechanism = design.driven.mechanism
     mobility = mechanism.mobility()
-    margins = [Margin("binding", mobility.margin, "mm", "a loop of the linkage binds: its square root's edge")]
+    margins = [FailureMargin("binding", mobility.margin, "mm", "a loop of the linkage binds: its square root's edge")]
     if not math.isnan(mobility.least_rate):
-        margins.append(Margin(REVERSAL.name, mobility.least_rate, "", "the shaft would have to turn back"))
+        margins.append(FailureMargin(REVERSAL.name, mobility.least_rate, "", "the shaft would have to turn back"))
     if design.driven.figures is None:
         return margins
     force = math.degrees(design.driven.figures.force_least.value)
-    margins.append(Margin("force-angle", force, "deg", "the force on the output link runs along it"))
+    margins.append(FailureMargin("force-angle", force, "deg", "the force on the output link runs along it"))
     from kin.follower.frame import implied_limit
 
     limit = implied_limit(mechanism, SMALL)
     if limit is not None:
         unit = "deg/mm" if mechanism.unit == "deg" else ""
         what = "error of the output by that of the profile"
-        margins.append(Margin("output-condition", limit / SMALL, unit, what, True))
+        margins.append(FailureMargin("output-condition", limit / SMALL, unit, what, True))
     return margins
 
 
-def _error_factors(recipe: Recipe, design: Design) -> list[Margin]:
+def _error_factors(recipe: Recipe, design: Design) -> list[FailureMargin]:
     """Factors by which errors of the profile act on the follower, by surface; tolerance over rounding error."""
     if not design.contours:
         return []
@@ -92,8 +94,8 @@ def _error_factors(recipe: Recipe, design: Design) -> list[Margin]:
     for name, gauge in design.exact.gauges.items():
         unit = "deg/mm" if gauge.unit == "deg" else ""
         what = f"{name} error of the follower by that of the profile".strip()
-        factors.append(Margin("motion-condition", gauge.motion_limit(SMALL) / SMALL, unit, what, True))
+        factors.append(FailureMargin("motion-condition", gauge.motion_limit(SMALL) / SMALL, unit, what, True))
     size = max(contour.size for _, contour in design.contours)
     precision = recipe.export.tolerance / (EPS * size)
     what = "tolerance over the rounding of the contour's coordinates; 64 at least"
-    return [*factors, Margin("precision", precision, "", what)]
+    return [*factors, FailureMargin("precision", precision, "", what)]

@@ -31,7 +31,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.capabilities.sweep.engines import Engine
+    from camgeo.capabilities.sweep.engines import Workers
     from camgeo.capabilities.sweep.gather import Ranking, Selection
     from camgeo.capabilities.sweep.plan import Plan
     from camgeo.recipe.limits import Limit
@@ -65,7 +65,7 @@ class ChunkError(CamgeoError, ValueError):
 
 
 @dataclass(frozen=True)
-class Job:
+class SweepJob:
     """A plan, and how the figures of its designs are computed; it travels to any worker.
 
     `compute(scene, values (m, axes))` gives the figures of m designs, arrays (m,) of float64 by name; it is a function
@@ -99,7 +99,7 @@ def versions(plan: Plan) -> dict[str, str]:
     return packages
 
 
-def result(job: Job, number: int, key: str) -> bytes:
+def result(job: SweepJob, number: int, key: str) -> bytes:
     """Bytes of a chunk's file, computed here. Raises VersionsError where the job has another key here than `key`."""
     if job.key != key:
         here = ", ".join(f"{name} {version}" for name, version in versions(job.plan).items())
@@ -222,7 +222,7 @@ def _is_regular_file(path: Path) -> bool:
     raise SurroundingsError(f"{kind}, where the sweep keeps a file of its results: move it or remove it", path)
 
 
-def chunks_of(job: Job, folder: Path) -> Chunks:
+def chunks_of(job: SweepJob, folder: Path) -> Chunks:
     """Chunks of a job, in a folder named by its key below the output folder of its recipe."""
     key = job.key
     return Chunks(folder / FOLDER / key[:_SHORT], key, job.plan)
@@ -238,7 +238,9 @@ class Work:
     seconds: float
 
 
-def compute(job: Job, chunks: Chunks, engine: Engine, *, fresh: bool = False, listener: Listener | None = None) -> Work:
+def compute(
+    job: SweepJob, chunks: Chunks, engine: Workers, *, fresh: bool = False, listener: Listener | None = None
+) -> Work:
     """Compute every chunk that is not on disk, or all where `fresh`; each is written as soon as it is done.
 
     Raises what the engine raises, and OSError; chunks written by then stay.
@@ -259,13 +261,13 @@ def compute(job: Job, chunks: Chunks, engine: Engine, *, fresh: bool = False, li
 
 
 def gather_chunks(
-    job: Job, chunks: Chunks, ranking: Ranking, slack: Callable[[Limit], float] | None = None
+    job: SweepJob, chunks: Chunks, ranking: Ranking, slack: Callable[[Limit], float] | None = None
 ) -> Selection:
     """The designs that a ranking selects, see `gather`. Chunks damaged or removed meanwhile are computed again."""
     return gather(job.plan, ranking, (_figures(job, chunks, number) for number in range(job.plan.chunks)), slack)
 
 
-def _figures(job: Job, chunks: Chunks, number: int) -> Mapping[str, Array]:
+def _figures(job: SweepJob, chunks: Chunks, number: int) -> Mapping[str, Array]:
     """Figures (m,) by name of the designs of a chunk."""
     try:
         figures = chunks.read(number)

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import argparse
 
     from camgeo.capabilities.sweep.chunks import Listener
-    from camgeo.capabilities.sweep.search import Outcome
-    from camgeo.capabilities.sweep.task import Task
+    from camgeo.capabilities.sweep.search import SweepOutcome
+    from camgeo.capabilities.sweep.task import SweepTask
     from camgeo.checks.remedies import Entry
 
 _EVERY = 10.0  # seconds between lines of progress where there is no terminal
@@ -43,10 +43,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     0 a design keeps the limits, 1 none does, 2 a wrong recipe, 3 the surroundings fail, 130 interrupted.
     """
-    from camgeo.capabilities.sweep.task import EXACT, Task
+    from camgeo.capabilities.sweep.task import EXACT, SweepTask
     from camgeo.recipe.loading import load
 
-    task = Task.from_recipe(load(arguments.recipe))
+    task = SweepTask.from_recipe(load(arguments.recipe))
     outcome, problem, status = _search(task, arguments)
     if outcome is None:
         _complain(task, problem)
@@ -69,15 +69,15 @@ def run(arguments: argparse.Namespace) -> int:
     return status
 
 
-def _search(task: Task, arguments: argparse.Namespace) -> tuple[Outcome | None, str, int]:
+def _search(task: SweepTask, arguments: argparse.Namespace) -> tuple[SweepOutcome | None, str, int]:
     """Outcome or None, a message of what went wrong, and the exit status."""
     from camgeo.capabilities.sweep.chunks import EngineError
-    from camgeo.capabilities.sweep.engines import Engine
+    from camgeo.capabilities.sweep.engines import Workers
     from camgeo.capabilities.sweep.search import search
     from camgeo.common.errors import SurroundingsError
 
     progress = Progress(task.recipe.name, _EVERY)
-    engine = Engine(arguments.jobs, arguments.scheduler)
+    engine = Workers(arguments.jobs, arguments.scheduler)
     resume = "what was computed is kept; the same command continues from there"
     try:
         out, listener = Path(arguments.out), _progress_listener(progress)
@@ -103,7 +103,7 @@ def missing_package(error: ModuleNotFoundError) -> str:
     return f"the package {error.name} is missing: {install('dask' if error.name == 'distributed' else 'sweep')}"
 
 
-def _complain(task: Task, text: str) -> None:
+def _complain(task: SweepTask, text: str) -> None:
     complain(f"camgeo: {task.recipe.name}: {text}")
 
 

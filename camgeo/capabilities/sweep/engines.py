@@ -18,7 +18,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 
-    from camgeo.capabilities.sweep.chunks import Job
+    from camgeo.capabilities.sweep.chunks import SweepJob
 
 Results: TypeAlias = "Generator[tuple[int, bytes], None, None]"
 
@@ -34,13 +34,13 @@ _MOST_TIMEOUTS = 6  # in a row, until the scheduler's first worker comes
 
 
 @dataclass(frozen=True)
-class Engine:
+class Workers:
     """Who computes chunks: the scheduler at an address, else at most `jobs` processes, by default one a core."""
 
     jobs: int | None = None
     scheduler: str | None = None
 
-    def results(self, job: Job, numbers: Sequence[int]) -> Results:
+    def results(self, job: SweepJob, numbers: Sequence[int]) -> Results:
         """Numbers of chunks and bytes of their files, as they are done."""
         if self.scheduler is not None:
             return dask(job, numbers, self.scheduler)
@@ -86,7 +86,7 @@ def spread(function: Callable[[T], R], items: Sequence[T], count: int) -> Genera
         yield item, function(item)
 
 
-def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
+def dask(job: SweepJob, numbers: Sequence[int], address: str) -> Results:
     """Chunks computed by the workers of the Dask scheduler at `address`, which need camgeo, and no shared disk.
 
     Raises ModuleNotFoundError without the package distributed, VersionsError for workers of other versions, and

@@ -66,7 +66,7 @@ class FigureTable(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Scene:
+class SweepScene:
     """All data that decide the figures of a sweep's designs, as plain data for any worker; they are part of the key.
 
     `recipe` has its sweep, without what has no bearing on a figure. `figures` are the names of those computed, by
@@ -393,14 +393,14 @@ def _acute_angle(sine: Array | None, count: int, smooth: Mask) -> Array:
     return angle
 
 
-def compute_figures(scene: Scene, values: Array) -> dict[str, Array]:
+def compute_figures(scene: SweepScene, values: Array) -> dict[str, Array]:
     """Figures (m,) of designs with the values (m, axes) of a scene's sweep; under REASON an index into `REASONS`."""
     table = _evaluator(scene).evaluate(values)
     return {**table.figures, REASON: table.reason.astype(np.float64)}
 
 
 @lru_cache(maxsize=1)
-def _evaluator(scene: Scene) -> Evaluator:
+def _evaluator(scene: SweepScene) -> Evaluator:
     """The evaluator that all chunks of a sweep share; a process that computes one computes many."""
     # glibc hands the memory of each block back to the system, and takes it again page by page for the next, at a tenth
     # of all time. It keeps what is smaller than the largest piece it was ever given back.

@@ -119,7 +119,7 @@ class Selection:
     index: NDArray[np.int64]
     values: Array
     figures: dict[str, Array]
-    cells: Cells
+    cells: BestByCell
     nearest: Nearest | None = None
     certificate: Certificate | None = None
 
@@ -139,7 +139,7 @@ def gather(
 
     Raises ValueError unless the chunks have the figures of all designs of the plan.
     """
-    cells = Cells(plan, most=ranking.most)
+    cells = BestByCell(plan, most=ranking.most)
     failing = dict.fromkeys((limit.figure for limit in ranking.limits), 0)
     stuck = kept = first = waiting = 0
     reasons: Counter[int] = Counter()
@@ -208,7 +208,7 @@ class _Rows:
         return _Rows(index[order], score[order], values, np.concatenate([part.table for part in parts])[order])
 
 
-class Cells:
+class BestByCell:
     """The best design in each cell over the first one or two axes, whatever its other values are; filled by `paint`.
 
     `edges` and `centres` of the cells along each axis; `state` (cells of axis 1, of axis 2 or 1) has NONE, STUCK,

@@ -7,10 +7,10 @@ from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.recipe.figures import FIGURES, Figure
+from camgeo.recipe.figures import FIGURES, DesignFigure
 from camgeo.recipe.limits import Limit, build_limits, limits_form
 from camgeo.schema.errors import quote, suggestion
-from camgeo.schema.fields import Field, Form, Kind, Table, field_at
+from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, field_at
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, describe, entries, is_empty, join, scalars
 from kin.numeric.records import dataclass
@@ -93,15 +93,15 @@ def varied_fields(recipe: Recipe) -> tuple[Axis, ...]:
     return () if sweep is None else sweep.vary
 
 
-def sweep_figures() -> dict[str, Figure]:
+def sweep_figures() -> dict[str, DesignFigure]:
     """Figures by which designs can be limited and ranked, by name."""
     return {name: figure for name, figure in FIGURES.items() if figure.swept}
 
 
-def _range_table(unit: Kind | None) -> Table:
+def _range_table(unit: Kind | None) -> FieldTable:
     """Keys of a range: `from`, `to` and `steps`, its ends numbers with a unit of this kind."""
     steps = "number of values, both ends included; for a grid"
-    return Table(
+    return FieldTable(
         (
             Field("from", Kind.NUMBER, "first value, as the recipe writes it", required=True, unit=unit),
             Field("to", Kind.NUMBER, "last value", required=True, unit=unit),
@@ -171,13 +171,15 @@ def _vary_schema(_: Field) -> Schema:
     return {"type": "object", "additionalProperties": axis, "minProperties": 1, "maxProperties": MOST_AXES}
 
 
-_VARY = Form(
+_VARY = OwnForm(
     "what varies",
     "a mapping from paths to ranges, such as {linkage.rocker: {from: 95, to: 110, steps: 16}}",
     read_vary,
     _vary_schema,
 )
-_AXIS = Form("a range", "a range such as {from: 95, to: 110, steps: 16}, or a list of values", read_vary, _vary_schema)
+_AXIS = OwnForm(
+    "a range", "a range such as {from: 95, to: 110, steps: 16}, or a list of values", read_vary, _vary_schema
+)
 
 
 def fields() -> tuple[Field, ...]:
@@ -197,7 +199,7 @@ def fields() -> tuple[Field, ...]:
         Field("angles", Kind.INTEGER, angles, default=f"{SAMPLES}", at_least=24, at_most=36_000),
         Field("refine", Kind.TRUTH, "whether the best designs are polished, off the grid", default="false"),
     )
-    return (Field("sweep", Kind.TABLE, "a search among designs", after="dwell", table=Table(table)),)
+    return (Field("sweep", Kind.TABLE, "a search among designs", after="dwell", table=FieldTable(table)),)
 
 
 def check_sweep(values: Values, reader: Reader) -> None:

@@ -111,9 +111,9 @@ def search(
     """
     from camgeo.capabilities.sweep.chunks import EngineError
     from camgeo.capabilities.sweep.command import missing_package
-    from camgeo.capabilities.sweep.engines import Engine
+    from camgeo.capabilities.sweep.engines import Workers
     from camgeo.capabilities.sweep.search import search as run_search
-    from camgeo.capabilities.sweep.task import Task
+    from camgeo.capabilities.sweep.task import SweepTask
 
     recipe, folder = recipe_of(recipe), path_of("out", out)
     demand_callable("progress", progress)
@@ -128,8 +128,8 @@ def search(
             progress(f"{count:,} of {total:,} {what}")
 
     try:
-        task = Task.from_recipe(recipe)
-        outcome = run_search(task, folder, Engine(jobs, scheduler), fresh=fresh, listener=listener)
+        task = SweepTask.from_recipe(recipe)
+        outcome = run_search(task, folder, Workers(jobs, scheduler), fresh=fresh, listener=listener)
     except ModuleNotFoundError as error:
         raise SurroundingsError(missing_package(error), folder) from error
     except EngineError as error:

@@ -16,7 +16,7 @@ import numpy as np
 
 from camgeo.capabilities.sweep.gather import MOST_ROWS
 from camgeo.capabilities.sweep.keys import sweep_figures
-from camgeo.capabilities.sweep.pictures import Curve, draw_best, draw_map
+from camgeo.capabilities.sweep.pictures import OutputCurve, draw_best, draw_map
 from camgeo.capabilities.sweep.single_designs import mechanism_in, text_with
 from camgeo.files.errors import install
 from camgeo.recipe.figures import FIGURES, OF_DWELL
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.sweep.gather import Certificate, Nearest, Ranking, Selection
     from camgeo.capabilities.sweep.keys import Axis
     from camgeo.capabilities.sweep.plan import Plan
-    from camgeo.capabilities.sweep.task import Task, Unit
+    from camgeo.capabilities.sweep.task import SweepTask, Unit
     from camgeo.checks.remedies import Entry
     from camgeo.recipe.recipe import Recipe
     from kin.numeric.arrays import Array, Mask
@@ -74,7 +74,7 @@ class Best:
         return f"best-{self.place}.yaml"
 
 
-def recipe_text(task: Task, best: Best) -> str:
+def recipe_text(task: SweepTask, best: Best) -> str:
     """Text of the user's recipe with the design's values, a name of its own, its figures in `about`, and no sweep.
 
     Raises RecipeErrors where the sweep cannot be cut out of the text.
@@ -90,7 +90,7 @@ def recipe_text(task: Task, best: Best) -> str:
     return _with_entries(text, {"name": name, "about": _about(task, best)})
 
 
-def _about(task: Task, best: Best) -> str:
+def _about(task: SweepTask, best: Best) -> str:
     """The design's origin and ranking figure, then as much of the recipe's own note as fits."""
     origin = f"polished from design {best.index}" if best.polished else f"design {best.index}"
     rank = task.sweep.rank
@@ -117,7 +117,7 @@ def _with_entries(text: str, entries: dict[str, str]) -> str:
     return text[:index] + "".join(f"{item}\n{indent}" for item in items) + text[index:]
 
 
-def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
+def curve_of(recipe: Recipe, label: str) -> tuple[OutputCurve, str]:
     """Output of a recipe's linkage over the shaft angle, or without one its cam's lift or swing; name of that axis.
 
     In degrees or the recipe's units. Raises PlaceError for a linkage that does not turn, TypeError for one on a cam
@@ -129,7 +129,7 @@ def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
         at_points = replace(recipe, verify=replace(recipe.verify, angles=_POINTS))
         (_, name, *_), rows = motion_table(at_points, recipe.cam.exact().motion)
         word, _, unit = name.partition("_")
-        return Curve(label, rows[:, 0], rows[:, 1]), f"{word} ({unit})"
+        return OutputCurve(label, rows[:, 0], rows[:, 1]), f"{word} ({unit})"
     mechanism = mechanism_in(recipe)
     shaft = np.linspace(0.0, 2.0 * math.pi, _POINTS + 1)
     output = mechanism.at(mechanism.relative(shaft), 0).output[0]
@@ -140,7 +140,7 @@ def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
     if recipe.dwell is not None:
         longest = mechanism.dwells(recipe.dwell.band, most=1)[0]
         dwell = math.degrees(longest.start), math.degrees(longest.length)
-    return Curve(label, np.degrees(shaft), output * scale, dwell), f"output ({unit})"
+    return OutputCurve(label, np.degrees(shaft), output * scale, dwell), f"output ({unit})"
 
 
 def with_polished(designs: Selection, best: Sequence[Best], ranking: Ranking) -> tuple[Selection, Marks]:
@@ -227,7 +227,7 @@ class Files:
 
 
 def outputs(
-    task: Task, designs: Selection, best: Sequence[Best], run: Entry, reasons: Sequence[str] = ()
+    task: SweepTask, designs: Selection, best: Sequence[Best], run: Entry, reasons: Sequence[str] = ()
 ) -> tuple[dict[str, bytes], Entry]:
     """All files of a sweep, `sweep.json` among them, and that report. Its `run` alone depends on how it was computed.
 
@@ -265,7 +265,7 @@ def _label(name: str, unit: str) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def _map_pictures(task: Task, designs: Selection, best: Sequence[Best]) -> list[bytes]:
+def _map_pictures(task: SweepTask, designs: Selection, best: Sequence[Best]) -> list[bytes]:
     """The map as PNG and SVG."""
     rank = task.sweep.rank
     unit = task.units([rank])[rank]
@@ -291,7 +291,7 @@ def _map_pictures(task: Task, designs: Selection, best: Sequence[Best]) -> list[
     return [pictures["png"], pictures["svg"]]
 
 
-def _band(task: Task) -> str:
+def _band(task: SweepTask) -> str:
     """Band of the recipe's dwells, with its unit."""
     if task.recipe.dwell is None:
         raise ValueError(f"{task.recipe.name} has no dwell")
@@ -300,7 +300,7 @@ def _band(task: Task) -> str:
     return f"{(math.degrees(band) if unit.name == 'deg' else band / unit.divisor):.6g} {unit.name}"
 
 
-def _curve_pictures(task: Task, best: Sequence[Best], files: dict[str, bytes]) -> list[bytes]:
+def _curve_pictures(task: SweepTask, best: Sequence[Best], files: dict[str, bytes]) -> list[bytes]:
     """The best designs' curves as PNG and SVG."""
     rank = task.sweep.rank
     unit = task.units([rank])[rank]
@@ -316,7 +316,7 @@ def _curve_pictures(task: Task, best: Sequence[Best], files: dict[str, bytes]) -
     return [pictures["png"], pictures["svg"]]
 
 
-def _report(task: Task, designs: Selection, best: Sequence[Best], reasons: Sequence[str]) -> Entry:
+def _report(task: SweepTask, designs: Selection, best: Sequence[Best], reasons: Sequence[str]) -> Entry:
     """The report: the sweep, its counts and its best designs, figures in the recipe's units."""
     sweep, counts, units = task.sweep, designs.counts, task.units(sweep_figures())
     bounds = {
@@ -375,7 +375,7 @@ def _report(task: Task, designs: Selection, best: Sequence[Best], reasons: Seque
     }
 
 
-def _screen(task: Task, certificate: Certificate | None) -> Entry:
+def _screen(task: SweepTask, certificate: Certificate | None) -> Entry:
     """Whether figures are estimates; if so, what was computed exactly, and the errors of the estimates."""
     if certificate is None:
         return {"used": False, "why": task.unscreened}
@@ -397,7 +397,7 @@ def _screen(task: Task, certificate: Certificate | None) -> Entry:
     }
 
 
-def _nearest(task: Task, near: Nearest, unit: Unit) -> Entry:
+def _nearest(task: SweepTask, near: Nearest, unit: Unit) -> Entry:
     """The design that misses the limits by least where none keeps them, its figure in the recipe's unit."""
     return {
         "index": near.index,

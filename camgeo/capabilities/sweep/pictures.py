@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from camgeo.capabilities.sweep.gather import Cells
+    from camgeo.capabilities.sweep.gather import BestByCell
     from kin.numeric.arrays import Array
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
@@ -35,7 +35,7 @@ _MOST_POINTS = 60  # values up to which a curve shows each as a point
 
 
 @dataclass(frozen=True)
-class Curve:
+class OutputCurve:
     """A design's output over the shaft angle (degrees), and its longest dwell, (start, length) in degrees, if any."""
 
     label: str
@@ -45,7 +45,14 @@ class Curve:
 
 
 def draw_map(
-    title: str, cells: Cells, label: str, names: Sequence[str], best: Array, *, divisor: float = 1.0, notes: str = ""
+    title: str,
+    cells: BestByCell,
+    label: str,
+    names: Sequence[str],
+    best: Array,
+    *,
+    divisor: float = 1.0,
+    notes: str = "",
 ) -> dict[str, bytes]:
     """Picture of the ranking's figure over the cells' one or two axes, as bytes: {"png": ..., "svg": ...}.
 
@@ -74,7 +81,7 @@ def draw_map(
         return _encoded(figure)
 
 
-def draw_best(title: str, curves: Sequence[Curve], label: str, *, notes: str = "") -> dict[str, bytes]:
+def draw_best(title: str, curves: Sequence[OutputCurve], label: str, *, notes: str = "") -> dict[str, bytes]:
     """Picture of the best designs' output over a turn, as bytes by kind; the first is boldest, its dwell shaded."""
     with _blank() as (figure, axes):
         for number, curve in enumerate(curves):
@@ -103,7 +110,7 @@ def draw_best(title: str, curves: Sequence[Curve], label: str, *, notes: str = "
         return _encoded(figure)
 
 
-def _draw_cells(figure: Figure, axes: Axes, cells: Cells, values: Array, label: str) -> list[Artist]:
+def _draw_cells(figure: Figure, axes: Axes, cells: BestByCell, values: Array, label: str) -> list[Artist]:
     """Draw cells of two axes in colour, those without a kept design in grey; return the legend's entries."""
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
@@ -123,7 +130,7 @@ def _draw_cells(figure: Figure, axes: Axes, cells: Cells, values: Array, label: 
     return handles
 
 
-def _draw_curve(axes: Axes, cells: Cells, values: Array) -> list[Artist]:
+def _draw_curve(axes: Axes, cells: BestByCell, values: Array) -> list[Artist]:
     """Draw the figure over one axis, where no design is kept a grey band; return the legend's entries."""
     x, state = cells.centres[0], cells.state[:, 0]
     filled = state != NONE

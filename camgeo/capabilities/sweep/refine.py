@@ -25,7 +25,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.capabilities.sweep.task import Task
+    from camgeo.capabilities.sweep.task import SweepTask
     from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
     from kin.numeric.arrays import Array, Indices
@@ -86,7 +86,7 @@ class _Goal:
         return np.where(np.isfinite(loss), loss, 1e4 * _BROKEN)
 
 
-def polish(task: Task, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+def polish(task: SweepTask, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
     """Values by path of a design as good or better, and its figures by name, mm and degrees.
 
     `values` are those of a design of the sweep by their paths. Only what varies over a range changes, within it; listed
@@ -117,7 +117,7 @@ def polish(task: Task, values: dict[str, float]) -> tuple[dict[str, float], dict
     )
 
 
-def _optimise(task: Task, goal: _Goal) -> tuple[_Goal, Array]:
+def _optimise(task: SweepTask, goal: _Goal) -> tuple[_Goal, Array]:
     """Search for the best values (axes,); return them with the goal, whose band is that of the last search.
 
     Where the result has a greater output error than the band allows for, the search starts again from there; after
@@ -167,12 +167,12 @@ def output_error(recipe: Recipe) -> float:
     )
 
 
-def _unlimited(task: Task) -> Recipe:
+def _unlimited(task: SweepTask) -> Recipe:
     """The recipe with a sweep without limits, so that figures of every design are computed."""
     return task.recipe.with_value(replace(task.sweep, limits=()))
 
 
-def _goal(task: Task, paths: Sequence[str], start: Array) -> _Goal:
+def _goal(task: SweepTask, paths: Sequence[str], start: Array) -> _Goal:
     """Goal of a task from a start (axes,), within the recipe's own band."""
     sweep = task.sweep
     free = np.array([i for i, axis in enumerate(sweep.vary) if axis.is_range], dtype=np.intp)

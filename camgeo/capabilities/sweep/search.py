@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from camgeo.capabilities.sweep.cams import REASONS
-from camgeo.capabilities.sweep.chunks import Job, chunks_of, compute, gather_chunks
+from camgeo.capabilities.sweep.chunks import SweepJob, chunks_of, compute, gather_chunks
 from camgeo.capabilities.sweep.engines import spread
 from camgeo.capabilities.sweep.figures import compute_figures
 from camgeo.capabilities.sweep.gather import Certificate, Nearest
 from camgeo.capabilities.sweep.outputs import PICTURES, REPORT, TABLES, Best, outputs, recipe_text
 from camgeo.capabilities.sweep.refine import PolishError, polish
 from camgeo.capabilities.sweep.screen import allowance, error_of, slack
-from camgeo.capabilities.sweep.task import Task
+from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.common.errors import BusyError, SurroundingsError
 from camgeo.output.output_folder import Family, RunFolder
 from kin.numeric.records import dataclass, replace
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.sweep.chunks import Compute, Listener, Work
-    from camgeo.capabilities.sweep.engines import Engine
+    from camgeo.capabilities.sweep.engines import Workers
     from camgeo.capabilities.sweep.gather import Selection
     from kin.numeric.arrays import Array, Indices
 
@@ -40,9 +40,9 @@ _SAME_DISTANCE = 0.05  # of an axis's range: designs nearer than that in every v
 
 
 Values: TypeAlias = dict[str, float]
-Polish: TypeAlias = "Callable[[Task, Values], tuple[Values, Values]]"
+Polish: TypeAlias = "Callable[[SweepTask, Values], tuple[Values, Values]]"
 """Values and figures, mm and degrees, of a design as good or better that breaks no limit; raises PolishError."""
-Measure: TypeAlias = "Callable[[Task, Array], Mapping[str, Array]]"
+Measure: TypeAlias = "Callable[[SweepTask, Array], Mapping[str, Array]]"
 """All figures (m,) of designs with values (m, axes), in mm and degrees: also what the search went without."""
 
 
@@ -56,11 +56,11 @@ class Procedures:
     reasons: Sequence[str]
 
 
-COMPUTING = Procedures(compute_figures, Task.measure, polish, REASONS)
+COMPUTING = Procedures(compute_figures, SweepTask.measure, polish, REASONS)
 
 
 @dataclass(frozen=True)
-class Outcome:
+class SweepOutcome:
     """Report of a sweep, the folder of its files, `<name>.rejected` where no design is kept, and what the run did."""
 
     report: dict[str, Any]
@@ -69,14 +69,14 @@ class Outcome:
 
 
 def search(
-    task: Task,
+    task: SweepTask,
     out: Path,
-    engine: Engine,
+    engine: Workers,
     procedures: Procedures | None = None,
     *,
     fresh: bool = False,
     listener: Listener | None = None,
-) -> Outcome:
+) -> SweepOutcome:
     """Run the sweep of a recipe, by COMPUTING or other procedures, and write its files below `out`.
 
     Raises RecipeErrors for a recipe whose sweep cannot be cut out; ModuleNotFoundError, EngineError, VersionsError and
@@ -88,7 +88,7 @@ def search(
     first = Best(1, 0, False, _by_path(task, task.plan.values(0, 1)[0]), {})
     recipe_text(task, first)  # at once rather than in the end, if it cannot be written
     require_free_names(task, out)
-    job = Job(task.plan, task.scene(task.figures), procedures.compute)
+    job = SweepJob(task.plan, task.scene(task.figures), procedures.compute)
     chunks = chunks_of(job, out / task.recipe.name)
     work = compute(job, chunks, engine, fresh=fresh, listener=listener)
     selection = gather_chunks(job, chunks, task.ranking, slack if task.screened else None)
@@ -107,10 +107,10 @@ def search(
         "seconds": round(time.perf_counter() - started, 3),
     }
     files, report = outputs(task, selection, best, run, procedures.reasons)
-    return Outcome(report, place_files(out, task.recipe.name, files, accepted=bool(best)), work)
+    return SweepOutcome(report, place_files(out, task.recipe.name, files, accepted=bool(best)), work)
 
 
-def require_packages(task: Task, engine: Engine) -> None:
+def require_packages(task: SweepTask, engine: Workers) -> None:
     """Raise ModuleNotFoundError for a package without which the sweep would stop halfway."""
     for name, needed in (
         ("scipy", task.sweep.method == "sobol" or task.sweep.refine),
@@ -120,7 +120,7 @@ def require_packages(task: Task, engine: Engine) -> None:
             raise ModuleNotFoundError(name=name)
 
 
-def require_free_names(task: Task, out: Path) -> None:
+def require_free_names(task: SweepTask, out: Path) -> None:
     """Raise SurroundingsError for a user's file in the place of one of the sweep: at once, not in the end."""
     folder = out / task.recipe.name
     if not folder.exists():
@@ -137,7 +137,7 @@ def require_free_names(task: Task, out: Path) -> None:
 
 
 def best_designs(
-    task: Task, selection: Selection, procedures: Procedures, engine: Engine, listener: Listener | None = None
+    task: SweepTask, selection: Selection, procedures: Procedures, engine: Workers, listener: Listener | None = None
 ) -> list[Best]:
     """The best designs with all their figures, best first.
 
@@ -174,7 +174,7 @@ def best_designs(
     return best
 
 
-def _with_all_figures(task: Task, designs: list[Best], measure: Measure) -> list[Best]:
+def _with_all_figures(task: SweepTask, designs: list[Best], measure: Measure) -> list[Best]:
     """The designs, with the figures that the search did not compute."""
     if all(set(task.all_figures) <= set(design.figures) for design in designs):
         return designs
@@ -186,7 +186,7 @@ def _with_all_figures(task: Task, designs: list[Best], measure: Measure) -> list
 
 
 def _polish_all(
-    task: Task, designs: list[Best], polish: Polish, engine: Engine, listener: Listener | None
+    task: SweepTask, designs: list[Best], polish: Polish, engine: Workers, listener: Listener | None
 ) -> list[Best]:
     """Each design polished, in the same order; several at once where that saves time."""
     started = time.perf_counter()
@@ -200,7 +200,7 @@ def _polish_all(
     return [polished[design.place] for design in designs]
 
 
-def _polish(polish: Polish, task: Task, design: Best) -> Best:
+def _polish(polish: Polish, task: SweepTask, design: Best) -> Best:
     """The design polished, or as it was, with the reason why it cannot be."""
     try:
         values, figures = polish(task, design.values)
@@ -209,12 +209,12 @@ def _polish(polish: Polish, task: Task, design: Best) -> Best:
     return replace(design, polished=values != design.values, values=values, figures=figures)
 
 
-def _by_path(task: Task, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of an array
+def _by_path(task: SweepTask, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of an array
     """Values of a design by the paths of their fields."""
     return {axis.path: float(value) for axis, value in zip(task.plan.axes, row, strict=True)}
 
 
-def _are_same(task: Task, design: Best, other: Best) -> bool:
+def _are_same(task: SweepTask, design: Best, other: Best) -> bool:
     """Whether two designs lie so near to each other that they count as one."""
     return all(
         abs(design.values[axis.path] - other.values[axis.path]) <= _SAME_DISTANCE * axis.range
@@ -229,7 +229,7 @@ class ExactDesign(NamedTuple):
     fault: str
 
 
-def certify(task: Task, selection: Selection, engine: Engine, listener: Listener | None) -> Selection:
+def certify(task: SweepTask, selection: Selection, engine: Workers, listener: Listener | None) -> Selection:
     """The selection with certified designs in front: their exact figures keep the limits.
 
     Designs are computed exactly in the order of their estimates, until as many are certified as the sweep keeps. Then
@@ -278,7 +278,9 @@ def certify(task: Task, selection: Selection, engine: Engine, listener: Listener
     return replace(_reorder(task, selection, exact_designs, places), nearest=nearest, certificate=certificate)
 
 
-def _next_candidate(task: Task, selection: Selection, left: Indices, kept: Sequence[Mapping[str, float]]) -> Indices:
+def _next_candidate(
+    task: SweepTask, selection: Selection, left: Indices, kept: Sequence[Mapping[str, float]]
+) -> Indices:
     """First of the places left whose estimate may beat the last design that the sweep keeps; empty without one."""
     rank, sign = task.ranking.rank, 1.0 if task.ranking.most else -1.0
     worst = sorted(sign * figures[rank] for figures in kept)[-task.sweep.keep]
@@ -287,7 +289,7 @@ def _next_candidate(task: Task, selection: Selection, left: Indices, kept: Seque
     return first
 
 
-def _compute_exactly(task: Task, selection: Selection, place: int) -> ExactDesign:
+def _compute_exactly(task: SweepTask, selection: Selection, place: int) -> ExactDesign:
     """Exact design at a place of the selection."""
     computed = task.exact_figures(selection.values[[place]])
     if computed.reason[0]:
@@ -297,7 +299,7 @@ def _compute_exactly(task: Task, selection: Selection, place: int) -> ExactDesig
     return ExactDesign({name: float(column[0]) for name, column in figures.items()}, broken[0] if broken else "")
 
 
-def _nearest(task: Task, selection: Selection, exact_designs: Mapping[int, ExactDesign]) -> Nearest | None:
+def _nearest(task: SweepTask, selection: Selection, exact_designs: Mapping[int, ExactDesign]) -> Nearest | None:
     """The exact design that misses the limits by least, where all of them were rejected.
 
     It is the nearest of the estimates where no exact design has figures.
@@ -312,7 +314,7 @@ def _nearest(task: Task, selection: Selection, exact_designs: Mapping[int, Exact
 
 
 def _reorder(
-    task: Task, selection: Selection, exact_designs: Mapping[int, ExactDesign], places: Sequence[int]
+    task: SweepTask, selection: Selection, exact_designs: Mapping[int, ExactDesign], places: Sequence[int]
 ) -> Selection:
     """The selection with certified designs first, best first, then others whose estimates keep the limits."""
     figures = {name: column.copy() for name, column in selection.figures.items()}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.sweep.figures import Evaluator, Scene, estimable_figures, figure_names
+from camgeo.capabilities.sweep.figures import Evaluator, SweepScene, estimable_figures, figure_names
 from camgeo.capabilities.sweep.gather import Ranking
 from camgeo.capabilities.sweep.keys import Sweep
 from camgeo.capabilities.sweep.plan import Plan
@@ -45,7 +45,7 @@ class Unit:
 
 
 @dataclass(frozen=True)
-class Task:
+class SweepTask:
     """A recipe that has a sweep, its plan and ranking, and the recipe with each of the words that vary."""
 
     recipe: Recipe
@@ -55,14 +55,16 @@ class Task:
     variants: tuple[Recipe, ...] = ()
 
     @staticmethod
-    def from_recipe(recipe: Recipe) -> Task:
+    def from_recipe(recipe: Recipe) -> SweepTask:
         """Task of a recipe's sweep; raises RecipeErrors without one, and for a word that makes no recipe."""
         sweep = recipe.of(Sweep)
         if sweep is None:
             raise recipe.error("sweep", "this recipe has no sweep", None, "add what to vary: `sweep: {vary: ...}`")
         count = math.prod(len(axis.values) for axis in sweep.vary) if sweep.count is None else sweep.count
         ranking = Ranking(sweep.rank, FIGURES[sweep.rank].best == "most", sweep.limits)
-        return Task(recipe, sweep, Plan(sweep.vary, sweep.method, count, sweep.seed), ranking, _variants(recipe, sweep))
+        return SweepTask(
+            recipe, sweep, Plan(sweep.vary, sweep.method, count, sweep.seed), ranking, _variants(recipe, sweep)
+        )
 
     @cached_property
     def figures(self) -> tuple[str, ...]:
@@ -134,7 +136,7 @@ class Task:
         """Values of a design (axes,) by their paths, as the recipe writes them, words as words."""
         return {axis.path: axis.written(float(value)) for axis, value in zip(self.plan.axes, values, strict=True)}
 
-    def scene(self, figures: tuple[str, ...]) -> Scene:
+    def scene(self, figures: tuple[str, ...]) -> SweepScene:
         """Scene of the given figures of a design: all that they depend on, and no more.
 
         So a change of limits, ranking or files to export leaves what was computed as it is.
@@ -151,7 +153,7 @@ class Task:
             verify=Verify(1),
             path=self.recipe.path if self.recipe.tables else Path("recipe.yaml"),
         )
-        return Scene(recipe, figures, self.screened, tuple(variant.cam for variant in self.variants))
+        return SweepScene(recipe, figures, self.screened, tuple(variant.cam for variant in self.variants))
 
     def units(self, figures: Iterable[str]) -> dict[str, Unit]:
         """Unit of each figure, lengths in the recipe's."""

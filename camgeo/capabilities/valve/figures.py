@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from camgeo.recipe.figures import Figure, Need, lift_key
+from camgeo.recipe.figures import DesignFigure, Need, lift_key
 from camgeo.schema.fields import Kind
 
 LIFT, DURATION, SEATING = "valve-lift", "valve-duration", "valve-seating"
@@ -12,9 +12,9 @@ VELOCITY, ACCELERATION = "valve-velocity", "valve-acceleration"
 OF_VALVE = Need("valve", lambda _, paths: "valve" in paths)
 AT, SEAT = 1.0, 0.0  # mm of valve lift at which durations are told, and of the seat
 
-_of_valve = partial(Figure, needs=OF_VALVE, dear=True)
+_of_valve = partial(DesignFigure, needs=OF_VALVE, dear=True)
 
-FIGURES: dict[str, Figure] = {
+FIGURES: dict[str, DesignFigure] = {
     LIFT: _of_valve("greatest lift of the valve", Kind.LENGTH, "most"),
     DURATION: _of_valve(
         "crank degrees for which the valve is above a lift of 1 mm",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.capabilities.valve.train import Valve
 from camgeo.motions.lift_table import MAX_BYTES, TABLE, Origin
-from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, mapping
 from camgeo.schema.file_bytes import read_bytes
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.scalars import Complaint
@@ -25,12 +25,14 @@ MOST_RATIO = 100.0
 _REMEDY = "give rows of a tappet lift and a ratio, such as 0;1.55"
 _COLUMNS = ("lift", "ratio")
 _NUMBER = Field("ratio", Kind.NUMBER, "", above=0, at_most=MOST_RATIO)
-_ROWS = Table((Field("table", Kind.OWN, "file with a row for each tappet lift and the ratio there", True, form=TABLE),))
+_ROWS = FieldTable(
+    (Field("table", Kind.OWN, "file with a row for each tappet lift and the ratio there", True, form=TABLE),)
+)
 
 
 def fields() -> tuple[Field, ...]:
     """Give the keys that the capability adds to a recipe."""
-    ratio = Form(
+    ratio = OwnForm(
         "a ratio",
         "a number above 0, or {table: rocker.csv} with tappet lifts and ratios",
         _read_ratio,

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.valve.train import Valve
-    from camgeo.measures.lobe import Event
+    from camgeo.measures.lobe import LobeEvent
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
@@ -27,14 +27,14 @@ EVENTS = 1.0  # mm of valve lift, at which events are told beside those of its s
 _UNITS = {LIFT: "mm", DURATION: "deg", VELOCITY: "mm/rad", ACCELERATION: "mm/rad^2", SEATING: "mm/deg"}
 
 
-class Extreme(NamedTuple):
+class GreatestDerivative(NamedTuple):
     """Greatest magnitude of a derivative while the valve is open, by rad of the cam, and its cam angle, degrees."""
 
     value: float
     at_deg: float
 
 
-def valve_event(valve: Valve, design: Design, lift: float) -> Event:
+def valve_event(valve: Valve, design: Design, lift: float) -> LobeEvent:
     """Stretch of a turn in which the valve is above a lift, mm: shaft angles, rad.
 
     Raises EventError unless it crosses that lift once upward and once downward.
@@ -46,7 +46,7 @@ def valve_event(valve: Valve, design: Design, lift: float) -> Event:
     return event_of(design.exact, valve.follower_lift(lift))
 
 
-def extremes(valve: Valve, design: Design) -> dict[int, Extreme]:
+def extremes(valve: Valve, design: Design) -> dict[int, GreatestDerivative]:
     """Greatest velocity (1) and acceleration (2) while the valve is open; raises EventError where neither is known."""
     event, exact = valve_event(valve, design, 0.0), design.exact
     datum = float(exact.motion.by_parameter(np.array([event.opening % TURN]), 0)[0, 0]) - event.lift
@@ -66,7 +66,7 @@ def extremes(valve: Valve, design: Design) -> dict[int, Extreme]:
     for k in (1, 2):
         row = pieces(followed, k - 1)
         value, at = max(row.least(), row.greatest(), key=lambda place: abs(place[0]))
-        peaks[k] = Extreme(abs(value), degrees(at % TURN))
+        peaks[k] = GreatestDerivative(abs(value), degrees(at % TURN))
     return peaks
 
 

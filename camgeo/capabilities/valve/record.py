@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from camgeo.measures.measured import Measured
     from camgeo.recipe.recipe import Recipe
     from camgeo.recipe.starter import Starter
-    from camgeo.registry.capability import Moved
+    from camgeo.registry.capability import MovedBody
     from camgeo.registry.formats import Form
     from camgeo.report.page.curves import Plot
     from camgeo.synthesis.design import Design
@@ -36,7 +36,7 @@ def _measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measu
     return measure_at(recipe, design, name, lift)
 
 
-def _moved(recipe: Recipe, design: Design) -> Moved | None:
+def _moved(recipe: Recipe, design: Design) -> MovedBody | None:
     from camgeo.capabilities.valve.train import valve_of
 
     return valve_of(recipe, design)

@@ -23,7 +23,7 @@ import numpy as np
 
 from camgeo.curve.curve import SHIFT, CurveError, cyclic_gap
 from camgeo.curve.undercut.pairs import Boxes, Pairs, Pitch
-from camgeo.curve.undercut.tangents import Turning
+from camgeo.curve.undercut.tangents import TangentDirections
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -136,11 +136,11 @@ class _Search:
     """Pairs of a pitch curve, up to the turns that lead it into itself: the first point lies in its first part."""
 
     pitch: Pitch
-    turning: Turning
+    turning: TangentDirections
 
     @staticmethod
     def of(pitch: Pitch) -> _Search:
-        return _Search(pitch, Turning.of(pitch.curve))
+        return _Search(pitch, TangentDirections.of(pitch.curve))
 
     def boxes(self) -> Boxes:
         """Boxes that hold every pair, or its image by a turn."""

@@ -22,7 +22,7 @@ RIGHT, STRAIGHT = 0.5 * math.pi - ROUNDING, math.pi - ROUNDING
 
 
 @dataclass(frozen=True)
-class Turning:
+class TangentDirections:
     """Directions of the tangent over two turns of a closed curve, for the stretches between `knots` (m + 1,).
 
     `low` and `high`, (levels, m), bound the direction over 1, 2, 4, ... stretches from each on; `hollow` and `bulging`
@@ -36,7 +36,7 @@ class Turning:
     bulging: NDArray[np.intp]
 
     @staticmethod
-    def of(curve: Curve) -> Turning:
+    def of(curve: Curve) -> TangentDirections:
         """Table of a whole closed curve, from its cells' proved bounds of the turn."""
         cells = curve.cells
         width = cells.high - cells.low
@@ -60,7 +60,7 @@ class Turning:
         most = np.maximum(theta[:-1], theta[1:]) + slack
         period = curve.shape.period
         knots = np.concatenate([low, low + period, [low[0] + 2.0 * period]])
-        return Turning(
+        return TangentDirections(
             knots, _doubled(np.minimum, least), _doubled(np.maximum, most), _before(~convex), _before(~concave)
         )
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from camgeo.curve.backwards import backwards, runs_backwards
 from camgeo.curve.curvature import ROUNDING, roots
-from camgeo.curve.curve import SHIFT, Curve, Run, cyclic_gap
+from camgeo.curve.curve import SHIFT, Curve, SmoothRun, cyclic_gap
 from camgeo.curve.undercut.causes import UndercutError, causes, follower_radius, in_ring
 from camgeo.curve.undercut.self_intersection import (
     SHORT,
@@ -56,7 +56,7 @@ class Corner:
 
 
 @dataclass(frozen=True)
-class Lost:
+class LostStretch:
     """Parameters `start` to `end` at which the follower touches nothing, with the corners at both ends (m, 2).
 
     m is 1 where both ends meet, 2 at a neck, 0 where nothing at all is left. `depth` is how far the follower hangs
@@ -73,7 +73,7 @@ class Lost:
 class Remains:
     """The contour left: lost stretches in order, corners between the kept ones, and the number of pieces of metal."""
 
-    lost: tuple[Lost, ...]
+    lost: tuple[LostStretch, ...]
     corners: tuple[Corner, ...]
     pieces: int
 
@@ -361,15 +361,15 @@ def _with_depths(
 ) -> Remains:
     if not stretches:
         low, period = curve.runs[0].low, curve.shape.period
-        return Remains((Lost(low, low + period, np.empty((0, 2)), math.inf),), (), 0)
-    lost: list[Lost] = []
+        return Remains((LostStretch(low, low + period, np.empty((0, 2)), math.inf),), (), 0)
+    lost: list[LostStretch] = []
     own = len(stretches) // curve.shape.repeats if len(stretches) % curve.shape.repeats == 0 else len(stretches)
     for first, last, start, end in stretches:
         points = np.array([corners[i].point for i in sorted({first, last})])
         # the curve's parts are alike: so are the stretches lost from them
         alike = len(lost) >= own
         depth = lost[len(lost) - own].depth if alike else _depth(curve, contact, points, start, end)
-        lost.append(Lost(start, end, points, depth))
+        lost.append(LostStretch(start, end, points, depth))
     # the corner in which the run after each corner ends
     follows = {now[1]: then[0] for now, then in zip(stretches, stretches[1:] + stretches[:1], strict=True)}
     unseen, pieces = set(follows), 0
@@ -402,7 +402,7 @@ def _depth(curve: Curve, contact: _Contact, points: Array, start: float, end: fl
     return best
 
 
-def kept_runs(curve: Curve, remainder: Remains) -> tuple[Run, ...]:
+def kept_runs(curve: Curve, remainder: Remains) -> tuple[SmoothRun, ...]:
     """Kept runs in order, from the end of each lost stretch to the beginning of the next."""
     period = curve.shape.period
     runs = []
@@ -417,11 +417,12 @@ def kept_runs(curve: Curve, remainder: Remains) -> tuple[Run, ...]:
         inside = inside[(inside > low) & (inside < high)]
         if high - low <= 1e-12 * period:
             raise UndercutError(f"what is left of the contour near parameter {low:.9g} is lost in rounding", low)
-        runs.append(Run(low, high, tuple(inside.tolist()), closed=False))
+        runs.append(SmoothRun(low, high, tuple(inside.tolist()), closed=False))
     shift = period if runs[0].low >= curve.runs[0].low + period else 0.0
     if shift:
         runs = [
-            Run(run.low - shift, run.high - shift, tuple(b - shift for b in run.breaks), run.closed) for run in runs
+            SmoothRun(run.low - shift, run.high - shift, tuple(b - shift for b in run.breaks), run.closed)
+            for run in runs
         ]
     return tuple(sorted(runs, key=lambda run: run.low))
 

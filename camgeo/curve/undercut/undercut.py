@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from camgeo.curve.curvature import least_radius
-from camgeo.curve.curve import Curve, Run
+from camgeo.curve.curve import Curve, SmoothRun
 from camgeo.curve.undercut.causes import Causes, UndercutError, causes, follower_radius, in_ring
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.curve.curvature import Reversal
     from camgeo.curve.undercut.bottleneck import Neck
-    from camgeo.curve.undercut.trim import Lost, Remains
+    from camgeo.curve.undercut.trim import LostStretch, Remains
 
 MOST_REPORTED = 200  # stretches that run backwards whose extent is found: a cam with more is no cam
 LOOKS = 240  # parameters at which a neck that exists is sought
@@ -125,33 +125,33 @@ def _free_at(curve: Curve, reasons: Causes) -> float:
     )
 
 
-def _within(curve: Curve, lost: Lost, t: float) -> bool:
+def _within(curve: Curve, lost: LostStretch, t: float) -> bool:
     return (t - lost.start) % curve.shape.period <= lost.end - lost.start
 
 
-def _still(curve: Curve, lost: Lost, reasons: Causes) -> bool:
+def _still(curve: Curve, lost: LostStretch, reasons: Causes) -> bool:
     return any(r.still and _within(curve, lost, 0.5 * (r.start + r.end)) for r in reasons.reversals)
 
 
-def _local(curve: Curve, lost: Lost, inside: list[Reversal]) -> Undercut:
+def _local(curve: Curve, lost: LostStretch, inside: list[Reversal]) -> Undercut:
     from camgeo.curve.undercut.self_intersection import all_breaks
 
     least, place = math.inf, lost.start
     for r in inside:
         breaks = tuple(all_breaks(curve, r.start, r.end).tolist())
-        radius, parameter = least_radius(Curve(curve.shape, (Run(r.start, r.end, breaks, closed=False),)))
+        radius, parameter = least_radius(Curve(curve.shape, (SmoothRun(r.start, r.end, breaks, closed=False),)))
         if radius < least:
             least, place = radius, parameter
     roller = follower_radius(curve)
     return Undercut("local", lost.start, lost.end, place, lost.depth, -least if math.isinf(roller) else roller + least)
 
 
-def _global(curve: Curve, lost: Lost, neck: Neck) -> Undercut:
+def _global(curve: Curve, lost: LostStretch, neck: Neck) -> Undercut:
     place = neck.first if _within(curve, lost, neck.first) else neck.second
     return Undercut("global", lost.start, lost.end, place, lost.depth, neck.half)
 
 
-def _neck_of(curve: Curve, lost: Lost) -> Neck:
+def _neck_of(curve: Curve, lost: LostStretch) -> Neck:
     """Neck that costs a stretch nowhere bent too much: the least rolling radius on it."""
     from camgeo.curve.undercut.bottleneck import neck_from, rolling_radius
     from camgeo.curve.undercut.pairs import Pitch

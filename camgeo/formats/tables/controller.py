@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.reader import Reader, Values
     from kin.law.joined_rows import Join
@@ -116,12 +116,12 @@ def check(file: Values, values: Values, reader: Reader) -> None:
         reader.fault_at(f"{path}.step", "more rows than its table takes", None, f"give {finest:g} or more")
 
 
-def make(job: Job, request: FileRequest, path: Path) -> Made:
+def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Write a table with the step that is given, or the widest that holds the tolerance; read it back and judge it.
 
     Raises RecipeErrors where no step, or not the one given, holds the tolerance in a table of this controller.
     """
-    from camgeo.output.job import Made
+    from camgeo.output.job import MadeFiles
     from camgeo.synthesis.intent import permitted
 
     recipe, tolerance = job.recipe.in_units_of(request), job.tolerance(request)
@@ -147,7 +147,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     with job.clock.stage("judge csv"):
         checks = drive_checks(path, gauge, limits, recipe.mm)
     file = FileResult(path, request, units=recipe.mm)
-    return Made((file,), tuple(about(check, path.name) for check in checks))
+    return MadeFiles((file,), tuple(about(check, path.name) for check in checks))
 
 
 class _Rows:

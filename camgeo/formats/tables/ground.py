@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.reader import Reader, Values
 
@@ -37,7 +37,7 @@ def _check(file: Values, values: Values, reader: Reader) -> None:
         reader.fault_at(f"{path}.as", "a wheel grinds the outside of a disc", None, "leave the table or track out")
 
 
-def make_ground(job: Job, request: FileRequest, path: Path) -> Made:
+def make_ground(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Write a table, read it back and judge the metal that its wheel leaves."""
     from camgeo.files.table import write_table
     from camgeo.fit.bound import Bound

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.curve.curve import Curve
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.reader import Reader, Values
     from kin.numeric.arrays import Array
@@ -73,12 +73,12 @@ class _Points(NamedTuple):
         return worst
 
 
-def make(job: Job, request: FileRequest, path: Path) -> Made:
+def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Write the points by the step that is given, or the widest that holds the tolerance, and judge their spline.
 
     Raises RecipeErrors for a contour with corners, and where no number of points holds the tolerance.
     """
-    from camgeo.output.job import Made
+    from camgeo.output.job import MadeFiles
     from camgeo.synthesis.intent import intended, permitted
     from kin.judge.verify import verify_points
 
@@ -97,7 +97,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     with job.clock.stage("judge csv"):
         limits = permitted(recipe, tolerance)
         verdict = verify_points(path, intended(recipe, job.design), recipe.verify.angles, limits, recipe.mm)
-    return Made((FileResult.of(path, request, tolerance, verdict, None),), verdict.checks)
+    return MadeFiles((FileResult.of(path, request, tolerance, verdict, None),), verdict.checks)
 
 
 def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) -> int:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import TypeAlias
 
-    from camgeo.output.job import Job, Made
+    from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.reader import Reader, Values
     from kin.numeric.arrays import Array
@@ -54,10 +54,10 @@ def fewest_rows(error: Callable[[int], float], most: float, finest: float = FINE
 
 def table_maker(
     stage: str, columns: Callable[[Job, FileRequest], Columns], *, gaps: bool = False
-) -> Callable[[Job, FileRequest, Path], Made]:
+) -> Callable[[Job, FileRequest, Path], MadeFiles]:
     """Function that writes a table of these columns in a stage of the run; with `gaps` nan is an empty cell."""
 
-    def make(job: Job, request: FileRequest, path: Path) -> Made:
+    def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
         from camgeo.output.job import unjudged
 
         with job.clock.stage(stage):

@@ -11,7 +11,7 @@ from camgeo.registry import registry
 from camgeo.report.page import curves, guided, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, faces, flat, flat_pair
 from camgeo.report.page.overlays import Stage, overlay_bodies
-from camgeo.report.page.scene import CONTACTS, Body, Scene, Shape, pivot
+from camgeo.report.page.scene import CONTACTS, FilledShape, MovingBody, Scene, pivot
 from camgeo.synthesis.view import Drawer, Round, View, entry, view_of
 from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 from kin.numeric.angles import TURN
@@ -70,7 +70,7 @@ class Content:
 
     scene: Scene
     plots: tuple[curves.Plot, ...]
-    rests: tuple[curves.Rest, ...]
+    rests: tuple[curves.DwellBand, ...]
     relative: Array
     contours: Mapping[str, Traced]
     errors: tuple[FileError, ...]
@@ -128,17 +128,17 @@ def _drawing_of(group: Sequence[outline.FileContours]) -> Drawn:
     return ", ".join(file.name for file in group), tuple(rings for file in group for rings in file.rings)
 
 
-def _on_face(disc_design: Disc) -> list[Shape]:
+def _on_face(disc_design: Disc) -> list[FilledShape]:
     """Boss and timing mark of a disc, which a file's outline lacks or does not tell from other holes."""
     body = disc_design.body
     if body is None:
         return []
     boss = body.boss
-    shapes = [] if boss is None else [Shape("hub", (disc(0.0, 0.0, 0.5 * boss.diameter),), boss.name)]
+    shapes = [] if boss is None else [FilledShape("hub", (disc(0.0, 0.0, 0.5 * boss.diameter),), boss.name)]
     for opening in body.openings:
         if opening.layer in {"MARK", "ENGRAVE"}:
             ring = Ring(opening.outline.points, opening.outline.bulges)
-            shapes.append(Shape("timing mark", (ring,), "zero of the motion"))
+            shapes.append(FilledShape("timing mark", (ring,), "zero of the motion"))
     return shapes
 
 
@@ -161,7 +161,7 @@ def _openings(recipe: Recipe, disc_design: Disc) -> tuple[Ring, ...]:
     return tuple(Ring(outline.points, outline.bulges) for outline in cut)
 
 
-def _discs(design: Design, drawings: list[Drawn], bore: float | None, size: float, turned: Array) -> list[Body]:
+def _discs(design: Design, drawings: list[Drawn], bore: float | None, size: float, turned: Array) -> list[MovingBody]:
     """Return each disc with its boss and mark, the lowest first; discs above it are drawn translucent."""
     several = len(design.discs) > 1
     return [
@@ -191,9 +191,9 @@ def _mechanism(recipe: Recipe, design: Design, drawings: list[Drawn]) -> tuple[S
     if first.side < 0:
         bore = 2.0 * float(np.hypot(*first.curve.sample(np.zeros(1)).point[0]))
     if design.driven is not None and design.driven.turns:
-        from camgeo.report.page.linked import Driven, linkage_bodies, path_bodies
+        from camgeo.report.page.linked import SteppedMechanism, linkage_bodies, path_bodies
 
-        driven = Driven.of(design.driven.mechanism)
+        driven = SteppedMechanism.of(design.driven.mechanism)
         discs = _discs(design, drawings, bore, size, driven.cam)
         bodies = linkage_bodies(driven, size)
         if recipe.linkage is not None:
@@ -218,7 +218,7 @@ def _mechanism(recipe: Recipe, design: Design, drawings: list[Drawn]) -> tuple[S
     return Scene((*discs, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT
 
 
-def _under_contacts(overlays: Sequence[Body], bodies: list[Body]) -> list[Body]:
+def _under_contacts(overlays: Sequence[MovingBody], bodies: list[MovingBody]) -> list[MovingBody]:
     """Return bodies with overlays above all but the contacts, whose normals lie on lines of instant centres."""
     if not overlays:
         return bodies
@@ -226,7 +226,7 @@ def _under_contacts(overlays: Sequence[Body], bodies: list[Body]) -> list[Body]:
     return [*(body for body in bodies if body.kind != CONTACTS), *overlays, *contacts]
 
 
-_Drawing: TypeAlias = "tuple[list[Body], list[curves.Plot]]"
+_Drawing: TypeAlias = "tuple[list[MovingBody], list[curves.Plot]]"
 
 
 def _faces(view: View[Translating, Flat], reach: float, size: float) -> _Drawing:
@@ -243,7 +243,9 @@ def _two_faces(view: View[Oscillating, Flat], _: float, size: float) -> _Drawing
     return bodies, [curves.levers(view.recipe, lever)]
 
 
-def _round_contact(view: View[Guide, Round], size: float) -> tuple[guided.Touch, Array, list[Body], list[curves.Plot]]:
+def _round_contact(
+    view: View[Guide, Round], size: float
+) -> tuple[guided.Touch, Array, list[MovingBody], list[curves.Plot]]:
     """Return roller, shoe or edge, the displacement (STEPS + 1,), mm or rad, the contact, and the plot of its angle."""
     angle = view.pressure(SHAFT)
     touch = guided.touch_of(view.touch, angle, size)
@@ -251,7 +253,7 @@ def _round_contact(view: View[Guide, Round], size: float) -> tuple[guided.Touch,
     return touch, view.travel(SHAFT)[0], _contacts(view, size, touch.within), plots
 
 
-def _contacts(view: View[Guide, Touch], size: float, within: float = 0.0) -> list[Body]:
+def _contacts(view: View[Guide, Touch], size: float, within: float = 0.0) -> list[MovingBody]:
     """Return the contact of each surface; the arrow is longer by `within`, mm."""
     surfaces = view.design.exact.surfaces
     names = [f"contact, {surface.name}" if surface.name else "contact" for surface in surfaces]
@@ -270,7 +272,9 @@ def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
     return [*guided.on_arm(touch, view.contacts[0], s, (view.guide.arm, 0.0), size), *contacts], plots
 
 
-def _face_contact(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
+def _face_contact(
+    view: View[Guide, Flat], size: float
+) -> tuple[Array, float, float, list[MovingBody], list[curves.Plot]]:
     """Return the displacement (STEPS + 1,), ends of the contact's run along the face, mm, the contact, and plots."""
     place, angle = view.place(SHAFT), view.pressure(SHAFT)
     plots = [
@@ -315,7 +319,7 @@ def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Dr
 
 def _pair_contacts(
     view: View[Guide, Round], size: float
-) -> tuple[tuple[guided.Touch, guided.Touch], list[Body], list[curves.Plot]]:
+) -> tuple[tuple[guided.Touch, guided.Touch], list[MovingBody], list[curves.Plot]]:
     """Return the rollers or shoes on the discs of a pair, their contacts, and the plot of both pressure angles."""
     touches, angles, bodies = [], {}, []
     for number, contact in enumerate(view.contacts, start=1):
@@ -340,7 +344,7 @@ def _pair_on_stem(view: View[Translating, Round], _: float, size: float) -> _Dra
 
 def _pair_on_arms(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
     touches, contacts, plots = _pair_contacts(view, size)
-    s, bodies = view.travel(SHAFT)[0], dict[str, Body]()
+    s, bodies = view.travel(SHAFT)[0], dict[str, MovingBody]()
     for number, (contact, touch) in enumerate(zip(view.contacts, touches, strict=True), start=1):
         for body in guided.on_arm(touch, contact, contact.sense * s, (contact.guide.arm, 0.0), size):
             name = f"arm {number}" if body.name == "arm" else body.name

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.page.linked import Driven
+    from camgeo.report.page.linked import SteppedMechanism
     from camgeo.report.page.outline import Exact, FileContours
     from camgeo.synthesis.design import Design, SurfaceDesign
     from kin.numeric.arrays import Array
@@ -124,7 +124,7 @@ def join_titles(titles: Sequence[str]) -> str:
 
 
 @dataclass(frozen=True)
-class Rest:
+class DwellBand:
     """A dwell over the shaft angle, degrees."""
 
     start: float
@@ -174,7 +174,7 @@ def motion(recipe: Recipe, design: Design) -> list[Plot]:
     return derivatives(recipe, position.title.capitalize(), unit, rows)
 
 
-def output(recipe: Recipe, driven: Driven) -> list[Plot]:
+def output(recipe: Recipe, driven: SteppedMechanism) -> list[Plot]:
     """Return plots of a linkage: output and its derivatives, the frame and its velocity, angles of force."""
     mechanism = driven.mechanism
     state, end = mechanism.at(driven.theta[:-1], ORDER), mechanism.at(driven.theta[-1:], ORDER, -1)
@@ -369,7 +369,7 @@ def close_turn(values: Array) -> Array:
     return np.append(values, values[0])
 
 
-def rests(recipe: Recipe, design: Design) -> list[Rest]:
+def rests(recipe: Recipe, design: Design) -> list[DwellBand]:
     """Return the dwells: exact rests of a follower, or the longest times of an output within its band."""
     if design.driven is not None:
         unit = "°" if design.driven.mechanism.unit == "deg" else f" {length_unit(recipe)}"
@@ -381,9 +381,9 @@ def rests(recipe: Recipe, design: Design) -> list[Rest]:
     return [_rest(begin, end, "") for begin, end in design.exact.gauge.rests]
 
 
-def _rest(begin: float, end: float, band: str) -> Rest:
+def _rest(begin: float, end: float, band: str) -> DwellBand:
     start, length = math.degrees(begin), math.degrees(end - begin)
-    return Rest(start % 360.0, length, f"dwell of {length:.5g}°{band}")
+    return DwellBand(start % 360.0, length, f"dwell of {length:.5g}°{band}")
 
 
 def small_unit(recipe: Recipe) -> tuple[str, float]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.ring import Ring, bar, box, disc
-from camgeo.report.page.scene import CONTACTS, STEPS, Body, Label, Shape, arrow, pin, pivot, poses, still
+from camgeo.report.page.scene import CONTACTS, STEPS, FilledShape, Letter, MovingBody, arrow, pin, pivot, poses, still
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -30,22 +30,24 @@ def cam(
     size: float,
     turned: Array,
     *,
-    on_it: Sequence[Shape] = (),
+    on_it: Sequence[FilledShape] = (),
     name: str = "cam",
     role: str = "metal",
-) -> Body:
+) -> MovingBody:
     """Return a disc of the cam: pairs of a name and rings, of which the first shows, and the shapes `on_it`.
 
     A thin dashed line along its own x axis shows the zero of the motion where the part has no timing mark: a full line
     would look like a mark to be made. `turned` (STEPS + 1,) is its angle, rad.
     """
     hole = 0.5 * bore if bore else 0.0
-    shapes = [Shape(f"{role} other" if index else role, rings, file) for index, (file, rings) in enumerate(contours)]
+    shapes = [
+        FilledShape(f"{role} other" if index else role, rings, file) for index, (file, rings) in enumerate(contours)
+    ]
     edge = edge_ahead(contours[0][1][0])
     first = max(hole, 1.2 * size)
     if edge - first > size and not any(shape.role == "timing mark" for shape in on_it):
-        shapes.append(Shape("zero", dashes(first, edge, size), "zero of the motion"))
-    return Body(name, "cam", (*shapes, *on_it), poses(0.0, 0.0, turned))
+        shapes.append(FilledShape("zero", dashes(first, edge, size), "zero of the motion"))
+    return MovingBody(name, "cam", (*shapes, *on_it), poses(0.0, 0.0, turned))
 
 
 def dashes(start: float, end: float, size: float) -> tuple[Ring, ...]:
@@ -63,12 +65,12 @@ def edge_ahead(ring: Ring) -> float:
     return float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(np.abs(beyond).max())
 
 
-def contact(name: str, x: Array, y: Array, direction: Array | float, size: float, *, within: float = 0.0) -> Body:
+def contact(name: str, x: Array, y: Array, direction: Array | float, size: float, *, within: float = 0.0) -> MovingBody:
     """Return a contact with an arrow in the direction of the push, longer by the length `within` a roller, mm."""
-    return Body(name, CONTACTS, arrow(6.0 * size + within, size), poses(x, y, direction))
+    return MovingBody(name, CONTACTS, arrow(6.0 * size + within, size), poses(x, y, direction))
 
 
-def flat(view: View[Translating, Flat], reach: float, size: float) -> list[Body]:
+def flat(view: View[Translating, Flat], reach: float, size: float) -> list[MovingBody]:
     """Return the yoke of two parallel faces, with guides and contacts; `reach` is the cam's."""
     p, slope = view.travel(SHAFT, 1)
     q, back = view.travel(SHAFT + 0.5 * TURN, 1)
@@ -79,7 +81,7 @@ def flat(view: View[Translating, Flat], reach: float, size: float) -> list[Body]
     ]
 
 
-def faces(p: Array, breadth: float, reach: float, size: float, y: float = 0.0) -> list[Body]:
+def faces(p: Array, breadth: float, reach: float, size: float, y: float = 0.0) -> list[MovingBody]:
     """Return a frame of two faces, the first at x = p (n,), mm, the second `breadth` behind, and its guide.
 
     Its stem lies on a line at `y`, mm; `reach` is the cam's greatest radius, `size` scales the parts.
@@ -91,23 +93,23 @@ def faces(p: Array, breadth: float, reach: float, size: float, y: float = 0.0) -
     stem = box(thick, y - half_stem, length, y + half_stem)
     tall = reach + 1.2 * size
     outer = box(-breadth - thick, -tall - thick, thick, tall + thick)
-    frame = Shape("follower", (outer, box(-breadth, -tall, 0.0, tall)), "yoke")
+    frame = FilledShape("follower", (outer, box(-breadth, -tall, 0.0, tall)), "yoke")
     return [
-        Body("yoke", "follower", (frame, Shape("follower", (stem,))), poses(p, 0.0, 0.0)),
+        MovingBody("yoke", "follower", (frame, FilledShape("follower", (stem,))), poses(p, 0.0, 0.0)),
         guide(first_guide, run, half_stem, size, y),
     ]
 
 
-def guide(start: float, length: float, half: float, size: float, y: float = 0.0) -> Body:
+def guide(start: float, length: float, half: float, size: float, y: float = 0.0) -> MovingBody:
     """Return a fixed guide of two blocks about a stem on a line at y."""
     shapes = [
-        Shape("fixed", (box(start, y + side * half, start + length, y + side * (half + 1.3 * size)),), "guide")
+        FilledShape("fixed", (box(start, y + side * half, start + length, y + side * (half + 1.3 * size)),), "guide")
         for side in (-1.0, 1.0)
     ]
-    return Body("guide", "ground", tuple(shapes), still())
+    return MovingBody("guide", "ground", tuple(shapes), still())
 
 
-def double_roller(view: View[Oscillating, Roller], size: float) -> tuple[list[Body], tuple[Array, Array]]:
+def double_roller(view: View[Oscillating, Roller], size: float) -> tuple[list[MovingBody], tuple[Array, Array]]:
     """Return the arm with its two rollers, and for rollers A and B the pressure angle (STEPS + 1,), rad."""
     psi, slope = view.travel(SHAFT, 1)
     arm, alpha, radius = view.guide.pivot, view.contacts[0].apart, view.touch.radius
@@ -115,14 +117,15 @@ def double_roller(view: View[Oscillating, Roller], size: float) -> tuple[list[Bo
     width = min(1.9 * size, 1.4 * radius)
     arms = tuple(bar((0.0, 0.0), end, width) for end in ends)
     rollers = tuple(
-        Shape("roller", (disc(*end, radius),), name) for end, name in zip(ends, ("roller A", "roller B"), strict=True)
+        FilledShape("roller", (disc(*end, radius),), name)
+        for end, name in zip(ends, ("roller A", "roller B"), strict=True)
     )
     pins = tuple(pin(min(size, 0.8 * radius), *end) for end in ends)
-    labels = tuple(Label(text, *end) for text, end in zip("AB", ends, strict=True))
+    labels = tuple(Letter(text, *end) for text, end in zip("AB", ends, strict=True))
     # each arm a shape of its own: where they overlap about the pivot the even-odd rule would leave a hole
-    shapes = (*(Shape("follower", (arm_ring,), "arm") for arm_ring in arms), *rollers, *pins)
+    shapes = (*(FilledShape("follower", (arm_ring,), "arm") for arm_ring in arms), *rollers, *pins)
     bodies = [
-        Body("arm", "follower", shapes, poses(arm, 0.0, -psi), labels),
+        MovingBody("arm", "follower", shapes, poses(arm, 0.0, -psi), labels),
         pivot("pivot", arm, 0.0, size, "P", angle=0.0),
     ]
     angles = []
@@ -142,11 +145,11 @@ def double_roller(view: View[Oscillating, Roller], size: float) -> tuple[list[Bo
     return bodies, (angles[0], angles[1])
 
 
-def flat_pair(view: View[Oscillating, Flat], size: float) -> tuple[list[Body], tuple[Array, Array]]:
+def flat_pair(view: View[Oscillating, Flat], size: float) -> tuple[list[MovingBody], tuple[Array, Array]]:
     """Return the pair of faces, and for faces A and B the lever of the contact about the pivot (STEPS + 1,), mm."""
     away, half, thick = view.guide.pivot, view.contacts[0].apart, 2.0 * size
     swing = view.travel(SHAFT)[0]
-    bodies: list[Body] = []
+    bodies: list[MovingBody] = []
     contact_points = view.contact_points_fixed(SHAFT)
     levers = [np.abs(place - away) for place in contact_points]
     tall = max(float(lever.max()) for lever in levers) + 3.0 * size
@@ -155,9 +158,9 @@ def flat_pair(view: View[Oscillating, Flat], size: float) -> tuple[list[Body], t
         c, s = np.cos(side * half), np.sin(side * half)
         normal, along = np.array([c, s]), side * np.array([-s, c])
         corners = [np.zeros(2), tall * along, tall * along + thick * normal, thick * normal]
-        shapes.append(Shape("follower", (Ring.through(np.array(corners)),), "face A" if side < 0.0 else "face B"))
-    hub = Shape("follower", (disc(0.0, 0.0, 1.9 * size),), "pair of faces")
-    bodies.append(Body("pair of faces", "follower", (*shapes, hub), poses(away, 0.0, -swing)))
+        shapes.append(FilledShape("follower", (Ring.through(np.array(corners)),), "face A" if side < 0.0 else "face B"))
+    hub = FilledShape("follower", (disc(0.0, 0.0, 1.9 * size),), "pair of faces")
+    bodies.append(MovingBody("pair of faces", "follower", (*shapes, hub), poses(away, 0.0, -swing)))
     bodies.append(pivot("pivot", away, 0.0, size, "P", angle=0.0))
     for name, side, place in zip(("face A", "face B"), (-1.0, 1.0), contact_points, strict=True):
         bodies.append(contact(f"contact on {name}", place.real, place.imag, side * half - swing, size))

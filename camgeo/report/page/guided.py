@@ -13,7 +13,7 @@ import numpy as np
 
 from camgeo.curve.ring import Ring, bar, box, disc
 from camgeo.report.page.followers import SHAFT, contact, guide
-from camgeo.report.page.scene import Body, Shape, pin, pivot, poses
+from camgeo.report.page.scene import FilledShape, MovingBody, pin, pivot, poses
 from kin.law.contacts import Roller, Shoe
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
@@ -40,7 +40,7 @@ class Touch:
     """
 
     name: str
-    shapes: tuple[Shape, ...]
+    shapes: tuple[FilledShape, ...]
     foot: float = 0.0
     ahead: float = 0.0
     within: float = 0.0
@@ -58,7 +58,7 @@ def touch_of(touch: Round, angle: Array, size: float, suffix: str = "") -> Touch
 
 def roller(radius: float, size: float, name: str = "roller") -> Touch:
     """Return a roller on its pin."""
-    shapes = (Shape("roller", (disc(0.0, 0.0, radius),), name), pin(min(size, 0.8 * radius)))
+    shapes = (FilledShape("roller", (disc(0.0, 0.0, radius),), name), pin(min(size, 0.8 * radius)))
     return Touch(name, shapes, ahead=radius, within=radius)
 
 
@@ -66,7 +66,7 @@ def knife_edge(size: float) -> Touch:
     """Return a stem's end as a wedge of 60 degrees."""
     tall, half = math.sqrt(3.0) * HALF_STEM * size, HALF_STEM * size
     wedge = Ring.through([(0.0, 0.0), (tall, -half), (1.4 * tall, -half), (1.4 * tall, half), (tall, half)])
-    return Touch("knife edge", (Shape("follower", (wedge,), "knife edge"),), 1.2 * tall, 1.4 * tall)
+    return Touch("knife edge", (FilledShape("follower", (wedge,), "knife edge"),), 1.2 * tall, 1.4 * tall)
 
 
 def shoe(radius: float, angle: Array, size: float) -> Touch:
@@ -80,7 +80,7 @@ def shoe(radius: float, angle: Array, size: float) -> Touch:
     back = max(upper.real, lower.real) + THICK * size
     points = np.array([(upper.real, upper.imag), (lower.real, lower.imag), (back, lower.imag), (back, upper.imag)])
     outline = Ring(points, np.array([math.tan(0.25 * (high - low)), 0.0, 0.0, 0.0]))
-    return Touch("shoe", (Shape("follower", (outline,), "shoe"),), back - 0.5 * THICK * size, back)
+    return Touch("shoe", (FilledShape("follower", (outline,), "shoe"),), back - 0.5 * THICK * size, back)
 
 
 def face(tilt: float, low: float, high: float, size: float) -> Touch:
@@ -89,18 +89,20 @@ def face(tilt: float, low: float, high: float, size: float) -> Touch:
     corners = np.array([(0.0, low), (0.0, high), (THICK * size, high), (THICK * size, low)])
     outline = Ring.through(corners @ np.array([[c, s], [-s, c]]))
     foot = (HALF_STEM * abs(math.tan(tilt)) + 0.5 * THICK / c) * size
-    return Touch("flat face", (Shape("follower", (outline,), "flat face"),), foot, float(outline.points[:, 0].max()))
+    return Touch(
+        "flat face", (FilledShape("follower", (outline,), "flat face"),), foot, float(outline.points[:, 0].max())
+    )
 
 
-def on_stem(touch: Touch, x: Array, y: float, reach: float, size: float) -> list[Body]:
+def on_stem(touch: Touch, x: Array, y: float, reach: float, size: float) -> list[MovingBody]:
     """Return the follower on a stem at places x (n,) of a line at y, with its guide beyond the cam's `reach`."""
     half, run = HALF_STEM * size, 4.5 * size
     start = max(float(x.max()) + touch.ahead, reach) + size
     length = start + run + 2.0 * size - float(x.min())
-    stem = Shape("follower", (box(touch.foot, -half, length, half),), "stem")
+    stem = FilledShape("follower", (box(touch.foot, -half, length, half),), "stem")
     return [
-        Body("stem", "follower", (stem,), poses(x, y, 0.0)),
-        Body(touch.name, "follower", touch.shapes, poses(x, y, 0.0)),
+        MovingBody("stem", "follower", (stem,), poses(x, y, 0.0)),
+        MovingBody(touch.name, "follower", touch.shapes, poses(x, y, 0.0)),
         guide(start, run, half, size, y),
     ]
 
@@ -113,7 +115,7 @@ def on_arm(
     size: float,
     *,
     short: float = 0.0,
-) -> list[Body]:
+) -> list[MovingBody]:
     """Return the follower on an arm at swings s (n,), rad; `origin` is that of the touch's axes in the arm's, mm.
 
     The arm's own x leads from the pivot to the touching part, its travel is `side` times y. The arm is drawn to a place
@@ -123,16 +125,18 @@ def on_arm(
     angle = math.pi + arm.side * (contact.datum + s)
     (x, y), c, n = origin, np.cos(angle), np.sin(angle)
     end = (x - short, y + arm.side * touch.foot)
-    shape = Shape("follower", (bar((0.0, 0.0), end, WIDTH * size),), "arm")
+    shape = FilledShape("follower", (bar((0.0, 0.0), end, WIDTH * size),), "arm")
     placed = poses(arm.pivot + x * c - y * n, x * n + y * c, angle + 0.5 * math.pi * arm.side)
     return [
-        Body("arm", "follower", (shape,), poses(arm.pivot, 0.0, angle)),
-        Body(touch.name, "follower", touch.shapes, placed),
+        MovingBody("arm", "follower", (shape,), poses(arm.pivot, 0.0, angle)),
+        MovingBody(touch.name, "follower", touch.shapes, placed),
         pivot("pivot", arm.pivot, 0.0, size, "P", angle=0.0),
     ]
 
 
-def contact_body(surface: Surface, name: str, size: float, roller_radius: float = 0.0, *, ahead: float = 0.0) -> Body:
+def contact_body(
+    surface: Surface, name: str, size: float, roller_radius: float = 0.0, *, ahead: float = 0.0
+) -> MovingBody:
     """Return the contact at each shaft angle, with the direction in which the cam pushes: inwards for a ring.
 
     The follower stands `ahead` rad of the x axis; the arrow is longer by the radius of the roller within, mm.
@@ -154,7 +158,7 @@ def roller_frame(
     *,
     y: float = 0.0,
     facing: float = 0.0,
-) -> list[Body]:
+) -> list[MovingBody]:
     """Return a slotted frame with one touching part at x (n,) of a line at y and another `apart` mm behind.
 
     The shaft has the radius `hole`, mm. The second part is turned by `facing`, rad.
@@ -163,15 +167,15 @@ def roller_frame(
     inner = max(hole, 1.2 * size) + 0.6 * size
     width = 2.0 * (inner + abs(y) + HALF_STEM * size)
     slot = bar((-float(x.max()), 0.0 - y), (-float(x.min()), 0.0 - y), 2.0 * inner)
-    frame = Shape("follower", (bar((-apart, 0.0), (0.0, 0.0), width), slot), "roller yoke")
+    frame = FilledShape("follower", (bar((-apart, 0.0), (0.0, 0.0), width), slot), "roller yoke")
     half, run = HALF_STEM * size, 4.5 * size
     beyond = max(first.ahead, 0.5 * width)
     start = float(x.max()) + beyond + size
-    stem = Shape("follower", (box(0.5 * width, -half, start + run + 2.0 * size - float(x.min()), half),), "stem")
+    stem = FilledShape("follower", (box(0.5 * width, -half, start + run + 2.0 * size - float(x.min()), half),), "stem")
     moving = poses(x, y, 0.0)
     return [
-        Body("roller yoke", "follower", (frame, stem), moving),
-        Body(first.name, "follower", first.shapes, moving),
-        Body(second.name, "follower", second.shapes, poses(x - apart, y, facing)),
+        MovingBody("roller yoke", "follower", (frame, stem), moving),
+        MovingBody(first.name, "follower", first.shapes, moving),
+        MovingBody(second.name, "follower", second.shapes, poses(x - apart, y, facing)),
         guide(start, run, half, size, y),
     ]

@@ -12,7 +12,7 @@ import numpy as np
 
 from camgeo.curve.ring import Ring, bar, box, disc
 from camgeo.report.page.followers import SHAFT, contact
-from camgeo.report.page.scene import OVERLAYS, Body, Label, Shape, arrow, block, pin, pivot, poses, still
+from camgeo.report.page.scene import OVERLAYS, FilledShape, Letter, MovingBody, arrow, block, pin, pivot, poses, still
 from kin.linkage.dyad import RPR, RRP, RRR
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 from kin.numeric.angles import TURN
@@ -33,7 +33,7 @@ TRACED = 3  # every so many places a path has a point
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class SteppedMechanism:
     """A mechanism at equal steps of the shaft: relative angle, poses of all links; each (STEPS + 1,), mm and rad.
 
     `lifts` (4, 2, STEPS + 1) are lift and slope of the four faces, whose normals stand a quarter turn apart.
@@ -45,14 +45,14 @@ class Driven:
     lifts: Array
 
     @staticmethod
-    def of(mechanism: Mechanism) -> Driven:
+    def of(mechanism: Mechanism) -> SteppedMechanism:
         """Solve a mechanism that turns, at the page's equal steps of the shaft."""
         from kin.numeric.elementary import Jet
 
         theta = mechanism.relative(SHAFT)
         lifts = np.stack([mechanism.lift.derivatives(theta + k * QUARTER, 1) for k in range(4)])
         solved = mechanism.chain.solve(Jet(lifts[0]), Jet(lifts[1]), mechanism.about)
-        return Driven(mechanism, theta, solved, lifts)
+        return SteppedMechanism(mechanism, theta, solved, lifts)
 
     @property
     def frame(self) -> Array:
@@ -95,12 +95,12 @@ def value(jet: Jet) -> Array:
 class Layers(NamedTuple):
     """Bodies of a loop in the order of drawing: links, pivots on the ground, joints on top."""
 
-    links: list[Body]
-    pivots: list[Body]
-    joints: list[Body]
+    links: list[MovingBody]
+    pivots: list[MovingBody]
+    joints: list[MovingBody]
 
 
-def linkage_bodies(driven: Driven, size: float) -> list[Body]:
+def linkage_bodies(driven: SteppedMechanism, size: float) -> list[MovingBody]:
     """Return frame, links, pivots, contacts and forces, the hindmost first; `size` is that of a joint."""
     mechanism = driven.mechanism
     loops = [
@@ -111,20 +111,20 @@ def linkage_bodies(driven: Driven, size: float) -> list[Body]:
     return [*layers, *_contacts(driven, size), *_forces(driven, size)]
 
 
-def _four_bar(driven: Driven, number: int, linkage: FourBar, size: float) -> Layers:
+def _four_bar(driven: SteppedMechanism, number: int, linkage: FourBar, size: float) -> Layers:
     joints = driven.joints(number)
     frame = _frame(driven, 0.0, 0.5 * driven.mechanism.breadth + linkage.coupler, size)
     joint = _with_label(_joint("joint D", joints["D"], size), "D")
     return Layers([frame, *_rocker(driven, linkage.rocker, size)], [_pivot("pivot B", joints["B"], size, "B")], [joint])
 
 
-def _slider_crank(driven: Driven, number: int, linkage: SliderCrank, size: float) -> Layers:
+def _slider_crank(driven: SteppedMechanism, number: int, linkage: SliderCrank, size: float) -> Layers:
     joint = driven.joints(number)["D"]
     frame = _frame(driven, 0.0, 0.5 * driven.mechanism.breadth + linkage.coupler, size)
     return Layers([_rail(joint, 0.0, size), frame], [], [_with_label(_joint("slide", joint, size), "D")])
 
 
-def _inverted(driven: Driven, number: int, linkage: InvertedSliderCrank, size: float) -> Layers:
+def _inverted(driven: SteppedMechanism, number: int, linkage: InvertedSliderCrank, size: float) -> Layers:
     joints = driven.joints(number)
     beyond = value(driven.solved.linkage.slide) - (0.5 * driven.mechanism.breadth - driven.lifts[1, 0])
     low, reach = min(0.0, float(beyond.min()) - 3.5 * size), max(0.0, float(beyond.max()) + 3.5 * size)
@@ -132,53 +132,55 @@ def _inverted(driven: Driven, number: int, linkage: InvertedSliderCrank, size: f
     return Layers(links, [_pivot("pivot B", joints["B"], size, "B")], [_joint("block", joints["D"], size)])
 
 
-def _rocker(driven: Driven, length: float, size: float) -> list[Body]:
+def _rocker(driven: SteppedMechanism, length: float, size: float) -> list[MovingBody]:
     """Return the linkage's rocker, of any length but 0."""
     if length <= 0.0:
         return []
-    rocker = Shape("rocker", (bar((0.0, 0.0), (length, 0.0), 1.5 * size),), "rocker")
-    return [Body("rocker", "links", (rocker,), driven.output(0))]
+    rocker = FilledShape("rocker", (bar((0.0, 0.0), (length, 0.0), 1.5 * size),), "rocker")
+    return [MovingBody("rocker", "links", (rocker,), driven.output(0))]
 
 
-def _joint(name: str, joint: Joint, size: float) -> Body:
+def _joint(name: str, joint: Joint, size: float) -> MovingBody:
     """Return a pin, with the block that it sits in if one slides."""
     shapes = {
         "pin": (),
         "slide": (block(4.2 * size, 2.6 * size, "slide"),),
         "slot": (block(4.2 * size, 2.8 * size, "block"),),
     }
-    return Body(name, "links", (*shapes[joint.kind], pin(size)), _pose(joint.place))
+    return MovingBody(name, "links", (*shapes[joint.kind], pin(size)), _pose(joint.place))
 
 
-def _pivot(name: str, joint: Joint, size: float, letter: str = "") -> Body:
+def _pivot(name: str, joint: Joint, size: float, letter: str = "") -> MovingBody:
     x, y = (float(value(place)[0]) for place in joint.place.origin)
     return pivot(name, x, y, size, letter)
 
 
-def _with_label(body: Body, text: str) -> Body:
-    return Body(body.name, body.kind, body.shapes, body.pose, (Label(text, 0.0, 0.0),))
+def _with_label(body: MovingBody, text: str) -> MovingBody:
+    return MovingBody(body.name, body.kind, body.shapes, body.pose, (Letter(text, 0.0, 0.0),))
 
 
-def _frame(driven: Driven, low: float, reach: float, size: float) -> Body:
+def _frame(driven: SteppedMechanism, low: float, reach: float, size: float) -> MovingBody:
     """Return the square frame about its middle, with the coupler's bar along u from `low` to `reach`.
 
     Where the bar lies beyond the end of the frame's side, an arm in line with that side carries it.
     """
     w, middle = driven.mechanism.breadth, driven.mechanism.chain.frame(driven.solved)
     inner, outer = 0.5 * w, 0.5 * w + 1.8 * size
-    square = Shape("follower", (box(-outer, -outer, outer, outer), box(-inner, -inner, inner, inner)), "square frame")
+    square = FilledShape(
+        "follower", (box(-outer, -outer, outer, outer), box(-inner, -inner, inner, inner)), "square frame"
+    )
     bars, y, middle_of_side = [], driven.mechanism.linkage.joint_offset, inner + 0.9 * size
     for side, end, needed in ((1.0, reach, reach > (0.0 if abs(y) > inner else outer)), (-1.0, low, low < -outer)):
         if not needed:
             continue
         x = side * middle_of_side
-        bars.append(Shape("follower", (bar((x, y), (end, y), 1.5 * size),), "coupler"))
+        bars.append(FilledShape("follower", (bar((x, y), (end, y), 1.5 * size),), "coupler"))
         if abs(y) > inner:
-            bars.append(Shape("follower", (bar((x, np.copysign(inner, y)), (x, y), 1.5 * size),), "coupler"))
-    return Body("frame", "follower", (square, *bars), _pose(middle))
+            bars.append(FilledShape("follower", (bar((x, np.copysign(inner, y)), (x, y), 1.5 * size),), "coupler"))
+    return MovingBody("frame", "follower", (square, *bars), _pose(middle))
 
 
-def _rail(joint: Joint, angle: float, size: float) -> Body:
+def _rail(joint: Joint, angle: float, size: float) -> MovingBody:
     """Return the two sides of a straight guide along the places of a slide."""
     x, y = map(value, joint.place.origin)
     c, s = np.cos(angle), np.sin(angle)
@@ -187,7 +189,7 @@ def _rail(joint: Joint, angle: float, size: float) -> Body:
     sides = tuple(
         Ring.through([(first, across + d), (last, across + d)], closed=False) for d in (-1.5 * size, 1.5 * size)
     )
-    return Body("guide", "ground", (Shape("hatch", sides, "guide"),), still(0.0, 0.0, angle))
+    return MovingBody("guide", "ground", (FilledShape("hatch", sides, "guide"),), still(0.0, 0.0, angle))
 
 
 def _pose(link: Link) -> Array:
@@ -199,29 +201,29 @@ def _direction(link: Link) -> Array | float:
     return 0.0 if link.direction is None else value(link.direction)
 
 
-def _arm(driven: Driven, number: int, size: float) -> Body:
+def _arm(driven: SteppedMechanism, number: int, size: float) -> MovingBody:
     """Return the arm to a dyad, on the link that carries it."""
     dyad, carrier = driven.mechanism.dyads[number - 1], driven.mechanism.chain.carrier(number - 1)
     on_frame = carrier.name == "frame"
     role = "follower" if on_frame else "output" if dyad.on == "previous" else "rocker"
-    stub = Shape(role, (bar((0.0, 0.0), dyad.point, 1.3 * size),), "link")
-    return Body(
+    stub = FilledShape(role, (bar((0.0, 0.0), dyad.point, 1.3 * size),), "link")
+    return MovingBody(
         f"arm to dyad {number}", "follower" if on_frame else "links", (stub,), _pose(carrier.pose(driven.solved))
     )
 
 
-def _rod(driven: Driven, number: int, length: float, size: float) -> Body:
+def _rod(driven: SteppedMechanism, number: int, length: float, size: float) -> MovingBody:
     """Return the bar of a dyad from P to Q."""
-    rod = Shape("rod", (bar((0.0, 0.0), (length, 0.0), 1.3 * size),), "connecting rod")
+    rod = FilledShape("rod", (bar((0.0, 0.0), (length, 0.0), 1.3 * size),), "connecting rod")
     link = driven.mechanism.chain.rod(driven.solved, number - 1)
     x, y = map(value, link.origin)
-    return Body(f"rod of dyad {number}", "links", (rod,), poses(x, y, np.unwrap(_direction(link))))
+    return MovingBody(f"rod of dyad {number}", "links", (rod,), poses(x, y, np.unwrap(_direction(link))))
 
 
-def _rrr(driven: Driven, number: int, dyad: RRR, size: float) -> Layers:
+def _rrr(driven: SteppedMechanism, number: int, dyad: RRR, size: float) -> Layers:
     joints = driven.joints(number)
-    rocker = Shape("output", (bar((0.0, 0.0), (dyad.links[1], 0.0), 1.5 * size),), "output rocker")
-    output = Body(f"output of dyad {number}", "links", (rocker,), driven.output(number))
+    rocker = FilledShape("output", (bar((0.0, 0.0), (dyad.links[1], 0.0), 1.5 * size),), "output rocker")
+    output = MovingBody(f"output of dyad {number}", "links", (rocker,), driven.output(number))
     return Layers(
         [_arm(driven, number, size), _rod(driven, number, dyad.links[0], size), output],
         [_pivot(f"pivot of dyad {number}", joints["G"], size)],
@@ -229,7 +231,7 @@ def _rrr(driven: Driven, number: int, dyad: RRR, size: float) -> Layers:
     )
 
 
-def _rrp(driven: Driven, number: int, dyad: RRP, size: float) -> Layers:
+def _rrp(driven: SteppedMechanism, number: int, dyad: RRP, size: float) -> Layers:
     joints = driven.joints(number)
     return Layers(
         [
@@ -242,19 +244,19 @@ def _rrp(driven: Driven, number: int, dyad: RRP, size: float) -> Layers:
     )
 
 
-def _rpr(driven: Driven, number: int, dyad: RPR, size: float) -> Layers:
+def _rpr(driven: SteppedMechanism, number: int, dyad: RPR, size: float) -> Layers:
     joints = driven.joints(number)
     px, py = map(value, joints["P"].place.origin)
     slide = np.sqrt(np.maximum((px - dyad.ground[0]) ** 2 + (py - dyad.ground[1]) ** 2 - dyad.offset**2, 0.0))
     slot = bar((0.0, dyad.offset), (float(slide.max()) + 3.0 * size, dyad.offset), 1.2 * size)
     hub = bar((0.0, 0.0), (0.0, dyad.offset), 1.5 * size)
-    rocker = Shape("output", (slot, hub) if dyad.offset else (slot,), "slotted rocker")
-    output = Body(f"output of dyad {number}", "links", (rocker,), driven.output(number))
-    inside = Body("block", "links", (block(3.6 * size, 2.4 * size, "block"),), _pose(joints["P"].place))
+    rocker = FilledShape("output", (slot, hub) if dyad.offset else (slot,), "slotted rocker")
+    output = MovingBody(f"output of dyad {number}", "links", (rocker,), driven.output(number))
+    inside = MovingBody("block", "links", (block(3.6 * size, 2.4 * size, "block"),), _pose(joints["P"].place))
     return Layers(
         [_arm(driven, number, size), output],
         [_pivot(f"pivot of dyad {number}", joints["G"], size)],
-        [inside, Body("joint", "links", (pin(size),), poses(px, py, 0.0))],
+        [inside, MovingBody("joint", "links", (pin(size),), poses(px, py, 0.0))],
     )
 
 
@@ -269,21 +271,21 @@ MAKERS: dict[type, Callable[..., Layers]] = {
 }
 
 
-def path_bodies(driven: Driven, traces: Sequence[TracedPoint], mm: float, size: float) -> list[Body]:
+def path_bodies(driven: SteppedMechanism, traces: Sequence[TracedPoint], mm: float, size: float) -> list[MovingBody]:
     """Return the paths of points of moving links over the turn, and the points."""
     bodies = []
     for trace in traces:
         x, y = map(value, driven.mechanism.chain.carrier_of(trace.on).pose(driven.solved).point(*trace.point))
-        path = Shape("overlay", (Ring.through(np.column_stack([x, y])[::TRACED], closed=False),), trace.name(mm))
-        dot = Shape("overlay dot", (disc(0.0, 0.0, 0.6 * size),), trace.name(mm))
+        path = FilledShape("overlay", (Ring.through(np.column_stack([x, y])[::TRACED], closed=False),), trace.name(mm))
+        dot = FilledShape("overlay dot", (disc(0.0, 0.0, 0.6 * size),), trace.name(mm))
         bodies += [
-            Body(trace.name(mm), OVERLAYS, (path,), still()),
-            Body(f"point of {trace.name(mm).removeprefix('path of ')}", OVERLAYS, (dot,), poses(x, y, 0.0)),
+            MovingBody(trace.name(mm), OVERLAYS, (path,), still()),
+            MovingBody(f"point of {trace.name(mm).removeprefix('path of ')}", OVERLAYS, (dot,), poses(x, y, 0.0)),
         ]
     return bodies
 
 
-def _contacts(driven: Driven, size: float) -> list[Body]:
+def _contacts(driven: SteppedMechanism, size: float) -> list[MovingBody]:
     """Return the contacts on the four faces, each with its normal."""
     contacts = []
     for k in range(4):
@@ -295,7 +297,7 @@ def _contacts(driven: Driven, size: float) -> list[Body]:
     return contacts
 
 
-def _forces(driven: Driven, size: float) -> list[Body]:
+def _forces(driven: SteppedMechanism, size: float) -> list[MovingBody]:
     """Return the force of the frame on the next link, and the point where the contacts' normals meet on its line.
 
     The arrow points in the direction of the push while that link moves against a load.
@@ -304,10 +306,10 @@ def _forces(driven: Driven, size: float) -> list[Body]:
     line = driven.mechanism.linkage.force_line(state, *driven.slopes)
     direction = np.arctan2(line.along_y, line.along_x)
     shapes = arrow(8.0 * size, 1.2 * size, "load")
-    centre = (Shape("load dot", (disc(0.0, 0.0, 0.5 * size),)),)
+    centre = (FilledShape("load dot", (disc(0.0, 0.0, 0.5 * size),)),)
     return [
-        Body(
+        MovingBody(
             "where the contact normals intersect", "forces", centre, poses(*state.instant_centre(*driven.slopes), 0.0)
         ),
-        Body("force of the frame on the link it drives", "forces", shapes, poses(line.x, line.y, direction)),
+        MovingBody("force of the frame on the link it drives", "forces", shapes, poses(line.x, line.y, direction)),
     ]

@@ -14,7 +14,7 @@ import numpy as np
 
 from camgeo.curve.ring import Ring, disc
 from camgeo.report.page.followers import SHAFT
-from camgeo.report.page.scene import OVERLAYS, Body, Label, Shape, poses, still
+from camgeo.report.page.scene import OVERLAYS, FilledShape, Letter, MovingBody, poses, still
 from camgeo.synthesis.view import Drawer, View, entry
 from kin.law.contacts import Flat, Oscillating, Roller, Translating
 from kin.numeric.angles import TURN
@@ -48,29 +48,29 @@ class Stage:
     reach: float
     size: float
 
-    def on_cam(self, name: str, rings: Sequence[Ring], role: str = CURVE) -> Body:
+    def on_cam(self, name: str, rings: Sequence[Ring], role: str = CURVE) -> MovingBody:
         """Return curves that turn with the cam."""
-        return Body(name, OVERLAYS, (Shape(role, tuple(rings), name),), poses(0.0, 0.0, self.turned))
+        return MovingBody(name, OVERLAYS, (FilledShape(role, tuple(rings), name),), poses(0.0, 0.0, self.turned))
 
-    def dot(self, name: str, places: Array, letter: str = "") -> Body:
+    def dot(self, name: str, places: Array, letter: str = "") -> MovingBody:
         """Return a dot at complex places (n,), mm, n of STEPS + 1 or 1."""
-        labels = (Label(letter, 0.0, 0.0),) if letter else ()
-        shape = Shape(DOT, (disc(0.0, 0.0, 0.5 * self.size),), name)
-        return Body(name, OVERLAYS, (shape,), poses(places.real, places.imag, 0.0), labels)
+        labels = (Letter(letter, 0.0, 0.0),) if letter else ()
+        shape = FilledShape(DOT, (disc(0.0, 0.0, 0.5 * self.size),), name)
+        return MovingBody(name, OVERLAYS, (shape,), poses(places.real, places.imag, 0.0), labels)
 
-    def line(self, name: str, places: Array, direction: Array, ends: tuple[float, float]) -> Body:
+    def line(self, name: str, places: Array, direction: Array, ends: tuple[float, float]) -> MovingBody:
         """Return a straight line along complex directions (n,) through places (n,), between two distances from them."""
         angle = np.unwrap(np.angle(direction))
-        shape = Shape(LINE, (_ring(np.array(ends)),), name)
-        return Body(name, OVERLAYS, (shape,), poses(places.real, places.imag, angle))
+        shape = FilledShape(LINE, (_ring(np.array(ends)),), name)
+        return MovingBody(name, OVERLAYS, (shape,), poses(places.real, places.imag, angle))
 
 
-def overlay_bodies(names: Sequence[str], stage: Stage) -> list[Body]:
+def overlay_bodies(names: Sequence[str], stage: Stage) -> list[MovingBody]:
     """Return the bodies of overlays by their names."""
     return [body for name in names for body in MADE[name](stage)]
 
 
-def _evolute(stage: Stage) -> list[Body]:
+def _evolute(stage: Stage) -> list[MovingBody]:
     """Centres of curvature of each contour, and that of contact 1; a roller's pitch curve, a parallel, has the same.
 
     Where derivatives of the law jump the evolute leaps along the normal; where the curve is straight it is far away.
@@ -108,19 +108,19 @@ def _centre(surface: Surface, t: Array) -> Array:
     return _complex(frame.point) - radius * _complex(frame.normal)
 
 
-def _instant_centres(view: View[Translating, Flat], stage: Stage) -> list[Body]:
+def _instant_centres(view: View[Translating, Flat], stage: Stage) -> list[MovingBody]:
     """SW Figure 1: frame 1, cam 2, follower 3. I12 is the shaft, I13 infinitely far across the follower's line.
 
     I23 = Q lies on the line of these two, S' from the shaft (SW 10), and on the contacts' normals.
     """
     slope, far = view.travel(SHAFT, 1)[1], 1.25 * stage.reach
     q = 1j * slope
-    across = Shape(LINE, (Ring.through([(0.0, -far), (0.0, far)], closed=False),), "line of the instant centres")
-    away = (Label("I₁₃ → ∞", 0.0, 0.9 * far),)
+    across = FilledShape(LINE, (Ring.through([(0.0, -far), (0.0, far)], closed=False),), "line of the instant centres")
+    away = (Letter("I₁₃ → ∞", 0.0, 0.9 * far),)
     breadth = view.contacts[-1].datum if len(view.contacts) > 1 else 0.0
     ends = (-max(far, breadth), far)
     return [
-        Body("line of the instant centres", OVERLAYS, (across,), still(), away),
+        MovingBody("line of the instant centres", OVERLAYS, (across,), still(), away),
         stage.line("normals of the contacts", q, np.ones_like(q), ends),
         stage.dot("instant centre of cam and frame", np.zeros(1, dtype=complex), "I₁₂"),
         stage.dot("instant centre of cam and follower", q, "I₂₃ = Q"),
@@ -154,31 +154,31 @@ def _arms(stage: Stage) -> Arms:
     return ARMS[stage.view.design.follower.arrangement](stage.view)
 
 
-def _chord_polygon(stage: Stage) -> list[Body]:
+def _chord_polygon(stage: Stage) -> list[MovingBody]:
     """Adjacent positions of the arm, each with its A where B of the one before was: chords of 2 l sin alpha (W 4.6).
 
     They close after 2 lambda steps, or sooner. Each is a body of its own, as the polygon changes its shape.
     """
     arms, shaft = _arms(stage), SHAFT.copy()
-    chord = Shape(CURVE, (_ring(np.array([0.0, 2.0 * arms.length * math.sin(arms.alpha)])),), "chord")
+    chord = FilledShape(CURVE, (_ring(np.array([0.0, 2.0 * arms.length * math.sin(arms.alpha)])),), "chord")
     start = arms.ends(shaft)[0]
-    bodies: list[Body] = []
+    bodies: list[MovingBody] = []
     while len(bodies) < MOST_CHORDS:
         a, b = (end * np.exp(1j * (shaft - SHAFT)) for end in arms.ends(shaft))
         if bodies and np.abs(a - start).max() < 1e-6 * arms.length:
             break
         angle = np.unwrap(np.angle(b - a))
-        bodies.append(Body(f"chord {len(bodies) + 1}", OVERLAYS, (chord,), poses(a.real, a.imag, angle)))
+        bodies.append(MovingBody(f"chord {len(bodies) + 1}", OVERLAYS, (chord,), poses(a.real, a.imag, angle)))
         shaft = shaft - arms.psi(shaft) + arms.alpha
     return bodies
 
 
-def _isoptic(stage: Stage) -> list[Body]:
+def _isoptic(stage: Stage) -> list[MovingBody]:
     """Faces square to OA at A and to OB at B: their corner stays on the circle of radius 2 l (W section 5)."""
     arms = _arms(stage)
     corner = np.full(SHAFT.shape, 2.0 * arms.length, dtype=complex)
-    circle = Shape(CURVE, (disc(0.0, 0.0, 2.0 * arms.length),), "isoptic circle, 2 l")
-    bodies = [Body("isoptic circle", OVERLAYS, (circle,), still())]
+    circle = FilledShape(CURVE, (disc(0.0, 0.0, 2.0 * arms.length),), "isoptic circle, 2 l")
+    bodies = [MovingBody("isoptic circle", OVERLAYS, (circle,), still())]
     surface = stage.view.surface(stage.view.contacts[0])
     if surface.radius:
         bodies.append(stage.on_cam("curve of the faces", [_ring(_face_envelope(surface), closed=True)]))
@@ -189,7 +189,7 @@ def _isoptic(stage: Stage) -> list[Body]:
     return [*bodies, stage.dot("corner of the faces", corner[:1])]
 
 
-def _pedal(stage: Stage) -> list[Body]:
+def _pedal(stage: Stage) -> list[MovingBody]:
     """The feet A and B of the perpendiculars from O to the faces run on the pedal: the pitch curve (W section 5)."""
     arms, surface = _arms(stage), stage.view.surface(stage.view.contacts[0])
     frame = surface.base.sample(_GRID)
@@ -231,10 +231,10 @@ def _ring(points: Array, *, closed: bool = False) -> Ring:
 ARMS: dict[Arrangement, Drawer[[], Arms]] = dict(
     [entry(Oscillating, Roller, _roller_arms, 2), entry(Oscillating, Flat, _face_arms, 2)]
 )
-YOKE: dict[Arrangement, Drawer[[Stage], list[Body]]] = dict(
+YOKE: dict[Arrangement, Drawer[[Stage], list[MovingBody]]] = dict(
     [entry(Translating, Flat, _instant_centres), entry(Translating, Flat, _instant_centres, 2)]
 )
-MADE: dict[str, Callable[[Stage], list[Body]]] = {
+MADE: dict[str, Callable[[Stage], list[MovingBody]]] = {
     "instant-centres": lambda stage: YOKE[stage.view.design.follower.arrangement](stage.view, stage),
     "chord-polygon": _chord_polygon,
     "isoptic": _isoptic,

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order, Recipe
     from camgeo.report.page.content import Content
     from camgeo.report.page.curves import Plot
-    from camgeo.report.page.scene import Body, Scene
+    from camgeo.report.page.scene import MovingBody, Scene
     from kin.numeric.arrays import Array
 
 RELOAD = "<!-- reload -->"  # where a page that is watched gets the script that reloads it
@@ -110,7 +110,7 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
 
 def picture(recipe: Recipe, drawn: Scene, relative: Array) -> dict[str, Any]:
     """Return the part of `scene` that moves; `relative` (STEPS + 1,) is the angle between cam and frame, rad."""
-    view = svg.View.of(drawn)
+    view = svg.Viewport.of(drawn)
     extent = max(view.width, view.height) / view.scale
     return {
         "name": recipe.name,
@@ -140,7 +140,7 @@ def _marks(content: Content, report: dict[str, Any]) -> list[dict[str, Any]]:
     return marks
 
 
-def _pose(body: Body, extent: float) -> list[dict[str, Any]]:
+def _pose(body: MovingBody, extent: float) -> list[dict[str, Any]]:
     """Return x, y and angle of a body, packed; a small movement is rounded as finely as a large one."""
     x, y, angle = body.pose.T
     rows = [pack_numbers(row, _fine(row, extent)) for row in (x, y)]

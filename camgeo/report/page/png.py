@@ -12,7 +12,7 @@ from camgeo.report.page.svg import BESIDE, OTHER, SIDE
 from kin.read.home import prepare_home
 
 if TYPE_CHECKING:
-    from camgeo.report.page.scene import Body, Scene, Shape
+    from camgeo.report.page.scene import FilledShape, MovingBody, Scene
 
 DOTS = 2.0  # of the picture for each px of the drawing
 INCH = 72.0  # px of the drawing in what matplotlib takes for an inch
@@ -49,7 +49,7 @@ def png(scene: Scene, step: int) -> bytes:
     return stream.getvalue()
 
 
-def _patch(body: Body, shape: Shape, step: int, order: int) -> Any:  # noqa: ANN401 - a library without types
+def _patch(body: MovingBody, shape: FilledShape, step: int, order: int) -> Any:  # noqa: ANN401 - a library without types
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 

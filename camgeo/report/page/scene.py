@@ -24,7 +24,7 @@ SEEN = 24  # a body's extent is taken from every so many places
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class FilledShape:
     """Rings filled together by the even-odd rule; `role` says what it is and so how it looks."""
 
     role: str
@@ -33,7 +33,7 @@ class Shape:
 
 
 @dataclass(frozen=True, eq=False)
-class Label:
+class Letter:
     """A letter beside a point (x, y) of a body."""
 
     text: str
@@ -42,7 +42,7 @@ class Label:
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class MovingBody:
     """Shapes that move as one: `pose` (STEPS + 1, 3), or (1, 3) of a fixed body, has x, y, mm, and angle, rad.
 
     `kind` groups bodies that a page shows and hides together. An `upright` body is not mirrored with the scene.
@@ -50,9 +50,9 @@ class Body:
 
     name: str
     kind: str
-    shapes: tuple[Shape, ...]
+    shapes: tuple[FilledShape, ...]
     pose: Array
-    labels: tuple[Label, ...] = ()
+    labels: tuple[Letter, ...] = ()
     upright: bool = False
 
     def at(self, step: int) -> tuple[float, float, float]:
@@ -72,7 +72,7 @@ class Body:
 class Scene:
     """Bodies from the hindmost to the foremost, and a note below the drawing."""
 
-    bodies: tuple[Body, ...]
+    bodies: tuple[MovingBody, ...]
     note: str = ""
 
     def scaled(self, factor: float) -> Scene:
@@ -111,13 +111,13 @@ def digits_for(extent: float, share: float) -> int:
     return max(0, math.ceil(-math.log10(extent * share))) if extent > 0.0 else 0
 
 
-def _enlarged(body: Body, factor: float) -> Body:
+def _enlarged(body: MovingBody, factor: float) -> MovingBody:
     shapes = tuple(replace(s, rings=tuple(ring.scaled(factor) for ring in s.rings)) for s in body.shapes)
     labels = tuple(replace(label, x=label.x * factor, y=label.y * factor) for label in body.labels)
     return replace(body, shapes=shapes, pose=body.pose * np.array([factor, factor, 1.0]), labels=labels)
 
 
-def _reflected(body: Body) -> Body:
+def _reflected(body: MovingBody) -> MovingBody:
     pose = body.pose * np.array([1.0, -1.0, -1.0])
     if body.upright:
         return replace(body, pose=pose)
@@ -139,12 +139,12 @@ def poses(x: Array | float, y: Array | float, angle: Array | float) -> Array:
     return np.column_stack(np.broadcast_arrays(x, y, angle)).astype(np.float64)
 
 
-def block(length: float, height: float, name: str = "") -> Shape:
+def block(length: float, height: float, name: str = "") -> FilledShape:
     """Return a sliding block about its origin."""
-    return Shape("block", (box(-0.5 * length, -0.5 * height, 0.5 * length, 0.5 * height),), name)
+    return FilledShape("block", (box(-0.5 * length, -0.5 * height, 0.5 * length, 0.5 * height),), name)
 
 
-def pivot(name: str, x: float, y: float, size: float, letter: str = "", *, angle: float = -0.5 * math.pi) -> Body:
+def pivot(name: str, x: float, y: float, size: float, letter: str = "", *, angle: float = -0.5 * math.pi) -> MovingBody:
     """Fixed pivot at (x, y), mm: a pin on a hatched foot that points in the direction `angle`, rad.
 
     `size`, mm, scales the symbol; `letter` stands beside it.
@@ -155,19 +155,23 @@ def pivot(name: str, x: float, y: float, size: float, letter: str = "", *, angle
     lines = [np.array([(1.9, -1.6), (1.9, 1.6)])]
     lines += [np.array([(1.9, y), (2.5, y - 0.6)]) for y in (-1.0, -0.2, 0.6, 1.4)]
     hatch = tuple(Ring.through(line * size @ turn, closed=False) for line in lines)
-    shapes = (Shape("foot", (Ring.through(foot),)), Shape("hatch", hatch), pin(size))
-    letters = (Label(letter, 0.0, 0.0),) if letter else ()
-    return Body(name, "ground", shapes, still(x, y), letters, upright=True)
+    shapes = (FilledShape("foot", (Ring.through(foot),)), FilledShape("hatch", hatch), pin(size))
+    letters = (Letter(letter, 0.0, 0.0),) if letter else ()
+    return MovingBody(name, "ground", shapes, still(x, y), letters, upright=True)
 
 
-def pin(size: float, x: float = 0.0, y: float = 0.0) -> Shape:
+def pin(size: float, x: float = 0.0, y: float = 0.0) -> FilledShape:
     """Return the pin of a revolute joint at (x, y), a disc scaled by `size`."""
-    return Shape("pin", (disc(x, y, 0.55 * size),))
+    return FilledShape("pin", (disc(x, y, 0.55 * size),))
 
 
-def arrow(length: float, size: float, role: str = "force") -> tuple[Shape, ...]:
+def arrow(length: float, size: float, role: str = "force") -> tuple[FilledShape, ...]:
     """Return an arrow from the origin along x, and a dot at its foot; `size` is that of a joint."""
     head, half = 1.6 * size, 0.62 * size
     tip = Ring.through([(length, 0.0), (length - head, half), (length - head, -half)])
     shaft = Ring.through([(0.0, 0.0), (length - head, 0.0)], closed=False)
-    return Shape(role, (shaft,)), Shape(f"{role} tip", (tip,)), Shape(f"{role} dot", (disc(0.0, 0.0, 0.42 * size),))
+    return (
+        FilledShape(role, (shaft,)),
+        FilledShape(f"{role} tip", (tip,)),
+        FilledShape(f"{role} dot", (disc(0.0, 0.0, 0.42 * size),)),
+    )

@@ -12,7 +12,7 @@ from camgeo.report.page.looks import colours, literal
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.report.page.scene import Body, Label, Scene, Shape
+    from camgeo.report.page.scene import FilledShape, Letter, MovingBody, Scene
     from kin.numeric.arrays import Array
 
 NAMESPACE = "http://www.w3.org/2000/svg"
@@ -30,7 +30,7 @@ BESIDE = 13.0  # px from a joint's middle to that of its letter, along either ax
 
 
 @dataclass(frozen=True)
-class View:
+class Viewport:
     """Place of a scene in its drawing: a length of 1 is `scale` px, (x, y) is the upper left corner; size in px."""
 
     scale: float
@@ -40,11 +40,11 @@ class View:
     height: float
 
     @staticmethod
-    def of(scene: Scene) -> View:
+    def of(scene: Scene) -> Viewport:
         """View that fits a scene into a square of `SIDE` px."""
         x0, y0, x1, y1 = scene.box
         scale = SIDE / max(x1 - x0, y1 - y0)
-        return View(scale, x0, y1, scale * (x1 - x0), scale * (y1 - y0))
+        return Viewport(scale, x0, y1, scale * (x1 - x0), scale * (y1 - y0))
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def still(scene: Scene, step: int, title: str) -> str:
     Colours and widths are literal attributes, and each letter is drawn twice: programs other than browsers know no
     variables of style sheets and no strokes that do not scale, and paint the edge of a letter over it.
     """
-    view = View.of(scene)
+    view = Viewport.of(scene)
     size = f'xmlns="{NAMESPACE}" width="{view.width:.0f}" height="{view.height:.0f}" role="img"'
     over = (
         f'x="-1" y="-1" width="{view.width + 2.0:.0f}" height="{view.height + 2.0:.0f}"'  # the whole of px at the rim
@@ -80,7 +80,7 @@ def still(scene: Scene, step: int, title: str) -> str:
 
 def _drawing(scene: Scene, step: int, attributes: str, pen: _Pen, head: str = "") -> str:
     digits = pen.digits
-    view = View.of(scene)
+    view = Viewport.of(scene)
     bodies = "".join(_body(body, index, step, pen) for index, body in enumerate(scene.bodies))
     letters = "".join(
         _letter(view, label, index, body.placed(np.array([[label.x, label.y]]), step)[0], pen)
@@ -95,7 +95,7 @@ def _drawing(scene: Scene, step: int, attributes: str, pen: _Pen, head: str = ""
     )
 
 
-def _body(body: Body, index: int, step: int, pen: _Pen) -> str:
+def _body(body: MovingBody, index: int, step: int, pen: _Pen) -> str:
     digits = pen.digits
     x, y, angle = body.at(step)
     place = f"translate({x:.{digits}f} {y:.{digits}f}) rotate({math.degrees(angle):.4f})"
@@ -104,14 +104,14 @@ def _body(body: Body, index: int, step: int, pen: _Pen) -> str:
     return f'<g id="body-{index}" class="body {body.kind}" transform="{place}"><title>{name}</title>{shapes}</g>'
 
 
-def _shape(shape: Shape, pen: _Pen) -> str:
+def _shape(shape: FilledShape, pen: _Pen) -> str:
     path = "".join(ring.path(pen.digits) for ring in shape.rings)
     title = f"<title>{escape(shape.name)}</title>" if shape.name else ""
     look = f'class="{shape.role}"' if pen.px is None else literal(shape.role, pen.px)
     return f'<path {look} d="{path}">{title}</path>'
 
 
-def _letter(view: View, label: Label, index: int, place_of: Array, pen: _Pen) -> str:
+def _letter(view: Viewport, label: Letter, index: int, place_of: Array, pen: _Pen) -> str:
     x, y = (place_of * (1.0, -1.0) * view.scale + (BESIDE - view.scale * view.x, view.scale * view.y - BESIDE)).tolist()
     text = escape(label.text)
     if pen.px is None:

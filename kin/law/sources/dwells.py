@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.law.sources.least_jerk import Space, UnsolvedError, least
+from kin.law.sources.least_jerk import FunctionSpace, UnsolvedError, least
 from kin.law.sources.ring import SAME_ANGLE
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class Run(NamedTuple):
         return self._replace(begin=self.begin + by, end=self.end + by)
 
 
-class Stretch(NamedTuple):
+class MotionBetweenDwells(NamedTuple):
     """A motion from the end of one dwell to the beginning of the next."""
 
     begin: float
@@ -95,7 +95,7 @@ def runs(rows: Tabled, least_level: float | None) -> list[Run]:
 
 def stretches(
     rows: Tabled, dwells: Sequence[Run], plain: Least, bounds: Bounds, limit: LowerLimit | None
-) -> tuple[list[Run], list[Stretch]]:
+) -> tuple[list[Run], list[MotionBetweenDwells]]:
     """Runs that are dwells, their ends moved in, and the stretches of motion between them; [], [] for no dwell.
 
     `plain` is the motion without dwells within the same bounds.
@@ -103,7 +103,7 @@ def stretches(
     kept = list(dwells)
     while kept:
         following = [*kept[1:], kept[0].later(rows.period)] if rows.period else kept[1:]
-        between: list[Stretch] = []
+        between: list[MotionBetweenDwells] = []
         for i, after in enumerate(following):
             stretch, spoilt = _stretch(rows, (kept[i], after), plain, bounds, limit)
             if stretch is None:
@@ -125,7 +125,7 @@ def _leave_out(kept: list[Run], which: int, period: float) -> None:
         kept.pop(which)
 
 
-def _between_stretches(kept: Sequence[Run], between: Sequence[Stretch], period: float) -> list[Run]:
+def _between_stretches(kept: Sequence[Run], between: Sequence[MotionBetweenDwells], period: float) -> list[Run]:
     """Runs that begin where the stretch before them ends, and end where the next one begins."""
     moved = []
     for i, run in enumerate(kept):
@@ -140,7 +140,7 @@ def _between_stretches(kept: Sequence[Run], between: Sequence[Stretch], period: 
 
 def _stretch(
     rows: Tabled, pair: tuple[Run, Run], plain: Least, bounds: Bounds, limit: LowerLimit | None
-) -> tuple[Stretch | None, int]:
+) -> tuple[MotionBetweenDwells | None, int]:
     """The motion between two runs; or None, with 0 where the first one is no dwell, and 1 where the second one is none.
 
     The ends of both runs are moved in until the motion between them is about as calm as that without dwells, `plain`.
@@ -157,7 +157,7 @@ def _stretch(
     touch = plain.touch
     while True:
         begin, end = before.end - moved[0], after.begin + moved[1]
-        space = Space(begin, end, (before.level, after.level))
+        space = FunctionSpace(begin, end, (before.level, after.level))
         try:
             moving = least(space, rows.between(bounds, space), touch, limit)
         except UnsolvedError:
@@ -174,7 +174,7 @@ def _stretch(
                 and (peaks[side] > _PEAK * plain_peaks[side] or squares[side] > _SQUARE * plain_squares[side])
             ]
             if not wild:
-                return Stretch(begin, end, moving), 0
+                return MotionBetweenDwells(begin, end, moving), 0
         else:
             wild = [side for side in (0, 1) if most_moved[side] > 0.0]
         for side in wild:

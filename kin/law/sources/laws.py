@@ -16,7 +16,7 @@ import numpy as np
 
 from kin.law.piecewise import Piecewise
 from kin.law.programme import LAWS, IntentError, Law, Polynomial, mirrored, symmetric
-from kin.law.segment import Affine, Stretch
+from kin.law.segment import AffineStretch, Stretch
 from kin.law.sources.functions import Cosines, FromRest, Sines
 from kin.law.sources.peaks import peaks
 from kin.numeric.records import dataclass
@@ -129,13 +129,13 @@ def blended(first: float, last: float, field: str = "law") -> Law:
     velocity = 1.0 / (1.0 - 0.5 * (first + last))
     knots, functions = [0.0], list[Stretch]()
     if first:
-        functions.append(Affine(FromRest(), scale=0.5 * velocity * first, width=first))
+        functions.append(AffineStretch(FromRest(), scale=0.5 * velocity * first, width=first))
         knots.append(first)
     if 1.0 - first - last > _LEAST_SHARE:
         functions.append(Polynomial((0.5 * velocity * first, velocity), first))
         knots.append(1.0 - last)
     if last:
-        functions.append(Affine(FromRest(), offset=1.0, scale=-0.5 * velocity * last, start=1.0, width=-last))
+        functions.append(AffineStretch(FromRest(), offset=1.0, scale=-0.5 * velocity * last, start=1.0, width=-last))
         knots.append(1.0)
     knots[-1] = 1.0
     return _of(f"uniform (blends {first:.6g} and {last:.6g})", Piecewise(np.array(knots), tuple(functions)))
@@ -171,7 +171,9 @@ def from_rows(samples: Samples, reading: float, field: str = "law") -> Law:
         raise IntentError("the rows of a law lead from 0;0 to 1;1", field)
     made = from_table(samples, reading, 1.0, around=None, field=field)
     rise = made.at_end(0)[0] - made.at_start(0)[0]
-    functions = tuple(Affine.of(f, offset=-made.at_start(0)[0] / rise, scale=1.0 / rise) for f in made.motion.functions)
+    functions = tuple(
+        AffineStretch.of(f, offset=-made.at_start(0)[0] / rise, scale=1.0 / rise) for f in made.motion.functions
+    )
     return _of(f"table ({len(u)} rows)", Piecewise(made.motion.knots, functions), reverses=True)
 
 
@@ -196,12 +198,12 @@ def split(law: Law, share: float, field: str = "law") -> Law:
     pieces = list(zip(law.motion.functions, pairwise(law.motion.knots.tolist()), strict=True))
     for function, (begin, end) in pieces:
         if begin < 0.5:
-            functions.append(Affine.of(function, scale=before, width=before))
+            functions.append(AffineStretch.of(function, scale=before, width=before))
             knots.append(before * min(end, 0.5))
     knots[-1] = share
     for function, (_, end) in pieces:
         if end > 0.5:
-            functions.append(Affine.of(function, offset=1 - after, scale=after, start=1 - after, width=after))
+            functions.append(AffineStretch.of(function, offset=1 - after, scale=after, start=1 - after, width=after))
             knots.append(1 - after * (1 - end))
     knots[-1] = 1.0
     return _of(f"{law.name} (split {share:.6g})", Piecewise(np.array(knots), tuple(functions)))

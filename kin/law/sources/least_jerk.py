@@ -53,7 +53,7 @@ class CrowdedError(CamgeoError, ArithmeticError):
     """A search that would take minutes: too many bounds are touched, and found one by one."""
 
 
-class Space(NamedTuple):
+class FunctionSpace(NamedTuple):
     """Functions from `begin` to `end`: at rest at both ends, at the levels `rest`, or of that period (None)."""
 
     begin: float
@@ -353,7 +353,7 @@ def _blocks(count: int, *, periodic: bool) -> _Blocks:
     )
 
 
-def _spline(space: Space, x: Array, s: Array) -> _Spline:
+def _spline(space: FunctionSpace, x: Array, s: Array) -> _Spline:
     """Solve for the third derivative of the spline through s (k,) at x (k,)."""
     k = len(x)
     if space.rest is None:  # B-spline i stands over the knots i to i + 3
@@ -389,13 +389,13 @@ def _rise(values: Array) -> Array:
     return values[1:] - values[:-1]
 
 
-def pulls(space: Space, x: Array, s: Array) -> tuple[Array, float]:
+def pulls(space: FunctionSpace, x: Array, s: Array) -> tuple[Array, float]:
     """Lagrange multipliers (k,) of values s (k,) at x (k,), and the integral of S'''^2 of the spline through them."""
     spline = _spline(space, x, s)
     return spline.pull(), spline.square
 
 
-def curve_through(space: Space, x: Array, s: Array) -> Curve:
+def curve_through(space: FunctionSpace, x: Array, s: Array) -> Curve:
     """Spline of least integral of S'''^2 through values s (k,) at rising x (k,)."""
     return _spline(space, x, s).curve()
 
@@ -422,7 +422,7 @@ class Least(NamedTuple):
 
 
 def least(
-    space: Space,
+    space: FunctionSpace,
     bounds: Bounds,
     start: Touch | None = None,
     limit: LowerLimit | None = None,
@@ -450,7 +450,7 @@ def least(
 
 
 def _with_limit(
-    space: Space, bounds: Bounds, nearest: Least, dips: Array, *, limit: LowerLimit, share: float
+    space: FunctionSpace, bounds: Bounds, nearest: Least, dips: Array, *, limit: LowerLimit, share: float
 ) -> tuple[Bounds, Touch]:
     """Bounds with one at the limit at each dip; where one holds the function up beside it, that moves towards the dip.
 
@@ -482,7 +482,7 @@ def _with_limit(
     return bounds, Touch(which[order], np.concatenate([nearest.upper[kept], upper])[order])
 
 
-def _of_many(space: Space, bounds: Bounds, start: Touch | None, ample: float) -> Least | None:
+def _of_many(space: FunctionSpace, bounds: Bounds, start: Touch | None, ample: float) -> Least | None:
     """Solve without a lower limit; `start` has places among the bounds.
 
     Of many bounds only some are put in at a time.
@@ -542,7 +542,7 @@ class _State(NamedTuple):
 class _Search:
     """The search for the bounds that are touched, after so much work (the knots' cubes, summed over the solves)."""
 
-    def __init__(self, space: Space, bounds: Bounds, work: float) -> None:
+    def __init__(self, space: FunctionSpace, bounds: Bounds, work: float) -> None:
         self.space, self.bounds, self.work = space, bounds, work
         self.least = 2 if space.rest is None else 0  # bounds that are touched, of a function that is no constant
         self._before: set[bytes] = set()

@@ -8,7 +8,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 from kin.law.programme import IntentError
-from kin.law.segment import Affine, Constant, Power
+from kin.law.segment import AffineStretch, Constant, Power
 from kin.law.sources.functions import Flank, FromRest, RampedFlank
 from kin.law.sources.motion import Motion, joined
 
@@ -166,7 +166,7 @@ class _Stretch(NamedTuple):
         if isinstance(self.function, Constant):
             return self.function
         start = self.begin if self.width > 0.0 else self.end
-        return Affine(self.function, scale=self.scale, start=start + by, width=self.width)
+        return AffineStretch(self.function, scale=self.scale, start=start + by, width=self.width)
 
     def mirrored(self) -> _Stretch:
         """The part on the other side of the nose."""

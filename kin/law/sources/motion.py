@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from kin.law.joints import ORDERS, Joint, joints_of
+from kin.law.joints import ORDERS, DerivativeJump, joints_of
 from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError
 from kin.law.segment import Constant, moved
@@ -29,7 +29,7 @@ _INSIDE = (np.arange(8) + 0.5) / 8  # and in shares of each part
 _SEAM_ORDER = 6  # derivatives that agree where a function runs on over the seam
 
 
-class Rest(NamedTuple):
+class DwellStretch(NamedTuple):
     """A dwell from `begin` to `end` (rad, `end` may lie beyond a turn) at a displacement."""
 
     begin: float
@@ -98,22 +98,22 @@ class Motion:
         return self.motion.breaks
 
     @cached_property
-    def rests(self) -> tuple[Rest, ...]:
+    def rests(self) -> tuple[DwellStretch, ...]:
         """Dwells, exact ones, rising; one that runs over the end of a repeating motion is one."""
         knots = self.motion.knots.tolist()
         rests = [
-            Rest(knots[i], knots[i + 1], f.value)
+            DwellStretch(knots[i], knots[i + 1], f.value)
             for i, f in enumerate(self.motion.functions)
             if isinstance(f, Constant)
         ]
         over = self.around == 1 and len(rests) > 1 and rests[0].begin == 0.0 and rests[-1].end == knots[-1]
         if over and abs(rests[0].level - rests[-1].level) <= _CLOSED * self._size:
             first, last = rests.pop(0), rests.pop()
-            rests.append(Rest(last.begin, self.total + first.end, last.level))
+            rests.append(DwellStretch(last.begin, self.total + first.end, last.level))
         return tuple(rests)
 
     @cached_property
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[DerivativeJump, ...]:
         """Angles at which S, S', S'' or S''' jump, with what jumps; the end of a motion that goes on is at 0."""
         knots = self.motion.knots
         side = np.repeat([1, -1], knots.size - 1)
@@ -143,7 +143,7 @@ class Motion:
             low = [(k, a, b) for k, a, b in joint.jumps if k < 2 and abs(b - a) > _CLOSED * self._size]
             if low:
                 at = math.degrees(joint.at)
-                jump = Joint(joint.at, tuple(low))  # angles are told in degrees, as recipes have them
+                jump = DerivativeJump(joint.at, tuple(low))  # angles are told in degrees, as recipes have them
                 amount = jump.scaled(math.degrees(1.0)).said("deg") if unit == "rad" else jump.said(unit)
                 raise IntentError(f"the motion does not join: {amount}; {_remedy(joint.at, low[0][0])}", field, at)
         return self

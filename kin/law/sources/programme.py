@@ -10,7 +10,7 @@ import numpy as np
 
 from kin.law.piecewise import Piecewise
 from kin.law.programme import IntentError, Law
-from kin.law.segment import Affine, Constant, Stretch
+from kin.law.segment import AffineStretch, Constant, Stretch
 from kin.law.sources.functions import RiseFall, TwoPoint
 from kin.law.sources.motion import Motion, joined
 from kin.numeric.records import dataclass
@@ -27,7 +27,7 @@ _START = 1e-12  # of a formula's greatest value: a value at u = 0 below this is 
 
 
 @dataclass(frozen=True)
-class State:
+class JointState:
     """Velocity, acceleration and jerk at a joint, per rad, rad^2, rad^3."""
 
     v: float = 0.0
@@ -44,8 +44,8 @@ class Matched:
     """
 
     degree: int = 5
-    at_start: State | None = None
-    at_end: State | None = None
+    at_start: JointState | None = None
+    at_end: JointState | None = None
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ def _build(part: _Part) -> None:
         part.lay([begin, end], [Constant(part.level)])
     elif isinstance(step, RiseAndFall):
         _demand_stroke(step.by, part.field)
-        moved = Affine(RiseFall(), offset=part.level, scale=step.by, start=begin, width=end - begin)
+        moved = AffineStretch(RiseFall(), offset=part.level, scale=step.by, start=begin, width=end - begin)
         part.lay([begin, end], [moved])
     elif isinstance(step, Given):
         _formula(part, step)
@@ -179,11 +179,13 @@ def _lay_law(part: _Part, law: Law) -> None:
     motion, u = law.motion, law.motion.knots[1:-1].tolist()
     if part.by < 0 and law.reverses:  # s(1 - u), from the foot of the return
         place = {"offset": part.level + part.by, "scale": -part.by, "start": part.end, "width": -width}
-        functions = [Affine.of(f, **place) for f in reversed(motion.functions)]
+        functions = [AffineStretch.of(f, **place) for f in reversed(motion.functions)]
         part.lay([begin, *(part.end - x * width for x in reversed(u)), part.end], functions)
         return
     place = {"offset": part.level, "scale": part.by, "start": begin, "width": width}
-    part.lay([begin, *(begin + x * width for x in u), part.end], [Affine.of(f, **place) for f in motion.functions])
+    part.lay(
+        [begin, *(begin + x * width for x in u), part.end], [AffineStretch.of(f, **place) for f in motion.functions]
+    )
 
 
 def _formula(part: _Part, step: Given) -> None:
@@ -201,7 +203,7 @@ def _formula(part: _Part, step: Given) -> None:
     width = part.end - part.begin
     place = {"offset": part.level, "scale": step.scale, "start": part.begin, "width": width}
     inner = [part.begin + u * width for u in knots[1:-1]]
-    part.lay([part.begin, *inner, part.end], [Affine.of(f, **place) for f in functions])
+    part.lay([part.begin, *inner, part.end], [AffineStretch.of(f, **place) for f in functions])
     part.by = float(ends[1])
 
 
@@ -218,7 +220,7 @@ def _match(parts: Sequence[_Part], i: int, around: int | None) -> None:
     scales = np.array([width**k for k in range(1, order + 1)])
     start, end = (_state(parts, i, way, around)[:order] * scales for way in (-1, 1))
     function = TwoPoint.of((0.0, *start.tolist()), (part.by, *end.tolist()))
-    part.lay([part.begin, part.end], [Affine(function, offset=part.level, start=part.begin, width=width)])
+    part.lay([part.begin, part.end], [AffineStretch(function, offset=part.level, start=part.begin, width=width)])
 
 
 def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Array:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from kin.law.programme import IntentError
-from kin.law.segment import Affine, Constant, Stretch, moved
+from kin.law.segment import AffineStretch, Constant, Stretch, moved
 from kin.law.sources.motion import Motion, joined
 from kin.law.sources.spline import Ends
 
@@ -53,7 +53,7 @@ class Dwelling(NamedTuple):
     level: float
 
 
-class Fit(Protocol):
+class FittingMethod(Protocol):
     """Method that fits spans of a function to the rows of one moving stretch."""
 
     def __call__(
@@ -62,7 +62,7 @@ class Fit(Protocol):
         """Give the sites (m + 1,) and m functions."""
 
 
-def laid(rows: Samples, dwells: Sequence[Dwelling], total: float, around: int | None, fit: Fit) -> Motion:
+def laid(rows: Samples, dwells: Sequence[Dwelling], total: float, around: int | None, fit: FittingMethod) -> Motion:
     """Fit the rows between the dwells and lay everything over [0, total].
 
     Rows of a motion that repeats (`around` 1) lie within one turn, rows of the others reach from 0 to `total`. With
@@ -101,7 +101,9 @@ def merged(dwells: Sequence[Dwelling], count: int) -> list[Dwelling]:
     return joined_dwells
 
 
-def _round(rows: Samples, dwells: Sequence[Dwelling], turn: float, fit: Fit) -> tuple[list[float], list[Stretch]]:
+def _round(
+    rows: Samples, dwells: Sequence[Dwelling], turn: float, fit: FittingMethod
+) -> tuple[list[float], list[Stretch]]:
     """Stretches round a turn, from the first row or the first dwell on."""
     n = len(rows.theta)
     if not dwells:
@@ -127,7 +129,7 @@ def _angle(rows: Samples, index: int, turn: float) -> float:
     return float(rows.theta[index % n]) + turn * (index // n)
 
 
-def _open(rows: Samples, dwells: Sequence[Dwelling], fit: Fit) -> Motion:
+def _open(rows: Samples, dwells: Sequence[Dwelling], fit: FittingMethod) -> Motion:
     knots, functions = [float(rows.theta[0])], []
     last, level = 0, float(rows.s[0])
     stops = [*dwells, Dwelling(len(rows.s) - 1, len(rows.s) - 1, float(rows.s[-1]))]
@@ -163,7 +165,7 @@ def settled(knots: Sequence[float], functions: Sequence[Stretch], turn: float, t
 
 def _on_knots(function: Stretch, ends: tuple[float, float]) -> Stretch:
     """The function counted from a knot of its own exactly, where folding has rounded that."""
-    if isinstance(function, Affine):
+    if isinstance(function, AffineStretch):
         for knot in ends:
             if abs(function.start - knot) <= _FOLDED:
                 return replace(function, start=knot)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.segment import Affine, Power
+from kin.law.segment import AffineStretch, Power
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class Basis:
         """Coefficients that the six B-splines of spans (n,) take, (6, n)."""
         return (span + np.arange(DEGREE + 1)[:, None]) % self.size
 
-    def spans(self, coefficients: Array) -> tuple[Affine, ...]:
+    def spans(self, coefficients: Array) -> tuple[AffineStretch, ...]:
         """The spline as polynomials, one between two places, about its start; the last clamped one about its end."""
         c = coefficients[np.arange(len(self.sites) - 1 + DEGREE) % self.size]
         wide = np.flatnonzero(np.diff(self.sites) > 0.0)
@@ -76,7 +76,7 @@ class Basis:
                 apart = knots[i + low] - knots[i]  # none: a B-spline that vanishes everywhere
                 c = np.concatenate([np.zeros(k + 1), low * (c[i] - c[i - 1]) / np.where(apart > 0.0, apart, np.inf)])
         rows = zip(taylor.T.tolist(), starts.tolist(), width.tolist(), strict=True)
-        return tuple(Affine(Power(tuple(row)), start=start, width=w) for row, start, w in rows)
+        return tuple(AffineStretch(Power(tuple(row)), start=start, width=w) for row, start, w in rows)
 
 
 def b_splines(knots: Array, index: Indices, x: Array, degree: int) -> Array:
@@ -100,7 +100,7 @@ class Ends:
     end: float
 
 
-def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
+def through(x: Array, s: Array, ends: Ends | None) -> tuple[AffineStretch, ...]:
     """Spline with its sites at x (m + 1,) and the values s there; with a period s[-1] is s[0]."""
     basis = Basis(x, ends is None)
     inner = slice(1, -1) if ends else slice(0, -1)

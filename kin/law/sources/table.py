@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from kin.law.programme import IntentError
-from kin.law.segment import Affine, Constant, Power
+from kin.law.segment import AffineStretch, Constant, Power
 from kin.law.sources.dwells import runs, stretches
 from kin.law.sources.least_jerk import Bounds, CrowdedError, LowerLimit, UnsolvedError, curve_through, least
 from kin.law.sources.motion import Kept, Motion, TableRemark, joined
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.law.segment import Stretch
+    from kin.law.sources.dwells import MotionBetweenDwells as Moving
     from kin.law.sources.dwells import Run
-    from kin.law.sources.dwells import Stretch as Moving
-    from kin.law.sources.least_jerk import Curve, Least, Space
+    from kin.law.sources.least_jerk import Curve, FunctionSpace, Least
     from kin.law.sources.suspects import Suspect
     from kin.law.sources.tabled import Rest, Tabled
 
@@ -146,7 +146,7 @@ def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Mot
     return motion if around == 1 else Motion(motion.raised(-float(motion.at_start(0)[0])).motion, -1)
 
 
-def _solved(space: Space, bounds: Bounds, near: Least, limit: LowerLimit | None) -> Least:
+def _solved(space: FunctionSpace, bounds: Bounds, near: Least, limit: LowerLimit | None) -> Least:
     """The motion within bounds that is no constant."""
     solution = least(space, bounds, near.touch, limit)
     if solution is None:
@@ -195,7 +195,7 @@ def _functions(curve: Curve, level: float) -> list[Stretch]:
         rows[-1] = [level, 0.0, 0.0, c3 + 4.0 * c4 + 10.0 * c5, c4 + 5.0 * c5, c5]
         starts[-1] += curve.widths[-1]
     spans = zip(rows, starts, curve.widths.tolist(), strict=True)
-    return [Affine(Power(tuple(row)), start=start, width=width) for row, start, width in spans]
+    return [AffineStretch(Power(tuple(row)), start=start, width=width) for row, start, width in spans]
 
 
 def _demand_stroke(layout: Tabled, reading: float, field: str) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from kin.law.programme import IntentError
-from kin.law.sources.least_jerk import Bounds, Space, joined_bounds
+from kin.law.sources.least_jerk import Bounds, FunctionSpace, joined_bounds
 from kin.law.sources.ring import SAME_ANGLE, Samples, demand_whole
 from kin.numeric.records import dataclass
 
@@ -50,7 +50,7 @@ class Tabled:
     s: Array
     reading: Array
     lines: Indices
-    space: Space
+    space: FunctionSpace
     unit: float
     fixed: tuple[int, ...] = ()
 
@@ -78,7 +78,7 @@ class Tabled:
             lo = np.where(hi >= least_level, np.maximum(lo, least_level), lo)
         return Bounds(self.x, lo, hi, share * self.reading, np.arange(len(self.x)))
 
-    def between(self, bounds: Bounds, space: Space) -> Bounds:
+    def between(self, bounds: Bounds, space: FunctionSpace) -> Bounds:
         """Bounds that lie strictly inside the space `space`, shifted by a period where the space runs over its end."""
         parts = []
         for turn in (-1, 0, 1) if self.period else (0,):
@@ -123,14 +123,14 @@ def tabled(rows: Samples, reading: float, total: float, around: int | None, *, r
     n = len(s) - 1
     if around is None:
         inner = slice(1, -1)
-        space = Space(0.0, total, (float(s[0]), float(s[-1])))
+        space = FunctionSpace(0.0, total, (float(s[0]), float(s[-1])))
         return Tabled(rows.theta[inner], s[inner], within[inner], rows.lines[inner], space, rows.unit)
     return Tabled(
         np.concatenate([rows.theta[:-1], rows.theta[:-1] + total]),
         np.concatenate([s[:-1], s[0] + s[-1] - s[:-1]]),
         np.tile(within[:-1], 2),
         np.concatenate([rows.lines[:-1], rows.lines[-1:], rows.lines[1:-1]]),
-        Space(0.0, 2.0 * total),
+        FunctionSpace(0.0, 2.0 * total),
         rows.unit,
         (0, n),
     )
@@ -147,7 +147,7 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
     """Rows of a motion that repeats, without one that closes it, and with what they leave out."""
     over, line = float(rows.theta[-1] - rows.theta[0]), int(rows.lines[-1])
     apart, allowed = abs(float(rows.s[-1] - rows.s[0])), float(within[0] + within[-1])
-    space = Space(float(rows.theta[0]), float(rows.theta[0]) + total)
+    space = FunctionSpace(float(rows.theta[0]), float(rows.theta[0]) + total)
     if over > total - SAME_ANGLE:
         _demand_no_rest(rest, field)
         if apart > allowed * (1.0 + 1e-9):

@@ -13,7 +13,7 @@ from kin.contour.pieces import ARC, Pieces
 from kin.numeric.records import dataclass, replace
 from kin.read.drawing.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
 from kin.read.errors import ReadError
-from kin.read.nesting import Chain, Nest, counter_clockwise, demand_few, demand_few_pieces, met, nested
+from kin.read.nesting import ClosedContour, Nest, counter_clockwise, demand_few, demand_few_pieces, met, nested
 
 if TYPE_CHECKING:
     from collections import Counter
@@ -138,7 +138,7 @@ def drawing_of(
     outer = chained[order[0].number]
     return Drawing(
         chains=tuple(
-            Chain(
+            ClosedContour(
                 counter_clockwise(ring.contour),
                 depth,
                 inside,

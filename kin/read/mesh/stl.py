@@ -17,7 +17,7 @@ from kin.read.errors import ReadError
 from kin.read.formats import contents
 from kin.read.mesh.mesh import WordError, doubles
 from kin.read.mesh.prism import Outline, evened, rounding, upright, walls
-from kin.read.nesting import Chain, counter_clockwise, demand_few, met, nested
+from kin.read.nesting import ClosedContour, counter_clockwise, demand_few, met, nested
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -220,7 +220,7 @@ def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
     return max(cuts, key=lambda section: float(np.prod(np.ptp(section[1].points, axis=0))))
 
 
-def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -> tuple[Chain, ...]:
+def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -> tuple[ClosedContour, ...]:
     """Closed chains of a section, the outer one first, nested at most `deepest` deep inside it.
 
     `across` says that the section runs across triangles, whose points on straight lines are left out, and not along
@@ -234,7 +234,7 @@ def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -
         raise met(meeting, path)
     order = nested(contours, path, deepest)
     each = ((counter_clockwise(contours[k]), depth, inside) for k, depth, inside in order)
-    return tuple(Chain(contour, depth, inside, pieces=len(contour)) for contour, depth, inside in each)
+    return tuple(ClosedContour(contour, depth, inside, pieces=len(contour)) for contour, depth, inside in each)
 
 
 def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "text"]]:

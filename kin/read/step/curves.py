@@ -27,7 +27,7 @@ WRAPPED = ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE")
 SPLINES = ("B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE")
 
 
-class Space(NamedTuple):
+class StepFile(NamedTuple):
     """A file, with the length of its unit in mm, its unit of angle in rad if stated, and its own accuracy in mm.
 
     `place` is where the file puts what it draws, None where it stays. What is read is there already.
@@ -152,7 +152,7 @@ class Spline(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Edge:
+class StepEdge:
     """An EDGE_CURVE: its number, where it starts and ends (3,), and its curve."""
 
     number: int
@@ -233,7 +233,7 @@ def _conic_crossings(curve: Conic, z: float) -> list[tuple[Array, bool]]:
     return crossings
 
 
-def edge_of(space: Space, number: int) -> Edge:
+def edge_of(space: StepFile, number: int) -> StepEdge:
     """Read an EDGE_CURVE. Raises ReadError for a curve that is not read, or one that is trimmed inside."""
     file = space.file
     _, first, last, geometry, sense, *_ = file.values(number, "EDGE_CURVE", 5)
@@ -251,17 +251,17 @@ def edge_of(space: Space, number: int) -> Edge:
     else:
         spline = spline_of(space, curve)
         shape = spline._replace(back=not forward)
-    edge = Edge(number, start, end, shape)
+    edge = StepEdge(number, start, end, shape)
     if isinstance(shape, Spline) and edge.misfit > BEYOND * float(np.ptp(edge.samples, axis=0).max()):
         raise file.error(number, f"its curve #{curve} goes on beyond its ends; a spline is read whole")
     return edge
 
 
-def _vertex(space: Space, number: int) -> Array:
+def _vertex(space: StepFile, number: int) -> Array:
     return space.point(space.file.values(number, "VERTEX_POINT", 2)[1], number)
 
 
-def _line(space: Space, number: int) -> Straight:
+def _line(space: StepFile, number: int) -> Straight:
     _, point, vector, *_ = space.file.values(number, "LINE", 3)
     arrow = space.file.reference(vector, number)
     along = space.direction(space.file.values(arrow, "VECTOR", 2)[1], arrow)
@@ -271,7 +271,7 @@ def _line(space: Space, number: int) -> Straight:
     return Straight(space.point(point, number), along / size)
 
 
-def _conic(space: Space, number: int, kind: str, ends: tuple[Array, Array], *, forward: bool) -> Conic:
+def _conic(space: StepFile, number: int, kind: str, ends: tuple[Array, Array], *, forward: bool) -> Conic:
     """Circle or ellipse between two places in its own sense, turned round unless the edge runs forward."""
     axes, *sizes = space.file.values(number, kind, 3 if kind == "CIRCLE" else 4)[1:]
     frame = space.frame(axes, number)
@@ -286,7 +286,7 @@ def _conic(space: Space, number: int, kind: str, ends: tuple[Array, Array], *, f
     return Conic(frame.origin, a * frame.x, b * frame.y, first, sweep)
 
 
-def spline_of(space: Space, number: int) -> Spline:
+def spline_of(space: StepFile, number: int) -> Spline:
     """Read a B-spline curve, rational or not. Raises ReadError where its numbers do not fit together."""
     file = space.file
     records = file.instances[number]
@@ -316,7 +316,7 @@ def spline_of(space: Space, number: int) -> Spline:
     return Spline(plan, rise)
 
 
-def _knots(space: Space, number: int, knotted: tuple[Value, ...], degree: int, count: int) -> Array:
+def _knots(space: StepFile, number: int, knotted: tuple[Value, ...], degree: int, count: int) -> Array:
     """Knots, each as often as it counts; those of a BEZIER_CURVE are its ends of every span."""
     file = space.file
     if len(knotted) >= 2:

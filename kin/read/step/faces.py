@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
     from kin.contour.bezier import Beziers
     from kin.numeric.arrays import Array
-    from kin.read.step.curves import Edge, Space
+    from kin.read.step.curves import StepEdge, StepFile
 
 # Sine of an angle that is still rounding: of a plane against the horizontal, an axis against the vertical.
 LEVEL = 1e-9
@@ -58,7 +58,7 @@ class Plane(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Round:
+class RoundFace:
     """A cylinder or a cone about a vertical axis: centre (2,), radius at the height `base`, and its growth with z."""
 
     centre: Array
@@ -123,7 +123,7 @@ class Swept:
         return nearest(self.arcs, points[:, :2])[1]
 
 
-Surface: TypeAlias = "Plane | Round | Tube | Swept"
+Surface: TypeAlias = "Plane | RoundFace | Tube | Swept"
 
 
 class Use(NamedTuple):
@@ -141,10 +141,10 @@ class Face:
     surface: Surface
     loops: tuple[tuple[Use, ...], ...]
     outward: bool
-    edges: dict[int, Edge]
+    edges: dict[int, StepEdge]
 
     @cached_property
-    def uses(self) -> list[tuple[Edge, bool]]:
+    def uses(self) -> list[tuple[StepEdge, bool]]:
         """All edges of its bounds, and the senses in which they run."""
         return [(self.edges[use.edge], use.forward) for loop in self.loops for use in loop]
 
@@ -178,7 +178,7 @@ class Face:
 
         An arc that goes the long way round lies on the same surface, and its height is no other: only this tells.
         """
-        if isinstance(self.surface, Round):
+        if isinstance(self.surface, RoundFace):
             x, y, centre = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.append(self.surface.centre, 0.0)
         elif isinstance(self.surface, Tube):
             y, centre = np.array([0.0, 0.0, 1.0]), self.surface.point
@@ -194,16 +194,16 @@ class Face:
             total += run if forward != backwards else -run
         return total
 
-    def section(self, space: Space, z: float) -> list[Shape]:
+    def section(self, space: StepFile, z: float) -> list[Shape]:
         """The face's part of the section at a height; raises ReadError where its bounds do not pair."""
         low, high = self.heights
         if self.surface.level or not low < z < high:
             return []
         crossings = [(place, rises == forward) for edge, forward in self.uses for place, rises in edge.crossings(z)]
-        if not crossings and not isinstance(self.surface, Round):
+        if not crossings and not isinstance(self.surface, RoundFace):
             return []
         match self.surface:
-            case Round():
+            case RoundFace():
                 return self._arcs(space, self.surface, z, crossings)
             case Plane():
                 normal = self.surface.normal * (1.0 if self.outward else -1.0)
@@ -219,7 +219,7 @@ class Face:
         self._demand_ends(space, crossings)
         return [shape(beziers=self.surface.spans, heights=0.0)]
 
-    def _chords(self, space: Space, crossings: list[Crossing], along: Array) -> list[Shape]:
+    def _chords(self, space: StepFile, crossings: list[Crossing], along: Array) -> list[Shape]:
         """Pieces of a straight section that runs in a direction (2,)."""
         begins = sorted((place for place, rises in crossings if not rises), key=lambda place: float(place[:2] @ along))
         ends = sorted((place for place, rises in crossings if rises), key=lambda place: float(place[:2] @ along))
@@ -229,7 +229,7 @@ class Face:
             raise self._contrary(space)
         return [shape(chords=(*first[:2], *last[:2], 0.0), heights=0.0) for first, last in pairs]
 
-    def _arcs(self, space: Space, surface: Round, z: float, crossings: list[Crossing]) -> list[Shape]:
+    def _arcs(self, space: StepFile, surface: RoundFace, z: float, crossings: list[Crossing]) -> list[Shape]:
         """Pieces of a round section."""
         radius = surface.radius_at(z)
         if not radius > 0.0:
@@ -249,7 +249,7 @@ class Face:
             pieces.append(_arc(surface.centre, radius, first, sense * sweep))
         return pieces
 
-    def _demand_ends(self, space: Space, crossings: list[Crossing]) -> None:
+    def _demand_ends(self, space: StepFile, crossings: list[Crossing]) -> None:
         """Refuse a swept face that is bounded by anything but the ends of its curve."""
         if len(crossings) != 2 or crossings[0][1] == crossings[1][1] or not isinstance(self.surface, Swept):
             raise self._contrary(space)
@@ -259,7 +259,7 @@ class Face:
             if float(np.hypot(*(ends - place[:2]).T).min()) > space.accuracy:
                 raise space.file.error(self.number, "it ends before its curve does; swept curves are read whole")
 
-    def _contrary(self, space: Space) -> Exception:
+    def _contrary(self, space: StepFile) -> Exception:
         return space.file.error(self.number, "its bounds do not enclose a part of its surface that faces outward")
 
 
@@ -270,7 +270,7 @@ def _arc(centre: Array, radius: float, first: float, sweep: float) -> Shape:
     return shape(arcs=rows, heights=0.0)
 
 
-def face_of(space: Space, number: int, edges: dict[int, Edge]) -> Face:
+def face_of(space: StepFile, number: int, edges: dict[int, StepEdge]) -> Face:
     """Read an ADVANCED_FACE, and the edges of its bounds into `edges`.
 
     Raises ReadError for an unsupported surface or edge.
@@ -297,7 +297,7 @@ def face_of(space: Space, number: int, edges: dict[int, Edge]) -> Face:
     return Face(number, geometry, tuple(loops), file.flag(sense, number), edges)
 
 
-def _use(space: Space, number: int, edges: dict[int, Edge]) -> Use:
+def _use(space: StepFile, number: int, edges: dict[int, StepEdge]) -> Use:
     file = space.file
     *_, curve, sense = file.values(number, "ORIENTED_EDGE", 5)[:5]
     edge = file.reference(curve, number)
@@ -307,7 +307,7 @@ def _use(space: Space, number: int, edges: dict[int, Edge]) -> Use:
     return Use(edge, file.flag(sense, number))
 
 
-def _check_loop(space: Space, number: int, uses: list[Use], edges: dict[int, Edge]) -> None:
+def _check_loop(space: StepFile, number: int, uses: list[Use], edges: dict[int, StepEdge]) -> None:
     """Refuse a loop whose edges do not follow one another."""
     if not uses:
         raise space.file.error(number, "it has no edges", "syntax")
@@ -323,7 +323,7 @@ def _check_loop(space: Space, number: int, uses: list[Use], edges: dict[int, Edg
             raise space.file.error(number, message, "open")
 
 
-def _surface(space: Space, number: int, by: int) -> Surface:
+def _surface(space: StepFile, number: int, by: int) -> Surface:
     file = space.file
     kind = file.kind(number, SURFACES, by)
     if kind == "SURFACE_OF_LINEAR_EXTRUSION":
@@ -336,7 +336,7 @@ def _surface(space: Space, number: int, by: int) -> Surface:
     if kind == "CYLINDRICAL_SURFACE":
         radius = space.length(rest[0], number)
         if upright:
-            return Round(frame.origin[:2], radius, 0.0, 0.0)
+            return RoundFace(frame.origin[:2], radius, 0.0, 0.0)
         if abs(frame.z[2]) > LEVEL:
             raise file.error(number, "its axis is neither upright nor level")
         return Tube(frame.origin, frame.z, radius)
@@ -346,10 +346,10 @@ def _surface(space: Space, number: int, by: int) -> Surface:
     slope = float(np.tan(file.number(rest[1], number) * space.radian))
     if not upright:
         raise file.error(number, "its axis is not upright")
-    return Round(frame.origin[:2], radius, float(frame.origin[2]), float(np.copysign(slope, frame.z[2])))
+    return RoundFace(frame.origin[:2], radius, float(frame.origin[2]), float(np.copysign(slope, frame.z[2])))
 
 
-def _swept(space: Space, number: int) -> Surface:
+def _swept(space: StepFile, number: int) -> Surface:
     """Surface that a spline sweeps along the vertical."""
     file = space.file
     _, curve, vector, *_ = file.values(number, "SURFACE_OF_LINEAR_EXTRUSION", 3)

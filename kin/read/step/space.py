@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.read.step.curves import Frame, Space
+from kin.read.step.curves import Frame, StepFile
 from kin.read.step.part21 import Reference, Typed
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ SAME = 1e-12  # of directions, and of places in mm
 DEEPEST = 16  # of assemblies within assemblies
 
 
-def space_of(file: Exchange, solid: int, *, alone: bool = True) -> Space:
+def space_of(file: Exchange, solid: int, *, alone: bool = True) -> StepFile:
     """Units, accuracy and place of the representation that holds a solid, which may be `alone` in the file.
 
     Raises ReadError for what is not read.
@@ -65,7 +65,7 @@ def space_of(file: Exchange, solid: int, *, alone: bool = True) -> Space:
             size = file.values(measure, "UNCERTAINTY_MEASURE_WITH_UNIT", 2)[0]
             if isinstance(size, Typed) and size.name == "LENGTH_MEASURE":
                 accuracy = max(accuracy, file.number(size, measure) * length)
-    drawn = Space(file, length, angle, min(max(accuracy, ACCURACY[0]), ACCURACY[1]))
+    drawn = StepFile(file, length, angle, min(max(accuracy, ACCURACY[0]), ACCURACY[1]))
     place = _Places(drawn).of(holder, alone=alone)
     return drawn if _still(place) else drawn._replace(place=place)
 
@@ -73,7 +73,7 @@ def space_of(file: Exchange, solid: int, *, alone: bool = True) -> Space:
 class _Places:
     """The placements of a file's representations, in the unit of the one that holds the solid."""
 
-    def __init__(self, space: Space) -> None:
+    def __init__(self, space: StepFile) -> None:
         self.space, self.file = space, space.file
         file = self.file
         self.plain: list[tuple[int, int, int]] = []

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
     from kin.read.drawing.drawing import Drawing
-    from kin.read.step.curves import Edge, Space
+    from kin.read.step.curves import StepEdge, StepFile
     from kin.read.step.faces import Face
     from kin.read.step.part21 import Exchange
 
@@ -114,9 +114,9 @@ def _solid(body: _Body, sought: Sought) -> StepSolid:
 class _Body:
     """The faces and edges of one solid."""
 
-    space: Space
+    space: StepFile
     faces: list[Face]
-    edges: dict[int, Edge]
+    edges: dict[int, StepEdge]
     levels: list[float]
     deepest: int = 1
 
@@ -146,7 +146,7 @@ class _Body:
         shell = file.reference(file.values(solid, kind, 2)[1], solid)
         file.kind(shell, ("CLOSED_SHELL",), solid)
         space = space_of(file, solid, alone=alone)
-        edges: dict[int, Edge] = {}
+        edges: dict[int, StepEdge] = {}
         listed = file.several(file.values(shell, "CLOSED_SHELL", 2)[1], shell)
         faces = [face_of(space, file.reference(listed_face, shell), edges) for listed_face in listed]
         if not edges:

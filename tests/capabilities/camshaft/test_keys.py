@@ -8,7 +8,7 @@ import pytest
 from support.camshafts import ENGINE, INTAKE, TWO, shaft
 
 import camgeo
-from camgeo.capabilities.camshaft.keys import Levels
+from camgeo.capabilities.camshaft.keys import ShaftHeights
 from camgeo.cli.main import main
 from camgeo.recipe.loading import load_order
 from camgeo.recipe.starter import starter
@@ -23,12 +23,12 @@ def test_every_sum_of_tenths_of_a_millimetre_meets_the_tenth_that_it_is() -> Non
     sums, stated = z / 10 + long / 10, (z + long) / 10
     off = sums != stated
     assert 0.08 < np.mean(sums > stated) < off.mean() < 0.2
-    level = Levels(np.unique(stated).tolist())
+    level = ShaftHeights(np.unique(stated).tolist())
     assert list(map(level, sums[off].tolist())) == stated[off].tolist()
 
 
 def test_a_height_that_is_stated_takes_the_sums_about_it() -> None:
-    level = Levels([32.4, 6.2])
+    level = ShaftHeights([32.4, 6.2])
     assert level(20.1 + 12.3) == 32.4 != 20.1 + 12.3
     assert level(1.1 + 5.1) == 6.2 != 1.1 + 5.1
     assert level(6.2 + 1e-8) == 6.2 + 1e-8

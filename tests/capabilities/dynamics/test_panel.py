@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from camgeo.capabilities.dynamics import panel
-from camgeo.capabilities.sweep.task import Task  # needs: sweep
+from camgeo.capabilities.sweep.task import SweepTask  # needs: sweep
 from camgeo.measures.units import in_pounds, pounds
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
@@ -138,7 +138,7 @@ def test_units_that_have_none() -> None:
 # needs: sweep
 def test_sweeps_name_the_unit_of_forces() -> None:
     text = metric(INCHES) + "sweep: {vary: {cam.base_radius: [38, 40]}, rank: contact-force-greatest}\n"
-    task = Task.from_recipe(read(text.encode(), "sweep.yaml"))
+    task = SweepTask.from_recipe(read(text.encode(), "sweep.yaml"))
     names = ("contact-force-greatest", "shaft-torque", "contact-pressure")
     assert [task.units(names)[name].name for name in names] == ["N", "N m", "N/mm^2"]
     json.dumps({name: unit.name for name, unit in task.units(("mass", "inertia")).items()})

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from camgeo.capabilities.mechanism.base import Site, block, slotted_bar
+from camgeo.capabilities.mechanism.base import BodyStack, block, slotted_bar
 from camgeo.capabilities.mechanism.poses import Turning
 from camgeo.capabilities.mechanism.sizes import Sizes
 
@@ -33,13 +33,13 @@ def test_a_slot_lets_its_block_run_and_leaves_walls():
 
 
 def test_links_lie_above_the_retainers_of_those_below():
-    site = Site(SIZES, None, 10.0, 12.0)
+    site = BodyStack(SIZES, None, 10.0, 12.0)
     assert site.level() == (10.0, 15.0)
     assert site.level() == pytest.approx((17.8, 22.8))
 
 
 def test_rails_hold_a_slide_between_them():
-    site = Site(SIZES, None, 10.0, 12.0)
+    site = BodyStack(SIZES, None, 10.0, 12.0)
 
     def place(phi, _order):
         return np.stack([20.0 + 5.0 * np.cos(phi), 0.0 * phi, 0.0 * phi])[:, None]

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from camgeo.output.job import Made
+from camgeo.output.job import MadeFiles
 from camgeo.output.pipeline import check
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
@@ -49,7 +49,7 @@ SETS = [  # what stands in the set's recipe, what in its place with a figure, th
 def unwritten(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a set only the bodies are worked out: none is turned round or written."""
     monkeypatch.setattr("camgeo.capabilities.mechanism.making.collision_checks", lambda _: ())
-    monkeypatch.setattr("camgeo.capabilities.mechanism.making.make_parts", lambda *_: Made(()))
+    monkeypatch.setattr("camgeo.capabilities.mechanism.making.make_parts", lambda *_: MadeFiles(()))
 
 
 def said_of_set(text: str) -> str:

@@ -23,7 +23,7 @@ from support.places import SHIPPED
 
 import camgeo
 from camgeo.capabilities.sheet import drawing, lettering
-from camgeo.capabilities.sheet.marks import Circle, Dimension, Line
+from camgeo.capabilities.sheet.marks import CircleMark, Dimension, LineMark
 from camgeo.cli.main import main
 from camgeo.recipe.recipe import load_text
 
@@ -105,9 +105,9 @@ def strokes(page: Page) -> np.ndarray:
     """All lines of a page as ends of chords (n, 2, 2): those of dimensions, circles, and arrows among them."""
     chains = []
     for mark in page.marks:
-        lines = mark.lines if isinstance(mark, Dimension) else [mark] if isinstance(mark, Line) else []
+        lines = mark.lines if isinstance(mark, Dimension) else [mark] if isinstance(mark, LineMark) else []
         chains += [np.vstack([line.points, line.points[:1]]) if line.closed else line.points for line in lines]
-        if isinstance(mark, Circle):
+        if isinstance(mark, CircleMark):
             turn = np.linspace(0.0, 2.0 * np.pi, 181)
             chains.append(np.array(mark.centre) + mark.radius * np.column_stack([np.cos(turn), np.sin(turn)]))
     return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])

@@ -15,7 +15,7 @@ import pytest
 from support.places import RECIPES
 
 from camgeo.capabilities.study.least_pieces import least_pieces
-from camgeo.capabilities.study.margins import Margin, margins
+from camgeo.capabilities.study.margins import FailureMargin, margins
 from camgeo.capabilities.study.tolerance_ladder import End, Rung, climb
 from camgeo.cli import main
 from camgeo.output.pipeline import export
@@ -23,7 +23,7 @@ from camgeo.recipe.loading import load, read
 from camgeo.synthesis.design import designed
 
 
-def named(recipe_name: str) -> dict[str, Margin]:
+def named(recipe_name: str) -> dict[str, FailureMargin]:
     recipe = load(RECIPES / f"{recipe_name}.yaml")
     return {margin.name: margin for margin in margins(recipe, designed(recipe))}
 

@@ -15,7 +15,7 @@ from camgeo.capabilities.sweep import chunks as storing
 from camgeo.capabilities.sweep.chunks import (
     ChunkError,
     Chunks,
-    Job,
+    SweepJob,
     VersionsError,
     chunks_of,
     compute,
@@ -24,12 +24,12 @@ from camgeo.capabilities.sweep.chunks import (
     gather_chunks,
     result,
 )
-from camgeo.capabilities.sweep.engines import Engine
-from camgeo.capabilities.sweep.figures import Scene
+from camgeo.capabilities.sweep.engines import Workers
+from camgeo.capabilities.sweep.figures import SweepScene
 from camgeo.capabilities.sweep.gather import Ranking
 from camgeo.capabilities.sweep.keys import Axis
 from camgeo.capabilities.sweep.plan import Plan
-from camgeo.capabilities.sweep.task import Task
+from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.loading import load_text, read
 
@@ -42,7 +42,7 @@ BEST = Ranking("dwell", most=True)
 @pytest.fixture
 def filled(tmp_path: Path) -> Chunks:
     chunks = chunks_of(job(), tmp_path)
-    compute(job(), chunks, Engine(1))
+    compute(job(), chunks, Workers(1))
     return chunks
 
 
@@ -97,7 +97,7 @@ def test_a_spoilt_chunk_is_computed_again_and_no_other(filled: Chunks, tmp_path:
         path.unlink()
     told = tmp_path / "calls"
     told.mkdir()
-    work = compute(job(scene=f"calls={told};"), filled, Engine(1))
+    work = compute(job(scene=f"calls={told};"), filled, Workers(1))
     assert work.computed == 64
     assert work.reused == GRID.count - 64
     assert work.damaged == (fault != "gone")
@@ -134,18 +134,18 @@ def test_what_is_no_file_is_not_opened_but_told(
     path.unlink()
     place(path)
     with pytest.raises(SurroundingsError, match=rf"chunk-0000001.bin: {kind}, where .*: move it or remove it"):
-        compute(job(compute=fail), filled, Engine(1), fresh=fresh)
+        compute(job(compute=fail), filled, Workers(1), fresh=fresh)
     with pytest.raises(SurroundingsError, match=kind):
         filled.read(1)
     path.rename(tmp_path / "elsewhere")  # as the message says
-    assert compute(job(), filled, Engine(1), fresh=fresh).damaged == 0
+    assert compute(job(), filled, Workers(1), fresh=fresh).damaged == 0
 
 
 def test_of_a_large_file_no_more_is_read_than_a_chunk_may_have(filled: Chunks, monkeypatch: pytest.MonkeyPatch) -> None:
     path = filled.path(1)
     with path.open("r+b") as stream:
         stream.truncate(1 << 27)
-    work = compute(job(), filled, Engine(1))
+    work = compute(job(), filled, Workers(1))
     assert (work.damaged, work.computed) == (1, filled.plan.chunk)
     monkeypatch.setattr(storing, "_MOST_BYTES", 64)
     with pytest.raises(ChunkError, match="torn or changed"):
@@ -159,10 +159,10 @@ def test_a_file_in_the_place_of_a_folder_is_told_before_anything_is_computed(pla
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("mine")
     with pytest.raises(SurroundingsError, match=r"not a folder, where .*: move it or remove it") as refused:
-        compute(job(compute=fail), chunks, Engine(1))
+        compute(job(compute=fail), chunks, Workers(1))
     assert refused.value.path == path
     path.rename(tmp_path / "elsewhere")  # as the message says
-    assert compute(job(), chunks, Engine(1)).computed == GRID.count
+    assert compute(job(), chunks, Workers(1)).computed == GRID.count
 
 
 def test_a_wrong_result_is_refused_before_it_is_written(filled: Chunks) -> None:
@@ -173,11 +173,11 @@ def test_a_wrong_result_is_refused_before_it_is_written(filled: Chunks) -> None:
 
 
 def test_nothing_is_computed_twice(filled: Chunks) -> None:
-    assert compute(job(), filled, Engine(1)).computed == 0
+    assert compute(job(), filled, Workers(1)).computed == 0
 
 
 def test_fresh_computes_all_again(filled: Chunks) -> None:
-    assert compute(job(), filled, Engine(1), fresh=True).computed == GRID.count
+    assert compute(job(), filled, Workers(1), fresh=True).computed == GRID.count
 
 
 def test_what_killed_runs_left_is_cleared_away_and_what_others_write_is_not(filled: Chunks) -> None:
@@ -195,7 +195,7 @@ def test_what_killed_runs_left_is_cleared_away_and_what_others_write_is_not(fill
 def test_the_key_is_of_all_that_a_recipe_says() -> None:
     """Not of its name alone, which is all that its `repr` shows."""
     text = "cam: {kind: support, p: SIZE + cos(3*t), shaft: [1, 2]}\n"
-    scenes = [Scene(load_text(text.replace("SIZE", size), "cam.yaml"), ("size",)) for size in ("25", "26", "25")]
+    scenes = [SweepScene(load_text(text.replace("SIZE", size), "cam.yaml"), ("size",)) for size in ("25", "26", "25")]
     assert repr(scenes[0].recipe) == repr(scenes[1].recipe) == "Recipe('cam', 'cam.yaml')"
     assert repr(scenes[0]) == repr(scenes[2]) != repr(scenes[1])
 
@@ -207,7 +207,7 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
         job(Plan(axes, "grid", 825)),
         job(Plan(GRID.axes, "random", 825)),
         job(Plan(GRID.axes, "random", 825, 1)),
-        Job(GRID, "another", hills),
+        SweepJob(GRID, "another", hills),
         job(compute=fail),
     ]
     for package in (storing, np):
@@ -222,8 +222,8 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
 
 
 def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
-    def key(recipe: Task) -> str:
-        return Job(recipe.plan, recipe.scene(recipe.figures), hills).key
+    def key(recipe: SweepTask) -> str:
+        return SweepJob(recipe.plan, recipe.scene(recipe.figures), hills).key
 
     plain = key(task())
     for same in (
@@ -238,16 +238,16 @@ def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
     # needs: dynamics
     train = "dynamics: {mass: 0.4, stiffness: 2.0e5, preload: 150, rpm: 600}\n"
     # needs: dynamics
-    assert key(Task.from_recipe(read((longer.recipe.text + train).encode(), "four-bar.yaml"))) == plain
+    assert key(SweepTask.from_recipe(read((longer.recipe.text + train).encode(), "four-bar.yaml"))) == plain
     text = longer.recipe.text.replace("coupler: 70", "coupler: 71")
-    assert key(Task.from_recipe(read(text.encode(), "four-bar.yaml"))) != plain
+    assert key(SweepTask.from_recipe(read(text.encode(), "four-bar.yaml"))) != plain
 
 
 def test_limits_cost_computing_only_where_they_ask_for_another_figure() -> None:
     def key(limits: str, rank: str = "dwell") -> str:
         text = task(rank=rank).recipe.text.replace("margin: {at_least: 1.0}", limits)
-        asked = Task.from_recipe(read(text.encode(), "four-bar.yaml"))
-        return Job(asked.plan, asked.scene(asked.figures), hills).key
+        asked = SweepTask.from_recipe(read(text.encode(), "four-bar.yaml"))
+        return SweepJob(asked.plan, asked.scene(asked.figures), hills).key
 
     plain = key("margin: {at_least: 1}")
     assert key("swing: {at_least: 20}, size: {at_most: 44}, dwell: {at_least: 9}") == plain

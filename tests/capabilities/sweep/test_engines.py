@@ -24,13 +24,13 @@ from support.places import TESTS
 from support.sweepers import GRID, PROCEDURES, Aside, calls, hills, job, task, tree
 
 from camgeo.capabilities.sweep import engines
-from camgeo.capabilities.sweep.chunks import EngineError, Job, VersionsError, chunks_of, compute, decode, result
-from camgeo.capabilities.sweep.engines import Engine
+from camgeo.capabilities.sweep.chunks import EngineError, SweepJob, VersionsError, chunks_of, compute, decode, result
+from camgeo.capabilities.sweep.engines import Workers
 from camgeo.capabilities.sweep.figures import compute_figures
 from camgeo.capabilities.sweep.keys import Axis
 from camgeo.capabilities.sweep.plan import Plan
 from camgeo.capabilities.sweep.search import search
-from camgeo.capabilities.sweep.task import Task
+from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def cluster():
 def plain(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """Files of a sweep that one process computed in one go."""
     out = tmp_path_factory.mktemp("plain")
-    search(task(), out, Engine(1), PROCEDURES)
+    search(task(), out, Workers(1), PROCEDURES)
     return tree(out)
 
 
@@ -90,9 +90,9 @@ def test_every_engine_writes_the_same_files(
     engine: str, cluster: LocalCluster, plain: dict[str, bytes], tmp_path: Path
 ) -> None:
     how = {
-        "processes": Engine(2),
-        "as many as are worthwhile": Engine(),
-        "dask": Engine(scheduler=cluster.scheduler_address),
+        "processes": Workers(2),
+        "as many as are worthwhile": Workers(),
+        "dask": Workers(scheduler=cluster.scheduler_address),
     }[engine]
     told = tmp_path / "calls"
     told.mkdir()
@@ -106,9 +106,9 @@ def test_every_engine_writes_the_same_files(
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("engine", ["serial", "processes", "dask"])
 def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, cluster: LocalCluster) -> None:
-    slow = Job(GRID, Aside(), hasty)
+    slow = SweepJob(GRID, Aside(), hasty)
     numbers = list(range(GRID.chunks))
-    how = {"serial": Engine(1), "processes": Engine(2), "dask": Engine(scheduler=cluster.scheduler_address)}[engine]
+    how = {"serial": Workers(1), "processes": Workers(2), "dask": Workers(scheduler=cluster.scheduler_address)}[engine]
     landed = dict(how.results(slow, numbers))
     assert landed == {number: result(slow, number, slow.key) for number in numbers}
 
@@ -125,9 +125,9 @@ def test_figures_of_linkages_are_the_same_bytes_from_every_engine(engine: str, c
     ):
         assert old in text
         text = text.replace(old, new)
-    asked = Task.from_recipe(read(text.encode(), "four-bar.yaml"))
-    real = Job(asked.plan, asked.scene(asked.figures), compute_figures)
-    how = {"processes": Engine(2), "dask": Engine(scheduler=cluster.scheduler_address)}[engine]
+    asked = SweepTask.from_recipe(read(text.encode(), "four-bar.yaml"))
+    real = SweepJob(asked.plan, asked.scene(asked.figures), compute_figures)
+    how = {"processes": Workers(2), "dask": Workers(scheduler=cluster.scheduler_address)}[engine]
     numbers = range(real.plan.chunks)
     landed = dict(how.results(real, numbers))
     assert landed == {number: result(real, number, real.key) for number in numbers}
@@ -145,12 +145,12 @@ def test_more_processes_are_started_only_where_they_pay(monkeypatch: pytest.Monk
     monkeypatch.setattr(engines, "in_processes", instead)
     monkeypatch.setattr(engines, "_TRIAL", 0.02)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1, 2})
-    for how in (Engine(), Engine(4), Engine(1)):
+    for how in (Workers(), Workers(4), Workers(1)):
         assert [number for number, _ in how.results(job(), range(GRID.chunks))] == list(range(GRID.chunks))
     assert started == []
     monkeypatch.setattr(engines, "_WORTHWHILE", 0.05)
     slow = job(scene="seconds=0.03;")
-    for how in (Engine(), Engine(4), Engine(1)):
+    for how in (Workers(), Workers(4), Workers(1)):
         assert [number for number, _ in how.results(slow, range(GRID.chunks))] == list(range(GRID.chunks))
     assert started == [(list(range(1, GRID.chunks)), 3), (list(range(1, GRID.chunks)), 4)]
 
@@ -158,8 +158,8 @@ def test_more_processes_are_started_only_where_they_pay(monkeypatch: pytest.Monk
 @pytest.mark.usefixtures("pooled")
 @pytest.mark.parametrize("engine", ["serial", "processes", "dask"])
 def test_a_fault_of_what_computes_comes_through(engine: str, cluster: LocalCluster, tmp_path: Path) -> None:
-    how = {"serial": Engine(1), "processes": Engine(2), "dask": Engine(scheduler=cluster.scheduler_address)}[engine]
-    faulty = Job(GRID, Aside(), failing)
+    how = {"serial": Workers(1), "processes": Workers(2), "dask": Workers(scheduler=cluster.scheduler_address)}[engine]
+    faulty = SweepJob(GRID, Aside(), failing)
     with pytest.raises(ArithmeticError, match="no figures beyond 12"):
         compute(faulty, chunks_of(faulty, tmp_path), how)
 
@@ -170,7 +170,7 @@ def test_workers_refuse_a_job_that_they_read_otherwise(
     engine: str, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("camgeo.capabilities.sweep.chunks.__version__", "99.0")
-    how = Engine(2) if engine == "processes" else Engine(scheduler=cluster.scheduler_address)
+    how = Workers(2) if engine == "processes" else Workers(scheduler=cluster.scheduler_address)
     with pytest.raises(VersionsError, match="a worker has other versions than this run") as caught:
         list(how.results(job(), [0, 1]))
     if engine == "dask":
@@ -321,10 +321,10 @@ def killed(scene, values):
 @pytest.mark.usefixtures("pooled")
 @pytest.mark.slow
 def test_a_worker_that_is_killed_ends_the_run_and_what_landed_stays(tmp_path: Path) -> None:
-    deadly = Job(GRID, Aside(), killed)
+    deadly = SweepJob(GRID, Aside(), killed)
     chunks = chunks_of(deadly, tmp_path)
     with pytest.raises(EngineError, match="a process was killed before it was done"):
-        compute(deadly, chunks, Engine(2))
+        compute(deadly, chunks, Workers(2))
     missing, damaged = chunks.missing_chunks()
     assert missing
     assert damaged == 0
@@ -378,7 +378,7 @@ def test_a_killed_sweep_goes_on_where_it_was_and_ends_the_same(
     told = tmp_path / "calls"
     told.mkdir()
     before = finished(out)
-    outcome = search(task(f"calls={told};"), out, Engine(1), PROCEDURES)
+    outcome = search(task(f"calls={told};"), out, Workers(1), PROCEDURES)
     assert len(before) == GRID.chunks
     assert outcome.work.computed == 0
     assert calls(told) == []
@@ -420,5 +420,5 @@ def test_two_sweeps_at_once_do_not_disturb_each_other(plain: dict[str, bytes], t
 def test_a_sweep_that_grows_does_not_take_the_old_ones_chunks(tmp_path: Path) -> None:
     short = job(Plan((Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0)), "random", 640))
     long = job(Plan(short.plan.axes, "random", 1280))
-    compute(short, chunks_of(short, tmp_path), Engine(1))
-    assert compute(long, chunks_of(long, tmp_path), Engine(1)).computed == 1280
+    compute(short, chunks_of(short, tmp_path), Workers(1))
+    assert compute(long, chunks_of(long, tmp_path), Workers(1)).computed == 1280

@@ -18,7 +18,7 @@ from camgeo.capabilities.sweep.figures import compute_figures as searched
 from camgeo.capabilities.sweep.keys import sweep_figures as known
 from camgeo.capabilities.sweep.linkages import LOOPS, Lengths, Support, angles, loop_class
 from camgeo.capabilities.sweep.single_designs import recipe_with
-from camgeo.capabilities.sweep.task import Task
+from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.measures.figures import design_figures
 from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_LINKAGE
 from camgeo.recipe.loading import load_text
@@ -247,7 +247,7 @@ def swept(limits):
 )
 def test_a_search_goes_without_dear_figures_and_the_others_keep_their_bits(rank, limits, without):
     one = swept(limits)
-    asked = Task.from_recipe(load_text(one.text.replace("rank: dwell", f"rank: {rank}"), "a.yaml"))
+    asked = SweepTask.from_recipe(load_text(one.text.replace("rank: dwell", f"rank: {rank}"), "a.yaml"))
     values = asked.plan.values(0, 21)
     cheap, whole = searched(asked.scene(asked.figures), values), asked.measure(values)
     assert set(OF_LINKAGES) - set(cheap) == without
@@ -265,7 +265,7 @@ def test_what_chunks_share_is_prepared_once(monkeypatch):
         return of(*given, **how)
 
     monkeypatch.setattr(Evaluator, "prepare", told)
-    asked = Task.from_recipe(swept("force-angle: {at_least: 20.125}"))
+    asked = SweepTask.from_recipe(swept("force-angle: {at_least: 20.125}"))
     scenes = [asked.scene(asked.figures) for _ in range(3)]
     calls.clear()
     for first, scene in zip((0, 7, 14), scenes, strict=True):
@@ -276,7 +276,7 @@ def test_what_chunks_share_is_prepared_once(monkeypatch):
 def test_designs_made_one_by_one_get_all_figures():
     dyads = ", dyads: [{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [100, 30]}]"
     base = recipe(more=dyads)
-    asked = Task.from_recipe(load_text(base.text + SWEPT.replace("LIMITS", ""), "a.yaml"))
+    asked = SweepTask.from_recipe(load_text(base.text + SWEPT.replace("LIMITS", ""), "a.yaml"))
     assert asked.figures == asked.all_figures == OF_LINKAGES
 
 

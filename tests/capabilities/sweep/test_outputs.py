@@ -14,10 +14,10 @@ from support.heavy import parquet
 from support.sweepers import GRID, PROCEDURES, RANKING, by_hand, task
 
 from camgeo.capabilities.sweep import outputs
-from camgeo.capabilities.sweep.engines import Engine
+from camgeo.capabilities.sweep.engines import Workers
 from camgeo.capabilities.sweep.outputs import Best, curve_of, recipe_text
 from camgeo.capabilities.sweep.search import search
-from camgeo.capabilities.sweep.task import Task
+from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.recipe.loading import load, read
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ PNG, SVG = b"\x89PNG", b"<?xml"
 
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return search(task(), tmp_path_factory.mktemp("out"), Engine(1), PROCEDURES).folder
+    return search(task(), tmp_path_factory.mktemp("out"), Workers(1), PROCEDURES).folder
 
 
 def test_all_files_are_there_and_the_report_tells_them(swept: Path) -> None:
@@ -107,7 +107,7 @@ def test_what_a_missing_package_leaves_out_is_told(
 
     for name in missing:
         monkeypatch.setattr(outputs, name, without)
-    report = search(task(), tmp_path, Engine(1), PROCEDURES).report
+    report = search(task(), tmp_path, Workers(1), PROCEDURES).report
     why = f"the package {package} is missing: pip install '.[sweep]' in a clone of camgeo"
     assert report["skipped"] == [{"what": what, "why": why} for what in left_out]
     assert (tmp_path / "four-bar" / "best-1.yaml").exists()
@@ -127,7 +127,7 @@ SWEEP = "sweep: {vary: {'cam.shaft[0]': [1, 2]}, rank: size}"
     ],
 )
 def test_recipes_are_written_in_the_way_of_the_users(text: str) -> None:
-    asked = Task.from_recipe(read(text.encode(), "mine.yaml"))
+    asked = SweepTask.from_recipe(read(text.encode(), "mine.yaml"))
     best = Best(2, 1, polished=False, values={"cam.shaft[0]": 2.0}, figures={"size": 22.0})
     recipe = read(recipe_text(asked, best).encode(), "other.yaml")
     assert recipe.name == f"{asked.recipe.name}-best-2"
@@ -139,7 +139,7 @@ def test_recipes_are_written_in_the_way_of_the_users(text: str) -> None:
 def test_a_long_note_is_cut_to_what_a_recipe_takes() -> None:
     text = task().recipe.text.replace("AS 2023, Figure 9", "x" * 990)
     best = Best(1, 0, polished=False, values={}, figures={"dwell": 40.0})
-    about = read(recipe_text(Task.from_recipe(read(text.encode(), "a.yaml")), best).encode(), "b.yaml").about
+    about = read(recipe_text(SweepTask.from_recipe(read(text.encode(), "a.yaml")), best).encode(), "b.yaml").about
     assert about.endswith("xxx...")
     assert about.startswith("design 0 of 825")
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from support.sweepers import GRID, PROCEDURES, RANKING, gather_inputs, hills, task
 
-from camgeo.capabilities.sweep.engines import Engine
+from camgeo.capabilities.sweep.engines import Workers
 from camgeo.capabilities.sweep.gather import gather
 from camgeo.capabilities.sweep.pictures import draw_map
 from camgeo.capabilities.sweep.search import search
-from camgeo.capabilities.sweep.task import Task
+from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.recipe.loading import read
 
 if TYPE_CHECKING:
@@ -39,6 +39,6 @@ def test_a_curve_over_one_variable_is_drawn(tmp_path: Path) -> None:
         return hills("", np.column_stack([values, np.full(len(values), 111.0)]))
 
     procedures = replace(PROCEDURES, compute=flat, measure=lambda _task, values: {"dwell": flat("", values)["dwell"]})
-    outcome = search(Task.from_recipe(read(text.encode(), "a.yaml")), tmp_path, Engine(1), procedures)
+    outcome = search(SweepTask.from_recipe(read(text.encode(), "a.yaml")), tmp_path, Workers(1), procedures)
     assert outcome.report["counts"]["computed"] == 25
     assert (outcome.folder / "sweep-map.png").read_bytes().startswith(b"\x89PNG")

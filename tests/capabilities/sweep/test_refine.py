@@ -13,7 +13,7 @@ from camgeo.cams.flat_faced import breadth_of
 from camgeo.capabilities.sweep import refine
 from camgeo.capabilities.sweep.refine import PolishError, output_error, polish
 from camgeo.capabilities.sweep.single_designs import mechanism_in, recipe_with
-from camgeo.capabilities.sweep.task import Task
+from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.recipe.loading import load, load_text
 from camgeo.synthesis.linkage import mechanism_of
 
@@ -39,7 +39,7 @@ RANGES = "'cam.shaft[0]': {from: 14, to: 20}, 'cam.shaft[1]': {from: 5, to: 12},
 
 def task(limits="", rank="dwell", vary=RANGES, kind=FOUR_BAR):
     text = TEXT.replace("KIND", kind).replace("VARY", vary).replace("LIMITS", limits).replace("RANK", rank)
-    return Task.from_recipe(load_text(text, "a.yaml"))
+    return SweepTask.from_recipe(load_text(text, "a.yaml"))
 
 
 @pytest.fixture(autouse=True)
@@ -140,7 +140,7 @@ def narrow(asked, values):
 @pytest.mark.slow
 def test_a_dwell_is_polished_off_the_knifes_edge():
     # eight numbers with which a ripple just fills the band: within 0.001 mm it may leave it
-    asked = Task.from_recipe(load(RECIPES / "long-dwell.yaml"))
+    asked = SweepTask.from_recipe(load(RECIPES / "long-dwell.yaml"))
     numbers = (2.938, -0.0487, -0.0206, -0.0628, 14.833, 79.28, 61.85, 60.0)
     given = dict(zip((axis.path for axis in asked.sweep.vary), numbers, strict=True))
     assert narrow(asked, given) < 0.85 * start(asked, numbers)[1]["dwell"]
@@ -154,7 +154,7 @@ def test_a_dwell_is_polished_off_the_knifes_edge():
 def test_a_tolerance_that_leaves_nothing_of_the_band_is_refused_with_one_that_does(tolerance):
     def coarse(tolerance):
         text = TEXT.replace("KIND", FOUR_BAR).replace("VARY", RANGES).replace("LIMITS", "").replace("RANK", "dwell")
-        return Task.from_recipe(load_text(f"{text}export: {{tolerance: {tolerance}}}\n", "a.yaml"))
+        return SweepTask.from_recipe(load_text(f"{text}export: {{tolerance: {tolerance}}}\n", "a.yaml"))
 
     given = start(asked := coarse(tolerance), (18.0, 8.5, 105.0))[0]
     with pytest.raises(PolishError, match=r"give (export.tolerance at most|a smaller export.tolerance)") as refused:

@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from camgeo.capabilities.sweep.cams import REASONS
-from camgeo.capabilities.sweep.engines import Engine
+from camgeo.capabilities.sweep.engines import Workers
 from camgeo.capabilities.sweep.figures import Evaluator, estimable_figures
 from camgeo.capabilities.sweep.keys import varied_fields
 from camgeo.capabilities.sweep.screen import error_of, estimates
 from camgeo.capabilities.sweep.search import search
-from camgeo.capabilities.sweep.task import EXACT, Task
+from camgeo.capabilities.sweep.task import EXACT, SweepTask
 from camgeo.recipe.loading import load, load_text
 from camgeo.schema.errors import RecipeErrors
 
@@ -159,15 +159,15 @@ def test_what_acts_otherwise_is_worked_out_anew():
 )
 def test_what_is_not_screened_says_why(cam, path, why):
     one = recipe(cam, {path: (40, 80)}, sweep=f"method: random, count: {EXACT + 1}, rank: size")
-    assert Task.from_recipe(one).unscreened.startswith(why)
-    assert not Task.from_recipe(one).screened
+    assert SweepTask.from_recipe(one).unscreened.startswith(why)
+    assert not SweepTask.from_recipe(one).screened
 
 
 @pytest.mark.parametrize(("rank", "why"), [("size", ""), ("mass", "mass is not sampled")])
 def test_what_is_weighed_is_worked_out(rank, why):
     text = f"cam: {{{CAMS['roller'][0].replace('LAW', 'cycloidal')}}}\npart: {{thickness: 8, density: 7.85}}\nsweep: "
     text += f"{{vary: {{cam.base_radius: {{from: 40, to: 45}}}}, rank: {rank}, method: random, count: {EXACT + 1}}}\n"
-    asked = Task.from_recipe(load_text(text, "a.yaml"))
+    asked = SweepTask.from_recipe(load_text(text, "a.yaml"))
     assert asked.unscreened == why
     assert "mass" in asked.all_figures
     assert ("mass" in asked.figures) == bool(why)
@@ -175,9 +175,9 @@ def test_what_is_weighed_is_worked_out(rank, why):
 
 def test_few_designs_are_all_exact():
     few, many = (recipe(*CAMS["roller"], sweep=f"method: random, count: {n}, rank: size") for n in (EXACT, EXACT + 1))
-    assert not Task.from_recipe(few).screened
-    assert Task.from_recipe(many).screened
-    assert Task.from_recipe(many).figures == estimable_figures(many)
+    assert not SweepTask.from_recipe(few).screened
+    assert SweepTask.from_recipe(many).screened
+    assert SweepTask.from_recipe(many).figures == estimable_figures(many)
 
 
 # --- words ------------------------------------------------------------------------------------------------------------
@@ -191,7 +191,7 @@ def worded(vary: str = KINDS, more: str = "rank: size", text: str = CAMS["roller
 
 def test_words_are_compared_in_the_lists_order():
     one = worded()
-    asked = Task.from_recipe(one)
+    asked = SweepTask.from_recipe(one)
     assert asked.plan.count == 8
     told = [asked.values_by_path(row) for row in asked.plan.values(0, 8)]
     assert told[:3] == [
@@ -200,13 +200,13 @@ def test_words_are_compared_in_the_lists_order():
         {"cam.base_radius": 40.0, "cam.motion[0].law": "harmonic", "cam.follower.kind": "roller"},
     ]
     assert "roller-speed" not in asked.all_figures  # which a shoe has not
-    assert "roller-speed" in Task.from_recipe(worded("{cam.base_radius: [40, 45]}")).all_figures
-    plan = Task.from_recipe(worded(more="rank: size, method: random, count: 200")).plan
+    assert "roller-speed" in SweepTask.from_recipe(worded("{cam.base_radius: [40, 45]}")).all_figures
+    plan = SweepTask.from_recipe(worded(more="rank: size, method: random, count: 200")).plan
     assert len(np.unique(plan.values(0, 200)[:, 1])) == 2
 
 
 def test_designs_with_words_have_the_figures_of_their_recipes():
-    asked = Task.from_recipe(worded())
+    asked = SweepTask.from_recipe(worded())
     values = asked.plan.values(0, 8)[[0, 5, 6]]
     found = asked.exact_figures(values)
     figures = [name for name in estimable_figures(asked.recipe) if name in asked.all_figures]
@@ -224,8 +224,8 @@ def test_designs_with_words_have_the_figures_of_their_recipes():
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_files_tell_words(tmp_path):
-    asked = Task.from_recipe(worded(more="rank: peak-acceleration, keep: 1, limits: {size: {at_least: 64}}"))
-    outcome = search(asked, tmp_path, Engine(1))
+    asked = SweepTask.from_recipe(worded(more="rank: peak-acceleration, keep: 1, limits: {size: {at_least: 64}}"))
+    outcome = search(asked, tmp_path, Workers(1))
     best = outcome.report["best"][0]["values"]
     assert best == {"cam.base_radius": 45.0, "cam.motion[0].law": "harmonic", "cam.follower.kind": "roller"}
     assert outcome.report["sweep"]["vary"]["cam.motion[0].law"] == {"words": ["cycloidal", "harmonic"], "values": 2}
@@ -241,7 +241,7 @@ def test_words_of_a_linkage():
     text += "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105, assembly: open}\n"
     text += "sweep: {vary: {linkage.rocker: [105, 110], linkage.assembly: [crossed, open]}, rank: swing}\n"
     one = load_text(text, "a.yaml")
-    values = Task.from_recipe(one).plan.values(0, 4)
+    values = SweepTask.from_recipe(one).plan.values(0, 4)
     found = Evaluator.prepare(one, tuple(axis.path for axis in varied_fields(one))).evaluate(values).figures["swing"]
     for row, (rocker, word) in enumerate([(105, "crossed"), (105, "open"), (110, "crossed"), (110, "open")]):
         single = load_text(
@@ -291,13 +291,13 @@ LAW, KIND = "sweep.vary.'cam.motion[0].law'", "sweep.vary.'cam.follower.kind'"
 )
 def test_words_that_are_none(vary, place, message):
     with pytest.raises(RecipeErrors) as caught:
-        Task.from_recipe(worded(vary))
+        SweepTask.from_recipe(worded(vary))
     assert str(caught.value) == f"{place}: {message}"
 
 
 def test_a_figure_that_a_word_has_not():
     with pytest.raises(RecipeErrors, match=r"'cam.follower.kind'\[1\]: with it sweep.rank: roller-speed needs"):
-        Task.from_recipe(worded(more="rank: roller-speed"))
+        SweepTask.from_recipe(worded(more="rank: roller-speed"))
 
 
 # --- certification ----------------------------------------------------------------------------------------------------
@@ -312,17 +312,17 @@ def swept(tmp_path):
     """Report and folder of a sweep of the roller's cam, some exact designs of which may be made to fall."""
 
     def sweep(text=SEARCH, fall=()):
-        def lost(task, values, exactly=Task.exact_figures):
+        def lost(task, values, exactly=SweepTask.exact_figures):
             computed = exactly(task, values)
             if values[0].tolist() in fall:
                 computed.reason[:] = REASONS.index("undercut")
             return computed
 
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(Task, "exact_figures", lost)
+            patch.setattr(SweepTask, "exact_figures", lost)
 
-            asked = Task.from_recipe(recipe(*CAMS["roller"], sweep=text))
-            outcome = search(asked, tmp_path, Engine(1))
+            asked = SweepTask.from_recipe(recipe(*CAMS["roller"], sweep=text))
+            outcome = search(asked, tmp_path, Workers(1))
         return outcome.report, outcome.folder
 
     return sweep

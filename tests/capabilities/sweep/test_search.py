@@ -12,10 +12,10 @@ import pytest
 from support.sweepers import GRID, PROCEDURES, RANKING, by_hand, task
 
 import camgeo
-from camgeo.capabilities.sweep.engines import Engine
+from camgeo.capabilities.sweep.engines import Workers
 from camgeo.capabilities.sweep.refine import PolishError
 from camgeo.capabilities.sweep.search import search
-from camgeo.capabilities.sweep.task import Task
+from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.loading import load, read
 
@@ -39,7 +39,7 @@ def apart_by_hand(count: int) -> list[int]:
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, tmp_path: Path) -> None:
     text = task(refine="true").recipe.text.replace("keep: 3", "keep: 20")
-    outcome = search(Task.from_recipe(read(text.encode(), "x.yaml")), tmp_path, Engine(jobs), PROCEDURES)
+    outcome = search(SweepTask.from_recipe(read(text.encode(), "x.yaml")), tmp_path, Workers(jobs), PROCEDURES)
     best = outcome.report["best"]
     # the stand-in sends every design to one place of the first variable: of rockers within 5 percent one is left
     rockers = [GRID.values(index, index + 1)[0, 1] for index in apart_by_hand(20)]
@@ -58,7 +58,7 @@ def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, 
 def test_the_table_holds_what_was_polished_and_the_best_lie_apart(tmp_path: Path) -> None:
     text = task(refine="true").recipe.text.replace("keep: 3", "keep: 20")
     outcome = search(
-        Task.from_recipe(read(text.encode(), "x.yaml")), tmp_path, Engine(1), replace(PROCEDURES, polish=_crowd)
+        SweepTask.from_recipe(read(text.encode(), "x.yaml")), tmp_path, Workers(1), replace(PROCEDURES, polish=_crowd)
     )
     best, folder = outcome.report["best"], outcome.folder
     rows = list(csv.DictReader(io.StringIO((folder / "sweep.csv").read_text(encoding="utf-8"))))
@@ -77,20 +77,20 @@ def test_the_table_holds_what_was_polished_and_the_best_lie_apart(tmp_path: Path
     assert abs(rockers[1] - rockers[0]) > 0.05 * 15.0
 
 
-def _crowd(_task: Task, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+def _crowd(_task: SweepTask, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
     """Polish to places that lie within 4 percent of 15 about 97 and 105."""
     rocker = round((97.0 if values["linkage.rocker"] < 102.0 else 105.0) + values["linkage.rocker"] / 500.0, 6)
     return {"cam.shaft[0]": 15.0, "linkage.rocker": rocker}, {"dwell": rocker, "margin": 3.0}
 
 
-def _refuse(_task: Task, _values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+def _refuse(_task: SweepTask, _values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
     raise PolishError("nothing is left of the band")
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_what_could_not_be_polished_is_told(tmp_path: Path) -> None:
-    report = search(task(refine="true"), tmp_path, Engine(1), replace(PROCEDURES, polish=_refuse)).report
+    report = search(task(refine="true"), tmp_path, Workers(1), replace(PROCEDURES, polish=_refuse)).report
     assert [design["polished"] for design in report["best"]] == [False] * 3
     assert [entry["what"] for entry in report["skipped"] if entry["what"].startswith("polishing")] == [
         f"polishing best-{place}.yaml" for place in (1, 2, 3)
@@ -101,9 +101,9 @@ def test_what_could_not_be_polished_is_told(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_a_sweep_that_finds_nothing_leaves_the_last_files_alone(tmp_path: Path) -> None:
-    search(task(), tmp_path, Engine(1), PROCEDURES)
+    search(task(), tmp_path, Workers(1), PROCEDURES)
     before = (tmp_path / "four-bar" / "sweep.json").read_bytes()
-    outcome = search(task(margin=99.0), tmp_path, Engine(1), PROCEDURES)
+    outcome = search(task(margin=99.0), tmp_path, Workers(1), PROCEDURES)
     assert outcome.report["ok"] is False
     assert outcome.report["counts"]["kept"] == 0
     assert outcome.folder == tmp_path / "four-bar.rejected"
@@ -118,9 +118,9 @@ def test_a_users_own_files_are_left_alone(tmp_path: Path) -> None:
     folder = tmp_path / "four-bar"
     folder.mkdir()
     (folder / "notes.txt").write_text("mine")
-    search(task(), tmp_path, Engine(1), PROCEDURES)
+    search(task(), tmp_path, Workers(1), PROCEDURES)
     (folder / "best-7.yaml").write_text("mine")
-    search(task(), tmp_path, Engine(1), PROCEDURES)
+    search(task(), tmp_path, Workers(1), PROCEDURES)
     assert (folder / "notes.txt").read_text() == (folder / "best-7.yaml").read_text() == "mine"
 
 
@@ -129,7 +129,7 @@ def test_a_users_file_in_the_way_is_told_before_anything_is_computed(name: str, 
     (tmp_path / "four-bar").mkdir()
     (tmp_path / "four-bar" / name).write_text("mine")
     with pytest.raises(SurroundingsError, match=f"{name}: is in the way"):
-        search(task(), tmp_path, Engine(1), PROCEDURES)
+        search(task(), tmp_path, Workers(1), PROCEDURES)
     assert [path.name for path in (tmp_path / "four-bar").iterdir()] == [name]
     assert [path.name for path in tmp_path.iterdir()] == ["four-bar"]
 
@@ -137,9 +137,9 @@ def test_a_users_file_in_the_way_is_told_before_anything_is_computed(name: str, 
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.slow
 def test_fewer_best_designs_take_the_old_ones_away(tmp_path: Path) -> None:
-    search(task(), tmp_path, Engine(1), PROCEDURES)
+    search(task(), tmp_path, Workers(1), PROCEDURES)
     text = task().recipe.text.replace("keep: 3", "keep: 1")
-    search(Task.from_recipe(read(text.encode(), "x.yaml")), tmp_path, Engine(1), PROCEDURES)
+    search(SweepTask.from_recipe(read(text.encode(), "x.yaml")), tmp_path, Workers(1), PROCEDURES)
     assert sorted(path.name for path in (tmp_path / "four-bar").glob("*.yaml")) == ["best-1.yaml"]
 
 

@@ -13,8 +13,8 @@ from kin.law.sources import least_jerk
 from kin.law.sources.least_jerk import (
     Bounds,
     CrowdedError,
+    FunctionSpace,
     LowerLimit,
-    Space,
     Touch,
     curve_through,
     excess_of_bounds,
@@ -52,7 +52,7 @@ def by_kernel(x, lo, hi):
 def test_the_integral_is_that_of_the_kernel(reading):
     x = np.arange(12) * TURN / 12 + 0.03 * np.sin(7.0 * np.arange(12))
     s = 3 - 3 * np.cos(x) + 0.4 * np.sin(5 * x)
-    found = least(Space(0.0, TURN), bounds(x, s, reading))
+    found = least(FunctionSpace(0.0, TURN), bounds(x, s, reading))
     assert found.square == pytest.approx(by_kernel(x, s - reading, s + reading), rel=1e-6)
 
 
@@ -82,7 +82,7 @@ def test_the_conditions_of_a_least_hold(seed, count, places, stroke, rest):
     x = np.sort(rng.uniform(0.05, TURN - 0.05, count))
     x = x[np.append(True, np.diff(x) > 1e-3)]
     s = np.round(stroke * (0.5 - 0.5 * np.cos(x) + 0.1 * np.sin(4 * x + seed)), places)
-    space = Space(0.0, TURN, (0.0, 0.0) if rest else None)
+    space = FunctionSpace(0.0, TURN, (0.0, 0.0) if rest else None)
     limits = bounds(x, s, 0.5 * 10.0**-places)
     found = least(space, limits)
     if found is None:
@@ -98,7 +98,7 @@ def test_equations_in_blocks_have_the_solution_of_all_at_once(count, rest, monke
     rng = np.random.default_rng(count)
     x = (np.arange(count) + rng.uniform(0.1, 0.9, count)) * TURN / count
     s = np.cos(x) + 0.01 * rng.uniform(-1.0, 1.0, count)
-    space = Space(0.0, TURN, rest)
+    space = FunctionSpace(0.0, TURN, rest)
     pull, square = pulls(space, x, s)
     curve = curve_through(space, x, s)
     least_jerk._blocks.cache_clear()
@@ -118,7 +118,7 @@ def test_no_other_function_within_the_bounds_has_less():
     rng = np.random.default_rng(3)
     x = np.arange(40) * TURN / 40
     s = np.round(4 - 4 * np.cos(x) + 0.5 * np.cos(3 * x), 1)
-    space, limits = Space(0.0, TURN), bounds(x, s, 0.05)
+    space, limits = FunctionSpace(0.0, TURN), bounds(x, s, 0.05)
     found = least(space, limits)
     for _ in range(50):
         other = curve_through(space, x, s + rng.uniform(-0.05, 0.05, 40))
@@ -130,7 +130,7 @@ def test_no_other_function_within_the_bounds_has_less():
 def test_where_the_search_begins_makes_no_difference():
     x = np.arange(180) * TURN / 180
     s = np.round(5 - 5 * np.cos(x) + 0.7 * np.sin(4 * x), 3)
-    space, limits = Space(0.0, TURN), bounds(x, s, 0.0005)
+    space, limits = FunctionSpace(0.0, TURN), bounds(x, s, 0.0005)
     plain = least(space, limits)
     wide = least(space, bounds(x, s, 0.05))
     again = least(space, limits, wide.touch)
@@ -142,7 +142,7 @@ def test_where_the_search_begins_makes_no_difference():
 def test_many_bounds_are_the_same_as_all_at_once(monkeypatch):
     x = np.arange(900) * TURN / 900
     s = np.round(5 - 5 * np.cos(x) + 0.7 * np.abs(np.sin(x)) ** 3, 3)
-    space, limits = Space(0.0, TURN), bounds(x, s, 0.0005)
+    space, limits = FunctionSpace(0.0, TURN), bounds(x, s, 0.0005)
     plain = least(space, limits)
     monkeypatch.setattr("kin.law.sources.least_jerk._FEW", 100)
     few = least(space, limits)
@@ -159,7 +159,7 @@ def test_a_search_among_noise_ends_before_it_touches_a_thousand_bounds(count, mo
     monkeypatch.setattr(least_jerk, "_MOST_WORK", 0.02 * least_jerk._MOST_WORK)
     noise = np.random.default_rng(1).uniform(0.0, 10.0, count)
     with pytest.raises(CrowdedError):
-        least(Space(0.0, TURN), bounds(np.arange(count) * TURN / count, noise, 0.1))
+        least(FunctionSpace(0.0, TURN), bounds(np.arange(count) * TURN / count, noise, 0.1))
     assert max(knots) < 1000
     assert sum(k**3 for k in knots) <= least_jerk._MOST_WORK
 
@@ -168,19 +168,19 @@ def test_a_solve_of_too_many_knots_is_not_begun():
     x = np.arange(20_000) * TURN / 20_000
     limits = bounds(x, np.cos(x), 1e-9)
     with pytest.raises(CrowdedError):
-        least(Space(0.0, TURN), limits, Touch(np.arange(20_000), np.zeros(20_000, dtype=bool)))
+        least(FunctionSpace(0.0, TURN), limits, Touch(np.arange(20_000), np.zeros(20_000, dtype=bool)))
 
 
 def test_a_hundred_thousand_rounded_bounds_take_a_hundredth_of_the_work(monkeypatch):
     monkeypatch.setattr(least_jerk, "_MOST_WORK", 0.01 * least_jerk._MOST_WORK)
     x = np.arange(100_000) * TURN / 100_000
-    assert len(least(Space(0.0, TURN), bounds(x, np.round(5 - 5 * np.cos(x), 3), 0.0005)).x) < 200
+    assert len(least(FunctionSpace(0.0, TURN), bounds(x, np.round(5 - 5 * np.cos(x), 3), 0.0005)).x) < 200
 
 
 def test_a_function_above_a_floor_touches_it_and_costs_more():
     x = np.arange(24) * TURN / 24
     s = np.where(np.abs(x - math.pi) < 1.0, 5.0, 0.0)
-    space, limits = Space(0.0, TURN), bounds(x, s, 0.001)
+    space, limits = FunctionSpace(0.0, TURN), bounds(x, s, 0.001)
     free, held = least(space, limits), least(space, limits, limit=LowerLimit(0.0, 1e-9))
     assert free.curve.lowest()[1] < -0.3
     assert held.curve.lowest()[1] >= -1e-9
@@ -190,11 +190,11 @@ def test_a_function_above_a_floor_touches_it_and_costs_more():
 
 def test_a_constant_has_no_least():
     x = np.arange(6.0)
-    assert least(Space(0.0, TURN), bounds(x, [1.0, 1.2, 0.9, 1.1, 1.0, 1.0], 0.2)) is None
+    assert least(FunctionSpace(0.0, TURN), bounds(x, [1.0, 1.2, 0.9, 1.1, 1.0, 1.0], 0.2)) is None
 
 
 def test_between_two_rests_it_is_the_polynomial_345_without_bounds():
-    found = least(Space(1.0, 3.0, (2.0, 6.0)), bounds([2.0], [4.0], 1.0))
+    found = least(FunctionSpace(1.0, 3.0, (2.0, 6.0)), bounds([2.0], [4.0], 1.0))
     u = np.linspace(0.0, 1.0, 11)
     assert found.curve(1.0 + 2.0 * u) == pytest.approx(2.0 + 4.0 * u**3 * (10.0 - 15.0 * u + 6.0 * u * u))
     assert found.square == pytest.approx(16.0 * 720.0 / 2.0**5)
@@ -204,10 +204,10 @@ def test_between_two_rests_it_is_the_polynomial_345_without_bounds():
 def test_jumps_of_the_fifth_derivative_are_the_multipliers():
     x = np.array([0.2, 1.1, 2.0, 3.3, 4.9])
     s = np.array([0.0, 2.0, 3.0, 1.0, 0.5])
-    curve = curve_through(Space(0.0, TURN), x, s)
+    curve = curve_through(FunctionSpace(0.0, TURN), x, s)
     fifth = 120.0 * curve.coefficients[5] / curve.widths**5
     jumps = fifth - np.roll(fifth, 1)
-    assert pulls(Space(0.0, TURN), x, s)[0] == pytest.approx(-jumps)
+    assert pulls(FunctionSpace(0.0, TURN), x, s)[0] == pytest.approx(-jumps)
     for order in range(5):
         ends = [curve(np.array([place - 1e-9, place + 1e-9]), order) for place in x]
         assert all(abs(b - a) < 1e-5 * max(1.0, abs(a)) for a, b in ends)

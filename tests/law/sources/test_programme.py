@@ -15,7 +15,7 @@ from kin.law.formula.formula import Formula
 from kin.law.programme import IntentError, polynomial_law
 from kin.law.sources.laws import NAMES, named, scca, split
 from kin.law.sources.motion import Motion
-from kin.law.sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State, programme
+from kin.law.sources.programme import Dwell, Given, JointState, Matched, Move, RiseAndFall, programme
 from kin.law.sources.whole_turn import from_formula
 from kin.law.support_function import lift_constant_breadth
 
@@ -134,7 +134,7 @@ def test_a_match_across_the_end_takes_the_last_segment():
 
 
 def test_the_quick_return_turns_with_the_given_acceleration():
-    turn = State(0.0, -30.0)
+    turn = JointState(0.0, -30.0)
     motion = closed(Move(rad(90), Matched(at_end=turn), by=10.0), Move(rad(70), Matched(), by=-10.0)).demand_joined()
     for side in (1, -1):
         assert motion.derivatives(rad(90), 2, side)[:, 0] == pytest.approx([10, 0, -30], abs=1e-13)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kin.contour.bezier import Beziers
-from kin.read.step.curves import Conic, Edge, Spline, Straight
+from kin.read.step.curves import Conic, Spline, StepEdge, Straight
 
 # a circle of radius 2 about (0, 0, 5) in the plane through the y axis that rises by 60 degrees along x
 U, V = np.array([1.0, 0.0, math.sqrt(3.0)]), np.array([0.0, 2.0, 0.0])
@@ -14,7 +14,7 @@ CENTRE = np.array([0.0, 0.0, 5.0])
 
 
 def edge(curve, start=CENTRE, end=CENTRE):
-    return Edge(1, start, end, curve)
+    return StepEdge(1, start, end, curve)
 
 
 @pytest.mark.parametrize("sweep", [2.0 * math.pi, -2.0 * math.pi])

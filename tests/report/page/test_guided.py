@@ -23,7 +23,7 @@ from kin.contour.contour import Contour
 
 if TYPE_CHECKING:
     from camgeo.report.page.content import Content
-    from camgeo.report.page.scene import Body
+    from camgeo.report.page.scene import MovingBody
 
 DRAWN_TO = 1e-3  # mm: an exact contour is drawn by 1440 points
 MOTION = (
@@ -66,7 +66,7 @@ def drawn(name: str, rotation: str) -> tuple[Any, Content]:
         return recipe, content(recipe, designed(recipe), [])
 
 
-def body(found: Content, name: str) -> Body:
+def body(found: Content, name: str) -> MovingBody:
     (one,) = (each for each in found.scene.bodies if each.name == name)
     return one
 
@@ -77,7 +77,7 @@ def back(found: Content, at: np.ndarray) -> np.ndarray:
     return np.column_stack([turned.real, turned.imag])
 
 
-def places(one: Body) -> np.ndarray:
+def places(one: MovingBody) -> np.ndarray:
     return one.pose[:, 0] + 1j * one.pose[:, 1]
 
 
@@ -88,7 +88,7 @@ def contour(found: Content) -> Contour:
     return Contour.from_bulges(ring.points, ring.bulges)
 
 
-def touching(found: Content) -> Body:
+def touching(found: Content) -> MovingBody:
     return next(b for b in found.scene.bodies if b.name in {"roller", "knife edge", "shoe", "flat face"})
 
 

@@ -21,10 +21,10 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
-    from camgeo.report.page.scene import Body
+    from camgeo.report.page.scene import MovingBody
 
 
-def curve(body: Body) -> np.ndarray:
+def curve(body: MovingBody) -> np.ndarray:
     points = np.concatenate([ring.points for shape in body.shapes for ring in shape.rings])
     return points[:, 0] + 1j * points[:, 1]
 
