@@ -13,7 +13,7 @@ import numpy as np
 from kin.contour.contour import Contour
 from kin.dynamics.drive import drives
 from kin.dynamics.excitation import intended_faces, measured_faces
-from kin.dynamics.response import Samples
+from kin.dynamics.response import ResponsePlaces
 from kin.dynamics.separation import float_speed
 from kin.dynamics.train import Steady, Train, steady
 from kin.follower.follower import follower_of
@@ -35,7 +35,7 @@ def force(found: Steady, rpm: float, phi: np.ndarray) -> np.ndarray:
     """Contact force of a steady state at shaft angles."""
     response = found.response
     stretch = np.minimum(np.searchsorted(response.drive.knots, phi, side="right") - 1, len(response) - 1)
-    at = Samples(stretch, phi - response.drive.knots[stretch])
+    at = ResponsePlaces(stretch, phi - response.drive.knots[stretch])
     return TRAIN.at(rpm).force(response).at(found.starts, at)
 
 
