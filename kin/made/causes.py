@@ -57,7 +57,7 @@ def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth], turned: f
         x[free.index(0)] += turned
     sds = np.sqrt(np.diag(covariance))
     named = []
-    for group in _together(covariance / np.outer(sds, sds)):
+    for group in correlated_groups(covariance / np.outer(sds, sds)):
         part = chosen[:, group] @ x[group]
         effect = float(np.abs(part).max())
         if len(group) == 1:
@@ -111,15 +111,12 @@ def _explained(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> _E
     return _Explained(free, chosen, x, variance * np.linalg.inv(chosen.T @ chosen), left)
 
 
-def _together(correlation: Array) -> list[list[int]]:
-    """Groups of estimates that hang together."""
+def correlated_groups(correlation: Array) -> list[list[int]]:
+    """Indices of n estimates in groups: a chain of correlations beyond ALIKE joins any two of a group; (n, n)."""
     groups: list[list[int]] = []
     for k in range(len(correlation)):
-        own = next((group for group in groups if max(abs(correlation[k, j]) for j in group) > ALIKE), None)
-        if own is None:
-            groups.append([k])
-        else:
-            own.append(k)
+        joined = [group for group in groups if np.abs(correlation[k, group]).max() > ALIKE]
+        groups = [group for group in groups if group not in joined] + [sorted(sum(joined, [k]))]
     return groups
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.disc_followers import FOLLOWERS
 
-from kin.made.causes import causes
+from kin.made.causes import causes, correlated_groups
 from kin.made.points import SurfacePoints
 from kin.made.smooth import fit
 
@@ -58,3 +58,14 @@ def test_a_local_fault_comes_first():
 
 def test_noise_has_no_cause():
     assert found(0.0 * T) == {}
+
+
+@pytest.mark.parametrize(
+    ("pairs", "groups"),
+    [([], [[0], [1], [2]]), ([(0, 2)], [[1], [0, 2]]), ([(0, 2), (1, 2)], [[0, 1, 2]]), ([(0, 1)], [[0, 1], [2]])],
+)
+def test_a_chain_of_correlations_is_one_group(pairs, groups):
+    correlation = np.eye(3)
+    for i, j in pairs:
+        correlation[i, j] = correlation[j, i] = -0.97
+    assert correlated_groups(correlation) == groups
