@@ -82,7 +82,11 @@ class Recipes:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_sessionstart(self) -> None:
-        """Find the recipes, and add them to pytest's arguments where the command line has none; raises UsageError."""
+        """Find the recipes, and add them to pytest's arguments where the command line has none.
+
+        Raises UsageError for faulty patterns or lines of the settings, and where processes would write one recipe's
+        files at once.
+        """
         dist = self.config.getoption("dist", "no")
         if self.out is not None and dist not in TOGETHER and self.config.getoption("numprocesses", None):
             raise pytest.UsageError(
@@ -128,7 +132,7 @@ class Recipes:
                 item.run.selected.add(item.name)
 
     def _found(self) -> list[Path]:
-        """Files that the patterns match, each once, in the patterns' order; raises UsageError."""
+        """Files that the patterns match, each once, in the patterns' order; raises UsageError if one matches none."""
         paths: dict[Path, None] = {}
         faults = []
         for pattern in self.patterns:
@@ -145,7 +149,11 @@ class Recipes:
         return list(paths)
 
     def _verified(self, line: str) -> None:
-        """Have a recipe verify the files of a line; raises UsageError."""
+        """Have a recipe verify the files of a line of the settings.
+
+        Raises UsageError for a recipe that is not among those found, a file that does not exist, and a line without
+        files.
+        """
         words = shlex.split(line)
         options = {name: _value(text) for name, text in (word.split("=", 1) for word in words[1:] if "=" in word)}
         files = [self.base / word for word in words[1:] if "=" not in word]

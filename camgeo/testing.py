@@ -119,7 +119,7 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
     """Assert that the cut contour closes, without crossing itself and without anything drawn twice or without length.
 
     Returns the widest gap between two entities, mm; at most `gap` is permitted. Of a solid its whole surface has to be
-    closed, as `assert_watertight` has it, and the gap is 0.
+    watertight, and the gap is 0.
     """
     path = path_of("path", path)
     if _is_solid(path):
@@ -340,7 +340,7 @@ def assert_no_undercut(recipe: RecipeSource) -> float:
 
 
 def _length(name: str, value: float) -> float:
-    """Argument that is a length of 0 or above, mm; raises CallError."""
+    """Argument that is a length of 0 or above, mm; raises CallError for another number, TypeError for none."""
     length = number_of(name, value)
     if not 0.0 <= length < math.inf:
         raise CallError(f"{name} is a number of 0 or above, not {length!r}")

@@ -32,7 +32,8 @@ def design(recipe: Order | str | PathLike[str]) -> Designed: ...
 def design(recipe: OrderSource) -> Designed:
     """Design the cam of a recipe, or all cams of one of another kind: no file is made, and no contour fitted.
 
-    Raises RecipeErrors where there is no such motion or curve. A check that fails raises nothing: see `Design.ok`.
+    Raises RecipeErrors where there is no such motion or curve. A check that fails raises nothing: `ok` of the
+    design is False then.
     """
     recipe = order_of(recipe)
     result = root_of(recipe).design(recipe)

@@ -44,7 +44,11 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
 
 
 def order_of(recipe: OrderSource) -> Order:
-    """Recipe of any kind, read from its file if the argument is a path; raises RecipeErrors, TypeError."""
+    """Recipe of any kind, read from its file if the argument is a path.
+
+    Raises RecipeErrors where the file has faults or does not exist, CallError for a path that no file can have, and
+    TypeError for neither a recipe nor a path.
+    """
     if isinstance(recipe, (str, PathLike)):
         return load_order(path_of("recipe", recipe))
     demand_type("recipe", recipe, Order, "a Recipe or the path of one")
@@ -52,6 +56,10 @@ def order_of(recipe: OrderSource) -> Order:
 
 
 def recipe_of(recipe: RecipeSource) -> Recipe:
-    """Recipe of one cam, read from its file if the argument is a path; raises RecipeErrors, TypeError."""
+    """Recipe of one cam, read from its file if the argument is a path.
+
+    Raises RecipeErrors where the file has faults, does not exist or is no recipe of one cam, CallError for a path that
+    no file can have, and TypeError for neither a recipe nor a path.
+    """
     demand_type("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
     return recipe if isinstance(recipe, Recipe) else load_file(path_of("recipe", recipe))

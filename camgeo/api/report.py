@@ -119,7 +119,10 @@ class Report(Mapping[str, JSON]):
 
     @cached_property
     def design(self) -> Designed:
-        """Design of the recipe, computed at first use, as of `camgeo.design`."""
+        """Exact design of the recipe, computed at first use; no file is made.
+
+        Raises RecipeErrors where there is no such motion or curve.
+        """
         from camgeo.api.designing import design
 
         return design(self.recipe)

@@ -42,7 +42,7 @@ def export(
     those of capabilities, as `camgeo verify --help` lists them: further checks. Raises RecipeErrors where there is no
     such cam or a tolerance cannot be held, SurroundingsError where the disk refuses or a package is missing, CallError
     for a kind of which the recipe lists no file, TypeError for an unknown option. A check that fails raises nothing:
-    see `Report.ok`.
+    `ok` of the report is False then.
     """
     recipe = order_of(recipe)
     demand_callable("progress", progress)

@@ -154,7 +154,11 @@ class Conjugate(Holding):
     def gentler_size(
         self, exact: ExactGuided, rising: float, falling: float, mm: float
     ) -> tuple[str, GuidedCam] | None:
-        """Base radius, and where needed a larger distance, for both pressure angles, rad; None if unknown."""
+        """The size, in words, and the cam of that size, that keep both discs' pressure angles below both angles, rad.
+
+        For an arm the size is a base radius and the pivot's distance; for a stem a base radius, and where needed a
+        larger distance between the contacts. None if unknown.
+        """
         from camgeo.cams import least_size
         from camgeo.curve import moving_frame
 

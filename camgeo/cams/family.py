@@ -232,7 +232,7 @@ class ExactCam(ABC):
 
     @property
     def gauge(self) -> Gauge:
-        """Follower by which kin judges the first surface, see `gauges`."""
+        """Follower by which kin judges files on the first surface."""
         return self.gauges[self.surfaces[0].name]
 
     @property

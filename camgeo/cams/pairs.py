@@ -50,7 +50,10 @@ class DeltaRoute:
 
 @dataclass(frozen=True)
 class DeltaFormulaRoute:
-    """Route by D(t) as text in t, the polar angle in rad; `scale` times its value is in mm^2, see `DeltaRoute`."""
+    """Route by D(t) as text in t, the polar angle of a roller in rad; `scale` times its value is in mm^2.
+
+    The pair swings by asin(D/arm^2) to each side (Wunderlich 6.5).
+    """
 
     text: str
     scale: float

@@ -193,9 +193,10 @@ class LinearSupport(Linear):
 
 
 def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
-    """The lift itself, if its mean radius is above 0: 2 pi times it is the perimeter, wherever the shaft is.
+    """The lift itself, if its mean radius is above the share `LEAST_PART` of the greatest |p|, or p is 0 throughout.
 
-    Raises IntentError else, with the mean in the recipe's unit, `scale` mm.
+    2 pi times the mean radius is the perimeter, wherever the shaft is. Raises IntentError else, with the mean in the
+    recipe's unit, `scale` mm.
     """
     from kin.law.programme import IntentError
 

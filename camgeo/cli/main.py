@@ -429,7 +429,10 @@ def _new(arguments: argparse.Namespace) -> int:
 
 
 def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str | None) -> int:
-    """Make a recipe of files and another recipe by the capability of a folder, see `Label.sources`; the exit status."""
+    """Write a recipe made of files and of another recipe; return the exit status.
+
+    The function `started` of the module `start` in the capability's folder makes it.
+    """
     from camgeo.cli.new_file import demand_new, write_new
     from camgeo.common.errors import CallError
     from camgeo.schema.errors import RecipeErrors

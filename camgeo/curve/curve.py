@@ -146,12 +146,15 @@ class Shape(Protocol):
 
     @property
     def steady(self) -> Array:
-        """For each stretch between breaks, (m, 2): speed and turn where both are exactly constant, else nan."""
+        """Speed, mm, and turn, rad, per unit of the parameter for each stretch between breaks, (m, 2).
+
+        nan on a stretch where they are not exactly constant.
+        """
         ...
 
     @property
     def radii(self) -> Array:
-        """For each stretch between breaks, (m,): the signed radius of curvature if exactly constant, else nan."""
+        """Signed radius of curvature, mm, for each stretch between breaks, (m,); nan where not exactly constant."""
         ...
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
@@ -162,7 +165,10 @@ class Shape(Protocol):
         ...
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,); at a break as `sample`."""
+        """Taylor coefficients (order + 1, n) of speed, mm, and turn, rad, at parameters t (n,).
+
+        At a break they are the limits from above (side 1) or from below (side -1).
+        """
         ...
 
     def bounds(self, low: Array, high: Array) -> Bounds:
@@ -251,11 +257,11 @@ class Curve:
         return Cells.of(self) if self.mirror is None else self.mirror.cells.backwards()
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
-        """Frame at parameters t (n,); see `Shape.sample`."""
+        """Frame at parameters t (n,); at a break the limit from above (side 1) or from below (side -1)."""
         return self.shape.sample(t, side)
 
     def stretch_of(self, t: Array) -> NDArray[np.intp]:
-        """Index of the shape's stretch in which each parameter (n,) lies, as `Shape.steady` counts them."""
+        """Index of the shape's stretch in which each parameter (n,) lies; stretch 0 begins at the first break."""
         breaks = np.asarray(self.shape.breaks, dtype=np.float64)
         if breaks.size == 0:
             return np.zeros(t.shape, dtype=np.intp)

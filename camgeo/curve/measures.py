@@ -239,7 +239,10 @@ class StarError(CurveError):
 
 
 def polar_radius(curve: Curve, angles: Array) -> Array:
-    """Distance of a contour from the shaft (n,), mm, at polar angles (n,), rad; StarError as `polar_parameters`."""
+    """Distance of a contour from the shaft (n,), mm, at polar angles (n,), rad, about the shaft.
+
+    Raises StarError unless each ray from the shaft is proved to cross the contour once.
+    """
     point = curve.sample(polar_parameters(curve, angles)).point
     radius: Array = np.hypot(point[:, 0], point[:, 1])
     return radius

@@ -174,7 +174,10 @@ class Translating:
         return b, a, rate
 
     def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
-        """Series of b, mm, a, mm, and tau', see the head of this module: of the order of S, one less and one less."""
+        """Terms b, mm, a, mm, and tau' of the moving frame as series: of the order of S, one less and one less.
+
+        b, a and tau' are defined at the head of this module.
+        """
         return s + self.foot, s.derivative() - self.offset, 1.0
 
     def resized(self, prime: float) -> Translating:
@@ -187,7 +190,7 @@ class Translating:
     def with_shaft(self, along: Array | float, across: Array | float) -> Translating:
         """Guide on the same line with the shaft elsewhere.
 
-        At rest, S = 0, b = `along` and a = -`across`, mm, see the head of this module.
+        At rest at S = 0 the frame's b is `along` and its a is -`across`, mm; the head of this module defines both.
         """
         return Translating(cast("float", along), cast("float", across))
 
@@ -262,7 +265,10 @@ class Oscillating:
         return b, a, np.stack([1.0 + self.side * v, self.side * w])
 
     def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
-        """Series of b, mm, a, mm, and tau', see the head of this module: of the order of S, one less and one less."""
+        """Terms b, mm, a, mm, and tau' of the moving frame as series: of the order of S, one less and one less.
+
+        b, a and tau' are defined at the head of this module.
+        """
         psi, side = s + self.rest, float(self.side)
         slope = s.derivative()
         lean = elementary.cos(cut(psi, slope.order)) * self.pivot - self.length
@@ -278,7 +284,7 @@ class Oscillating:
     def with_shaft(self, along: Array | float, across: Array | float) -> Oscillating:
         """Guide with the same arm and pivot and the shaft elsewhere.
 
-        At rest, S = 0, b = `along` and a = -`across`, mm, see the head of this module.
+        At rest at S = 0 the frame's b is `along` and its a is -`across`, mm; the head of this module defines both.
         """
         x = self.length + self.side * across
         return Oscillating(
@@ -296,11 +302,14 @@ class FramedShape(MotionShape[SourceT]):
 
     @abstractmethod
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
-        """b, a and tau' as series, from the motion's figures."""
+        """Terms b, mm, a, mm, and tau' of the moving frame as series, from the motion's figures."""
 
     @abstractmethod
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
-        """Point as complex numbers (n,), tau (n,), b and a (3, n) and tau' (2, n) with derivatives, at t (n,)."""
+        """Point, mm, as complex numbers (n,), tau, rad (n,), and b, a, mm (3, n), tau' (2, n) with derivatives.
+
+        They are at parameters t (n,), the derivatives by them.
+        """
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
@@ -362,11 +371,14 @@ class CentreShape(FramedShape[Displacement]):
         return (self.law.on(tau, side),)
 
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
-        """Terms b, mm, a, mm, and tau' of the guide as series; see the head of this module."""
+        """Terms b, mm, a, mm, and tau' of the moving frame as series from S, of its order, one less and one less."""
         return self.guide.frame(figures[0])
 
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
-        """Point and figures of the guide at shaft angles t (n,), as `FramedShape.rows`."""
+        """Point, mm, as complex numbers (n,), tau, rad (n,), and b, a, mm (3, n), tau' (2, n) with derivatives.
+
+        They are at shaft angles t (n,), the derivatives by them.
+        """
         s = self.law.derivatives(t, 3, side)
         return (*self.guide.place(t, s[0]), *self.guide.rows(s))
 

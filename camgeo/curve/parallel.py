@@ -43,7 +43,7 @@ class Parallel:
 
     @property
     def steady(self) -> Array:
-        """Speed and turn on the stretches where both are constant, nan on the others, (m, 2)."""
+        """Speed, mm, and turn, rad, per unit of the parameter on each stretch, (m, 2); nan unless both are constant."""
         table = self.base.steady
         return np.column_stack([table[:, 0] - self.distance * table[:, 1], table[:, 1]])
 

@@ -113,7 +113,7 @@ class MotionShape(ABC, Generic[SourceT]):
 
     @cached_property
     def steady(self) -> Array:
-        """Speed and turn (m, 2) on the stretches where they are constant, as at dwells; nan on the others."""
+        """Speed, mm, and turn, rad, per rad of the parameter, (m, 2), where constant, as at dwells; else nan."""
         rests = self.law.steady
         out = np.full((rests.size, 2), np.nan)
         if rests.any():

@@ -44,7 +44,10 @@ class SupportShape:
 
     @property
     def steady(self) -> Array:
-        """Radius of curvature and turn, (m, 2), on stretches that are circular arcs; nan on the others."""
+        """Speed and turn, mm and rad per rad of the parameter, (m, 2), on stretches that are circular arcs; else nan.
+
+        The speed is the signed radius of curvature, the turn 1.
+        """
         radius = self.lift.radius
         return np.column_stack([radius, np.where(np.isnan(radius), np.nan, 1.0)])
 

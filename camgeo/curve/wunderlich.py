@@ -45,7 +45,7 @@ class PitchShape(FramedShape[Transmission]):
         return self.law.jets(tau, side)
 
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
-        """Terms b, a, mm, and tau' of the moving frame as series, from the series phi and psi; see this class."""
+        """Terms b, a, mm, and tau' of the moving frame as series, from the series phi and psi."""
         phi, psi = figures
         rate, slope = phi.derivative(), psi.derivative()
         x, arm = cut(psi, slope.order) + self.law.alpha, self.law.arm
@@ -53,7 +53,10 @@ class PitchShape(FramedShape[Transmission]):
         return elementary.sin(x) * rate * arm, a * arm, rate - slope
 
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
-        """Point and figures at parameters t (n,) of the law, as `FramedShape.rows`."""
+        """Point, mm, as complex numbers (n,), tau, rad (n,), and b, a, mm (3, n), tau' (2, n) with derivatives.
+
+        They are at parameters t (n,) of the law, the derivatives by them.
+        """
         phi, psi = self.law.at(t, 3, side)
         x = psi[0] + self.law.alpha
         (f, f1, f2), (s, s1, s2) = phi[1:], psi[1:]

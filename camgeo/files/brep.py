@@ -41,7 +41,7 @@ class Wire(NamedTuple):
 
 
 def need_kernel() -> None:
-    """Raise MissingExtraError where Open CASCADE is not installed, or in a version with other names."""
+    """Raise MissingExtraError unless Open CASCADE is installed in the major version `VERSION`."""
     try:
         import OCP
         import OCP.STEPControl

@@ -37,7 +37,7 @@ def extruded_mesh(
     A polygon is a contour as it is fitted. A circle becomes a polygon that straddles it; arcs of other outlines are
     chords between points of them. All loops keep within `tolerance` of what is meant after their rounding to
     `precision`. Every edge belongs to two triangles, which run along it opposite ways. O(n log n) for a contour that
-    runs once round the shaft with a bore alone; see `camgeo.files.triangulate`.
+    runs once round the shaft with a bore alone.
 
     Raises ToleranceError where the tolerance cannot be held, RegionError where an outline is not simple or reaches
     another, ValueError for a thickness that is not positive.

@@ -74,7 +74,7 @@ class Solid:
 
 
 def joined_mesh(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
-    """Closed, oriented mesh of the solid over a polygon; see the module.
+    """Closed, oriented mesh of the solid over a polygon, mm, and its facts.
 
     With a chamfer the polygon is taken to be fitted finely enough that its parallel inside is within the tolerance too.
     Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where an outline is not
@@ -96,7 +96,7 @@ def completed_mesh(
     tolerance: float,
     precision: Precision,
 ) -> tuple[Mesh, MeshFacts]:
-    """Closed, oriented mesh of a manifold3d disc joined with its boss, its openings cut out.
+    """Closed, oriented mesh, mm, of a manifold3d disc joined with its boss, its openings cut out, and its facts.
 
     Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where a body is not sound.
     """

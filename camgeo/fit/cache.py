@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 @dataclass()
 class Fits:
-    """The fits of one contour, made on first use. `unsure`, mm: see `formula_rounding`."""
+    """The fits of one contour, made on first use.
+
+    `unsure`, mm, is the contour's rounding error through a recipe's own formula, 0 if it is no more than usual.
+    """
 
     contour: Curve
     clock: Clock

@@ -29,7 +29,7 @@ MODULES = {
 }
 """Module of each of the core's tables by its word."""
 OF_SOME = ("step", "tolerance", "roller", "for", "suffix")
-"""Options that some tables have and others have not, see `Form.takes`."""
+"""Options that some tables have and others have not; `takes` of a form names those that it has."""
 
 
 def _form(name: str) -> Form:

@@ -31,10 +31,11 @@ def drawing_format(
     check: Callable[[Values, Values, Reader], None] = NO_CHECK,
     foresee: Callable[[Job, FileRequest], None] = NO_CHECK,
 ) -> Format:
-    """Record of a format of drawings; `draw` writes one file, see `make_drawing`.
+    """Record of a format of drawings.
 
-    `more` are options of its own, which stand in the names of its files and in reports; `path` is whether it shows the
-    path of the cutter.
+    `draw` writes one file: (job, request, path, outlines on layers, remarks); it returns the checks of what the file
+    has besides these. `more` are options of the format, which stand in the names of its files and in reports; `path` is
+    whether it shows the path of the cutter.
     """
     named = tuple(item.name for item in more)
 

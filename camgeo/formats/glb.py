@@ -53,7 +53,7 @@ class Actor:
 
 
 def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
-    """Write bodies and their motion over one turn; raises OSError as the file system does."""
+    """Write bodies and their motion over one turn; raises OSError where the file cannot be written."""
     buffer = _Buffer()
     nodes: list[dict[str, Any]] = []
     meshes: list[dict[str, Any]] = []

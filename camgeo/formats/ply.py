@@ -23,7 +23,7 @@ _FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
 def write_ply(path: Path, items: Sequence[Item], title: str, mm: float, _about: str) -> None:
     """Write the only mesh of `items`, mm, with coordinates in a unit of `mm` mm.
 
-    Raises OSError as the file system does, ValueError for several meshes.
+    Raises OSError where the file cannot be written, ValueError for several meshes.
     """
     (item,) = items
     mesh, numbers = item.mesh, _numbers()

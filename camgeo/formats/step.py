@@ -60,8 +60,9 @@ def write_step(
 ) -> Bound:
     """Write solids in a unit, each a product of its own; the proved bound of the written contours, mm.
 
-    Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError as
-    `solid_shape` does; OSError as the file system does.
+    Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError
+    where a piece is too short for the kernel, an arc is sharper than the chamfer, or the kernel finds a solid unsound,
+    TypeError for a chamfer along anything but arcs, OSError where the file cannot be written.
     """
     need_kernel()
     fitted = [layered.outline for body in bodies for layered in body.outlines if layered.circle is None]
@@ -89,7 +90,8 @@ def write_stack(
 ) -> float:
     """Write outlines one above the other, each from z to z, mm; the greatest distance of the written walls, mm.
 
-    Raises MissingExtraError without the kernel, RegionError as `stack_shape` does; OSError as the file system does.
+    Of two neighbours one has to lie within the other. Raises MissingExtraError without the kernel, RegionError where a
+    piece is too short for the kernel or the kernel finds the solid unsound, OSError where the file cannot be written.
     """
     need_kernel()
     path.write_bytes(_text([stack_shape(stretches, bore)], [name], units, name, about))

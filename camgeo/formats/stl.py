@@ -23,7 +23,7 @@ RECORD = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribut
 def write_stl(path: Path, mesh: Mesh, *, mm: float = 1.0, about: str = "") -> None:
     """Write a mesh, mm, whose points are in single precision already as numbers of a unit of `mm` mm.
 
-    Raises OSError as the file system does.
+    Raises OSError where the file cannot be written.
     """
     normal = mesh.area_vectors
     records = np.zeros(len(mesh.triangles), dtype=RECORD)

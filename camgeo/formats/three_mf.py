@@ -43,7 +43,7 @@ _UNITS = {1.0: "millimeter", INCH: "inch"}
 def write_3mf(path: Path, items: Sequence[Item], *, title: str, mm: float = 1.0, about: str = "") -> None:
     """Write meshes, mm, each under its name and in its place, in a unit of `mm` mm, 1 or 25.4.
 
-    Raises KeyError for another unit, OSError as the file system does.
+    Raises KeyError for another unit, OSError where the file cannot be written.
     """
     from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 

@@ -142,7 +142,10 @@ def greatest_bend(path: Curve) -> float:
 
 
 def _path(recipe: Recipe, design: Design, wheel: _Wheel) -> Curve:
-    """The path of the wheel's or the roller's centre."""
+    """The path of the wheel's or the roller's centre.
+
+    Raises RecipeErrors for one that does not reach all of the contour, and for a trimmed contour, which has corners.
+    """
     ((_, contour),) = design.contours
     try:
         path = cutter_path(contour, wheel.radius)
@@ -173,7 +176,10 @@ class _Wheel(NamedTuple):
 
 
 def _refusal(recipe: Recipe, wheel: _Wheel, problem: str, largest: float) -> RecipeErrors:
-    """Error of a wheel; the remedy stays below the `largest`, mm across, whose centre stops in a hollow."""
+    """RecipeErrors for a wheel that does not reach; the remedy is a wheel a little below `largest`, mm in diameter.
+
+    That is the largest wheel that reaches every hollow; where it is infinite, the remedy is to leave the table out.
+    """
     remedy = "leave the table out"
     if math.isfinite(largest):
         problem += f"; the largest that reaches is {downward(largest / recipe.mm)} {recipe.units} across"
@@ -182,7 +188,12 @@ def _refusal(recipe: Recipe, wheel: _Wheel, problem: str, largest: float) -> Rec
 
 
 def _count(recipe: Recipe, request: FileRequest, bend: float, tolerances: Sequence[float], field: str) -> int:
-    """Number of rows of a turn, by the step of the request or by the tolerance less the share of the digits."""
+    """Number of rows of a turn, by the step of the request or, without one, by the tolerance.
+
+    `bend` is the greatest |d2X/dC2|, mm/rad^2; `tolerances` are the tolerance less the error of the table's digits, mm,
+    and the tolerance itself.
+    Raises RecipeErrors for a tolerance that the finest step does not hold, and for a step too wide for the tolerance.
+    """
     available, tolerance = tolerances
     widest = COARSEST if bend == 0.0 else math.degrees(math.sqrt(8.0 * max(SHARE * available, 0.0) / bend))
     ticks = int(min(widest, COARSEST) * TICKS)
@@ -204,7 +215,7 @@ def _count(recipe: Recipe, request: FileRequest, bend: float, tolerances: Sequen
 
 
 def _join_error(step: float, bend: float) -> float:
-    """Greatest error of straight joins over a step, degrees, mm."""
+    """Greatest error, mm, of straight joins over a step, degrees, where |d2X/dC2| is at most `bend`, mm/rad^2."""
     return math.radians(step) ** 2 * bend / 8.0
 
 

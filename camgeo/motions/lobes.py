@@ -47,7 +47,7 @@ def lobe_motion(
 ) -> Motion:
     """Motion of a lobe of a lift, mm, over `total` rad; `nose` is the angle of its greatest lift, rad.
 
-    `around` is 1 where the motion repeats each turn, see kin's `Motion`. Raises IntentError, with a path below `field`,
+    `around` is 1 where the motion repeats each turn. Raises IntentError, with a path below `field`,
     where no such lobe exists.
     """
     from kin.law.programme import IntentError

@@ -136,7 +136,10 @@ class Open:
 
 @dataclass(frozen=True)
 class Segments(MotionSource):
-    """Motion programme of segments one after another, `repeat` times a turn; `scale` as of `MotionSource`."""
+    """Motion programme of segments one after another, `repeat` times a turn.
+
+    `scale` mm or rad are one of the recipe's units.
+    """
 
     segments: tuple[MotionSegment, ...]
     repeat: int = 1
@@ -234,7 +237,10 @@ class ContourMotion(MotionSource):
     source: ClassVar[str] = ".contour"
 
     def for_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> ContourMotion:
-        """Copy of the motion that knows its follower, see `MotionSource.for_follower`."""
+        """Copy of the motion with its follower's contact.
+
+        The contour lies `within` so many others round the shaft, -1 for a ring's.
+        """
         return replace(self, contact=contact(), within=within)
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:

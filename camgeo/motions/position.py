@@ -90,9 +90,10 @@ class LiftPosition(_Turn):
         return self.law.derivatives(shaft, order)
 
     def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
-        """Parameters of the contour (n,) at which the first contact touches, by the prefix of its columns.
+        """Parameter of the contour, rad (n,), of each contact, by the prefix of the contact's columns in tables.
 
-        `relative` is the cam's angle against the frame that carries the follower, the shaft's without one.
+        A lift has one entry, that of the first contact, with an empty prefix. `relative` is the cam's angle, rad (n,),
+        against the frame that carries the follower, the shaft's without one.
         """
         return {"": relative}
 
@@ -139,7 +140,7 @@ class SwingPosition(_Swing, _Turn):
         return self.rows(shaft, order)
 
     def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
-        """Parameters of contacts A and B (n,), by the prefix of their columns.
+        """Parameters of the contour (n,) at contacts A and B, by the prefixes of their columns in tables, `a_`, `b_`.
 
         The law repeats itself with phi - psi + delta for phi and -psi for psi (W 1984, 4.9). Repeated mu times, mu odd,
         that puts A where B is, at phi - psi + alpha.

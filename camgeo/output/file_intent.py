@@ -22,7 +22,7 @@ def shaft_of_file(
     """Intent of the files of a kind, whose discs may differ from the nominal ones by a compensation.
 
     `field` is the path of the request in errors. Raises RecipeErrors for a program without `manufacture` in the recipe,
-    and as `compensate` does.
+    and where by the compensation a roller or an opening would be nothing, or the contour cannot be altered or proved.
     """
     from kin.judge.intent import ShaftIntent
 

@@ -69,7 +69,10 @@ class Job:
         )
 
     def of_file(self, request: FileRequest) -> tuple[Job, tuple[Check, ...]]:
-        """Job for the part as one file shows it, and the failed checks that prevent the file."""
+        """Job for the part as one file shows it, and the failed checks that prevent the file.
+
+        Raises RecipeErrors where a roller or an opening would be nothing, or the contour cannot be altered or proved.
+        """
         compensation = request.compensation
         if compensation is None:
             return self, ()
@@ -131,15 +134,20 @@ class Job:
         return self.field(request) if request.tolerance is not None else "export.tolerance"
 
     def outlines(self, form: str, tolerance: float) -> tuple[Outline, ...]:
-        """Contour of each surface in a form, within a tolerance, mm, mirrored for a counter-clockwise shaft."""
+        """Contour of each surface in a form, within a tolerance, mm, mirrored for a counter-clockwise shaft.
+
+        Raises ToleranceError where the fit cannot hold the tolerance.
+        """
         return tuple(self._outline(fit, form, tolerance) for fit in self.fits)
 
     def written_outlines(
         self, form: str, tolerance: float, shift_of: Callable[[Outline], float]
     ) -> tuple[Outline, ...]:
-        """Contour of each surface in a form, as `outlines` gives it, within the tolerance, mm, after writing.
+        """Contour of each surface in a form, within the tolerance, mm, after writing.
 
-        Writing moves a contour by up to `shift_of`, mm. Raises ToleranceError as the fit does.
+        It is mirrored for a counter-clockwise shaft. Writing moves a contour by up to `shift_of`, mm; where that is a
+        quarter of the tolerance or more, the contour is only sure to be within the tolerance before writing. Raises
+        ToleranceError where the fit cannot hold the tolerance.
         """
         outlines = []
         for fit in self.fits:

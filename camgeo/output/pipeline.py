@@ -54,7 +54,7 @@ def export(
     only: tuple[str, ...] = (),
     progress: Callable[[str], None] | None = None,
 ) -> Outcome:
-    """Write and judge a recipe's files under `out`/<name>; see the module.
+    """Write a recipe's files into a private folder, judge them there, and move them to `out`/<name> if all checks hold.
 
     A file that a missing package would make is left out. Raises RecipeErrors where no such curve exists or a tolerance
     cannot be held, SurroundingsError where the disk does not do what it should, or none of the files can be made. A
@@ -76,7 +76,11 @@ def export(
 
 
 def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
-    """Make and judge everything in a temporary folder that goes; raises RecipeErrors, SurroundingsError as `export`."""
+    """Make and judge everything in a temporary folder that goes.
+
+    A failed check raises nothing. Raises RecipeErrors where no such curve exists or a tolerance cannot be held,
+    SurroundingsError where a missing package prevents all files, or is one of a capability that the recipe uses.
+    """
     import tempfile
     from pathlib import Path
 
@@ -93,7 +97,11 @@ def demand_any(path: Path, findings: Findings) -> None:
 
 
 def check_and_show(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
-    """Outcome as of `check`, and the content of its page; raises RecipeErrors, SurroundingsError as `export`."""
+    """Outcome of making and judging everything in a temporary folder that goes, and the content of its page.
+
+    Pages and other summaries are not made, and no file is demanded. Raises RecipeErrors where no such curve exists or a
+    tolerance cannot be held, SurroundingsError where a package of a capability that the recipe uses is missing.
+    """
     import tempfile
     from pathlib import Path
 
@@ -111,11 +119,12 @@ def judge_files(
     units: float | None = None,
     gap: float | None = None,
 ) -> dict[str, Any]:
-    """Report on files of any origin, judged by a recipe's motion; raises RecipeErrors as `export` does.
+    """Report on files of any origin, judged by a recipe's motion.
 
     `tolerance`, mm, is by default that of the recipe's file of the same name, or of its export. `units`, mm, is the
     unit of files that state none; raises UnitsError where a file states another. Ends in drawings within `gap`, mm, are
-    joined; raises CallError for a gap above the tolerance of a drawing.
+    joined; raises CallError for a gap above the tolerance of a drawing. Raises RecipeErrors where there is no such
+    motion or curve, SurroundingsError where a package of a capability that the recipe uses is missing.
     """
     _, findings = _judge(recipe, paths, (tolerance, units, gap), Clock())
     return document(recipe, findings)
@@ -128,7 +137,13 @@ def judge_and_show(
     units: float | None = None,
     gap: float | None = None,
 ) -> tuple[dict[str, Any], str]:
-    """Report as of `judge_files`, and the HTML of the page that shows the files with their errors."""
+    """Report on files of any origin, judged by a recipe's motion, and the HTML of the page that shows them.
+
+    `tolerance`, mm, is by default that of the recipe's file of the same name, or of its export. `units`, mm, is the
+    unit of files that state none; raises UnitsError where a file states another. Ends in drawings within `gap`, mm, are
+    joined; raises CallError for a gap above the tolerance of a drawing. Raises RecipeErrors where there is no such
+    motion or curve, SurroundingsError where a package of a capability that the recipe uses is missing.
+    """
     from camgeo.report.page.page import page
 
     clock = Clock()
@@ -140,7 +155,11 @@ def judge_and_show(
 def _judge(
     recipe: Recipe, paths: list[Path], bounds: tuple[float | None, float | None, float | None], clock: Clock
 ) -> tuple[Design, Findings]:
-    """Design and findings on files of any origin; `bounds` are tolerance, unit and gap, mm, as of `judge_files`."""
+    """Design and findings on files of any origin.
+
+    `bounds` are the tolerance, the unit of files that state none, and the gap over which ends are joined, mm; None for
+    those of the recipe.
+    """
     from camgeo.common.errors import CallError
     from camgeo.output.sets import sets_of
     from camgeo.recipe.export import FileRequest
@@ -183,7 +202,11 @@ def _judge(
 
 
 def judge_claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
-    """Report on files that a capability claims, see `FileJudge`; raises as it does, and RecipeErrors as `export`."""
+    """Report on files that the capability `name` claims, such as points measured on a part.
+
+    Raises CallError for files that cannot be judged, SurroundingsError where the disk refuses, RecipeErrors where the
+    recipe has no such motion or curve.
+    """
     from camgeo.measures.units import displacement_unit
 
     judge = registry.judges()[name].judge

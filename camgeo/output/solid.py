@@ -87,7 +87,8 @@ class DiscMesh(NamedTuple):
 def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
     """Mesh of every disc of the cam, within a request's tolerance, in the precision of its file.
 
-    Raises RecipeErrors for a tolerance that cannot be held, SurroundingsError for a missing package.
+    Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
+    solid; SurroundingsError for a missing package.
     """
     discs = job.design.discs
     if len(discs) == 1:
@@ -102,7 +103,8 @@ def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
 def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:
     """Mesh of a cam of one disc with its whole part, within a request's tolerance, in the precision of its file.
 
-    Raises RecipeErrors and SurroundingsError as `camgeo.output.dispatch.make` does.
+    Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
+    solid; SurroundingsError for a missing package.
     """
     recipe, tolerance, precision = job.recipe, job.tolerance(request), numbers(job, request)
     if recipe.part.thickness is None:

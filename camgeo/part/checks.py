@@ -43,7 +43,11 @@ ROUNDING = 1e-9  # mm, by which a wall that is just held may lie below its limit
 def bore_check(
     bore: float, surfaces: Sequence[Looks], least: float | None, shaft_deg: Callable[[float], float]
 ) -> Check:
-    """Check the wall round a bore of this diameter in a part that has nothing else; arguments as of `part_checks`."""
+    """Check the wall round a bore of this diameter, mm, in a part that has nothing else.
+
+    `least` is the wall asked for, mm; without one it must be above 0. `shaft_deg` gives the shaft angle, degrees, of a
+    parameter.
+    """
     wall, at = max(least_wall(looks, bore) for looks in surfaces)
     ok = wall > 0.0 if least is None else wall >= least
     detail = "" if ok else "bore and contour" if wall > -0.5 * bore else "the shaft lies outside the contour"
@@ -55,7 +59,8 @@ def part_checks(
 ) -> list[Check]:
     """Check the walls of a part round its surfaces, and that the lightening holes asked for found room.
 
-    `least` is the wall asked for; without one it must be above 0. `shaft_deg` gives the shaft angle of a parameter.
+    `least` is the wall asked for, mm; without one it must be above 0. `shaft_deg` gives the shaft angle, degrees, of a
+    parameter.
     """
     checks = []
     limit = 0.0 if least is None else least

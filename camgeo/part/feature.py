@@ -208,7 +208,10 @@ class Feature(Generic[T]):
         return self.field.name
 
     def build(self, part: Values) -> T | None:
-        """Make its value of all keys of `part`, in which there is no fault; None where the recipe does not give it."""
+        """Make the feature's value from the keys of `part`, in which there is no fault.
+
+        None where the recipe does not give the feature.
+        """
         if self.name not in part:
             return None
         if self.make is not None:
@@ -222,7 +225,10 @@ class NothingLeftError(CamgeoError, ValueError):
 
 
 def narrowed(width: float, out: float, scale: float) -> float:
-    """Width of an opening, mm, when metal has grown by `out` on either side and is scaled; raises NothingLeftError."""
+    """Width of an opening, mm, when metal has grown by `out`, mm, on either side and is scaled.
+
+    Raises NothingLeftError where that closes the opening.
+    """
     left = width - 2.0 * out
     if not left > 0.0:
         raise NothingLeftError(f"it is {width:.6g} mm across")

@@ -76,7 +76,10 @@ def _greatest(fits: Callable[[float], bool]) -> float:
 
 
 def _opening(mark: Mark, site: Site, wall: float | None) -> Opening | None:
-    """The mark, with this wall or its own width between it and the contour; None without room."""
+    """The mark at its `radius`, whatever its wall; else as far out as `wall`, mm, or its width to the contour permits.
+
+    None without room on the ray, and for a mark that is not longer than wide.
+    """
     from camgeo.part.shapes import Opening, slot
     from camgeo.part.walls import contour_gap, distance_inside
 

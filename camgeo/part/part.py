@@ -129,7 +129,7 @@ def _check_needs(reader: Reader, name: str, other: str, why: str) -> None:
 
 
 def _check_sizes(part: Values, reader: Reader) -> None:
-    """Note what is too small to be told from nothing in a file."""
+    """Note lengths of `part` below the least size that a file can hold, but for walls that have to be left."""
     for path, field in reader.numbers.items():
         top, *names = path.split(".")
         if top != "part" or field.kind is not Kind.LENGTH or field.above is None or names[-1] in _NO_SIZES:

@@ -89,9 +89,9 @@ class Looks(NamedTuple):
         return Looks(contour, low, high, *contour.span(low, high), side, name)
 
     def wall_at_least(self, middle: tuple[float, float], reach: float) -> float:
-        """Lower bound, mm, of the wall to anything within a circle of radius `reach` about `middle`; see `contour_gap`.
+        """Lower bound, mm, of the wall between the contour and anything within `reach`, mm, of `middle`.
 
-        -inf where the ends of the intervals show no such bound.
+        -inf where the ends of the intervals show no bound above 0, or `middle` does not lie on the metal's side.
         """
         first, last = (np.hypot(*(at.point - middle).T) for at in (self.first, self.last))
         bounds = self.contour.cells.over(self.low, self.high)
@@ -132,7 +132,10 @@ def distance_inside(looks: Looks, place: tuple[float, float]) -> tuple[float, fl
 
 
 def contour_gap(looks: Looks, chain: Arcs) -> Gap:
-    """Wall between a closed chain in the metal on one side of a contour and that contour; negative elsewhere."""
+    """Least wall, mm, between a closed chain and a contour, with its place on the contour and the parameter there.
+
+    It is negative where the chain reaches over the contour, and where it does not lie on the metal's side of it.
+    """
     contour, low, high, first, last, side, _ = looks
     # each interval ends where the next begins
     distance, foot = feet(chain, np.concatenate([first.point, last.point[-1:]]))

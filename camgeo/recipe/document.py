@@ -65,7 +65,8 @@ class Document:
     def text_with(self, values: collections.abc.Mapping[str, float]) -> str:
         """The recipe's text with other numbers by their paths.
 
-        Raises CallError and RecipeErrors as `camgeo.schema.edit.with_values` does.
+        Raises CallError for a path at which no number stands, for one whose number an alias shares with other fields,
+        and for a number that is not finite; TypeError for what is no mapping from paths to numbers.
         """
         from camgeo.schema.edit import with_values
 

@@ -103,7 +103,7 @@ class FileRequest:
     def filenames(self, name: str, requests: collections.abc.Sequence[FileRequest], discs: int = 1) -> tuple[str, ...]:
         """Names of the files of a cam with that many discs: one for all, or one for each disc.
 
-        `name` is that of the recipe, `requests` are all of it: two of one format are told apart, see `filename`.
+        `name` is that of the recipe, `requests` are all of it, by which names of two files of one format differ.
         """
         whole = self.filename(name, requests)
         if discs == 1 or not self.format.by_disc:
@@ -141,7 +141,7 @@ class Options(collections.abc.Mapping[str, FieldTable]):
         self._more = more
 
     def __getitem__(self, name: str) -> FieldTable:
-        """Table of a format; raises KeyError."""
+        """Table of a format; raises KeyError where there is no such format."""
         record = self._formats[name]
         return FieldTable(
             (*(extension.option for extension in self._more if extension.offered(record)), *record.options.fields)

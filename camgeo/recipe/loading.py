@@ -24,12 +24,19 @@ def load(path: str | PathLike[str]) -> Recipe:
 
 
 def load_order(path: str | PathLike[str]) -> Order:
-    """Read a recipe of whichever kind the file holds, see `Root`; raises RecipeErrors as `load` does."""
+    """Read a recipe of whichever kind the file holds, of one cam or of a kind that a capability reads.
+
+    Raises RecipeErrors with all its faults, also where the file does not exist.
+    """
     return _order(file_bytes(path), path)
 
 
 def load_order_text(text: str, path: str, unplaced: str = "") -> Order:
-    """Read a recipe of any kind from a text, as `load_text` does; the folder of `path` has the files that it names."""
+    """Read a recipe of any kind from a text. Raises RecipeErrors with all its faults.
+
+    `path` names it in errors, and the folder of `path` has the files that it names; `unplaced` names in errors a text
+    that stands in no file and so has no lines to refer to.
+    """
     with without_places(unplaced):
         return replace(_order(text.encode("utf-8", "surrogatepass"), path), unplaced=unplaced)
 

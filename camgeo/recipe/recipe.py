@@ -252,7 +252,10 @@ class Recipe(Order):
         return request.filenames(self.name, self.export.files, self.cam.arrangement.discs)
 
     def unstated_unit(self, path: Path) -> float | None:
-        """Unit, mm, of points of a curve or a drive, or of a file of the recipe that states none; None for others."""
+        """Length in mm of the unit in which a file's numbers are read, where its format states none; None for others.
+
+        Files of that kind are lists of points of a curve, tables of curve points for a drive, and files of this recipe.
+        """
         from kin.read.curve_points import is_curve_points
         from kin.read.formats import format_of
         from kin.read.point_list import is_point_list
@@ -265,9 +268,10 @@ class Recipe(Order):
 
 
 def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
-    """Read a recipe from bytes; `path` names it in errors and gives its default name. Raises RecipeErrors.
+    """Read a recipe from bytes; `path` names it in errors and gives its default name.
 
-    `unplaced` names in errors bytes that stand in no file and so have no lines to refer to.
+    `unplaced` names in errors bytes that stand in no file and so have no lines to refer to. Raises RecipeErrors with
+    all faults of the recipe.
     """
     with without_places(unplaced):
         return replace(of_source(read_source(data, str(path)), path), unplaced=unplaced)
@@ -292,7 +296,10 @@ def root_key(source: Source) -> str:
 
 
 def intended_root(source: Source) -> str:
-    """Key of the kind of recipe of a text, also where that key is misspelt and there is no cam."""
+    """Key of the kind of recipe of a text, also where that key is misspelt and there is no cam.
+
+    `cam` where no key of the text resembles that of another kind.
+    """
     top = entries(source.root) if isinstance(source.root, Mapping) else {}
     key = root_key(source)
     if key != CAM or CAM in top:
@@ -341,7 +348,11 @@ def file_bytes(path: str | PathLike[str]) -> bytes:
 
 
 def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recipe:
-    """Read a recipe from a text, as `read` does from bytes. Raises RecipeErrors."""
+    """Read a recipe from a text. Raises RecipeErrors with all its faults.
+
+    `path` names it in errors and gives its default name; `unplaced` names in errors a text that stands in no file and
+    so has no lines to refer to.
+    """
     return read(text.encode("utf-8", "surrogatepass"), path, unplaced)
 
 

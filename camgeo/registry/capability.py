@@ -246,7 +246,7 @@ class Capability:
 
     Of the page, the terminal and files:
 
-    remarks   by the core's group of remarks behind which they stand, see `remarks_of`: (recipe, design) -> remarks
+    remarks   by the core's group of remarks behind which they stand, such as `sizing`: (recipe, design) -> remarks
     lines     a table for the terminal beside those of checks and files, from the report
     panel     HTML on the page, from the report
     plots     on the page, over a turn

@@ -99,7 +99,8 @@ class Alteration:
     offered   whether files of a format have the key
     check     notes the faults of a file with another number: (request, values of the recipe, reader, path of the file)
     alter     gives a cam altered by the number: (recipe, design, that cam, the number, scale at which it is drawn);
-              raises CallError in the words of the recipe for what cannot be altered, and as the disk does
+              raises CallError in the words of the recipe for what cannot be altered, OSError where a file that it
+              needs cannot be read
     """
 
     option: Field

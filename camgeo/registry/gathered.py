@@ -36,7 +36,7 @@ class Gathered(Mapping[str, E]):
         self._every: list[str] = []
 
     def __getitem__(self, name: str) -> E:
-        """Entry of this name; raises KeyError."""
+        """Entry of this name; raises KeyError where neither the core nor a capability has one."""
         owner = self.owner(name)
         return self._entries_of(registry.capability(owner))[name] if owner else self._core[name]
 
@@ -81,7 +81,10 @@ class Gathered(Mapping[str, E]):
         return map(self._entries_of, registry.in_order(capabilities))
 
     def _ordered(self, capabilities: Collection[str]) -> list[str]:
-        """Names in order; no entry of the core is asked for."""
+        """Names of the core and of these capabilities, in order; the core's entries are not imported.
+
+        A capability's name stands behind the core's name that its entry gives as `after`, or behind all of them.
+        """
         groups: dict[str, list[str]] = {"": [], **{name: [name] for name in self._core}}
         for entries in self._added(capabilities):
             for name, entry in entries.items():

@@ -22,8 +22,8 @@ class Label(NamedTuple):
     absent    why a run leaves the capability out, for the report's `skipped`; empty where that needs no words
     record    whether the folder has a module `record`; without one it adds nothing to recipes and reports
     option    help of the option of the folder's name, by which a call uses it on files of one cam; empty: none
-    roots     keys of the top level that make a text a recipe of another kind, which the record reads, see `Root`
-    suffixes  of files that `verify` may be given for it, where its record claims them, see `FileJudge`
+    roots     keys of the top level that make a text a recipe of another kind, which the record reads
+    suffixes  of files that `verify` may be given for it, where its record claims them by their heading
     names     names that it adds to the library, each with the module of the folder that has it
     sources   options of `camgeo new` by which it makes a recipe out of files, each with its help; the function
               `started` of the folder's module `start` is given the files, the path of a recipe and the new one's name

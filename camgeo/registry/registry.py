@@ -68,7 +68,10 @@ def judges() -> dict[str, FileJudge]:
 
 
 def judge_of(path: Path, options: Mapping[str, object]) -> str:
-    """Name of the capability that claims a file by its suffix and heading; empty for none. Raises OSError."""
+    """Name of the capability that claims a file by its suffix and heading; empty for none.
+
+    Raises OSError where the file cannot be read.
+    """
     suffix = path.suffix.lower()
     named = [name for name, label in labels().items() if suffix in label.suffixes]
     return next((name for name in named if judges()[name].claims(path, options)), "")
@@ -93,5 +96,5 @@ def formats() -> dict[str, str]:
 
 
 def by_words(words: Collection[str]) -> tuple[str, ...]:
-    """Names of the recorded capabilities that a recipe with these words uses, see `Label.words`."""
+    """Names of the recorded capabilities that have one of these words of a recipe among their label's words."""
     return tuple(name for name in names_with_record() if not set(labels()[name].words).isdisjoint(words))

@@ -49,7 +49,7 @@ class Root(Generic[R]):
     judge    report on files of any origin: (recipe, paths, tolerance, mm of the unit of files that state none, gap)
     claimed  report on files that a capability judges: (recipe, name of the capability, arguments of `verify`)
     settle   recipe with the open values of its motion found, when all else is read; None: none may be open
-    show     report as of `judge`, and the page that shows the files; None where there is no page
+    show     report on files of any origin, and the page that shows them; None where there is no page
     explain  text of several lines on a failed check: (check, report, recipe, name of the recipe's file)
     foresee  checks that a run will make
     instead  remedy for a command that takes recipes of one cam alone
@@ -75,7 +75,7 @@ def folders() -> dict[str, str]:
 
 
 def root(key: str) -> Root[Any]:
-    """Record of a kind of recipe by its key; raises KeyError."""
+    """Record of a kind of recipe by its key; raises KeyError for a key that no kind of recipe has."""
     if key == CAM:
         record: Root[Any] = import_module(_OF_A_CAM).ROOT
         return record
@@ -88,6 +88,9 @@ def root_of(recipe: R) -> Root[R]:
 
 
 def settle(recipe: R) -> R:
-    """Recipe with the open values of its motion found; itself where its kind leaves none open. Raises RecipeErrors."""
+    """Recipe with the open values of its motion found; itself where its kind leaves none open.
+
+    Raises RecipeErrors where no such values exist.
+    """
     settle_kind = root_of(recipe).settle
     return recipe if settle_kind is None else settle_kind(recipe)

@@ -427,7 +427,10 @@ def value_text(check: dict[str, Any]) -> str:
 
 
 def error_text(value: float | None, unit: str = "", digits: int = 6, limit: float | None = None) -> str:
-    """Measured error with its unit; `below rounding` for one that is only rounding, far from its limit."""
+    """Measured error with its unit; `below rounding` for one that is only rounding, far from its limit.
+
+    Empty for None.
+    """
     if value is None:
         return ""
     if 0.0 < abs(value) < ROUNDING and (not limit or abs(value) < 1e-3 * limit):

@@ -73,7 +73,11 @@ def set_value(source: Source, path: str, value: Value) -> str:
 
 
 def replace_entry(source: Source, path: str, key: str, value: Value) -> str:
-    """Text of a recipe whose entry at a path has another key and value; all else and errors as of `set_value`."""
+    """Text of a recipe whose entry at a path has another key and value; all else stays as it is, comments included.
+
+    Raises RecipeErrors for a path that leads nowhere, a value that no recipe may hold, and a place that cannot be
+    changed without the rest.
+    """
     *parents, name = _steps(source, path)
     node: Node | None = source.root
     for step in parents:

@@ -78,11 +78,12 @@ def _is_number(text: str) -> bool:
 
 
 def read_quantity(text: str, own_unit: str) -> float:
-    """Number in the field's own unit, written with a unit or without; raises Complaint.
+    """Number in the field's own unit, written with a unit or without.
 
     A number with another unit, a decimal or a fraction, is converted exactly and rounded once: `0.75 in` in a field of
     mm is 19.05. Arithmetic is worked out first. `own_unit` is `degrees`, `mm`, `inch`, `N`, `N m`, `N/m`, `N/mm^2` or
-    `kg`; in fields of other units a number carries none.
+    `kg`; in fields of other units a number carries none. Raises Complaint for a text that is no number or out of range,
+    and for a unit that the field does not take.
     """
     number, unit = split_unit(text)
     value = read_number(number)

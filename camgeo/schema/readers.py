@@ -94,7 +94,10 @@ READERS: Readers = {
 def form_of_kinds(
     noun: str, tables: collections.abc.Mapping[str, FieldTable], group: str = "", others: str = ""
 ) -> OwnForm[Reader]:
-    """Form of a mapping whose `kind` chooses the table of its keys; see `OwnForm` for `group` and `others`."""
+    """Form of a mapping whose `kind` chooses the table of its keys.
+
+    `group`, with the kind, says in messages where a key belongs; `others` is said of a kind that is none of them.
+    """
     return OwnForm(
         f"a {noun}",
         f"a mapping with the kind of {noun} and its fields",

@@ -54,7 +54,11 @@ class SmallComplaint(Complaint):
 
 
 def read_number(text: str) -> float:
-    """Value of a decimal number, a fraction such as 180/7 or arithmetic such as 15/25.4; raises Complaint."""
+    """Value of a decimal number, a fraction such as 180/7 or arithmetic such as 15/25.4.
+
+    Raises Complaint for a text that is none of these or too long, a division by zero, and a value too large or too near
+    0 to compute with.
+    """
     if len(text) > _MOST_DIGITS:
         raise Complaint(f"a number of more than {_MOST_DIGITS} characters", "sixteen digits are all that counts")
     if match := re.fullmatch(_FRACTION, text):
@@ -84,7 +88,10 @@ def within_range(value: float) -> float:
 
 
 def _evaluate(text: str) -> float:
-    """Value of sums, products and quotients of numbers and pi; raises Complaint."""
+    """Value of sums, products and quotients of numbers and pi.
+
+    Raises Complaint for a text that is no such number, divides by zero or is too large.
+    """
     from kin.law.formula.formula import FormulaError
     from kin.law.formula.parser import parse
 
@@ -108,7 +115,10 @@ def whole(value: float) -> int:
 
 
 def read_ratio(text: str) -> tuple[int, int]:
-    """Pair (lambda, mu) of a ratio above 1 in lowest terms, mu odd (Wunderlich 2.2); raises Complaint."""
+    """Pair (lambda, mu) of a ratio above 1 in lowest terms, mu odd (Wunderlich 2.2).
+
+    Raises Complaint for a text that is no such ratio, and for lambda above `MOST_LAMBDA`.
+    """
     match = re.fullmatch(_RATIO, text)
     if not match:
         raise Complaint("not a fraction of whole numbers")
@@ -128,7 +138,10 @@ def read_ratio(text: str) -> tuple[int, int]:
 
 
 def read_name(text: str) -> str:
-    """The name itself, safe as the name of a folder on any system; raises Complaint."""
+    """The name itself, safe as the name of a folder on any system; raises Complaint for one that is not.
+
+    Names that end as folders of failed runs do are refused too.
+    """
     if not re.fullmatch(_NAME, text) or text.endswith("."):
         raise Complaint("not safe as the name of a folder", f"use {NAME_RULE}")
     if re.fullmatch(_DEVICE, text):

@@ -67,7 +67,8 @@ class Sequence:
 class Mapping:
     """A mapping as written, keys that stand twice included; `flow`: it stands in braces.
 
-    `end` is the place behind its brace, or behind its last entry where it has none; `tag` and `size` are as of a list.
+    `end` is the place behind its brace, or behind its last entry where it has none. `tag` is its YAML tag as written,
+    None without one; `size` the number of nodes in it, also those of aliases.
     """
 
     entries: tuple[tuple[Node, Node], ...]
@@ -92,7 +93,11 @@ class Source:
 
     @staticmethod
     def of(text: str, file: str) -> Source:
-        """Source of a text; raises RecipeErrors as `read_source`."""
+        """Source of a text.
+
+        Raises RecipeErrors for characters that YAML forbids, faulty syntax, several documents, directives, and anything
+        above the bounds of this module.
+        """
         return read_source(text.encode("utf-8", "surrogatepass"), file)
 
     @cached_property

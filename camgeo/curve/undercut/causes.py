@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 class UndercutError(CamgeoError, ValueError):
     """No single contour is left by trimming; `parameter` is that of the cause, None if all round.
 
-    `free_at` is the value that would be free of undercut, as `Undercut.free_at`, None where it is not worked out.
+    `free_at`, mm, is the value that would be free of undercut: the largest roller radius, or for a flat face by how
+    much the base radius must grow; None where it is not worked out.
     """
 
     def __init__(self, message: str, parameter: float | None = None, free_at: float | None = None) -> None:

@@ -94,7 +94,11 @@ def trimmed(curve: Curve) -> Curve:
 
 
 def _trim(curve: Curve, sense: int) -> Curve:
-    """The contour left of a curve that goes round the shaft in a sense, 1 or -1; raises UndercutError as `trimmed`."""
+    """The contour left of a curve that goes round the shaft in a sense, 1 or -1.
+
+    Raises UndercutError where nothing is left, the metal falls into pieces, the shaft is not inside, or the crossings
+    cannot be separated.
+    """
     reasons = causes(curve)
     if reasons.none:
         return curve

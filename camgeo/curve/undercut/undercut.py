@@ -116,7 +116,7 @@ def stretches(curve: Curve, reasons: Causes, remainder: Remains) -> tuple[Underc
 
 
 def _free_at(curve: Curve, reasons: Causes) -> float:
-    """The value, mm, at which all of the contour would be free of undercut, as `Undercut.free_at`."""
+    """The largest roller radius, mm, free of undercut all round, or by how much a flat face's base radius must grow."""
     least, roller = least_radius(curve)[0], follower_radius(curve)
     if math.isinf(roller):
         return -least

@@ -191,7 +191,11 @@ class _Rows:
         return self.off(self.joined(count))
 
     def table(self, joined: JoinedRows) -> tuple[tuple[str, ...], Array]:
-        """Column names and rows in the unit of the file, by degree of the master."""
+        """Column names and rows (n, k): angle of the master, degrees, position of the slave and its derivatives.
+
+        The position is in the unit of the file or, of a follower that swings, in degrees; velocity and acceleration, if
+        the controller takes them, are by degree of the master.
+        """
         degree = math.radians(1.0)
         powers = np.array([1.0, degree, degree**2])[: len(joined.slave), None]
         degrees = np.linspace(0.0, 360.0, len(joined.master))
@@ -200,7 +204,10 @@ class _Rows:
 
 
 def _join_rows(job: Job, request: FileRequest, rows: _Rows, most: float) -> tuple[JoinedRows, float]:
-    """Rows by the request's step, or the fewest within `most`, mm or rad, and their greatest error; RecipeErrors."""
+    """Rows by the request's step, or the fewest within `most`, mm or rad, and their greatest error, mm or rad.
+
+    Raises RecipeErrors where rows at that step, or the finest that the controller takes, are not within `most`.
+    """
     recipe, field = job.recipe, job.field(request)
     step = request.own.get("step")
     if step is not None:

@@ -14,7 +14,11 @@ if TYPE_CHECKING:
 
 
 def motion_columns(job: Job, request: FileRequest) -> Columns:
-    """Column names and rows (angles + 1, k) over equal steps of the shaft, in the unit of the file."""
+    """Column names and rows (angles + 1, k) over equal steps of the shaft.
+
+    Lengths are in the unit of the file, angles in degrees; derivatives are by rad of the shaft, but where a column says
+    otherwise.
+    """
     recipe = job.recipe.in_units_of(request)
     if job.design.driven is not None:
         from camgeo.synthesis import linkage

@@ -101,7 +101,10 @@ def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
 
 def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) -> int:
-    """Number of points by the request's step, or the fewest within the tolerance, mm; raises RecipeErrors."""
+    """Number of points by the request's step, or the fewest within the tolerance, mm.
+
+    Raises RecipeErrors where points at that step, or at the finest one, are not within the tolerance.
+    """
     recipe, field = job.recipe, job.field(request)
     fewest = fewest_rows(points.error, MARGIN * tolerance)
     step = request.own.get("step")

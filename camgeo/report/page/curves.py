@@ -252,7 +252,8 @@ def shown_unit(recipe: Recipe, si: str) -> tuple[float, str]:
 def preload(recipe: Recipe, design: Design) -> list[Plot]:
     """Return plots of a preload's force along the travel, with its limits, and along the normals of both contacts.
 
-    One plot for a follower on a stem; on an arm two, as the former is a moment. None without a stiff preload.
+    One plot for a follower on a stem; on an arm two, as along the travel there is a moment. Empty without a stiff
+    preload.
     """
     preload_force = design.exact.preload
     if preload_force is None or preload_force.stiffness is None:

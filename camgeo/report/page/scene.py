@@ -85,7 +85,10 @@ class Scene:
 
     @cached_property
     def box(self) -> tuple[float, float, float, float]:
-        """Least x and y and greatest x and y of everything over the turn, with a small margin."""
+        """Least x and y and greatest x and y of all bodies but the forces over the turn, with a margin of 3 %.
+
+        They are in the scene's unit of length; every `SEEN`-th pose of the turn is looked at.
+        """
         low, high = np.full(2, np.inf), np.full(2, -np.inf)
         for body in self.bodies:
             if body.kind == "forces":

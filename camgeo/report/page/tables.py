@@ -193,7 +193,10 @@ def preload(report: dict[str, Any]) -> str:
 
 
 def figure_table(title: str, figures: Sequence[Row], units: str) -> str:
-    """Return a table of figures, units and places; for a recipe in inches in pounds, with the SI value behind."""
+    """Return an HTML table of figures with value, unit and shaft angle.
+
+    Where `units` are inches, forces, moments and pressures are in pounds, with the SI value behind.
+    """
     rows = []
     for name, si_value, si, shaft_deg in figures:
         value, unit = in_pounds(units, si_value, si)
