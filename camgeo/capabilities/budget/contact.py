@@ -50,6 +50,7 @@ class Metal(Protocol):
 class SizeErrors:
     """Errors of the sizes at one contact, made less meant: mm, rad, and complex displacements in mm.
 
+    Each is (parts, 1), or (parts, n) at n shaft angles.
     `turned` is the turn of the metal on the shaft, `bore` the displacement of the metal in the cam's axes. `shaft` and
     `pivot` are displacements in the ground, x along the travel or from the shaft to the pivot. `grown` is the growth of
     touch and metal along the normal. `offset` and `guide` are the offset of the stem's line and its tilt about the
@@ -71,7 +72,7 @@ class SizeErrors:
 
 @dataclass(frozen=True, eq=False)
 class ContactPlace:
-    """Contact at shaft angles (n,): its record, the metal, and its intended position `own` (n,), mm or rad.
+    """Contact at shaft angles (n,), rad: its record, the metal, and its intended position `own` (n,), mm or rad.
 
     `first` is the x axis of the follower's frame, `eccentric` the eccentricity of its stem, mm, and `middle` the
     distance of the guide's middle from the foot of the perpendicular from the shaft, mm.
@@ -87,7 +88,10 @@ class ContactPlace:
 
 
 def positions(place: ContactPlace, off: SizeErrors) -> Array:
-    """Positions of the follower by one contact, mm or rad, (parts, angles); raises LostError where there is none."""
+    """Positions of the follower by one contact, mm or rad, (parts, angles).
+
+    Raises LostError where the made metal has no contact near the intended place.
+    """
     contact = place.contact
     axis = np.exp(1j * (place.shaft + contact.turned))
     back = np.exp(-1j * off.turned)

@@ -36,7 +36,10 @@ class ExactMetal:
     parameter: Array
 
     def reach(self, normal: Complexes) -> Array:
-        """Support function of the metal, mm, (parts, angles); raises LostError, as `Metal.reach`."""
+        """Support function of the metal along unit normals, mm, (parts, angles).
+
+        Raises LostError where no contact is found near the intended one.
+        """
 
         def residual(_: Complexes, tangent: Complexes, __: Array, turn: Array) -> tuple[Array, Array]:
             return (np.conj(normal) * tangent).real, turn * (np.conj(normal) * 1j * tangent).real
@@ -46,7 +49,10 @@ class ExactMetal:
         return reach
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """Distance along a line to the centre of a round touch, mm, (parts, angles); LostError as `Metal.along`."""
+        """Distance along the unit direction `way` from `middle` to the centre of a round touch, mm, (parts, angles).
+
+        Raises LostError where no contact is found near the intended one.
+        """
 
         def residual(point: Complexes, tangent: Complexes, speed: Array, turn: Array) -> tuple[Array, Array]:
             aside = (np.conj(way) * (self._centre(point, tangent, radius) - middle)).imag
@@ -57,7 +63,10 @@ class ExactMetal:
         return along
 
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
-        """Unit direction from a pivot to the centre of a round touch, (parts, angles); LostError as `Metal.arm`."""
+        """Unit direction from a pivot to the centre of a round touch on the metal, (parts, angles).
+
+        Raises LostError where no contact is found near the intended one.
+        """
 
         def residual(point: Complexes, tangent: Complexes, speed: Array, turn: Array) -> tuple[Array, Array]:
             arm = self._centre(point, tangent, radius) - pivot
@@ -69,7 +78,11 @@ class ExactMetal:
         return arm / np.abs(arm)
 
     def face_normal(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """Unit normal of a flat face on an arm, (parts, angles); raises LostError, as `Metal.face_normal`."""
+        """Unit normal of a flat face on an arm that touches the metal, (parts, angles).
+
+        The face is `nearer` mm nearer the shaft than its parallel through the pivot. Raises LostError where no contact
+        is found near the intended one.
+        """
 
         def residual(point: Complexes, tangent: Complexes, _: Array, turn: Array) -> tuple[Array, Array]:
             arm = point - pivot
@@ -83,7 +96,10 @@ class ExactMetal:
         return centre
 
     def _touched(self, shape: tuple[int, ...], residual: Residual) -> tuple[Complexes, Complexes]:
-        """Point and tangent of the contour where a residual is 0, (parts, angles)."""
+        """Point, mm, and unit tangent of the contour where a residual is 0, complex, (parts, angles) each.
+
+        Raises LostError where no contact is found near the intended one.
+        """
         t = np.broadcast_to(self.parameter, shape)
         for _ in range(MOST_STEPS):
             frame = self.curve.sample(np.mod(t, self.curve.shape.period).ravel())

@@ -52,7 +52,10 @@ def points_of(contour: Contour, radius: float) -> Complexes:
 def read_metal(
     contact: Contact[Guide, Touch], side: Side, contour: Contour, intended: Complexes, wander: float
 ) -> ReadMetal:
-    """The metal of a contour under a contact, see `ReadMetal`; raises LostError for a contour that is too long."""
+    """The metal of a contour under a contact, as points: for a knife edge EdgeMetal, else ReadMetal.
+
+    Raises LostError where the contour takes more than two million points.
+    """
     guide, touch = contact.guide, contact.touch
     hand = guide.side if isinstance(guide, Oscillating) else 1
     flat = isinstance(touch, Flat)
@@ -78,7 +81,7 @@ class ReadMetal:
     wander: float
 
     def reach(self, normal: Complexes) -> Array:
-        """Support function of the metal, mm, (parts, angles); raises LostError, as `Metal.reach`."""
+        """Support function of the metal along unit normals, mm, (parts, angles), by the points near the contact."""
 
         def bound(within: Indices, n: Complexes) -> Array:
             bound: Array = (np.conj(n) * self.points[within]).real
@@ -87,7 +90,10 @@ class ReadMetal:
         return self._held(bound, (normal,))
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """Distance along a line to the centre of a round touch, mm, (parts, angles); LostError as `Metal.along`."""
+        """Distance along the unit direction `way` from `middle` to the centre of a round touch, mm, (parts, angles).
+
+        Raises LostError where the touch meets no point near the contact.
+        """
 
         def bound(within: Indices, d: Complexes, m: Complexes, r: Array) -> Array:
             off = np.conj(d) * (self.points[within] - m)
@@ -98,7 +104,10 @@ class ReadMetal:
         return self._held(bound, (way, middle, radius))
 
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
-        """Unit direction from a pivot to the centre of a round touch, (parts, angles); LostError as `Metal.arm`."""
+        """Unit direction from a pivot to the centre of a round touch on the metal, (parts, angles).
+
+        Raises LostError where the touch meets no point near the contact.
+        """
 
         def bound(within: Indices, a: Complexes, arm: Array, r: Array, start: Complexes) -> Array:
             distance = np.abs(self.points[within] - a)
@@ -110,7 +119,11 @@ class ReadMetal:
         return self._swung(bound, pivot, length, radius)
 
     def face_normal(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """Unit normal of a flat face on an arm, (parts, angles); raises LostError, as `Metal.face_normal`."""
+        """Unit normal of a flat face on an arm that touches the metal, (parts, angles).
+
+        The face is `nearer` mm nearer the shaft than its parallel through the pivot. Raises LostError where no point
+        near the contact can touch it.
+        """
 
         def bound(within: Indices, axis: Complexes, near: Array, start: Complexes) -> Array:
             opening = np.arccos(-near / np.abs(self.points[within] - axis))
@@ -172,7 +185,10 @@ class ReadMetal:
 
 @dataclass(frozen=True, eq=False)
 class EdgeMetal(ReadMetal):
-    """Metal of a file under a knife edge: it touches where its path crosses a chord; `radius`, mm, offsets it."""
+    """Metal of a file under a knife edge, which touches where its path crosses a chord between two points.
+
+    The `radius` of its methods is what the metal has grown by along its normals, mm.
+    """
 
     @cached_property
     def _normals(self) -> Complexes:
@@ -184,7 +200,10 @@ class EdgeMetal(ReadMetal):
         return normals
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """Distance along a line to the centre of a round touch, mm, (parts, angles); LostError as `Metal.along`."""
+        """Distance along the unit direction `way` from `middle` to the knife edge, mm, (parts, angles).
+
+        Raises LostError where its path crosses no chord near the contact.
+        """
 
         def bound(within: Indices, d: Complexes, m: Complexes, r: Array) -> Array:
             first, second = (np.conj(d) * (end - m) for end in self._chords(within, r))
@@ -193,7 +212,10 @@ class EdgeMetal(ReadMetal):
         return self._held(bound, (way, middle, radius))
 
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
-        """Unit direction from a pivot to the centre of a round touch, (parts, angles); LostError as `Metal.arm`."""
+        """Unit direction from a pivot to the knife edge, (parts, angles).
+
+        Raises LostError where its path crosses no chord near the contact.
+        """
 
         def bound(within: Indices, a: Complexes, arm: Array, r: Array, start: Complexes) -> Array:
             first, second = self._chords(within, r)
@@ -209,7 +231,10 @@ class EdgeMetal(ReadMetal):
 
 
 def _crossings(first_off: Array, second_off: Array, first: Array, second: Array) -> Array:
-    """Values between the ends of chords where what is off there is 0, nan where it is not."""
+    """Values (parts, k) interpolated on chords where the path crosses them; nan for chords that it does not cross.
+
+    `first_off` and `second_off` tell how far a chord's two ends are off the path, `first` and `second` are the values.
+    """
     crosses = (first_off > 0.0) != (second_off > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         values: Array = np.where(crosses, first + first_off / (first_off - second_off) * (second - first), np.nan)

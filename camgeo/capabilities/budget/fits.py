@@ -46,14 +46,14 @@ class Clearance(NamedTuple):
 
 
 def clearance(hole: str, shaft: str, diameter: float) -> Clearance:
-    """Clearance of a bore and a shaft of a diameter, mm; raises ValueError above 120 mm."""
+    """Clearance of a bore and a shaft by their classes, mm; raises ValueError for a diameter above 120 mm."""
     low, high = _limits(HOLES[hole], diameter)
     least, most = _limits(SHAFTS[shaft], diameter)
     return Clearance(low - most, high - least)
 
 
 def key_clearance(keyway: str, width: float) -> Clearance:
-    """Clearance of a key h9 in a keyway of a width, mm; raises ValueError above 120 mm."""
+    """Clearance of a key h9 in a keyway of a class, mm; raises ValueError for a width above 120 mm."""
     low, high = _limits(KEYWAYS[keyway], width)
     key = _limits(KEYWAYS["JS9"], width)  # the width of the tolerance is that of h9
     return Clearance(low, high + key[1] - key[0])

@@ -49,7 +49,8 @@ class Contribution:
 class Output:
     """A figure of the motion: the position by one contact, the middle of two positions, or the play between them.
 
-    `weights` (c, n) are its greatest changes by each contribution, in mm or rad per mm or rad of the tolerance.
+    `weights` (c, n) are the greatest changes of the figure by each of c contributions at n shaft angles. They are at
+    least 0, in mm or rad of the motion per mm or rad of the tolerance.
     """
 
     name: str
@@ -80,11 +81,11 @@ class Influence:
         return tuple(Output(name, self._weights(itemgetter(i))) for i, name in enumerate(self.contacts))
 
     def middle(self) -> Output | None:
-        """The middle between two contacts, None of a follower with one."""
+        """The middle between the positions by two contacts; None for a follower with one contact."""
         return None if self.upper is None else Output("middle", self._weights(lambda rows: rows.mean(axis=0)))
 
     def play_between(self) -> Output | None:
-        """The play between two contacts, None of a follower with one."""
+        """The play between two contacts; None for a follower with one contact."""
         upper = self.upper
         if upper is None:
             return None
@@ -98,7 +99,8 @@ class Influence:
 class SizeInfluences(NamedTuple):
     """Influences of a cam by the words of its dimensions: `rows` gives the (m, k, n) of each made size of a word.
 
-    The other fields are those of `Influence`.
+    `contacts` has the names of the m contacts. Of two, `upper` is the index of the one that bounds the position from
+    above, and `play` (n,) the nominal play between them, mm or rad; both are None for one contact.
     """
 
     rows: Callable[[str], list[Array]]
@@ -108,9 +110,9 @@ class SizeInfluences(NamedTuple):
 
 
 def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Influence:
-    """Influences of the dimensions of a budget at shaft angles (n,).
+    """Influences of the dimensions of a budget at shaft angles (n,), rad.
 
-    Raises PlaceError of a linkage that does not turn.
+    Raises PlaceError for a linkage that does not turn right round.
     """
     zero = budget.zero
     places = shaft if zero is None else np.append(shaft, zero)
@@ -156,10 +158,11 @@ def velocities(influence: Influence, waves: int) -> Influence:
 
 @dataclass(frozen=True, eq=False)
 class HeldFollower:
-    """The contacts of a follower and where they bear at shaft angles (n,); `guide` as `Budget.guide`.
+    """The m contacts of a follower and where they bear at n shaft angles.
 
-    Its methods give the rows (m, k, n) of each made size, from the change that the size makes to the position by a
-    contact.
+    `guide` is the distance, mm, from the middle of a stem's guide to the foot of the perpendicular from the shaft. The
+    methods give the rows (m, k, n) of each made size. `change` tells how much the position by a contact changes, in mm
+    or rad per mm or rad of the size.
     """
 
     contacts: tuple[Contact[Guide, Touch], ...]
@@ -183,15 +186,15 @@ class HeldFollower:
         return [np.stack([change(bearing)[None] for bearing in self.bearings])]
 
     def each(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """Influence of a dimension that each contact has for itself: an entry for each, 0 at the others."""
+        """Influence of a size that each contact has for itself: m entries (m, 1, n), each 0 at the other contacts."""
         return [rows for i in range(len(self.bearings)) for rows in self.only(i, change)]
 
     def only(self, index: int, change: Callable[[Bearing], Array]) -> list[Array]:
-        """Influence of a dimension that the contact `index` alone has: one entry, 0 at the others."""
+        """Influence of a size that the contact `index` alone has: one entry (m, 1, n), 0 at the other contacts."""
         return [self._alone(index, change(self.bearings[index])[None])]
 
     def first(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """Influence of a size of the first touch, which in a groove bears on the second flank too."""
+        """Influence of a size of the first touch: one entry (m, 1, n). On a single disc all contacts have it."""
         return self.only(0, change) if self.discs > 1 else self.shared(change)
 
     def shifted(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:
@@ -202,13 +205,13 @@ class HeldFollower:
         return [np.stack([self._components(bearing, change) for bearing in self.bearings])]
 
     def bored(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:
-        """Influence of a displacement of each disc in any direction: an entry of two components for each disc."""
+        """Influence of a displacement of each disc in any direction: an entry (m, 2, n) for each disc."""
         if self.discs == 1:
             return self.shifted(change)
         return [self._alone(i, self._components(bearing, change)) for i, bearing in enumerate(self.bearings)]
 
     def faced(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """Influence of a size of each face: an entry for each of two faces on one arm, else one entry for all."""
+        """Influence of a size of each face, entries (m, 1, n): one for each of two on an arm, else one for all."""
         on_one_arm = len(self.contacts) > 1 and self.contacts[0].apart != 0.0
         return (self.each if on_one_arm else self.shared)(change)
 
@@ -222,7 +225,7 @@ class HeldFollower:
 
 
 def _follower_influences(design: Design, shaft: Array, guide: float) -> SizeInfluences:
-    """Influences on a follower; `guide` as `Budget.guide`."""
+    """Influences on a follower; `guide` is the distance of its guide's middle from the perpendicular's foot, mm."""
     from kin.follower.influence import bearing
 
     follower = design.follower

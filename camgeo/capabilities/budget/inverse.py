@@ -76,7 +76,10 @@ class Constraints(NamedTuple):
 
 
 def constraints(influence: Influence, permitted: float, sum_: Sum) -> Constraints:
-    """The constraints of a budget with free dimensions; raises TakenError where the others leave nothing."""
+    """The constraints of a budget with free dimensions.
+
+    Raises TakenError where the stated dimensions take all that is permitted at some angle.
+    """
     q = POWERS[sum_]
     free = tuple(dict.fromkeys(row.name for row in influence.contributions if row.tolerance is None))
     weights, left = [], []
@@ -97,7 +100,8 @@ def constraints(influence: Influence, permitted: float, sum_: Sum) -> Constraint
 def left_for(influence: Influence, permitted: float, sum_: Sum) -> Array:
     """Greatest tolerance of the only free dimension, mm or rad, (n,) by shaft angle; infinite where it has no effect.
 
-    The least over all contacts counts. Raises TakenError as `constraints` does.
+    The least over all contacts counts. Raises TakenError where the stated dimensions take all that is permitted at
+    some angle.
     """
     limits = constraints(influence, permitted, sum_)
     (column,) = limits.weights.T
@@ -110,9 +114,10 @@ def left_for(influence: Influence, permitted: float, sum_: Sum) -> Array:
 def widest(
     influence: Influence, permitted: float, cost: Mapping[str, float], sum_: Sum, exponent: float = 1.0
 ) -> Split:
-    """Tolerances of the free dimensions of least cost, sum c/t^exponent; raises TakenError as `constraints` does.
+    """Tolerances t of the free dimensions at which the sum of c/t^exponent is least; `cost` has c by the dimension.
 
-    A dimension that moves nothing at any angle has an infinite tolerance.
+    A dimension that moves nothing at any angle has an infinite tolerance. Raises TakenError where the stated dimensions
+    take all that is permitted at some angle, ArithmeticError where the search does not end.
     """
     limits = constraints(influence, permitted, sum_)
     weights = limits.weights / limits.left[:, None]

@@ -329,7 +329,7 @@ def _check_fit(values: Values, reader: Reader) -> None:
 
 
 def build_budget(values: Values) -> Budget | None:
-    """Make the budget of values in which there is no fault."""
+    """Make the budget of values without a fault; None for a recipe without `budget`."""
     if "budget" not in values:
         return None
     budget = values["budget"]
@@ -353,7 +353,7 @@ def build_budget(values: Values) -> Budget | None:
 
 
 def _fit(budget: Values, part: Values) -> ShaftFit | None:
-    """The play of bore and key, where their fits are stated."""
+    """The play that the fits of bore and key leave; None where no fit is stated."""
     if "fit" not in budget:
         return None
     bore, key = part["bore"], budget.get("key")

@@ -58,7 +58,10 @@ class BudgetOutcome:
 
 
 def outcome(recipe: Recipe, design: Design, budget: Budget) -> BudgetOutcome:
-    """Work out the budget of a design; raises RecipeErrors where nothing is left for a free dimension."""
+    """Work out the budget of a design.
+
+    Raises RecipeErrors where nothing is left for a free dimension, PlaceError for a linkage that does not turn.
+    """
     try:
         return _outcome(recipe, design, budget)
     except TakenError as error:
@@ -108,7 +111,7 @@ def _taken(recipe: Recipe, budget: Budget, error: TakenError) -> RecipeErrors:
 
 
 def error_unit(recipe: Recipe) -> str:
-    """Unit of errors of the motion: deg of a follower that swings and of an output that turns, else mm."""
+    """Unit of errors of the motion: deg where follower or output turns, else mm, also for a recipe in inches."""
     if recipe.linkage is not None:
         return "mm" if output_slides(recipe.linkage) else "deg"
     return recipe.cam.arrangement.unit

@@ -87,7 +87,7 @@ def simulate(
 ) -> Parts:
     """Make parts by chance at shaft angles (n,), on the exact contours or on those `read` from a file, by surface.
 
-    Raises LostError where one has no contact.
+    Raises LostError where a part has no contact near the intended place, and for a contour that is missing or too long.
     """
     rng = np.random.default_rng(budget.seed)
     rows = influence(recipe, design, budget, shaft)
@@ -108,7 +108,8 @@ def errors_by_contact(
     """Function that gives the errors of the motion, (contacts, parts, n), mm or rad, from errors of the sizes.
 
     The errors are at the shaft angles `shaft`, rad, then at the angle at which the machine is set, if any. `read` has
-    contours read from files, as in `simulate`. The call and the function raise LostError.
+    contours read from files, by surface; without it the contours are exact. The call raises LostError for a contour
+    that is missing or too long, the function where a made part has no contact near the intended place.
     """
     if not design.contours:
         raise LostError("parts are not simulated, as no contour is made")

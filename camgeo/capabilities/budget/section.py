@@ -135,9 +135,10 @@ def _over_turn(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
 
 
 def sums_over_turn(recipe: Recipe, outcome: BudgetOutcome, shaft: Array) -> dict[Sum, Array]:
-    """Worst case and root of the sum of squares (n,) at shaft angles (n,), rad, in the unit of `motion_unit`.
+    """Worst case and root of the sum of squares (n,) at shaft angles (n,), rad, by kind.
 
-    They are those at the contact that is worst of all, linear between the angles of the outcome.
+    They are in degrees or the recipe's unit of length, at the contact that is worst of all, linear between the angles
+    of the outcome.
     """
     rows, (scale, _) = outcome.influence, motion_unit(recipe)
     sums = {kind: total(rows, outcome.worst_output, kind) for kind in SUMS}

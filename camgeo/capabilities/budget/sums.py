@@ -48,7 +48,11 @@ def by_name(influence: Influence, rows: Array) -> dict[str, Array]:
 
 
 class Worst(NamedTuple):
-    """The greatest sum over all angles and contacts, mm or rad, its place and shares of it by dimension."""
+    """The greatest sum of errors over all angles and contacts: `value`, mm or rad of the motion.
+
+    `at` is its shaft angle, rad, and `contact` the name of its contact. `shares` has each dimension's part of the sum,
+    or of the sum of squares; the parts add up to 1.
+    """
 
     value: float
     at: float
@@ -57,7 +61,7 @@ class Worst(NamedTuple):
 
 
 def worst(influence: Influence, sum_: Sum) -> Worst:
-    """The greatest sum over the angles and contacts of a budget in which some dimension has a tolerance above 0."""
+    """The greatest sum over the angles and contacts, and the dimensions' shares of it, all 0 where the sum is 0."""
     outputs = influence.outputs()
     sums = np.stack([total(influence, output, sum_) for output in outputs])
     contact, place = np.unravel_index(int(np.argmax(sums)), sums.shape)

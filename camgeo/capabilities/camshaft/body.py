@@ -85,7 +85,7 @@ def camshaft_outlines(
 ) -> tuple[list[tuple[ArcSpline, float, float]], Bound, int]:
     """Stretches of the shaft from below, each a chain of arcs from z to z, mm; bound and arcs of the lobes' contours.
 
-    Raises ToleranceError as fits do.
+    Raises ToleranceError where a fit cannot hold the tolerance, RegionError where outlines that meet at a height cross.
     """
     bound, count = Bound(0.0, 0.0), 0
     shaft, *journals = recipe.bars
@@ -132,6 +132,6 @@ def _along(outline: ArcSpline) -> Array:
 
 
 def circle(diameter: float) -> ArcSpline:
-    """Circle about the shaft as two halves."""
+    """Circle about the shaft of a diameter, mm, as two arcs."""
     radius = 0.5 * diameter
     return ArcSpline(np.array([[radius, 0.0], [-radius, 0.0]]), np.ones(2), Bound(0.0, 0.0))

@@ -107,7 +107,8 @@ class PlacedLobe:
 def placed(recipe: CamshaftRecipe, clock: Clock) -> tuple[PlacedLobe, ...]:
     """Design each lobe, each recipe once, and find its angle on the shaft.
 
-    Raises RecipeErrors as `designed` does, and for a cam that cannot be a lobe.
+    Raises RecipeErrors where a lobe has no such motion or curve, for a cam that cannot be a lobe, and for lobes or
+    journals that are too thin.
     """
     _demand_thick(recipe)
     designs: dict[str, Design] = {}
@@ -173,7 +174,10 @@ def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> fl
 
 
 def _tappet_lift(recipe: CamshaftRecipe, engine: Engine, lobe: Lobe, design: Design, index: int) -> float:
-    """Lift of a lobe's tappet, mm, at which its events are stated; RecipeErrors for a valve that is not given."""
+    """Lift of a lobe's tappet, mm, at which its events are stated.
+
+    Raises RecipeErrors where they are stated by the valve's lift and the lobe's recipe has no valve.
+    """
     if not engine.at_valve:
         return engine.lift
     moved = moved_by(lobe.recipe, design)
@@ -217,7 +221,10 @@ def lobe_checks(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...]) -> list[C
 
 
 def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
-    """Tell the checks that are sure to come, each once whatever its lobes; raises kin.law.programme.IntentError."""
+    """Checks that are sure to come, each once, however many lobes it is made of.
+
+    Raises IntentError for a lobe whose intended motion no cam can have.
+    """
     from camgeo.checks.declared import CHECKS, CONTOUR, LIMIT, MOTION, THICKNESS, WATERTIGHT
     from camgeo.recipe.figures import FIGURES
     from camgeo.synthesis.expected_checks import Foreseen, foreseen

@@ -80,7 +80,11 @@ def export(
 
 
 def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
-    """Make and judge everything in a temporary folder that is gone afterwards; raises as `export` does."""
+    """Make and judge everything in a temporary folder that is gone afterwards.
+
+    Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held, SurroundingsError where the file
+    system refuses or none of the files can be made.
+    """
     import tempfile
     from pathlib import Path
 

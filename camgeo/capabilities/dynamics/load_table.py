@@ -35,7 +35,7 @@ class LoadTable:
     load: tuple[float, ...]
 
     def __call__(self, phi: Array) -> Array:
-        """The load at shaft angles (n,)."""
+        """The load at shaft angles (n,), rad: N or N m (n,)."""
         import numpy as np
 
         load: Array = np.interp(phi, self.theta, self.load, period=TURN)

@@ -56,7 +56,7 @@ _OF_COIL: dict[str, Callable[[Coil, float], Measured]] = {
 
 
 def _in_time(figure: Measured, name: str, rpm: float) -> Measured:
-    """Convert a derivative by the shaft angle to one by time, for a shaft that turns evenly."""
+    """Convert a derivative by the shaft angle, rad, to one by time, s, for a shaft that turns evenly."""
     unit = figure.unit.partition("/")[0] + FIGURES[name].per
     value = None if figure.value is None else figure.value * (rpm * TURN / 60.0) ** ORDERS[name]
     return Measured(value, unit, figure.at_deg, figure.detail)

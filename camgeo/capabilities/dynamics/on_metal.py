@@ -38,7 +38,11 @@ LEAST_FORCE, FLOAT_SPEED, LEAST_PRELOAD = "least contact force", "float speed", 
 
 
 def figures_on_metal(recipe: Recipe, design: Design, motion: MadeMotion) -> MadeFigures:
-    """Figures of the made motion beside those intended at the same shaft angles; see `Capability.on_metal`."""
+    """Figures of the made motion beside those intended at the same shaft angles, and remarks on what is not found.
+
+    Both are empty for a recipe without dynamics. Raises RecipeErrors for a load that has no value or no bound or is too
+    large, for a contact that nothing holds on the cam, and for an elastic train without a steady state.
+    """
     train = recipe.of(Dynamics)
     if train is None:
         return MadeFigures()
@@ -123,8 +127,9 @@ def _rows(running: FollowerRunning, shaft: Array, rows: Array) -> dict[tuple[str
 
 
 def _float_speed(running: FollowerRunning, shaft: Array, y: Array) -> Array:
-    """Speeds, turns a minute, from which inertia takes the follower off the cam, (n,); infinite where at none.
+    """Speeds, turns a minute, from which inertia takes the follower off the cam, (n,).
 
+    A speed is infinite where no speed takes it off, and nan where the acceleration is not known.
     `y` are position and two derivatives, SI: what holds the follower there is m Omega^2 (-y'').
     """
     holds = running.rest(running.turn.parameter(shaft), y[0]) + running.preload

@@ -39,7 +39,7 @@ def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
 
 
 def of_limit(recipe: Recipe, figure: str, value: float, bound: float) -> str:
-    """Tell what would change a figure, forces and pressures in SI, to a bound above 0; nothing of others."""
+    """Words for what would bring a figure to a bound, both in SI; empty for a bound of 0 or less, and if unknown."""
     if bound <= 0.0:
         return ""
     if figure == BACKLASH_LEFT:

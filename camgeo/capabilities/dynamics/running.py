@@ -55,9 +55,9 @@ class State(NamedTuple):
 
 
 class LossSpeed(NamedTuple):
-    """Speed, turns a minute, from which a preloaded contact is lost, and the shaft angle, degrees.
+    """Speed, turns a minute, from which a preloaded contact is lost, and the shaft angle there, degrees.
 
-    None where it never is.
+    Both are None for a contact that is never lost.
     """
 
     contact: str
@@ -80,7 +80,7 @@ class Running(ABC):
 
     @abstractmethod
     def position(self, rows: Array) -> Array:
-        """Position y and two derivatives, SI (3, n), from those of the turn."""
+        """Position y and two derivatives by the shaft angle, SI (3, n), from those of the turn."""
 
     @abstractmethod
     def at(self, t: Array) -> State:
@@ -128,7 +128,7 @@ class Running(ABC):
     def load(self) -> Callable[[Array], Array]:
         """The load over shaft angles (n,), N or N m, above 0 against F.
 
-        Raises RecipeErrors where it has no value or no bound, or is beyond MOST_LOAD.
+        Raises RecipeErrors for a formula that somewhere has no value or no bound, or is beyond MOST_LOAD.
         """
         from kin.law.formula.formula import Formula, FormulaDomainError
 
@@ -160,7 +160,10 @@ class Running(ABC):
         return rest
 
     def inertia(self, rows: Array, speed: float) -> Array:
-        """Inertia force in F at a speed, rad/s: N or N m, (n,), from the follower's motion `rows`."""
+        """Part of F that accelerates the mass, m Omega^2 y'', N or N m (n,), at the speed Omega, rad/s.
+
+        It is above 0 where the follower accelerates in the direction in which y grows. `rows` (3, n) are the motion.
+        """
         force: Array = self.train.mass * speed**2 * self.position(rows)[2]
         return force
 
@@ -205,7 +208,7 @@ class Running(ABC):
 
 
 class Pull(NamedTuple):
-    """Load of two preloaded contacts (n,): `inertia` by the square of the speed, `rest` the part without it.
+    """Load of two preloaded contacts (n,): `inertia` is its part by the square of the speed, `rest` its other part.
 
     `loses_first` and `loses_second` are the loads at which the first or the second contact is lost.
     """
@@ -217,9 +220,11 @@ class Pull(NamedTuple):
 
 
 def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> list[LossSpeed]:
-    """The speeds from which two contacts under preload are lost over the turn.
+    """For each of two preloaded contacts, by `names`, the speed from which inertia and load take it off.
 
-    Omega^2 J + W reaches the force that takes a contact away first where J over what is left is greatest.
+    At the speed Omega, rad/s, the load is Omega^2 J + W, with J the `inertia` and W the `rest` of `pull`. A contact is
+    lost first where J is greatest against the load that is still missing, that is the one that takes it off less W.
+    The speed is 0 for a contact that is lost at rest, and None for one that is lost at no speed.
     """
 
     def shares(t: Array) -> Array:

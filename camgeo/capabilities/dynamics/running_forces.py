@@ -109,9 +109,10 @@ class FollowerRunning(Running):
         return None if preload is None or preload.stiffness is None else preload
 
     def preload_force(self, rows: Array, gap: Array) -> Array | None:
-        """Force of the preload along the travel (n,), N or N m; `rows` and `gap` as in `in_motion`.
+        """Force of the preload along the travel (n,), N or N m; None without preload.
 
-        None without preload.
+        `rows` (3, n) are position, mm or rad, and two derivatives by the shaft angle. `gap` (n,), mm or rad, is by how
+        much the made metal leaves the contacts wider apart than intended.
         """
         if self.held_by is None:
             return None

@@ -43,7 +43,10 @@ class FollowerDescription:
 
     @property
     def offset(self) -> float:
-        """Distance of its line of travel from the shaft, mm, with a sign; 0 on an arm."""
+        """Distance of its line of travel from the shaft, mm, above 0 on the side from which the contour comes.
+
+        It is 0 on an arm.
+        """
         return self.guide.offset if isinstance(self.guide, Translating) else 0.0
 
     @property

@@ -164,7 +164,7 @@ class Followed:
 
     @property
     def _reading(self) -> float:
-        """Accuracy of the reading in the motion's unit: mm, or on an arm its angle at the motion_to_mm, rad."""
+        """Accuracy of the reading in the motion's unit: mm, or on an arm the angle that moves the touch by it, rad."""
         return self.reading if self.unit == "mm" else self.reading / self.follower.motion_to_mm
 
     def table(self) -> str:
@@ -374,7 +374,11 @@ def _numbers(name: str, values: object) -> tuple[float, ...]:
 
 
 def judged_by_recipe(followed: Followed) -> Report:
-    """Report, with a page, of the file judged by its motion's recipe; RecipeErrors or CallError where there is none."""
+    """Report, with a page, of the file judged by the recipe of its motion.
+
+    Raises CallError where the shaft is not at the file's origin, and CallError or RecipeErrors where the motion makes
+    no recipe.
+    """
     import tempfile
     from pathlib import Path
 

@@ -33,7 +33,11 @@ ANGLES, DURATION = ("opens_deg", "closes_deg", "centre_deg"), "duration_crank_de
 
 
 class StatedLift(NamedTuple):
-    """A lift at which there are events, mm or rad: of what is `moved`, or of the follower, and the follower's there."""
+    """A lift at which there are events.
+
+    `lift` is the stated lift, mm or rad, of what is `moved`, or of the follower where that is None. `follower` is the
+    follower's lift there, mm or rad.
+    """
 
     moved: MovedBody | None
     lift: float
@@ -41,7 +45,7 @@ class StatedLift(NamedTuple):
 
 
 def stated_lifts(recipe: Recipe, design: Design, events: float | None = None) -> list[StatedLift]:
-    """Lifts at which a recipe has figures, and that of a shaft's events; each once, above 0."""
+    """Lifts at which a recipe has figures, and `events`, the lift of a shaft's events; each once, above 0."""
     moved = {name: registry.capability(name).moved(recipe, design) for name in recipe.uses}
     lifts: list[tuple[MovedBody | None, float]] = []
     for limit in recipe.limits:
@@ -113,12 +117,16 @@ def _greatest_velocity(moved: MovedBody | None, made: MadeMotion, scale: float) 
 
 
 def _moving(moved: MovedBody | None, rows: Array) -> Array:
-    """Lift, velocity and acceleration (3, n) by those of the follower."""
+    """Lift, velocity and acceleration (3, n) of what is moved, from those of the follower; by rad of the shaft."""
     return rows if moved is None else moved.rows(rows)
 
 
 def _above(row: StatedLift, made: MadeMotion, design: Design, options: PointOptions, zero: float) -> dict[str, Any]:
-    """Crossings of a lift, degrees of the shaft, and the crank's between; None where there are not just two."""
+    """Angles at which a lift is crossed, degrees of the shaft, and the duration, degrees of the crank.
+
+    Each entry has the made and the intended value and the uncertainty. It is None where the lift is not crossed just
+    twice.
+    """
     try:
         event = event_of(design.exact, row.follower)
     except EventError:

@@ -204,9 +204,9 @@ def check(values: Values, reader: Reader) -> None:
 
 
 def check_corrected(request: FileRequest, values: Values, reader: Reader, path: str) -> None:
-    """Note a fault where a file is to be corrected and the recipe has no points of earlier runs.
+    """Note faults of a file that is to be corrected.
 
-    So it is where the file has no contour that could be, or one whose undercut is cut off.
+    They are a file without a contour, a recipe without points of earlier runs, and a contour whose undercut is cut off.
     """
     place = f"{path}.{request.kind}.{CORRECT.name}"
     if not (request.format.contour or _is_contour(request.form)):
@@ -221,7 +221,7 @@ def check_corrected(request: FileRequest, values: Values, reader: Reader, path: 
 
 
 def build(values: Values) -> Made | None:
-    """Make the value."""
+    """Value of the key `made`; None for a recipe without it."""
     return Made(**values["made"]) if "made" in values else None
 
 
@@ -232,7 +232,7 @@ def zone_of(recipe: Recipe) -> float | None:
 
 
 def datum_of(made: Made | None, part: Part) -> Datum:
-    """Datum of a recipe: what it gives, or what its bore fixes."""
+    """Datum of a recipe: the one it gives, else `part`, `bore` or `none`, by what fixes the part on its shaft."""
     if made is not None and made.datum is not None:
         return made.datum
     fixed = bool(part.sides) or any(feature.locates for feature, _ in with_records(part.features))

@@ -108,7 +108,9 @@ class PartMade:
 def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], options: PointOptions) -> PartMade:
     """Judge a part by its measured points; give deviations, errors of the motion, and remarks.
 
-    Raises CallError for files without points, UnlikePointsError for points of something else, and as `part_of_points`.
+    Raises CallError for files without points and a disc without any, UnlikePointsError for points of something else,
+    UnsettledError and GapError for points that are too few or too far apart, ContactError and FrameError where the
+    follower does not run on the metal that they show.
     """
     datum = datum_of(recipe.of(Made), recipe.part)
     points = part_points(recipe, design, read_tables(paths), options.probing)

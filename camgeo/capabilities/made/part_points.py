@@ -169,7 +169,11 @@ def demand_points(missing: Sequence[str]) -> None:
 
 
 def scale_of(recipe: Recipe, tables: Sequence[PointTable], units: float | None) -> tuple[float, list[str]]:
-    """Mm in a unit of the points: what their headings state, else what is given, else the recipe's with a remark."""
+    """Mm in a unit of the points, and remarks: what their headings state, else `units`, else the recipe's unit.
+
+    There is a remark only on the recipe's unit. Raises CallError where headings state different units, or another one
+    than `units`.
+    """
     stated = {table.unit for table in tables if table.unit is not None}
     if len(stated) > 1:
         raise CallError("the files are in different units: give each in a call of its own")
@@ -311,7 +315,7 @@ def _placed_disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[MeasuredSu
 
 
 def _demand_not_on_bore(recipe: Recipe, surfaces: Sequence[MeasuredSurface]) -> None:
-    """Raise UnlikePointsError for points of the bore."""
+    """Raise UnlikePointsError where the points lie on the bore in place of a contour."""
     bore = recipe.part.bore
     radius = np.concatenate([np.hypot(*surface.points.places.T) for surface in surfaces])
     if bore is not None and abs(2.0 * float(np.median(radius)) / bore - 1.0) <= BORE:
@@ -352,7 +356,10 @@ def _average_repeats(surface: MeasuredSurface) -> MeasuredSurface:
 def _lift_points(
     parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, probing: Probing
 ) -> tuple[Lifts, list[MeasuredSurface]]:
-    """Lifts of an indicator, and their points on the surface."""
+    """Lifts of an indicator, and their points on the surface.
+
+    Raises CallError for lifts that do not go with the part, or with the way they were measured.
+    """
     from kin.made.lifts import points_of_lifts
 
     readings = readings_of(parts, tables, scale, probing)

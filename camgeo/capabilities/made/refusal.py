@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 @contextmanager
 def as_call_errors(paths: Sequence[Path], name: str = "") -> Iterator[None]:
-    """Turn what kin refuses of points into CallErrors that name their files, and the cam where there are several."""
+    """Turn ContactError, FrameError, UnsettledError and ValueError into CallErrors that name the files of points.
+
+    They name the cam too where `name` gives it, and then a CallError gets its name as well.
+    """
     files, lobe = ", ".join(escaped(str(path)) for path in paths), f"{name}: " if name else ""
     try:
         yield
@@ -38,8 +41,9 @@ def as_call_errors(paths: Sequence[Path], name: str = "") -> Iterator[None]:
 
 @contextmanager
 def refused_at(recipe: Recipe, place: str, file: str = "", path: Path | None = None) -> Iterator[None]:
-    """Turn what is refused of points that a recipe names into RecipeErrors at their place in it.
+    """Turn CallError, ContactError, UnsettledError and ValueError into RecipeErrors at `place` in the recipe.
 
+    RecipeErrors pass as they are.
     Messages that name the file by its `path` name it as the recipe does; remedies are keys of the entry.
     """
     try:

@@ -70,7 +70,10 @@ def section(
 
 
 def add_figures(entry: dict[str, Any], recipe: Recipe, design: Design, result: PartMade) -> None:
-    """Add to a section what other capabilities make of the part's motion; raises RecipeErrors as they do."""
+    """Add `figures` and `remarks` of other capabilities on the part's motion to a section.
+
+    Raises RecipeErrors where a capability cannot compute its figures, as under a load that has no bound.
+    """
     errors = result.motion
     rows = np.stack([errors.remaining, errors.rows[1], errors.rows[2]])
     gap = None if result.play is None else np.stack([result.play.gap, result.play.sds])
@@ -169,7 +172,7 @@ def _drawn(recipe: Recipe) -> float:
 
 
 def _placing(recipe: Recipe, placing: Placing) -> dict[str, Any]:
-    """Turn and shift, as the file is drawn."""
+    """Turn, degrees, and shift, in the recipe's unit, as the file is drawn."""
     sign = _drawn(recipe)
     x, y = placing.shift
     return {"turned_deg": sign * math.degrees(placing.turn), "shifted": [x / recipe.mm, sign * y / recipe.mm]}

@@ -95,9 +95,10 @@ class _MeasuredCam:
 
 
 def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
-    """Make a recipe, to stand in a file of that name, of files of points; see the module.
+    """Make a recipe, to stand in a file of that name, of files of points.
 
-    Raises CallError for points and recipes of which none is made, RecipeErrors for a faulty recipe, OSError.
+    `recipe` states follower, guide, units and part; its base radius and motion are replaced. Raises CallError for
+    points and recipes of which none is made, RecipeErrors for a faulty recipe, OSError for a file that cannot be read.
     """
     names = ", ".join(escaped(str(path)) for path in paths)
     rough = _placeholders(recipe, paths)
@@ -268,7 +269,7 @@ def _flanks(table: PointTable, names: Sequence[str], places: Array) -> Indices:
 
 
 def _measured_cam(rough: _Rough) -> _MeasuredCam:
-    """Base radius, motion, and its programme if there is one."""
+    """The measured cam: its motion, its strokes where they are recognised, and its base radius with the uncertainty."""
     recipe, keys = rough.recipe, rough.keys
     exact = recipe.cam.exact()
     gauges = exact.gauges
@@ -317,7 +318,7 @@ def _demand_symmetry(recipe: Recipe, motion: PointMotion) -> None:
 
 
 def _in_unit(measured: _MeasuredCam, value: float) -> float:
-    """A displacement in the recipe's unit, or degrees."""
+    """A displacement, mm or rad, in the recipe's unit or degrees."""
     return math.degrees(value) if measured.motion.gauge.unit == "deg" else value / measured.recipe.mm
 
 

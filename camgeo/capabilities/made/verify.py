@@ -49,7 +49,11 @@ def judge(recipe: Recipe, design: Design, call: FileCall, clock: Clock) -> Resul
 
 
 def judge_shaft(recipe: Order, cams: Sequence[ShaftCam], call: FileCall, clock: Clock) -> Results:
-    """Checks and the section `made` of a report on points of several cams on one shaft; raises as `judge`."""
+    """Checks and the section `made` of a report on points of several cams on one shaft.
+
+    Raises CallError for points that cannot be judged, RecipeErrors of capabilities that have figures of the motion, and
+    SurroundingsError where the folder of the call cannot be written.
+    """
     from camgeo.capabilities.made.shaft import made_shaft
 
     paths, options = call.paths, read_options(call.options, cams[0].recipe, call.units)

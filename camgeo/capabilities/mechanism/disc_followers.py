@@ -136,7 +136,7 @@ def on_arm(view: View[Oscillating, Round], drive: Drive) -> Assembly:
 
 
 def _require_clear_pivot(pivot: float, drive: Drive) -> None:
-    """Raise BodyError where the cam reaches over the retainer of a pivot, mm from the shaft."""
+    """Raise BodyError where the cam reaches over the retainer of the pivot, which is `pivot` mm from the shaft."""
     excess = overlap(pivot, drive)
     if excess > 0.0:
         message = "the cam reaches {reach} from the shaft: no room for the arm's pivot at {pivot}"

@@ -68,6 +68,7 @@ def clearance_check(assembly: Assembly, bodies: Sequence[Mover]) -> Check:
 def thinnest_wall(assembly: Assembly) -> tuple[float, str]:
     """Least thickness or wall of all bodies but the cam, mm, and the name of its body.
 
+    In place of a body the name is `links` or `retainers` for the thickness that all of these share.
     Walls are measured between the edges of one plate, from points along its holes. The cam's are reported by its own
     check.
     """

@@ -100,7 +100,8 @@ def _support(radius: float, drive: Drive, high: float) -> list[Plate]:
 def _coupler(frame: Carrier, linkage: FourBar | SliderCrank, site: BodyStack) -> None:
     """Add the bar from the frame to D, which becomes the origin of the link's axes.
 
-    It runs along the frame, or slants from the end of the frame's side where D is beyond that. Raises BodyError.
+    It runs along the frame, or slants from the end of the frame's side where D is beyond that. Raises BodyError for a
+    coupler that ends within the frame's side.
     """
     s, half = site.s, 0.5 * site.links.mechanism.breadth
     start, end = half + s.gap_each_side + 0.5 * s.bar, half + linkage.coupler
@@ -113,7 +114,7 @@ def _coupler(frame: Carrier, linkage: FourBar | SliderCrank, site: BodyStack) ->
 
 
 def _four_bar(site: BodyStack, frame: Carrier, linkage: FourBar) -> tuple[Carrier, ...]:
-    """Add the coupler to the frame, and the rocker."""
+    """Add the coupler to the frame, and the rocker; return frame and rocker."""
     s = site.s
     _coupler(frame, linkage, site)
     low, high = site.level()
@@ -136,7 +137,7 @@ def _rocker(site: BodyStack, linkage: FourBar | InvertedSliderCrank, low: float,
 
 
 def _slider_crank(site: BodyStack, frame: Carrier, linkage: SliderCrank) -> tuple[Carrier, ...]:
-    """Add the coupler to the frame, and the slide between its rails."""
+    """Add the coupler to the frame, and the slide between its rails; return the frame."""
     s = site.s
     _coupler(frame, linkage, site)
     last = frame.plates.pop()
@@ -153,7 +154,10 @@ def _slider_crank(site: BodyStack, frame: Carrier, linkage: SliderCrank) -> tupl
 
 
 def _inverted(site: BodyStack, frame: Carrier, linkage: InvertedSliderCrank) -> tuple[Carrier, ...]:
-    """Add the slotted bar to the frame, and the block in it, which turns on the post B or carries a rocker's end."""
+    """Add the slotted bar to the frame, and the block in it, which turns on the post B or carries a rocker's end.
+
+    The rocker is returned; the result is empty without one.
+    """
     s = site.s
     place = site.links.joint(0, "D")
     _slot(site, frame, place, linkage.joint_offset)
@@ -202,7 +206,7 @@ def _slot(site: BodyStack, frame: Carrier, block_place: Place, offset: float) ->
 
 
 def rod_and_rocker(site: BodyStack, loop: int, dyad: RRR, mount: Mount) -> tuple[Carrier]:
-    """Add the bar PQ and the rocker GQ above it."""
+    """Add the bar PQ and the rocker GQ above it, of the dyad `loop`, from 1; return the rocker."""
     s = site.s
     rod = _rod(site, loop, dyad.links[0], mount)
     low, high = site.level()
@@ -217,7 +221,7 @@ def rod_and_rocker(site: BodyStack, loop: int, dyad: RRR, mount: Mount) -> tuple
 
 
 def rod_and_slide(site: BodyStack, loop: int, dyad: RRP, mount: Mount) -> tuple[()]:
-    """Add the bar PQ and the slide on the base."""
+    """Add the bar PQ and the slide on the base, of the dyad `loop`, from 1; the result is empty."""
     rod = _rod(site, loop, dyad.link, mount, (dyad.link, 0.0))
     place = site.links.joint(loop, "Q")
     slide = Carrier(f"slide-{loop}", site.slide(rod.low, rod.high), place, 0.0, 0.0, BLOCK_COLOUR)
@@ -229,7 +233,7 @@ def rod_and_slide(site: BodyStack, loop: int, dyad: RRP, mount: Mount) -> tuple[
 
 
 def _rod(site: BodyStack, loop: int, length: float, mount: Mount, *holes: tuple[float, float]) -> Carrier:
-    """Add the bar PQ, with a hole at P and at other points of its axes."""
+    """Add the bar PQ, `length` mm, with a hole at P and at other points of its axes; return it."""
     s = site.s
     low, high = site.level()
     mount.add_pin(site, f"p{loop}", low, high)
@@ -240,7 +244,10 @@ def _rod(site: BodyStack, loop: int, length: float, mount: Mount, *holes: tuple[
 
 
 def slotted_rocker(site: BodyStack, loop: int, dyad: RPR, mount: Mount) -> tuple[Carrier]:
-    """Add the block on the pin P and the slotted rocker about G. Raises BodyError where they come too near."""
+    """Add the block on the pin P and the slotted rocker about G of the dyad `loop`, from 1; return the rocker.
+
+    Raises BodyError where the block comes too near to the pivot G.
+    """
     s, place = site.s, site.links.output(loop)
     low, high = site.level()
     mount.add_pin(site, f"p{loop}", low, high)

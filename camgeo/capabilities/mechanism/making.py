@@ -73,7 +73,7 @@ def foresee_mechanism(job: Job, request: FileRequest) -> None:
 
 @contextmanager
 def _recipe_errors(recipe: Recipe) -> Iterator[None]:
-    """Raise RecipeErrors, at the field that is the cause, in place of BodyError."""
+    """Turn a BodyError into RecipeErrors at the field that is its cause, with lengths in the recipe's unit."""
     try:
         yield
     except BodyError as error:

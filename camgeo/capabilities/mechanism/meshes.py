@@ -43,7 +43,11 @@ def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tup
 
 
 def _join(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh, float]:
-    """Closed mesh of a body's joined plates, and the greatest error of its walls, mm; errors as in `body_mesh`."""
+    """Closed mesh of a body's joined plates, and the greatest error of its walls, mm.
+
+    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where an outline is not
+    simple, the plates are not connected, or the rounded mesh does not close.
+    """
     joined: Any = None
     worst = 0.0
     for plate in body.plates:

@@ -35,7 +35,10 @@ def _make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
 
 def _intent(recipe: Recipe, design: Design) -> PartIntent:
-    """Give the part as it is milled; raises RecipeErrors for a recipe that does not say how."""
+    """Give the part as it is milled.
+
+    Raises RecipeErrors without `manufacture` or a thickness, and where the exact contour or the cutter's path fails.
+    """
     from camgeo.capabilities.milling.milling import milling_intent
     from camgeo.curve.curve import CurveError
 

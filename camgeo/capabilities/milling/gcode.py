@@ -69,7 +69,7 @@ def write_gcode(
 ) -> None:
     """Write the passes of each feature, by name and in order, as a program in units of `mm` mm.
 
-    `count` are the decimal places. Raises OSError as the file system does.
+    `count` are the decimal places. Raises OSError where the file system refuses.
     """
     number = _Numbers(count, mm)
     lines = [f"({_comment(text)})" for text in remarks]

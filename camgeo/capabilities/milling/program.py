@@ -47,7 +47,11 @@ LEAST_LEAD = 1e-2  # mm: radius of a way in below which there is none
 
 
 def make_gcode(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Fit, write, read back and judge one program; none is made for a cutter that does not reach all it must."""
+    """Fit, write, read back and judge one program; none is made for a cutter that does not reach all it must.
+
+    Raises RecipeErrors without `manufacture`, for a value that the program needs and the recipe lacks, for so slight a
+    depth of cut that there are too many passes, and where the tolerance cannot be held.
+    """
     recipe, manufacture = job.recipe, job.recipe.manufacture
     if manufacture is None:
         raise recipe.error("manufacture", "gcode needs manufacture")
@@ -116,7 +120,7 @@ def _lap(job: Job, manufacture: Manufacture, path: ArcSpline, side: Side, room: 
 
 
 def _pocket(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
-    """Passes between two surfaces, down the middle first and along both last, and the paths that make them.
+    """Passes between two surfaces, down the middle first and along both last, and the paths along the surfaces.
 
     Where the paths along both are one within the tolerance, that in the middle makes both.
     """

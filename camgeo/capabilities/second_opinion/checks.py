@@ -51,7 +51,11 @@ def own_export(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
 
 
 def wider(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Remedy in words: the measured distance and two tenths of the tolerance for the polygons; or camgeo's own file."""
+    """Remedy in words: a greater tolerance, or the file that the recipe itself makes.
+
+    The tolerance is the measured distance plus 0.2 of the file's own, for the errors of both polygons. Where nothing
+    was measured the recipe's file alone is named.
+    """
     export = own_export(check, report, recipe)
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check["file"]), None)
     if check["value"] is None or tolerance is None:

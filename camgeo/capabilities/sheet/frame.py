@@ -97,7 +97,7 @@ def notes_at(paper: str) -> tuple[float, float, float]:
 
 
 def title_block(page: Page, sheet: Sheet, facts: Facts) -> None:
-    """Draw the title block at the lower right; raises LongTextError."""
+    """Draw the title block at the lower right; raises LongTextError for a text that does not fit into its cell."""
     left, low = page.width - EDGE - BLOCK, EDGE
     page.box((left, low), BLOCK, ROWS * ROW, THICK, "FRAME")
     page_of = f"{facts.page}/{facts.pages}"
@@ -125,7 +125,7 @@ def _value(page: Page, at: Point, wide: float, option: str, value: str) -> None:
 
 
 def footer(page: Page, sheet: Sheet, facts: Facts) -> None:
-    """Draw the strip that tells a further page; its texts fit as they do in the title block."""
+    """Draw the strip at the lower right of a further page; texts that do not fit are cut off."""
     left, low = page.width - EDGE - BLOCK, EDGE
     page.box((left, low), BLOCK, ROW, THICK, "FRAME")
     x = left

@@ -32,13 +32,19 @@ def least_pieces(form: str, curve: Curve, tolerance: float) -> float:
 
 
 def least_arcs(curve: Curve, tolerance: float) -> float:
-    """Leading-order count of tangent-continuous arcs with free joints, and one at least for each smooth stretch."""
+    """Least number of tangent-continuous arcs with free joints within `tolerance` mm, to leading order.
+
+    At least one is counted for each smooth stretch.
+    """
     parts = [part.total for run in curve.runs for part in Density.of(curve, run.stretches, _arc_density)]
     return sum(max(1.0, part / math.cbrt(tolerance)) for part in parts)
 
 
 def least_spline(curve: Curve, tolerance: float) -> float:
-    """Leading-order count of cubic spans with a continuous tangent, and one at least for each smooth stretch."""
+    """Least number of cubic spans with a continuous tangent within `tolerance` mm, to leading order.
+
+    At least one is counted for each smooth stretch.
+    """
     stretches = np.concatenate([run.stretches for run in curve.runs])
     scale = math.pow(tolerance, -1.0 / ORDER)
     return float(np.maximum(1.0, scale * span_density(curve, stretches).totals).sum())

@@ -29,7 +29,11 @@ EDGE = 1e-12  # of the breadth: a shaft on the cam's edge may lie outside by so 
 
 
 class CamBatch(NamedTuple):
-    """m cams: supports about the shaft, least radii of curvature, mm, whether p'' is continuous, and fault codes."""
+    """m cams, sampled: `support` has their support functions about the shaft.
+
+    `radius` (m,) is the least radius of curvature, mm, `smooth` (m,) whether the second derivative of the support
+    function is continuous, and `fault` (m,) an index into REASONS, 0 for a cam without a fault.
+    """
 
     support: Support
     radius: Array
@@ -38,7 +42,11 @@ class CamBatch(NamedTuple):
 
 
 class _CentredCam(NamedTuple):
-    """A cam about the origin of its own axes: breadth and least radius, mm; p, p', p'' at n angles, (3, n)."""
+    """A cam about the origin of its own axes: breadth and least radius of curvature, mm.
+
+    `rows` (3, n) are the support function p, mm, and its two derivatives by the angle, at n even angles. `smooth` says
+    whether the second derivative is continuous, `fault` is an index into REASONS.
+    """
 
     breadth: float
     radius: float
@@ -76,7 +84,10 @@ class _CentredCam(NamedTuple):
 
 
 class _Harmonic(NamedTuple):
-    """A harmonic that varies: its order, 0 for the mean radius, whether of a sine, its column, mm per unit."""
+    """A harmonic that varies: its `order`, 0 for the mean radius, and whether it is of a sine.
+
+    `column` is that of its amplitude among the values of a design, `scale` is mm in the unit of the amplitude.
+    """
 
     order: int
     is_sine: bool

@@ -243,7 +243,8 @@ def compute(
 ) -> Work:
     """Compute every chunk that is not on disk, or all where `fresh`; each is written as soon as it is done.
 
-    Raises what the engine raises, and OSError; chunks written by then stay.
+    Raises EngineError where workers or a scheduler are missing or lost, VersionsError for workers of other versions,
+    ModuleNotFoundError for a missing package, OSError where the disk refuses; chunks written by then stay.
     """
     chunks.open(fresh=fresh)
     missing, damaged = chunks.missing_chunks()
@@ -263,12 +264,16 @@ def compute(
 def gather_chunks(
     job: SweepJob, chunks: Chunks, ranking: Ranking, slack: Callable[[Limit], float] | None = None
 ) -> Selection:
-    """The designs that a ranking selects, see `gather`. Chunks damaged or removed meanwhile are computed again."""
+    """The designs that a ranking selects, best first; they may miss a limit by its `slack`.
+
+    Chunks damaged or removed meanwhile are computed again. Raises FileNotFoundError where one is taken away as soon as
+    it is written.
+    """
     return gather(job.plan, ranking, (_figures(job, chunks, number) for number in range(job.plan.chunks)), slack)
 
 
 def _figures(job: SweepJob, chunks: Chunks, number: int) -> Mapping[str, Array]:
-    """Figures (m,) by name of the designs of a chunk."""
+    """Figures (m,) by name of the designs of a chunk, which is computed again where its file is damaged or missing."""
     try:
         figures = chunks.read(number)
     except ChunkError:

@@ -48,7 +48,10 @@ class Ranking:
         return (figures[limit.figure] >= least) & (figures[limit.figure] <= most)
 
     def miss(self, limit: Limit, figures: Mapping[str, Array]) -> Array:
-        """Excess (m,) of figures beyond a limit as a share of its bound, but where that is 0; 0 for figures within."""
+        """Excess (m,) of figures beyond a limit, 0 for figures within it.
+
+        It is a share of the bound's magnitude, or in the figure's own unit where the bound is 0.
+        """
         figure = figures[limit.figure]
         excess = np.zeros_like(figure)
         for bound, sign in ((limit.at_least, -1.0), (limit.at_most, 1.0)):

@@ -105,7 +105,7 @@ def search(
 
     `jobs` is the number of processes at once, as many as pay by default; `scheduler` the address of a Dask scheduler in
     their place. What earlier runs computed is used again unless `fresh` is true. `progress` is called with lines such
-    as "64 of 825 designs". A search in which no design keeps the limits raises nothing: see `Search.ok`. Raises
+    as "64 of 825 designs". Where no design keeps the limits, `ok` of the result is False. Raises
     RecipeErrors where the recipe has no sweep, or one that cannot be run, SurroundingsError where the disk, a package
     or a scheduler is not what it should be, CallError for a number of processes below 1.
     """

@@ -52,12 +52,12 @@ class Support:
 
     @cached_property
     def dp1(self) -> Array:
-        """Derivative of the support a quarter turn on."""
+        """Derivative of the support a quarter turn on, mm/rad (m, n)."""
         return _quarter_on(self.dp)
 
     @cached_property
     def ddp1(self) -> Array:
-        """Second derivative of the support a quarter turn on."""
+        """Second derivative of the support a quarter turn on, mm/rad^2 (m, n)."""
         return _quarter_on(self.ddp)
 
     def part(self, rows: Mask) -> Support:
@@ -107,7 +107,7 @@ class LoopArrays:
         return _copy_cached(self, part, rows)
 
     def signed_root(self, square: Array) -> Array:
-        """Square root with the sign of the assembly."""
+        """Square root of an array (m, n), below 0 for a crossed assembly."""
         root = np.sqrt(square)
         return root if self.side > 0 else -root
 
@@ -137,7 +137,7 @@ class InvertedLoop(LoopArrays):
         return cls(side, cams, lengths, y, y, y, y + (r1 - r4), (r1 + r4) - y)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` is `ends.least`."""
+        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` gives row minima."""
         return np.minimum(extreme(self.near), extreme(self.far))
 
     @cached_property
@@ -173,7 +173,10 @@ class InvertedLoop(LoopArrays):
 
     @cached_property
     def force(self) -> Array:
-        """Sine of the force angle: the force acts along B P, P = -S' u - S1' n, where the contacts' normals meet."""
+        """Sine of the force angle, at least 0, (m, n): the force acts along the line from B to P.
+
+        P = -S' u - S1' n is where the normals of the contacts meet.
+        """
         cams = self.cams
         along, across = cams.dp + self.root, cams.dp1 + (self.y - self.lengths.rocker)
         return np.abs(along) / _length(along, across)
@@ -184,14 +187,20 @@ class CouplerLoop(LoopArrays):
 
     @staticmethod
     def vector(cams: Support, lengths: Lengths, least: Array) -> tuple[Array, Array, Array, Array]:
-        """Arrays x, y, q, and near, for the `least` AD at which the loop closes, mm (m, 1)."""
+        """D from A in the frame's axes, x and y, mm; AD^2, mm^2; and AD^2 - least^2, mm^2; (m, n) each.
+
+        `least` (m, 1) is the least AD, mm, at which the loop closes.
+        """
         y = cams.p - (0.5 * cams.breadth - lengths.joint_offset)
         x = (cams.breadth + lengths.coupler) - cams.p1
         yy = y * y
         return x, y, x * x + yy, (x - least) * (x + least) + yy
 
     def _beyond(self, least: Array, extreme: Callable[[Array], Array]) -> Array:
-        """Least value of AD - least, mm (m,); where it is negative another negative length, as AD is not known."""
+        """Least value of AD - least, mm (m,), found by `extreme`, which gives the least value of each row.
+
+        Where the loop does not close it is another negative length, as AD is not known.
+        """
         near = extreme(self.near)
         return np.asarray(near / (np.sqrt(np.maximum(near + least * least, 0.0)) + least))
 
@@ -208,16 +217,16 @@ class CouplerLoop(LoopArrays):
 
     @property
     def spin(self) -> Array:
-        """Minus the derivative of the polar angle of D in the frame's axes, times AD^2."""
+        """Derivative of the polar angle of D in the frame's axes by the relative angle, times AD^2, mm^2/rad (m, n)."""
         return self.x * self.cams.dp + self.y * self.cams.dp1
 
     @property
     def spin_rate(self) -> Array:
-        """Derivative of `spin`."""
+        """Derivative of `spin` by the relative angle, mm^2/rad^2 (m, n)."""
         return self.x * self.cams.ddp + self.y * self.cams.ddp1
 
     def turned(self, along: Array, across: Array) -> tuple[Array, Array]:
-        """Components of the vector (along, across) along AD and at right angles to it, times the length of AD.
+        """Components (m, n) of the vector (along, across) along AD and at right angles to it, times the length of AD.
 
         Their angle never reaches the cut of the arctangent in `frame`: D stays on one side of AB, or of the slide's
         foot, and x > 0.
@@ -227,7 +236,11 @@ class CouplerLoop(LoopArrays):
 
     @property
     def lever(self) -> tuple[Array, Array]:
-        """Vector to D from P = -S' u - S1' n, where the contacts' normals meet: the force acts along it."""
+        """Components along the frame's axes u and n, mm, (m, n) each, of the vector from P to D.
+
+        P = -S' u - S1' n is where the normals of the contacts meet. The force of the frame on the joint D acts along
+        the vector.
+        """
         return self.cams.dp + self.x, self.cams.dp1 + self.y
 
 
@@ -244,7 +257,7 @@ class FourBarLoop(CouplerLoop):
         return cls(side, cams, lengths, x, y, q, near, (r1 + r4) ** 2 - q)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` is `ends.least`."""
+        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` gives row minima."""
         r1, r4 = self.lengths.ground[:, 0], self.lengths.rocker[:, 0]
         margin = self._beyond(np.abs(r1 - r4), extreme)
         far, most = extreme(self.far), r1 + r4
@@ -291,12 +304,12 @@ class FourBarLoop(CouplerLoop):
 
     @cached_property
     def transmission(self) -> Array:
-        """Sine of the angle between coupler and rocker."""
+        """Sine of the angle between coupler and rocker, with a sign, (m, n)."""
         return (self.x * self.root + self.y * self._lean) / (2.0 * self.lengths.rocker * self.q)
 
     @cached_property
     def force(self) -> Array:
-        """Sine of the force angle at D."""
+        """Sine of the force angle at D, at least 0, (m, n)."""
         along, across = self.lever
         cosine, sine = self.y * self.root - self.x * self._lean, self.x * self.root + self.y * self._lean
         scale = _length(along, across) * (2.0 * self.lengths.rocker * self.q)
@@ -315,12 +328,12 @@ class SliderLoop(CouplerLoop):
         return cls(side, cams, lengths, x, y, q, near, near)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` is `ends.least`."""
+        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` gives row minima."""
         return self._beyond(np.abs(self.lengths.offset[:, 0]), extreme)
 
     @cached_property
     def root(self) -> Array:
-        """D_x, mm: the signed root of `near`."""
+        """D_x, mm (m, n): the square root of `near`, with the sign of the assembly."""
         return self.signed_root(self.near)
 
     @property
@@ -358,12 +371,12 @@ class SliderLoop(CouplerLoop):
 
     @cached_property
     def transmission(self) -> Array:
-        """Sine of the angle between coupler and the slide's normal."""
+        """Sine of the angle between coupler and the slide's normal, with a sign, (m, n)."""
         return (self.root * self.x + self.lengths.offset * self.y) / self.q
 
     @cached_property
     def force(self) -> Array:
-        """Sine of the force angle at D."""
+        """Sine of the force angle at D, at least 0, (m, n)."""
         along, across = self.lever
         cosine, sine = self.turned(self.root, self.lengths.offset)
         return np.abs(along * cosine - across * sine) / (_length(along, across) * self.q)

@@ -121,7 +121,7 @@ def curve_of(recipe: Recipe, label: str) -> tuple[OutputCurve, str]:
     """Output of a recipe's linkage over the shaft angle, or without one its cam's lift or swing; name of that axis.
 
     In degrees or the recipe's units. Raises PlaceError for a linkage that does not turn, TypeError for one on a cam
-    without a lift, which no recipe has, and IntentError as the intent does.
+    without a lift, which no recipe has, and IntentError for a motion that no cam can have.
     """
     if recipe.linkage is None:
         from camgeo.synthesis.motion_table import motion_table

@@ -69,11 +69,11 @@ class _Goal:
         return values
 
     def loss(self, values: Array) -> Array:
-        """Loss (m,) of designs with values (m, axes), see `loss_of`."""
+        """Loss (m,) of designs with values (m, axes): the ranking's figure, less is better; large beyond a limit."""
         return self.loss_of(self.evaluator.evaluate(values).figures)
 
     def loss_of(self, figures: dict[str, Array]) -> Array:
-        """Loss (m,) of designs with these figures: the ranking's, less is better; above all others beyond a limit."""
+        """Loss (m,) of designs with these figures: the ranking's figure, less is better; large beyond a limit."""
         loss = -figures[self.rank] if self.most else figures[self.rank]
         broken = np.zeros(len(loss))
         for limit in self.limits:

@@ -41,7 +41,10 @@ _SAME_DISTANCE = 0.05  # of an axis's range: designs nearer than that in every v
 
 Values: TypeAlias = dict[str, float]
 Polish: TypeAlias = "Callable[[SweepTask, Values], tuple[Values, Values]]"
-"""Values and figures, mm and degrees, of a design as good or better that breaks no limit; raises PolishError."""
+"""Values and figures, mm and degrees, of a design as good or better that breaks no limit.
+
+Raises PolishError for a design that cannot be polished.
+"""
 Measure: TypeAlias = "Callable[[SweepTask, Array], Mapping[str, Array]]"
 """All figures (m,) of designs with values (m, axes), in mm and degrees: also what the search went without."""
 

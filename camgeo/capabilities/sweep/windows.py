@@ -50,7 +50,7 @@ def _parabola_extreme(values: Array, i: Indices, smooth: Mask | bool) -> Array:
 
 
 def least(values: Array, smooth: Mask | bool = True) -> Array:
-    """Least value of each row (m,); see `greatest`."""
+    """Least value of each row (m,), in smooth rows that of the parabola through three samples."""
     return _parabola_extreme(values, values.argmin(axis=1), smooth)
 
 

@@ -28,7 +28,7 @@ _UNITS = {LIFT: "mm", DURATION: "deg", VELOCITY: "mm/rad", ACCELERATION: "mm/rad
 
 
 class GreatestDerivative(NamedTuple):
-    """Greatest magnitude of a derivative while the valve is open, by rad of the cam, and its cam angle, degrees."""
+    """Greatest magnitude of a derivative while the valve is open, mm/rad or mm/rad^2, and its cam angle, degrees."""
 
     value: float
     at_deg: float
@@ -47,7 +47,10 @@ def valve_event(valve: Valve, design: Design, lift: float) -> LobeEvent:
 
 
 def extremes(valve: Valve, design: Design) -> dict[int, GreatestDerivative]:
-    """Greatest velocity (1) and acceleration (2) while the valve is open; raises EventError where neither is known."""
+    """Greatest velocity (1), mm/rad, and acceleration (2), mm/rad^2 of the cam, while the valve is open.
+
+    Raises EventError unless the valve opens and closes once in a turn, and for a motion too abrupt to be followed.
+    """
     event, exact = valve_event(valve, design, 0.0), design.exact
     datum = float(exact.motion.by_parameter(np.array([event.opening % TURN]), 0)[0, 0]) - event.lift
 
