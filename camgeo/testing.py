@@ -228,8 +228,10 @@ def assert_contour(
 ) -> float:
     """Assert that a file's contour lies within the tolerance of the recipe's exact one, in both directions.
 
-    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance`, `gap` and `options` as in
-    `assert_motion`. Returns the greatest distance between the two, in the recipe's units.
+    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` is by default the recipe's for a
+    file of that name, else `export.tolerance`. Ends in drawings within `gap` of one other are joined. `options` are
+    those of `camgeo.verify`, whose checks are asserted too. Returns the greatest distance between the two, in the
+    recipe's units.
     """
     rows = _judge(recipe, path, {CONTOUR.name}, options, tolerance=tolerance, gap=gap)
     return max(float(row["measured_error"]) for row in rows)
@@ -282,8 +284,8 @@ def _judge(
 def assert_recipe(recipe: OrderSource, **options: Any) -> Report:  # noqa: ANN401 - bool, as those of camgeo.check
     """Assert that a recipe has no faults, and that every check of its exact curves and of its files holds.
 
-    It may be of any kind. Makes and judges the files in a temporary folder; `options` as in
-    `assert_motion`. Returns the report, which as a mapping is what report.json holds.
+    It may be of any kind. Makes and judges the files in a temporary folder; `options` are those of `camgeo.check`.
+    Returns the report, which as a mapping is what report.json holds.
     """
     from camgeo import check
     from camgeo.schema.errors import RecipeErrors

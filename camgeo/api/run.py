@@ -59,7 +59,13 @@ def export(
 
 @with_packages()
 def check(recipe: OrderSource, *, progress: Callable[[str], None] | None = None, **options: bool) -> Report:
-    """Make and judge all of a recipe's files, and keep none of them; raises the errors of `export` but CallError."""
+    """Make and judge all of a recipe's files, and keep none of them.
+
+    `progress` is called with each stage as it begins. `options` are those of capabilities, as `camgeo verify --help`
+    lists them: further checks. Raises RecipeErrors where there is no such cam or a tolerance cannot be held,
+    SurroundingsError where a package is missing, TypeError for an unknown option. A check that fails raises nothing:
+    `ok` of the report is False then.
+    """
     recipe = order_of(recipe)
     demand_callable("progress", progress)
     used = _with_options("check", recipe, options)
@@ -84,8 +90,9 @@ def verify(
     `tolerance`, in the recipe's unit, is by default that of the recipe's file of the same name, or of its export.
     `units` is the unit of files that state none. Ends in drawings within `gap` of one other, in the recipe's unit and
     at most the tolerance, are joined by a line; the gap is added to the errors of contour and motion. With `page` the
-    report has the page that shows the files, `Report.page`. `options` are those of `export`, and those of files that a
-    capability judges, such as points. Raises RecipeErrors where there is no such cam, CallError for a path that is no
+    report has the page that shows the files, `Report.page`. `options` are those of
+    capabilities, as `camgeo verify --help` lists them: further checks, and how files that a capability judges are to be
+    read, such as points. Raises RecipeErrors where there is no such cam, CallError for a path that is no
     file of a known kind, for points that cannot be judged and for a gap that is too wide, UnitsError where a file
     states another unit than `units`, SurroundingsError where a library is missing. A file that cannot be read raises
     nothing: the check `readable` fails.

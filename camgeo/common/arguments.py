@@ -32,7 +32,7 @@ def demand_type(name: str, value: object, kind: type | tuple[type, ...], must: s
 
 
 def path_of(name: str, value: object) -> Path:
-    """Path of an argument; raises TypeError, and CallError for a path that no file can have."""
+    """Path of an argument; raises TypeError for what is no str or path, CallError for a path that no file can have."""
     demand_type(name, value, (str, PathLike), "a str or a path")
     text = os.fspath(value)  # type: ignore[call-overload]
     demand_type(name, text, str, "a str or a path of a str")

@@ -52,7 +52,7 @@ class Backwards:
 
     @property
     def steady(self) -> Array:
-        """Speed and turn on the stretches where both are constant, nan on the others, (m, 2)."""
+        """Speed, mm, and turn, rad, per unit of the parameter on each stretch, (m, 2); nan unless both are constant."""
         table: Array = self.base.steady[self._stretches()] * np.array([1.0, -1.0])
         return table
 

@@ -67,7 +67,10 @@ def least_radius(curve: Curve) -> tuple[float, float]:
 
 
 def enclosed_least_radius(curve: Curve) -> Least:
-    """Least radius as in `least_radius`, with a bound of its error.
+    """Least radius of curvature of the convex stretches, mm, and its parameter, with a bound of its error, mm.
+
+    Infinite, at the first parameter, for a curve without a convex stretch. Raises CurveError where the proof does not
+    end.
 
     Stretches that are circles but for rounding would be divided without end: where there are many, and no sign is in
     doubt, it is proved to `LOOSE` of the curve's size only.

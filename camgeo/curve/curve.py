@@ -92,13 +92,13 @@ class Frame:
 
     @property
     def curvature(self) -> Array:
-        """Signed curvature (n,), positive where the curve is convex; infinite at a cusp."""
+        """Signed curvature (n,), 1/mm, positive where the curve is convex; infinite at a cusp."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return self.turn / self.speed
 
     @property
     def curvature_slope(self) -> Array:
-        """Derivative of the curvature by arc length (n,)."""
+        """Derivative of the curvature by arc length (n,), 1/mm^2."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return (self.turn_slope * self.speed - self.turn * self.speed_slope) / self.speed**3
 

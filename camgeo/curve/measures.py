@@ -186,13 +186,13 @@ def _root(square: Extreme, sign: float) -> Extreme:
 
 
 def _radial(bounds: Bounds) -> tuple[Array, Mask]:
-    """Greatest rate of r^2 for each g, and whether it keeps its sign."""
+    """Greatest |2 sigma| of each cell (n,), mm, and whether sigma keeps its sign there: (r^2)' is 2 sigma g."""
     rate = 2.0 * np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high))
     return rate, (bounds.speed_low >= 0.0) | (bounds.speed_high <= 0.0)
 
 
 def _turning(bounds: Bounds) -> tuple[Array, Mask]:
-    """Greatest rate of h for each g, and whether it keeps its sign."""
+    """Greatest |omega| of each cell (n,), and whether omega keeps its sign there: h' is omega g."""
     rate = np.maximum(np.abs(bounds.turn_low), np.abs(bounds.turn_high))
     return rate, (bounds.turn_low >= 0.0) | (bounds.turn_high <= 0.0)
 

@@ -103,11 +103,11 @@ class Displacement:
         return mask
 
     def on(self, tau: Series, side: Side = 1) -> Series:
-        """S at jets or ball jets of the shaft angle; `side` decides at breaks."""
+        """S, mm or rad, at jets or ball jets of the shaft angle; `side` decides at breaks."""
         return self.over.on(tau, side)
 
     def derivatives(self, theta: Array, order: int, side: Side = 1) -> Array:
-        """S and its derivatives at theta (n,), (order + 1, n)."""
+        """S, mm or rad, and its derivatives by the shaft angle at theta (n,), rad: (order + 1, n)."""
         return self.over.derivatives(theta, order, side)
 
 

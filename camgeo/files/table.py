@@ -22,7 +22,8 @@ def write_table(
     """Write rows (n, k) under k column names; lines end in a line feed on every system.
 
     Lines of the `head` stand first, behind a #. With `gaps` a nan becomes an empty cell. Raises ValueError where the
-    shapes disagree, a name would need quoting or a number is not finite; OSError as the file system does.
+    shapes disagree, a name would need quoting or a number is not finite; OSError where the file cannot
+    be written.
     """
     if rows.ndim != 2 or rows.shape[1] != len(columns):
         raise ValueError(f"table: rows of shape {rows.shape} under {len(columns)} columns")

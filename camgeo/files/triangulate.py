@@ -87,8 +87,8 @@ def clip_region(outer: Array, inners: Sequence[Array] = ()) -> Triangles:
 
     The ears are clipped by manifold3d, on these very doubles, and where that is not installed by `clip_ears`.
     manifold3d takes vertices in line for ears, and leaves flat triangles where holes line up: `_without_flat` makes
-    them part of their neighbours. Indices as in `region`. Raises RegionError where a loop is not simple, or a hole does
-    not lie strictly inside or reaches another.
+    them part of their neighbours. Indices count through the loop and the holes in their order. Raises RegionError where
+    a loop is not simple, or a hole does not lie strictly inside or reaches another.
     """
     points = np.concatenate((outer, *inners))
     loops = np.split(np.arange(len(points)), np.cumsum([len(outer), *map(len, inners)])[:-1])

@@ -223,7 +223,7 @@ def _improve_handles(near: _Near, handles: Array, third: Array, out: float) -> t
 def sampled_gap(curve: Curve, spans: Spans, handles: Array, t: Array) -> Array:
     """Sampled distance of n cubic spans outside the curve, mm, at `LOOKS` - 1 places in each: (n, LOOKS - 1).
 
-    `t` (n, 5) are the curve's parameters at the feet of the spans' `PLACES`, as `fit_handles` gives them.
+    `t` (n, 5) are the curve's parameters at the feet of the spans' `PLACES`.
     """
     known = np.column_stack([spans.low, t, spans.high])
     feet = np.clip(known @ INTERPOLATION, spans.low[:, None], spans.high[:, None])

@@ -117,7 +117,7 @@ def write_dxf(
     Nothing is drawn twice: shapes of the reference that coincide become one entity with all their names.
 
     Raises ValueError for another version or unit, for a spline in R12, for a contour that comes twice through a point,
-    and for a circle or a span without extent; OSError as the file system does.
+    and for a circle or a span without extent; OSError where the file cannot be written.
     """
     if version not in VERSIONS:
         raise ValueError(f"DXF version must be one of {', '.join(VERSIONS)}, not {version!r}")

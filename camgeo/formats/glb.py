@@ -175,7 +175,8 @@ def steady_turn(rotation: str) -> Array:
 def make_view(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit and write the cam, turning once, for viewers.
 
-    Raises RecipeErrors for a tolerance that cannot be held, SurroundingsError for the disk or a missing package.
+    Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
+    solid; SurroundingsError for a missing package, OSError where the file cannot be written.
     """
     from camgeo.output.job import unjudged
     from camgeo.output.solid import cam_meshes

@@ -51,7 +51,8 @@ def mesh_format(
 def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit, write, read back and judge the meshes of a file.
 
-    Raises RecipeErrors for a tolerance that cannot be held, SurroundingsError for the disk or a missing package.
+    Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
+    solid; SurroundingsError for a missing package, OSError where the file cannot be written.
     """
     from camgeo.output.solid import make_mesh as make
 

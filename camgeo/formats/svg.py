@@ -57,8 +57,8 @@ def write_svg(
     a unit of the drawing is `mm` mm long (1.0 or 25.4), which the page's width and height and its viewBox state. `name`
     becomes the title; `about` and `remarks` the description.
 
-    Raises ValueError for a unit or a spline that SVG does not have, and for a circle without extent; OSError
-    where the file cannot be written.
+    Raises ValueError for a unit or a spline that SVG does not have, and for a circle without extent; OSError where
+    the file cannot be written.
     """
     if mm not in UNITS:
         raise ValueError(f"a drawing unit must be 1.0 or 25.4 mm, not {mm!r}")

@@ -191,8 +191,8 @@ def _count(recipe: Recipe, request: FileRequest, bend: float, tolerances: Sequen
     """Number of rows of a turn, by the step of the request or, without one, by the tolerance.
 
     `bend` is the greatest |d2X/dC2|, mm/rad^2; `tolerances` are the tolerance less the error of the table's digits, mm,
-    and the tolerance itself.
-    Raises RecipeErrors for a tolerance that the finest step does not hold, and for a step too wide for the tolerance.
+    and the tolerance itself. Raises RecipeErrors for a tolerance that the finest step does not hold, and for a step too
+    wide for the tolerance.
     """
     available, tolerance = tolerances
     widest = COARSEST if bend == 0.0 else math.degrees(math.sqrt(8.0 * max(SHARE * available, 0.0) / bend))

@@ -47,8 +47,8 @@ def lobe_motion(
 ) -> Motion:
     """Motion of a lobe of a lift, mm, over `total` rad; `nose` is the angle of its greatest lift, rad.
 
-    `around` is 1 where the motion repeats each turn. Raises IntentError, with a path below `field`,
-    where no such lobe exists.
+    `around` is 1 where the motion repeats each turn. Raises IntentError, with a path below `field`, where no such lobe
+    exists.
     """
     from kin.law.programme import IntentError
     from kin.law.sources.cam_card import sides_of_card

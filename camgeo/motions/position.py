@@ -32,10 +32,16 @@ class _Turn(ABC):
 
     @abstractmethod
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
-        """Position and its derivatives by the shaft angle."""
+        """Position, mm or rad, and its derivatives by the shaft angle at `shaft` (n,), rad: (order + 1, n).
+
+        With `side` -1 they are the limits from below at a break.
+        """
 
     def turn(self, shaft: Array, order: int) -> Array:
-        """`rows` over one turn, (order + 1, n); at the last angle, the turn's end, with the derivatives before it."""
+        """Position, mm or rad, and derivatives by the shaft angle over one turn, (order + 1, n).
+
+        At the last angle, the turn's end, the derivatives are those before it.
+        """
         return np.concatenate([self.rows(shaft[:-1], order), self.rows(shaft[-1:], order, -1)], axis=1)
 
 

@@ -23,7 +23,8 @@ def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
     No file is made of an altered part whose contour fails a check: then the failed checks come back alone; nor where
     the format needs a mechanism that turns right round and this one does not. Raises RecipeErrors where a tolerance
-    cannot be held or no such file can be made, SurroundingsError for the disk or a missing extra.
+    cannot be held or no such file can be made, SurroundingsError for a missing extra, OSError where a file cannot be
+    written.
     """
     job, failed = job.of_file(request)
     if failed:

@@ -26,7 +26,11 @@ if TYPE_CHECKING:
 
 
 def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Fit, write, read back and judge the discs of a file, each a mesh in its place."""
+    """Fit, write, read back and judge the discs of a file, each a mesh in its place.
+
+    Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
+    solid; SurroundingsError for a missing package, OSError where the file cannot be written.
+    """
     write, kind = request.format.write, request.kind
     if write is None:
         raise ValueError(f"{kind} holds no mesh")
@@ -40,9 +44,10 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
 
 def foresee(job: Job, request: FileRequest) -> None:
-    """Refuse a tolerance that the precision of the file cannot hold, and a part that needs a missing package.
+    """Refuse a file that cannot be made, before anything is fitted.
 
-    Raises RecipeErrors; MissingExtraError for the package.
+    Raises RecipeErrors for a tolerance that the precision of the file cannot hold, MissingExtraError for a part that
+    needs a missing package.
     """
     for single in job.single:
         aim(single, request)

@@ -63,7 +63,7 @@ class Boss(NamedTuple):
 
     @property
     def circle(self) -> Opening:
-        """Its outline."""
+        """Outline of the boss, as a round opening about the shaft."""
         from camgeo.part.shapes import disc
 
         return disc(self.name, "HOLES", (0.0, 0.0), 0.5 * self.diameter)

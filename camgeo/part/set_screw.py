@@ -42,7 +42,7 @@ def _check(part: Values, reader: Reader) -> None:
 
 
 def _cross(screw: SetScrew, boss: Boss, thickness: float) -> CrossHole:
-    """Its hole, in the upper one of two bosses."""
+    """Radial hole of the screw, in the upper one of two bosses."""
     from kin.judge.layers import CrossHole
 
     beyond = 0.5 * (boss.above or boss.below) if screw.height is None else screw.height

@@ -179,7 +179,7 @@ def known(name: str, other: str, gap: Gap) -> Possible:
 
 
 def outside_gap(chain: Arcs, other: Arcs) -> Gap:
-    """Wall between two closed chains, each to lie outside the other; negative where they cross or one holds another."""
+    """Least wall, mm, between two closed chains side by side; negative where they cross or one holds the other."""
     gap = _chain_gap(chain, other, 1.0)
     held = float(signed_distance(chain, other.start[:1])[0])
     return gap if held > 0.0 else Gap(min(gap.wall, held), _place(other.start[0]))
@@ -191,7 +191,7 @@ def inside_gap(inner: Arcs, outer: Arcs) -> Gap:
 
 
 def _chain_gap(chain: Arcs, other: Arcs, side: float) -> Gap:
-    """Least signed distance of the points of one chain outside (side 1) or inside (-1) the other."""
+    """Least signed distance, mm, of points of one chain outside (side 1) or inside (-1) the other, and its place."""
     turns = np.abs(chain.curvature) * chain.length
     parts, _ = chain.cut(np.maximum(np.ceil(turns / PART_TURN), PARTS).astype(np.intp))
     falls = side * _from_chain(other, parts.start, parts.tangent)

@@ -338,7 +338,10 @@ def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values
 
 
 def file_bytes(path: str | PathLike[str]) -> bytes:
-    """Read a recipe's file; raises RecipeErrors where there is none, or it is no recipe's."""
+    """Bytes of a recipe's file, of one that is too large the first `MAX_BYTES` + 1.
+
+    Raises RecipeErrors for an empty name, and for a file that does not exist or cannot be read.
+    """
     if not str(path):
         raise RecipeErrors([RecipeError("''", 0, 0, "", "an empty name of a file", None, "give the path of a recipe")])
     try:

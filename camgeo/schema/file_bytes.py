@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
 
 def read_bytes(path: str | PathLike[str], most: int, noun: str) -> bytes:
-    """Bytes of a file, of a longer one the first `most` + 1; raises Complaint, `noun` says what the file holds."""
+    """Bytes of a file, of a longer one the first `most` + 1; `noun` says in messages what the file holds.
+
+    Raises Complaint for a file that does not exist or cannot be read, and for a pipe or a device.
+    """
     try:
         mode = Path(path).stat().st_mode
         waits = not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))  # its reader, for ever perhaps

@@ -28,7 +28,10 @@ class Foreseen(NamedTuple):
 
 
 def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
-    """Tell the checks of a recipe, those of each file last; raises kin.law.programme.IntentError."""
+    """Tell the checks of a recipe, those of each file last.
+
+    Raises kin's IntentError where the recipe's motion does not exist.
+    """
     scene = CheckFacts(recipe, _follower(recipe))
     every = declarations(recipe)
     expected = [Foreseen(check.name) for check in every if check.exact is not None and check.exact(scene)]
