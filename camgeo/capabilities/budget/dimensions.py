@@ -13,9 +13,10 @@ CONJUGATE, LINKAGE = "two discs", "linkage"
 
 
 class Dimension(NamedTuple):
-    """A dimension: what it is, which cams have it by their `traits`, and whether it is an angle.
+    """A dimension: words for what it is, and whether it is an angle.
 
-    `radius` is whether its tolerance is the radius of a circle within which something may stand, in any direction.
+    `applies` tells from the traits of a cam whether it has the dimension. `radius` is whether the tolerance is the
+    radius of a circle within which something may stand, in any direction.
     """
 
     about: str

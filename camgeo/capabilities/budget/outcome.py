@@ -32,7 +32,8 @@ class BudgetOutcome:
     """Budget of a design at even shaft angles: influences of its dimensions, greatest sums, and free tolerances.
 
     `budget` has tolerances for all its dimensions, those found among them. `left` (n,) is what is left at each angle
-    for the only free dimension, mm or rad, None where several or none are free; `splits` are the widest sets by cost.
+    for the only free dimension, mm or rad, None where several or none are free. `splits` has, by the kind of sum, the
+    tolerances of least cost of several free dimensions.
     `play` is the least and the greatest play, mm or rad, of a follower held from both sides.
     """
 

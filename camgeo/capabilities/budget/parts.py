@@ -120,7 +120,7 @@ def errors_by_contact(
 
 
 def angles_at(budget: Budget, shaft: Array) -> Array:
-    """The angles (n,), and after them the one at which the machine is set, if any."""
+    """The shaft angles (n,), rad, and after them the one at which the machine is set, if any."""
     return shaft if budget.zero is None else np.append(shaft, budget.zero)
 
 
@@ -145,10 +145,10 @@ class Sizes(Protocol):
     """Errors of the sizes of made parts: (parts, 1), and (parts, angles) for the error of the profile."""
 
     def size(self, name: str) -> Array:
-        """Error of a size, mm or rad, by the word of its dimension; each call is for another made size."""
+        """Error of a size, mm or rad, by the word of its dimension; each call gives that of another made size."""
 
     def radius(self, name: str) -> Complexes:
-        """Displacement, mm, complex, by the word of its dimension; each call is for another made size."""
+        """Displacement, mm, complex, by the word of its dimension; each call gives that of another made size."""
 
 
 class RandomSizes:
@@ -248,7 +248,10 @@ def contact_places(
 
 
 def _wander(budget: Budget, intended: Complexes) -> float:
-    """Estimate of how far a contact moves along the contour, mm: the sum of tolerances, angles times the size."""
+    """Estimate of how far a contact moves along the contour, mm: the sum of all tolerances of the budget.
+
+    Those of angles count times the greatest distance of an intended contact from the shaft.
+    """
     size = float(np.abs(intended).max())
     return sum((tolerance or 0.0) * (size if DIMENSIONS[name].angle else 1.0) for name, tolerance in budget.tolerances)
 
@@ -262,7 +265,11 @@ def _linkage_errors(
     angles: Array,
     read: Mapping[str, Contour] | None,
 ) -> Callable[[Sizes], Array]:
-    """Errors of the output by either pair of faces, from the support function of the metal, each loop closed anew."""
+    """Function that gives the errors of a linkage's output, (2, parts, n), mm or rad, by either pair of faces.
+
+    They follow from the support function of the metal, with each loop closed anew; where one does not close near its
+    intended place the function raises LostError.
+    """
     if design.driven is None:
         raise ValueError("there is no linkage")
     mechanism = design.driven.mechanism
@@ -317,7 +324,11 @@ def _linkage_errors(
 
 
 def _closed(off: Callable[[Array], tuple[Array, Array]], start: Array) -> Array:
-    """Output of linkages where what is off of their loops is 0, from changes of the frame's angle (parts, angles)."""
+    """Output of linkages (parts, angles), mm or rad, where their loops close.
+
+    `off` gives the distance from closing, mm, and the output, for changes of the frame's angle, rad; the search begins
+    at the changes `start`. Raises LostError where a loop does not close near there.
+    """
     change = start
     slope = (off(change + STEP)[0] - off(change - STEP)[0]) / (2.0 * STEP)
     for _ in range(MOST_STEPS):

@@ -25,15 +25,16 @@ def powers(influence: Influence, output: Output, sum_: Sum) -> Array:
 
 
 def total(influence: Influence, output: Output, sum_: Sum) -> Array:
-    """The sum of errors at each angle, (n,), mm or rad of the motion."""
+    """The sum of errors at each angle, (n,), mm or rad of the motion: the worst case, or the root sum of squares."""
     added: Array = powers(influence, output, sum_).sum(axis=0) ** (1.0 / POWERS[sum_])
     return added
 
 
 def spread(influence: Influence, output: Output) -> Array:
-    """Standard deviation of the error (n,) where sizes are even within their limits, radii full in any direction.
+    """Standard deviation of the error at each angle (n,), mm or rad of the motion.
 
-    sqrt(sum (w t)^2/3 + sum (w r)^2/2).
+    Sizes are taken as spread evenly within their tolerances t, displacements as of the full radius r in any direction.
+    With influences w it is sqrt(sum (w t)^2/3 + sum (w r)^2/2).
     """
     squares = powers(influence, output, "rss")
     parts = [3.0 if contribution.rows.shape[1] == 1 else 2.0 for contribution in influence.contributions]

@@ -126,7 +126,7 @@ def _bar(stretch: Stretch, y: float, colour: str, name: str) -> list[str]:
 
 
 def _end(degrees: float) -> float:
-    """The end of a stretch as a reading of the shaft: 360 stays."""
+    """The end of a stretch, degrees, as a reading of the shaft: from 0 to 360, where 360 stays."""
     return degrees if degrees <= 360.0 else degrees - 360.0
 
 

@@ -58,7 +58,7 @@ class FrameTurn(Turn):
         return "face 1", "face 2", "face 3", "face 4"
 
     def rows(self, t: Array) -> Array:
-        """Output and two derivatives by the shaft angle."""
+        """Output, mm or rad, and two derivatives by the shaft angle, (3, n), at relative angles (n,), rad."""
         motion = self.mechanism.at(t, 2)
         return motion.over_shaft(motion.output)
 
@@ -70,7 +70,7 @@ class FrameTurn(Turn):
         return between(0.0, TURN, self.mechanism.breaks)
 
     def shaft(self, t: Array) -> Array:
-        """Shaft angles, rad, (n,) at parameters of the turn (n,)."""
+        """Shaft angles (n,), rad, at relative angles (n,), rad."""
         shaft: Array = self.mechanism.at(t, 0).shaft[0]
         return shaft
 

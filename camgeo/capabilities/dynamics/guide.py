@@ -36,8 +36,8 @@ def guide_checks(recipe: Recipe, exact: ExactCam) -> list[Check]:
 def jam_angle(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float]:
     """Pressure angle with which the stem is pushed on, the one at which it jams, degrees, and the shaft angle.
 
-    On the rise the former is the greatest of all, or where the rise begins: of an eccentric stem |e| over its foot. Of
-    two contacts it is the one that is nearer to jamming; the second stands beyond the shaft.
+    The pressure angle is the greatest on the rise, its begin included: there the tangent is |e| over the foot of an
+    eccentric stem. Of two contacts the one counts that is nearer to jamming; the second stands beyond the shaft.
     """
     first, angles = exact.follower.contacts[0], []
     surfaces = {surface.name: surface for surface in exact.surfaces}

@@ -507,7 +507,7 @@ def _check_elastic(values: Values, reader: Reader) -> None:
 
 
 def build(values: Values) -> Dynamics | None:
-    """Make the train of a recipe's values in which there is no fault, where there is one."""
+    """Make the train of values without a fault; None for a recipe without `dynamics`."""
     train: Values | None = values.get("dynamics")
     if train is None:
         return None

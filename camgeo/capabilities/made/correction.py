@@ -175,7 +175,7 @@ class CorrectedCam(AlteredCam):
         return {name: self.on_metal[name].run_by(follower) for name, follower in self.nominal.running.items()}
 
     def grow(self, out: float, scale: float) -> ExactCam:
-        """The nominal cam grown by `out` mm and scaled, with deviations scaled likewise."""
+        """The nominal cam grown by `out` mm and scaled, with deviations scaled by the same factor."""
         curves = {name: curve.times(scale) for name, curve in self.deviations.items()}
         return CorrectedCam(self.nominal.grow(out, scale), curves)
 

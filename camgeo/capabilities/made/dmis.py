@@ -65,7 +65,10 @@ class _Disc(NamedTuple):
 
 
 def program(recipe: Recipe, design: Design, step: float | None = None) -> Iterator[str]:
-    """Lines of the program, by a step of the shaft, rad, or that of `verify.angles`."""
+    """Lines of a DMIS program that measures a part at places a step of the shaft, rad, apart.
+
+    Without a step there are as many places a turn as the recipe's `verify.angles` says.
+    """
     z = 0.5 * (recipe.part.thickness or 0.0)
     return _program(
         recipe, [_Disc(recipe.profile, disc.z + z, design, disc.contours) for disc in design.discs], step, recipe.units
@@ -75,7 +78,11 @@ def program(recipe: Recipe, design: Design, step: float | None = None) -> Iterat
 def shaft_program(
     recipe: Order, cams: Sequence[ShaftCam], step: float | None = None, units: Length | None = None
 ) -> Iterator[str]:
-    """Lines of the program for all cams of a shaft, each turned to its angle, half as high as it is long."""
+    """Lines of a DMIS program for all cams of a shaft, each turned to its angle and measured halfway along its length.
+
+    Places are a `step` of the shaft, rad, apart; without it `verify.angles` says how many there are a turn. Lengths are
+    in `units`, by default those of the recipe.
+    """
     discs = [
         _Disc(cam.recipe.profile, 0.5 * (cam.low + cam.high), cam.design, cam.design.contours, cam.at) for cam in cams
     ]

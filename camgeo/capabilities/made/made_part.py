@@ -197,7 +197,10 @@ def motion_uncertainty(result: PartMade, options: PointOptions) -> Array:
 
 
 def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[list[Check], dict[str, str]]:
-    """Checks on the profile of each disc, the motion and the output, where there is a limit; and their verdicts."""
+    """Checks on the profile of each disc, the motion and the output, where there is a limit; verdicts by name of check.
+
+    A verdict is `ok`, `failed` or `not proved`.
+    """
     checks, verdicts = [], {}
     zone, limits = zone_of(recipe), permitted(recipe, recipe.export.tolerance)
     if zone is not None:

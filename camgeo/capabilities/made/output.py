@@ -45,7 +45,10 @@ STYLE = (
 
 
 def write_part(recipe: Recipe, result: PartMade, section: dict[str, Any], options: PointOptions) -> list[str]:
-    """Write the three files; returns their paths. Raises SurroundingsError where the file system refuses."""
+    """Write page, drawing and table of points; returns their paths in this order.
+
+    Raises SurroundingsError where the file system refuses.
+    """
     folder = Path(options.out or "")
     drawing = _drawing(recipe, result)
     page = _page(recipe, result, section, options, drawing)

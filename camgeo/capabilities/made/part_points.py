@@ -228,7 +228,7 @@ def _disc_of_file(path: Path, place: int, discs: int) -> int:
 
 
 def places_of(table: PointTable, scale: float, *, mirrored: bool) -> tuple[Array, Array | None]:
-    """Points (n, 2), mm, and normals of a table, in the drawing's axes as if that were not mirrored."""
+    """Points (n, 2), mm, and unit normals (n, 2) of a table, None without normals, as if it were not mirrored."""
     sign = np.array([1.0, -1.0 if mirrored else 1.0])
     columns = table.columns
     places = np.column_stack([columns["x"], columns["y"]]) * (scale * sign)

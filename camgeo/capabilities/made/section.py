@@ -37,7 +37,7 @@ DERIVATIVES = ("error", "velocity", "acceleration")
 def section(
     recipe: Recipe, paths: Sequence[Path], result: PartMade, options: PointOptions, verdicts: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Give the section `made`."""
+    """Section `made` of the report on a part, lengths in the recipe's unit, angles in degrees."""
     entry: dict[str, Any] = {
         "files": [path.name for path in paths],
         "unit": UNIT_NAMES[recipe.units],

@@ -25,28 +25,28 @@ def _outline(ring: ring.Ring) -> ArcSpline:
 
 
 def disc(radius: float, x: float = 0.0, y: float = 0.0) -> ArcSpline:
-    """A circle about a point."""
+    """A circle of a radius about a point, mm, as arcs."""
     return _outline(ring.disc(x, y, radius))
 
 
 def box(x0: float, y0: float, x1: float, y1: float) -> ArcSpline:
-    """A rectangle between two corners."""
+    """A rectangle between two corners, mm."""
     return _outline(ring.box(x0, y0, x1, y1))
 
 
 def bar(a: Point, b: Point, width: float) -> ArcSpline:
-    """A bar with round ends about two points; a disc where they are one."""
+    """A bar of a width with round ends about two points, mm; a disc where they are one."""
     return _outline(ring.bar(a, b, width))
 
 
 def transformed(outline: ArcSpline, x: float, y: float, angle: float) -> ArcSpline:
-    """The outline turned about the origin by an angle, rad, then shifted."""
+    """The outline turned about the origin by an angle, rad, counter-clockwise, then shifted by x and y, mm."""
     c, s = math.cos(angle), math.sin(angle)
     return ArcSpline(outline.points @ np.array([[c, s], [-s, c]]) + (x, y), outline.bulges, outline.bound)
 
 
 def eye(s: Sizes, x: float = 0.0, y: float = 0.0) -> ArcSpline:
-    """The hole that turns on a pin at a point."""
+    """Outline of the hole that turns on a pin at a point, mm."""
     return disc(0.5 * s.hole, x, y)
 
 

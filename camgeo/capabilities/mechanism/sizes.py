@@ -114,8 +114,9 @@ def derive_sizes(
 
 
 def require_clearance(clearance: float, field: str, off: float, own: str = "mechanism.clearance") -> None:
-    """Raise BodyError for a clearance, `own` in the recipe, that files within `off` mm, as `field` says, may close.
+    """Raise BodyError for a clearance, mm, that is too fine, or that files within `off` mm may close.
 
+    `own` is the recipe's key of the clearance, `field` that of the files' tolerance.
     Facets of a hole and of its pin may each be `off` nearer to the other, which is half the clearance away.
     """
     if clearance < LEAST_CLEARANCE:

@@ -24,7 +24,10 @@ def _pocketed(scene: CheckFacts, file: FileRequest) -> bool:
 
 
 def other_entry(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Tell where else the cutter may come to the path; nothing of a hub that is cut into, or of no milling."""
+    """Remedy in words: another place where the cutter comes to the path.
+
+    Empty for a check without a value, as where a hub is cut into, and for a recipe without `manufacture`.
+    """
     if check["value"] is None or recipe.manufacture is None:
         return ""
     return "another manufacture.start, or a smaller manufacture.lead_in"

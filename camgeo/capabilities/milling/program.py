@@ -109,7 +109,10 @@ def _contour(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list
 
 
 def _lap(job: Job, manufacture: Manufacture, path: ArcSpline, side: Side, room: float = math.inf) -> ClosedPath:
-    """A path along a surface with ways in and out, which have `room`, mm; where they would vanish it has none."""
+    """A path along a surface with ways in and out for which there is `room`, mm.
+
+    Where the room is too small for such ways the path has none, and the cutter comes down on it.
+    """
     begun = begun_at(path, manufacture.start)
     drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
     clockwise = (manufacture.direction == "climb") == (side > 0)

@@ -135,7 +135,10 @@ def _audit(_: Job, file: FileResult) -> list[Check]:
 
 
 def _compare_contours(job: Job, file: FileResult) -> list[Check]:
-    """Checks of each contour of a file against the exact one, both as polygons: valid, area, distance."""
+    """Checks of each contour of a file against the exact one, both as polygons: valid, area, distance.
+
+    Raises _Skip where the file or the recipe has no contour, and where no polygon is within a tenth of the tolerance.
+    """
     read = {surface.name: surface.contour for surface in file.surfaces if surface.contour is not None}
     if not read or file.tolerance is None:
         raise _Skip("no contour could be read from the file")
@@ -254,7 +257,7 @@ def _status(read: Any) -> str:  # noqa: ANN401 - trimesh has no types
 
 
 def _no_fault(name: str, holds: bool, why: str) -> Check:
-    """Check that there is no fault, with the reason where there is one."""
+    """Check that there is no fault: 0 faults where it `holds`, else 1, with `why` as its detail."""
     return at_most(name, 0 if holds else 1, 0, "faults", detail="" if holds else why)
 
 
@@ -284,7 +287,7 @@ def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN4
 
 
 def _discs_of(job: Job, file: FileResult) -> tuple[PartIntent, ...]:
-    """Intents of the discs that a file holds, as the judge compares them."""
+    """Intents of the discs that a file holds: the one of a file of one disc, else all of the shaft."""
     job, _ = job.of_file(file.request)
     parts = shaft_of_file(job.recipe, job.design, file.request.kind).parts
     return parts if file.disc is None else (parts[file.disc],)

@@ -58,7 +58,7 @@ _HEAP = 3 << 20  # numbers, 24 MB
 class FigureTable(NamedTuple):
     """Figures by name, (m,) each, in mm and degrees, rates by radian of shaft angle, and their reasons.
 
-    `reason` (m,) is an index into `cams.REASONS`.
+    `reason` (m,) is a code of why a design has no figures, or not all; 0 where it has.
     """
 
     figures: dict[str, Array]
@@ -327,12 +327,15 @@ class Evaluator:
         return (index, motion) if fine.all() else (index[fine], motion.part(fine))
 
     def _fill_output(self, index: Indices, motion: Motion, figures: dict[str, Array], smooth: Mask) -> None:
-        """Fill in the figures of the output, in mm or degrees."""
+        """Fill in the figures of the output at the designs `index`, in mm or degrees, by rad of the shaft."""
         linkage, turn = self.recipe.linkage, 1.0 - motion.frame_rate
         scale = 1.0 if linkage is not None and output_slides(linkage) else math.degrees(1.0)
 
         def acceleration() -> Array:
-            """(f'/phi')'/phi' with phi'' = -theta_3''."""
+            """Greatest second derivative of the output f by the shaft angle phi, (m,).
+
+            It is (f'/phi')'/phi', with phi' = 1 - theta_3' and phi'' = -theta_3''.
+            """
             second: Array = motion.second * turn
             second += motion.rate * motion.frame_second
             second /= turn * turn * turn
@@ -377,7 +380,7 @@ class Evaluator:
 
 
 def _fill(figures: dict[str, Array], index: Indices, columns: Mapping[str, Callable[[], Array]]) -> None:
-    """Set the figures of the designs at `index`, those alone that are wanted."""
+    """Set the figures of the designs at `index`; columns of figures that are not among `figures` are not computed."""
     for name, column in columns.items():
         if name in figures:
             figures[name][index] = column()

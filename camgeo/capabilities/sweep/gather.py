@@ -212,10 +212,10 @@ class _Rows:
 
 
 class BestByCell:
-    """The best design in each cell over the first one or two axes, whatever its other values are; filled by `paint`.
+    """The best design in each cell over the first one or two axes of a plan; designs are added by `paint`.
 
-    `edges` and `centres` of the cells along each axis; `state` (cells of axis 1, of axis 2 or 1) has NONE, STUCK,
-    OUTSIDE or KEPT. `most` is that of the ranking.
+    `edges` and `centres` are those of the cells along each axis. `state` (cells of axis 1, of axis 2 or 1) has NONE,
+    STUCK, OUTSIDE or KEPT. `most` says that the greatest figure is the best.
     """
 
     def __init__(self, plan: Plan, *, most: bool) -> None:

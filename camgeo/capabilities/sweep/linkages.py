@@ -38,7 +38,10 @@ class Lengths(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Support:
-    """Sampled cams: breadth (m, 1), support p and p', p'' about the shaft, (m, n), n a multiple of 4."""
+    """Sampled cams: breadth (m, 1), mm; support p about the shaft, mm, and its derivatives by rad, (m, n) each.
+
+    n is a multiple of 4.
+    """
 
     breadth: Array
     p: Array
@@ -125,7 +128,10 @@ class LoopArrays:
 
 
 class InvertedLoop(LoopArrays):
-    """The frame slides on a rocker: theta_3 and -theta_4 differ by a constant; `x` and `q` are not used."""
+    """The frame slides on a rocker: theta_3 and -theta_4 differ by a constant; `x` and `q` are not used.
+
+    `near` and `far` are mm.
+    """
 
     dimensions: ClassVar[tuple[str, ...]] = ("ground", "rocker", "joint_offset")
 
@@ -183,7 +189,7 @@ class InvertedLoop(LoopArrays):
 
 
 class CouplerLoop(LoopArrays):
-    """The frame is the coupler: what a four-bar and a slider-crank share."""
+    """The frame is the coupler: what a four-bar and a slider-crank share. `near` and `far` are mm^2."""
 
     @staticmethod
     def vector(cams: Support, lengths: Lengths, least: Array) -> tuple[Array, Array, Array, Array]:

@@ -84,8 +84,9 @@ def _sizes(cam: Cam, exact: ExactCam) -> dict[str, float]:
 
 
 def sample_cam(cam: Cam, count: int, counts: tuple[int, ...] = ()) -> CamSample:
-    """Sample a cam at about so many angles of a turn, or by as many cells as `counts` say where it has as many pieces.
+    """Sample a cam at about `count` angles of a turn.
 
+    `counts` has the number of cells of each piece; it counts only for a cam of as many pieces.
     Raises IntentError for a cam that does not exist.
     """
     exact = cam.exact()

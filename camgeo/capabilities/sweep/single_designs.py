@@ -30,7 +30,12 @@ _ANGLES = 720  # at which the support of a plate is compared with 0
 
 @dataclass(frozen=True, eq=False)
 class MotionRows:
-    """Motion of m mechanisms at n relative angles, (m, n) each, as `linkages.LoopArrays` names it."""
+    """Motion of m mechanisms at n relative angles, (m, n) each.
+
+    `output`, mm or rad, and `frame`, the frame's angle, rad, have the first derivatives `rate` and `frame_rate` and the
+    second ones `second` and `frame_second` by the relative angle. `transmission` is the sine of the transmission angle,
+    with a sign, `force` that of the force angle, at least 0.
+    """
 
     output: Array
     rate: Array
@@ -99,7 +104,10 @@ def evaluate(
 
 
 def dyad_motions(recipe: Recipe, paths: Sequence[str], values: Array, count: int) -> tuple[Array, MotionRows]:
-    """Least margins of any loop, mm (m,), -inf where one binds; and the motions at `count` angles, nan there."""
+    """Least margin of any loop, mm (m,), and the motions at `count` angles.
+
+    Of a mechanism that binds the margin is -inf and the motion nan.
+    """
     from kin.linkage.loop import BindingError
 
     m = len(values)

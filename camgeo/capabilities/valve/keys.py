@@ -116,6 +116,6 @@ def check(values: Values, reader: Reader) -> None:
 
 
 def build(values: Values) -> Valve | None:
-    """Make the valve of values in which there is no fault."""
+    """Make the valve of values without a fault; None for a recipe without `valve`."""
     entry = values.get("valve")
     return None if entry is None else Valve(entry["ratio"], entry.get("lash", 0.0))
