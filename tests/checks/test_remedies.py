@@ -191,7 +191,7 @@ DESIGNS: list[tuple[str, str, Follow]] = [
         lambda most: support(f"p: 25 + 1e-9*cos({most:.0f}*t)"),
     ),
     (
-        support("p: 25 + 25*cos(1001*t)", SLIDER),
+        support("p: 25 + 25*cos(3001*t)", SLIDER),
         "give p fewer or lower waves",
         lambda _: support("p: 25 + 1e-4*cos(101*t)", SLIDER),
     ),
