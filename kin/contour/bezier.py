@@ -216,7 +216,7 @@ class Beziers:
         return v / values(self.weight[rows], t)[:, None] ** 2
 
     def rows(self, rows: Indices, t: Array) -> tuple[Array, Array, Array]:
-        """Points and two derivatives by t, (n, 2) each, of the pieces `rows` at t (n,); see `bend`."""
+        """Points and two derivatives by t, (n, 2) each, of the polynomials `rows`, of degree 2 or more, at t (n,)."""
         return self.point(rows, t), values(self.velocity[rows], t), values(self.bend[rows], t)
 
     def farthest(self, rows: Indices, theta: Array) -> Array:

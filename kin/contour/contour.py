@@ -348,7 +348,11 @@ class Contour(Pieces):
         return arcs.joined(bows).take(order), owner[order]
 
     def distance(self, points: Array, tolerance: float | None = None) -> Array:
-        """Distance of points (k, 2) from the contour, mm (k,): exact from lines and arcs, else as near as `as_arcs`."""
+        """Distance of points (k, 2) from the contour, mm (k,).
+
+        It is exact from lines and arcs, and good to `tolerance`, mm, from Bezier pieces: by default 1e-9 mm, but from
+        1e-12 to 2e-11 of the extent. Raises ValueError for a tolerance below rounding.
+        """
         _, distance = nearest(self.as_arcs(tolerance)[0], np.asarray(points, dtype=np.float64))
         return distance
 

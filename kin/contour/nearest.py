@@ -87,12 +87,15 @@ def _joined(blocks: list[tuple[Indices, Array, Array]]) -> tuple[Indices, Array,
 
 
 def signed_distance(chain: Arcs, points: Array) -> Array:
-    """Distance of points (m, 2) from a closed counter-clockwise chain, positive outside: (m,)."""
+    """Distance of points (m, 2) from a closed counter-clockwise chain, mm (m,), positive outside, negative inside."""
     return feet(chain, points)[0]
 
 
 def feet(chain: Arcs, points: Array) -> tuple[Array, Array]:
-    """Signed distance of points (m, 2) as `signed_distance` gives it, and the nearest points of the chain (m, 2)."""
+    """Distance of points (m, 2) from a closed counter-clockwise chain, mm (m,), and the nearest points of it (m, 2).
+
+    The distance is positive outside and negative inside.
+    """
     piece, s, distance = _foot(chain, points)
     here = chain.take(piece)
     side = radial(here, points)

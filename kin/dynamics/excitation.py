@@ -82,8 +82,9 @@ def intended_faces(follower: Follower, play: float | None) -> Faces:
 
 
 def measured_faces(follower: Follower, contour: Contour, play: float | None) -> Faces:
-    """Drives of the motion that a file's contour gives by contact, as `intended_faces`.
+    """Drives of the motion, m or rad, that a file's contour gives by contact: one where `play` is None, else two.
 
+    Play is in metres or radians.
     Flat faces feel every piece as it is; under a roller splines are arcs. With play both sides are the contour's own:
     what it is too large takes from the play. ContactError where the follower finds no contact, ValueError for play
     with a follower that has one contact.

@@ -77,7 +77,10 @@ class Oscillator:
 
     @property
     def weights(self) -> tuple[float, float]:
-        """The p and q of zz = one + p other, vv = one - q other, where zv = other and vz = -r^2 other; see `basis`."""
+        """Numbers p and q, per unit of time, by which the two motions of `basis`, one and other, make the propagator.
+
+        It is zz = one + p other, zv = other, vz = -r^2 other, vv = one - q other.
+        """
         if self.swings:
             return self.decay, self.decay
         return self.decay + self.split, self._gentle if self.split else self.decay

@@ -177,9 +177,9 @@ def _distances(pieces: Arcs, slack: float) -> tuple[Array, Array]:
 
 
 def meet(pieces: Arcs, guide: Guide, phi: Array, slack: float) -> Array:
-    """Greatest distance from the shaft at which the centre meets each short piece at its angle (n,), else -inf.
+    """Greatest distance from the shaft, mm (n,), at which the centre meets each short piece at its angle phi (n,), rad.
 
-    Less the least distance for a guide that counts inwards.
+    For a guide that counts inwards it is minus the least such distance. Where they do not meet it is -inf.
     """
     chord_turn = 0.5 * pieces.curvature * pieces.length
     chord = pieces.length * np.sinc(chord_turn / np.pi)

@@ -57,7 +57,7 @@ class ArmFace:
 
     @staticmethod
     def of(contact: Contact[Guide, Touch]) -> ArmFace:
-        """Make the formulas of a face on an arm from its contact."""
+        """Make the formulas of a face on an arm from its contact; raises TypeError for any other contact."""
         if not (isinstance(contact.guide, Oscillating) and isinstance(contact.touch, Flat)):
             raise TypeError("a flat face on an arm has a pivot")
         return ArmFace(contact.guide.pivot, contact.guide.side, -contact.touch.nearer)
@@ -101,13 +101,15 @@ class ArmFace:
         """
         start = self.starts(bearing)
         turns = np.floor(((phi if middle is None else middle) - start[0]) / TURN)
-        reduced = phi - turns * TURN
+        reduced = phi - turns * TURN  # in the turn that begins with the first stretch
+        # the stretch that holds `middle`, or without it phi itself
         within = np.maximum(reduced if middle is None else middle - turns * TURN, start[0])
         stretch = np.searchsorted(start, within, side="right") - 1
         low = bearing.breaks[stretch]
         high = np.append(bearing.breaks[1:], bearing.breaks[0] + TURN)[stretch]
         width = np.diff(start, append=start[0] + TURN)[stretch]
         share = np.where(width > 0.0, (reduced - start[stretch]) / np.where(width > 0.0, width, 1.0), 0.0)
+        # first guess: as far along the normals of the stretch as along its shaft angles
         theta = low + np.clip(share, 0.0, 1.0) * (high - low)
 
         def shaft(theta: Array) -> Array:
@@ -125,7 +127,8 @@ class ArmFace:
         """Swing, radians (n,), that a shift of a contour by `tolerance` gives the face, to second order.
 
         `support` (3, n) is the contour's less `out`, with two derivatives, at the places touched at shaft angles phi
-        (n,). That is e over the distance from pivot to contact, and the next term.
+        (n,). That is e over the distance from pivot to contact, and the next term. Raises ContactError where the
+        intended contact reaches the pivot.
         """
         r, slope, bend = support
         distance = np.sqrt(self.pivot**2 - r * r) - self.side * slope
@@ -414,7 +417,7 @@ class FlatPair(OfTransmission, _OnArm):
 
     @cached_property
     def _touched_ahead(self) -> tuple[Array, Array]:
-        """Rows and angles as `_touched` gives them, of face B at the shaft angles at which face A touches the grid."""
+        """Support rows (3, n) where face B touches the contour, and shaft angles (n,), as face A touches the grid."""
         tau = grid(self.breaks)
         return self._touched_at(
             self.transmission.polar_parameter(self.pitch.pitch(tau, 0)[1][0] + self.transmission.alpha)

@@ -81,7 +81,7 @@ def follower_of(
 def still_follower(contacts: Sequence[Contact[Guide, Touch]], side: Side = 1) -> Follower:
     """Make the follower of contacts for a contour that no motion is known of: it is meant to stand still.
 
-    Raises ValueError as `follower_of` does.
+    Raises ValueError for contacts for which no follower is known.
     """
     return follower_of(contacts, Piecewise(np.array([0.0, TURN]), (Constant(0.0),), TURN), side)
 
@@ -92,8 +92,8 @@ def followers_of(
     """Followers by the name of the surface on which they run, one for each surface in `sides`.
 
     Each has the contacts that touch its surface, and is what that surface is judged by. `sides` gives the side of each
-    surface on which the metal lies. Raises ValueError as `follower_of` does, and for a contact on a surface that is not
-    in `sides` or a surface without a contact.
+    surface on which the metal lies. Raises ValueError for contacts for which no follower is known, for a contact on a
+    surface that is not in `sides` and for a surface without a contact.
     """
     _demand(
         {contact.surface for contact in contacts} == set(sides), "each touches one of the surfaces, and each is touched"

@@ -124,9 +124,10 @@ class Resting:
 
 
 def laid(mechanism: Mechanism, bearing: FlatContacts, rests: Sequence[FrameRest]) -> list[Resting]:
-    """Lay the frame on the contour all round, in each of the ways. FrameError where the mechanism binds or turns back.
+    """The frame as it rests on the contour all round: a Resting for each of `rests`, in their order.
 
-    UnsettledError where rounding hides the motion. All ways go through the linkage together.
+    Raises FrameError where the mechanism binds or turns the shaft back, UnsettledError where rounding hides the motion.
+    All of them go through the linkage together.
     """
     shares = np.transpose([(rest.first, rest.second) for rest in rests])[:, None]
 

@@ -7,8 +7,8 @@ Along a curve of arc length s, with u = r^2, a = P.T and c = P x T of its point 
     position' = 2 a/S,    phi' = (c + 2 a m/S)/u
 
 where S^2 is a polynomial in u and m is linear in u: all that a guide has to tell of its derivatives (position' is less
-that where the guide counts inwards). An arm of length
-L, its pivot at C: S^2 = 4 C^2 L^2 - (C^2 + L^2 - u)^2, 2 m = -side (u + L^2 - C^2); a line of travel displaced by e:
+that where the guide counts inwards). An arm of length l, its pivot at distance L from the shaft:
+S^2 = 4 L^2 l^2 - (L^2 + l^2 - u)^2, 2 m = -side (u + l^2 - L^2); a line of travel displaced by e:
 S^2 = 4 (u - e^2), m = e.
 """
 
@@ -181,26 +181,26 @@ class Arm:
         return on_side
 
     def square(self, u: Array) -> Array:
-        """S^2 at u (n,): (2 L l sin(lean))^2."""
+        """S^2, mm^4 (n,), at u = r^2, mm^2 (n,): (2 L l sin(lean))^2."""
         square: Array = (u - (self.pivot - self.length) ** 2) * ((self.pivot + self.length) ** 2 - u)
         return square
 
     def square_slope(self, u: Array) -> Array:
-        """Derivative of S^2 by u at u (n,)."""
+        """Derivative of S^2 by u, mm^2 (n,), at u = r^2, mm^2 (n,)."""
         return 2.0 * (self.pivot**2 + self.length**2 - u)
 
     @property
     def square_bend(self) -> float:
-        """Second derivative of S^2 by u, a constant; see the module."""
+        """Second derivative of S^2 by u, a constant: -2."""
         return -2.0
 
     def moment(self, u: Array) -> Array:
-        """Term m of the module's formulas at u = r^2 (n,)."""
+        """The m of phi' = (c + 2 a m/S)/u, mm^2 (n,), at u = r^2, mm^2 (n,): -side (u + l^2 - L^2)/2."""
         return -0.5 * self.side * (u + (self.length - self.pivot) * (self.length + self.pivot))
 
     @property
     def moment_slope(self) -> float:
-        """Derivative of m by u, a constant; see the module."""
+        """Derivative of m by u, a constant: -side/2."""
         return -0.5 * self.side
 
 
@@ -321,30 +321,30 @@ class Line:
         return q + x[:, :, None] * d
 
     def on_side(self, phi: Array, points: Array, slack: float) -> NDArray[np.bool_]:
-        """Mask (n,) of the points (n, 2) that lie outwards, along the travel, of the foot of the shaft."""
+        """Mask (n,) of points (n, 2) beyond the foot of the shaft along the travel, or `slack`, mm, short of it."""
         on_side: NDArray[np.bool_] = dot(unit(phi), points) >= -slack
         return on_side
 
     def square(self, u: Array) -> Array:
-        """S^2 at u (n,): (2 position)^2."""
+        """S^2, mm^2 (n,), at u = r^2, mm^2 (n,): (2 position)^2."""
         return 4.0 * (u - self.offset**2)
 
     def square_slope(self, u: Array) -> Array:
-        """Derivative of S^2 by u at u (n,)."""
+        """Derivative of S^2 by u (n,): 4."""
         return np.full_like(u, 4.0)
 
     @property
     def square_bend(self) -> float:
-        """Second derivative of S^2 by u, a constant; see the module."""
+        """Second derivative of S^2 by u: 0."""
         return 0.0
 
     def moment(self, u: Array) -> Array:
-        """Term m of the module's formulas at u = r^2 (n,)."""
+        """The m of phi' = (c + 2 a m/S)/u, mm (n,), at u = r^2, mm^2 (n,): the offset e."""
         return np.full_like(u, self.offset)
 
     @property
     def moment_slope(self) -> float:
-        """Derivative of m by u, a constant; see the module."""
+        """Derivative of m by u: 0."""
         return 0.0
 
 
@@ -382,7 +382,10 @@ def _on_arm(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
 
 
 def _on_piece(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
-    """Both crossings (2, n, 2), as `_on_arm` gives them, from the piece's own circle, which is the smaller one."""
+    """Both crossings (2, n, 2), seen from the pieces' starts, nan where there are none.
+
+    They come from the piece's own circle, which is the smaller one.
+    """
     m, k = right(pieces.tangent), pieces.curvature
     v = m + k[:, None] * q
     size, away = np.hypot(v[:, 0], v[:, 1]), np.hypot(q[:, 0], q[:, 1])

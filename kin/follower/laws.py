@@ -61,7 +61,7 @@ class GuidedPitch:
     def rates(self, tau: Array) -> tuple[Array, Array]:
         """First and second derivative of the distance from the pitch curve by the position, absolute, at tau: (n,).
 
-        The first of an arm is l cos(pressure angle).
+        The first of an arm is l cos(pressure angle). Raises ContactError for a pressure angle of 90 degrees.
         """
         phi, own = self._own(tau)
         _, first, second = self.guide.path(phi, own)
@@ -79,7 +79,8 @@ class GuidedPitch:
 def leeway(slope: Array, sag: Array, tolerance: float) -> Array:
     """Travel (n,), rad or mm, at which a roller leaves the pitch curve by `tolerance`, mm, to second order.
 
-    `slope` and `sag` are those of `GuidedPitch.rates`.
+    `slope` and `sag` (n,) are the first and second derivative of the distance from the pitch curve by the position,
+    absolute.
     """
     swing = tolerance / slope
     leeway: Array = swing + 0.5 * sag / slope * swing**2
@@ -107,7 +108,7 @@ class ByLaw:
 
 @dataclass(frozen=True, eq=False)
 class Swing:
-    """The swing of a double follower over the shaft angle, `share` times psi, radians; as `ByLaw` for contact."""
+    """The swing of a double follower over the shaft angle, rad: `share` times psi."""
 
     transmission: Transmission
     share: float = 1.0
@@ -119,12 +120,12 @@ class Swing:
         return phi
 
     def derivatives(self, phi: Array, order: int, side: int = 1) -> Array:
-        """Swing and its derivatives at shaft angles phi (n,): (order + 1, n); at a break those of that side."""
+        """Swing, rad, and derivatives by rad of shaft, (order + 1, n), at phi (n,), rad; at a break from `side`."""
         rows: Array = self.share * self.transmission.psi_of_shaft(phi, order, side)
         return rows
 
     def rows(self, phi: Array) -> Array:
-        """Swing and two derivatives at shaft angles phi (n,), (3, n); at a break those of either side."""
+        """Swing, rad, and two derivatives by rad of shaft, (3, n), at phi (n,), rad; at a break from either side."""
         tau, side = ParameterTable.of(self.transmission).at(phi)
         shaft, psi = self.transmission.jets(Jet.variable(tau, 3), side)
         p = [row.c[0] for row in derivatives_by(psi, shaft)]

@@ -112,7 +112,7 @@ def measured(
 
     The metal lies inside the contour (side 1) or outside (-1). `outer` is the outer flank of a groove, whose inner one
     is `contour`: the roller rests on it as contact 2. Raises ContactError where the touch meets nothing, ValueError
-    for contacts that `follower_of` does not know.
+    for contacts for which no follower is known.
     """
     follower = still_follower(contacts, side)
     first, *others = follower.resting(contour)
@@ -151,7 +151,11 @@ def measured(
 
 
 def positions(contour: Contour, contact: Contact[Guide, Touch], side: Side, phi: Array) -> Array:
-    """Positions of a follower of one contact at shaft angles phi (n,), mm or rad (n,); see `measured`."""
+    """Positions of a follower of one contact on a contour, mm or rad (n,), at shaft angles phi (n,), rad.
+
+    The metal lies inside the contour (side 1) or outside (-1). Raises ContactError where the touch meets nothing,
+    ValueError for a contact for which no follower is known.
+    """
     follower = still_follower((contact,), side)
     rows: Array = follower.resting(contour)[0].rows(phi)[0] / follower.si
     return rows

@@ -70,7 +70,10 @@ class SplinePath:
 
     @property
     def resolution(self) -> float:
-        """Greatest motion error, mm or rad, that rounding may feign; the former is a share of the extent."""
+        """Greatest motion error that rounding may feign, mm or rad.
+
+        For a translating roller it is a share of the contour's extent, for an arm a constant.
+        """
         return RESOLUTION * (float(np.abs(self.beziers.control).max()) if self.guide.unit == "mm" else 1.0)
 
     def at(self, row: Indices, t: Array) -> tuple[CentreState, Array]:
@@ -129,7 +132,10 @@ class SplinePath:
         return cell // CELLS, np.clip(cell % CELLS / CELLS + start, 0.0, 1.0)
 
     def reached(self, phi: Array) -> Array:
-        """Position of the roller, mm or radians, at shaft angles phi (n,)."""
+        """Position of the roller, mm or rad (n,), at shaft angles phi (n,), rad.
+
+        Raises UnsettledError where a contact is not found in `STEPS` steps.
+        """
         row, t = self._about(phi)
         for _ in range(STEPS):
             state, speed = self.at(row, t)
@@ -148,7 +154,10 @@ class SplinePath:
         return self._table.edges[:-1][:: CELLS // 2]
 
     def gap(self, centres: Array, phi: Array) -> Array:
-        """Gap (n,), mm, between the contour and a roller with its centre at (n, 2), near where it rests at phi (n,)."""
+        """Gap (n,), mm, between the contour and a roller with its centre at (n, 2), near where it rests at phi (n,).
+
+        Raises UnsettledError for a gap above `MOST_PLAY` of the roller's radius, and where the foot is not found.
+        """
         row, t = self._about(phi)
         first, last = (np.hypot(*self.beziers.velocity[:, k].T) for k in (0, -1))
         side, radius = np.sign(self.offset), abs(self.offset)
@@ -294,7 +303,10 @@ class BezierSpans:
 
 
 def quartered(row: Indices, low: Array, high: Array, which: NDArray[np.bool_]) -> tuple[Indices, Array, Array]:
-    """Quarters of some of the intervals from low to high on rows, (n,) each."""
+    """Quarters of the k intervals that the mask `which` (n,) chooses, of those from low to high (n,) on rows (n,).
+
+    Row, lower and upper end of each, (4k,): the first quarters of all intervals, then the second ones, and so on.
+    """
     begin, step = low[which], 0.25 * (high - low)[which]
     cuts = [begin + k * step for k in range(4)] + [high[which]]
     return np.tile(row[which], 4), np.concatenate(cuts[:-1]), np.concatenate(cuts[1:])

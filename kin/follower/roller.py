@@ -148,7 +148,11 @@ class _Rollers(Moved):
         return [OfRoller(obstacle, guide, contact.turned) for contact, guide in each]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """Pressure angle, rad, and radius of curvature of the contour, mm, (n,) each; see `Follower`."""
+        """Pressure angle at contact 1, rad, and radius of curvature of the contour there, mm, (n,) each, at phi (n,).
+
+        The angle counts counter-clockwise from the contour's outward normal to the way in which the roller travels
+        outwards. The radius is 0 at a corner, negative in a hollow and infinite on a line.
+        """
         pressure, radius = self.drives(contour)[0].pressed(phi)
         return pressure, radius - self.radius
 
@@ -423,7 +427,10 @@ def _closely(rollers: Sequence[Held], law: IntendedLaw, looked: Array) -> tuple[
 
 
 def contact_distances(search: Search, phi: Array, turned: float = 0.0) -> tuple[Array, Indices]:
-    """Distance from the shaft of a roller held in contact, and the piece it meets, at shaft angles phi (n,)."""
+    """Distance of a roller's centre from the shaft, mm, and index of the piece it touches, (n,) each, at phi (n,), rad.
+
+    The contact is `turned`, rad, ahead of the shaft. Raises ContactError where the roller touches nothing.
+    """
     r, piece = search.first(phi + turned)
     if (piece < 0).any():
         raise ContactError("the roller does not touch the contour", float(phi[int(np.argmin(piece))]))

@@ -212,7 +212,10 @@ class Held:
         )
 
     def touched(self) -> Spans:
-        """Spans of the pieces that are touched over the whole turn."""
+        """Spans of the pieces that are touched over the whole turn.
+
+        Raises UnsettledError where the roller leaps from piece to piece.
+        """
         phi, r, piece = self.phi, self.r, self.piece
         for spare in reversed(range(TRIES)):
             change, after, a, b, one, other = changes = _changes(phi, piece)

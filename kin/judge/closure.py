@@ -37,7 +37,8 @@ def judge_closures(
 ) -> tuple[tuple[ClosureVerdict, ...], list[Check]]:
     """Judge the play between pairs of surfaces, of one file or of several, in mm and as if not mirrored.
 
-    A closure one of whose surfaces is not among these is left out. `uneven` as of `judge_contour`, for either.
+    A closure one of whose surfaces is not among these is left out. `uneven`, mm, is how far a solid's other sections
+    may be off either contour; what that can do is counted into the play.
     """
     by_name = {surface.name: (surface, contour) for surface, contour in surfaces}
     verdicts, checks = [], []
@@ -88,7 +89,7 @@ def _judge_closure(
 def left_over(first: Surface, last: Surface, shaft: Array) -> Array:
     """Play of the follower between two surfaces at shaft angles (n,), mm or degrees, below 0 where it interferes.
 
-    A curve to look at, without bounds. Raises ContactError as followers do.
+    A curve to look at, without bounds. Raises ContactError where a follower finds no contact.
     """
     pushed, stopped = (_rests(surface.follower or surface.gauge, contour) for surface, contour in (first, last))
     gauge = first[0].gauge

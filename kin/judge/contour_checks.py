@@ -31,7 +31,11 @@ PLACED = np.linspace(0.0, TURN, 720, endpoint=False)  # parameters at which a co
 
 
 class Fine(NamedTuple):
-    """A contour, within what arcs stand for its splines, and by how much these and rounding put lengths off, mm."""
+    """A contour of lines and arcs that stands for one with splines.
+
+    `spline`, mm, is the distance within which arcs stand for splines, 0 without any; `slack`, mm, is how far arcs and
+    rounding may put a length off.
+    """
 
     contour: Contour
     spline: float

@@ -91,7 +91,10 @@ def _off(rows: JoinedRows, follower: Follower) -> tuple[float, float]:
 
 
 def read_table(path: Path, unit: float = 1.0) -> Table:
-    """Read a table for a drive, whose slave is in `unit`, mm or rad, if it states none; raises ReadError for others."""
+    """Read a table for a drive, whose slave is in `unit`, mm or rad, if it states none.
+
+    Raises ReadError for a file that is too large or no such table, OSError as the file system does.
+    """
     if is_curve_points(path):
         points = read_curve_points(path)
         return Table(JoinedRows(_turn(points[:, 0], path), points[:, 1:].T * unit, "line"), unit, None)

@@ -143,7 +143,7 @@ class _Table(NamedTuple):
 
 
 def _read(path: Path, grinding: Grinding) -> _Table:
-    """Read a table; raises ReadError."""
+    """Read a table; raises ReadError for a file that is too large, no plain text or no such table."""
     try:
         lines = contents(path, "csv").decode("ascii").splitlines()
     except UnicodeDecodeError as error:

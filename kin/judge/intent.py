@@ -67,7 +67,7 @@ class DwellAsked:
 class LinkageIntent:
     """The mechanism that the yoke's frame drives as a coupler.
 
-    swing   law that its frame has to follow; its lift's is the law if None
+    swing   law over the shaft angle that its frame has to follow; None where the exact cam's own lift moves the frame
     dwell   of its output, which is found in each file and, if it must last, judged
     overlap by which the metal is to overlap each face of the frame, mm
     """
@@ -163,9 +163,8 @@ class Limits:
     """Permitted errors: `tolerance` of the contour, mm; greatest motion error, and greatest play or interference.
 
     Motion and play are in mm or degrees as the follower has them, `output`, the greatest error of a mechanism's output,
-    as the mechanism has it; None is what the tolerance implies, see `motion_limit` and `closure` of the followers and
-    `kin.follower.frame.implied_limit`. Ends in drawings within `gap`, mm, are joined by lines, which is counted into
-    contour and motion; None for the readers' own.
+    as the mechanism has it; None is the most that a contour within the tolerance can cause. Ends in drawings within
+    `gap`, mm, are joined by lines, which is counted into contour and motion; None for the readers' own.
     """
 
     tolerance: float

@@ -193,7 +193,7 @@ def settled(solid: AnySolid, leaning: Sequence[Lean], tolerance: float) -> AnySo
 def between_sections(
     solid: AnySolid, levels: Sequence[float], leaning: Sequence[Lean], tolerance: float
 ) -> list[tuple[str, str]]:
-    """Faults, each with the name of the check that reports it, that make a solid differ between the sections looked at.
+    """Pairs (name of the check, fault in words) of what makes a solid differ between the sections at `levels`, mm.
 
     All sections between two heights are the same if there is no face between them, and no wall leans. Where one face is
     meant two that are nearer to each other than the tolerance would have a fin or a gap between them. What leans evenly

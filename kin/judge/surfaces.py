@@ -50,7 +50,7 @@ def sort_chains(
 
     `z` is the height of the section in which they lie, None for that of the plain disc.
     A surface is what stands on its layer; where none of the surfaces has a chain there, they are those that go round
-    the shaft, by falling area. ReadError where one is missing.
+    the shaft, by falling area. Raises ReadError where one is missing, or its layer has several closed contours.
     """
     checks: tuple[Check, ...] = ()
     if outline is not None and part.outline is None:

@@ -38,8 +38,9 @@ class DiscsRead(NamedTuple):
 def verify_set(files: Sequence[DiscFile], shaft: ShaftIntent, angles: int, limits: Limits) -> list[Verdict]:
     """Judge files that go together, at least one; closures between discs stand in the verdict on the last file.
 
-    A closure whose surfaces are not all there, as a disc is not given or cannot be read, is left out. Raises as
-    `verify` does.
+    A closure whose surfaces are not all there, as a disc is not given or cannot be read, is left out. Raises
+    OSError as the file system does, UnitsError where a file states another unit than is given, and ValueError for
+    another suffix or no angles.
     """
     verdicts = []
     for path, disc, units in files:

@@ -94,7 +94,11 @@ def verify_points(path: Path, part: PartIntent, angles: int, limits: Limits, mm:
 
 
 def verify_together(path: Path, shaft: ShaftIntent, angles: int, limits: Limits) -> Verdict:
-    """Judge a 3MF or STEP that holds all discs of a shaft, each in its place, as `verify` does one that holds one."""
+    """Judge a 3MF or STEP that holds all discs of a shaft, each in its place, at `angles` equal steps of the shaft.
+
+    A file from which they cannot be read gets a verdict that says why. Raises OSError as the file system does,
+    ValueError for another suffix or no angles.
+    """
     return _verdict(path, lambda: _of_solids(path, shaft, limits), angles, limits)
 
 

@@ -131,7 +131,7 @@ class Transmission:
         return _Lead.of(tuple(w - 0.5 for w in self.lean), self.offset - self.alpha / 2)
 
     def jets(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Give phi and psi of a jet or ball jet tau; `side` decides at breaks."""
+        """Series of shaft angle phi and swing psi, rad, of a jet or ball jet tau, rad; `side` decides at breaks."""
         places = self.psi.places(tau, side)
         psi = self.psi.at(tau, places)
         return self._lead.on(tau, psi, places), psi
@@ -146,9 +146,10 @@ class Transmission:
         return Piecewise(self.psi.knots, (distance,), self.psi.period, self.psi.smooth_seam)
 
     def polar(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Give r and t of roller A's centre, of a jet or ball jet tau (W 4.10); `side` decides at breaks.
+        """Series of r, mm, and t, rad, of roller A's centre, of a jet or ball jet tau (W 4.10).
 
-        t is formed from tau, not as phi - (psi + alpha)/2: where psi leaps, those two leap alike.
+        `side` decides at breaks. t is formed from tau, not as phi - (psi + alpha)/2: where psi leaps, those two leap
+        alike.
         """
         if self._distance is not None:
             return self._distance.on(tau, side), tau
@@ -157,7 +158,7 @@ class Transmission:
         return cos(psi * 0.5 + self.alpha / 2) * (2 * self.arm), self._polar_lead.on(tau, psi, places)
 
     def at(self, tau: float | Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Give phi and psi with their derivatives by tau at tau (n,), (order + 1, n) each."""
+        """Shaft angle phi and swing psi, rad, with their derivatives by tau, (order + 1, n) each, at tau (n,), rad."""
         phi, psi = self.jets(Jet.variable(tau, order), side)
         return phi.derivatives(), psi.derivatives()
 
@@ -169,7 +170,7 @@ class Transmission:
         return (balls[0].mid, balls[0].rad), (balls[1].mid, balls[1].rad)
 
     def pitch(self, tau: float | Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Give r and t of roller A's centre with their derivatives by tau, (order + 1, n) each (W 4.10)."""
+        """Polar r, mm, and t, rad, of roller A's centre with their derivatives by tau, (order + 1, n) each (W 4.10)."""
         r, t = self.polar(Jet.variable(tau, order), side)
         return r.derivatives(), t.derivatives()
 
@@ -177,7 +178,7 @@ class Transmission:
     def rounding(self) -> float:
         """By how much the pitch curve may be off through the rounding of a recipe's own formula, mm; else 0.
 
-        As `Lift.rounding`, at `_LOOKS` parameters of the law's period.
+        It is the radius of what proved arithmetic gives, the greatest at `_LOOKS` parameters of the law's period.
         """
         bare = [f.function if isinstance(f, AffineStretch) else f for f in self.psi.functions]
         if not any(isinstance(f, FromLeaf | FromExpression) for f in bare):
@@ -187,11 +188,11 @@ class Transmission:
         return 2 * self.arm * float((phi + psi).max())
 
     def psi_of_shaft(self, phi: float | Array, order: int, side: int = 1) -> Array:
-        """Give psi and its derivatives by phi at shaft angles phi (n,), (order + 1, n); at a break by side."""
+        """Swing psi, rad, and its derivatives by phi, (order + 1, n), at phi (n,), rad; at a break those of `side`."""
         return self._by_shaft(self.parameter(phi, side), order, side)
 
     def _by_shaft(self, tau: Array, order: int, side: int) -> Array:
-        """Give psi and its derivatives by phi at parameters tau (n,)."""
+        """Swing psi, rad, and its derivatives by phi, (order + 1, n), at parameters tau (n,), rad."""
         shaft, psi = self.jets(Jet.variable(tau, order), side)
         return np.stack([row.c[0] for row in derivatives_by(psi, shaft)])
 

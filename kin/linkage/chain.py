@@ -65,9 +65,10 @@ class Chain:
         return self.dyads[-1].unit if self.dyads else self.linkage.unit
 
     def solve(self, s: Jet, s1: Jet, about: Sequence[float]) -> Solved:
-        """Solve for jets of the lifts S and S1, n points; dyad k takes its directions about `about[k]`.
+        """Solve for jets of the lifts S and S1, n points; dyad k takes its directions within pi of `about[k]`, rad.
 
-        `about` may be shorter than the dyads: the rest of them are left out. Raises BindingError.
+        `about` may be shorter than the dyads: the rest of them are left out. Raises BindingError where a loop does not
+        close, or stands in a limit position and derivatives are asked for.
         """
         solved = Solved((s, s1), self.linkage.solve(s, s1, self.breadth))
         for k, direction in enumerate(about):
@@ -118,7 +119,8 @@ class Chain:
     def margins(self, loop: int, s: Array, s1: Array, about: Sequence[float]) -> Array:
         """Distances of a loop from its k limits, mm (k, n), below 0 where it binds.
 
-        Each is smooth where the lifts (n,) are; `about` as of `solve`. Raises BindingError where an earlier loop binds.
+        Each is smooth where the lifts (n,) are. Dyad k takes its directions within pi of `about[k]`, rad. Raises
+        BindingError where an earlier loop binds.
         """
         if loop == 0:
             return self.linkage.margins(s, s1, self.breadth)

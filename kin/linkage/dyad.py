@@ -100,7 +100,10 @@ class RRR(_Pivoted):
         return triangle_margins(a, b, _square(*terms), *excesses(*terms, a, b))
 
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:
-        """Solve the triangle GQP for P at x, y; GP's direction is taken within pi of `about`. Raises BindingError."""
+        """Solve the triangle GQP for P at x, y; GP's direction is taken within pi of `about`, rad.
+
+        Raises BindingError where the triangle does not close, or is flat and derivatives are asked for.
+        """
         side = side_of(self.assembly)
         arm = _arm(x, y, self.ground)
         gqp = Triangle.of(self.links[1], self.links[0], arm)
@@ -146,7 +149,11 @@ class RRP:
         return np.stack([self.link - across, self.link + across])
 
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:  # noqa: ARG002 - one call for all dyads
-        """Solve along the line and across it: (output - along P)^2 = link^2 - (across P)^2. Raises BindingError."""
+        """Solve along the line and across it: (output - along P)^2 = link^2 - (across P)^2.
+
+        Raises BindingError where P is farther from the line than the link is long, or as far and derivatives are asked
+        for.
+        """
         c, s = math.cos(self.direction), math.sin(self.direction)
         x, y = x - self.through[0], y - self.through[1]
         across = y * c - x * s
@@ -199,7 +206,10 @@ class RPR(_Pivoted):
         return longer(_square(*terms), excess(*terms, (self.offset,)), self.offset)[None]
 
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:
-        """Solve GP^2 = slide^2 + offset^2; the direction of GP is taken within pi of `about`. Raises BindingError."""
+        """Solve GP^2 = slide^2 + offset^2; the direction of GP is taken within pi of `about`, rad.
+
+        Raises BindingError where GP is shorter than the offset, or as short and derivatives are asked for, or is 0.
+        """
         arm = _arm(x, y, self.ground)
         square = excess(arm.x_terms, arm.y_terms, (self.offset,))
         demand_mobile(longer(arm.q.c[0], square, self.offset), order=x.order, fixed=arm.q.c[0] == 0)

@@ -71,7 +71,7 @@ class Quantities(NamedTuple):
     output                        position of the output, in its unit
     velocity, acceleration        its derivatives by the shaft angle; ..._relative by the relative angle
     frame                         angle of the frame, rad
-    transmission_*, force_*       sine and cosine of the transmission and of the force angle, see `transmission_angle`
+    transmission_*, force_*       sine and cosine of the angle between frame and rocker or slide, and of the force angle
     offset                        Y of D from the shaft, across the frame, mm
     """
 

@@ -113,10 +113,11 @@ class FourBar:
         return triangle_margins(self.ground, self.rocker, q, *excesses(x, y, self.ground, self.rocker))
 
     def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
-        """Solve the triangle ABD of r1, r4 and AD; in place of AS 13-18, 19-20 and 34. Raises BindingError.
+        """Solve the triangle ABD of r1, r4 and AD; in place of AS 13-18, 19-20 and 34.
 
         AS 20 takes theta_4 from its sine, which loses the branch beyond 90 degrees; here it is 2 atan2 of the roots of
-        AD^2 - (r1 - r4)^2 and (r1 + r4)^2 - AD^2, and 2 r1 r4 sin theta_4 theta_4' = (AD^2)'.
+        AD^2 - (r1 - r4)^2 and (r1 + r4)^2 - AD^2, and 2 r1 r4 sin theta_4 theta_4' = (AD^2)'. Raises BindingError where
+        the triangle does not close, or is flat and derivatives are asked for.
         """
         r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
         ad = _frame_vector(s, s1, w, self.coupler, self.joint_offset)
@@ -222,9 +223,10 @@ class InvertedSliderCrank:
         return np.stack([np.atleast_1d(near), np.atleast_1d(far)])
 
     def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
-        """Solve r1 cos theta_4 = r4 - Y (AS 24-27), r1 sin theta_4 theta_4' = S' (AS 29). Raises BindingError.
+        """Solve r1 cos theta_4 = r4 - Y (AS 24-27), r1 sin theta_4 theta_4' = S' (AS 29).
 
-        AS 30 has the wrong sign before r1 omega_4^2 cos theta_4; AS 31 is right.
+        AS 30 has the wrong sign before r1 omega_4^2 cos theta_4; AS 31 is right. Raises BindingError where the loop
+        does not close, or stands in a limit position and derivatives are asked for.
         """
         r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
         near_value, far_value = self.margins(s.c[0], s1.c[0], w)
@@ -331,7 +333,10 @@ class SliderCrank:
         return longer(q, excess(x, y, (self.offset,)), self.offset)[None]
 
     def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
-        """Solve D_x^2 = AD^2 - offset^2, D_x D_x' = (AD^2)'/2. Raises BindingError."""
+        """Solve D_x^2 = AD^2 - offset^2, D_x D_x' = (AD^2)'/2.
+
+        Raises BindingError where AD is shorter than the offset, or as short and derivatives are asked for, or is 0.
+        """
         offset, side = self.offset + 0.0, side_of(self.assembly)  # no -0, whose polar angle is -pi
         ad = _frame_vector(s, s1, w, self.coupler, self.joint_offset)
         q = ad.q

@@ -48,7 +48,7 @@ class FrameBearing:
 
         along, across  of the frame on the cam, dX and dY
         pivot, joint   of B, and of D in the ground, as complex numbers
-        link           by which the output link is longer, see `deviation`
+        link           by which the output link is longer, mm
         """
         positions = self.motion.solved.linkage
         (s, slope), (_, slope1) = self.motion.faces

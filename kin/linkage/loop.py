@@ -91,7 +91,7 @@ def excess(x: Sequence[Term], y: Sequence[Term], z: Sequence[Term]) -> Array:
 
 
 def excesses(x: Sequence[Term], y: Sequence[Term], a: float, b: float) -> tuple[Array, Array]:
-    """Give x^2 + y^2 - (a - b)^2 and (a + b)^2 - x^2 - y^2, (n,) each, as `excess` does, without cancellation."""
+    """x^2 + y^2 - (a - b)^2 and (a + b)^2 - x^2 - y^2, (n,) each, without cancellation; their signs are right."""
     value = excess(x, y, (a, np.array([[-b], [b]])))
     return value[0], -value[1]
 

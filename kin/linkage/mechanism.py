@@ -187,7 +187,10 @@ class Mechanism:
         return LinkageMotion(theta, shaft, solved)
 
     def driven(self, s: Jet, s1: Jet) -> tuple[Jet, Jet]:
-        """theta_3 and output for any lifts of the frame's faces 1 and 2, as jets at n points. Raises BindingError."""
+        """theta_3, rad, and output, rad or mm, for any lifts of the frame's faces 1 and 2, mm, as jets at n points.
+
+        Raises BindingError where a loop does not close, or stands in a limit position and derivatives are asked for.
+        """
         solved = self.chain.solve(s, s1, self.about)
         return solved.linkage.frame, solved.outputs[-1]
 

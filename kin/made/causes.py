@@ -112,7 +112,10 @@ def _explained(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> _E
 
 
 def correlated_groups(correlation: Array) -> list[list[int]]:
-    """Indices of n estimates in groups: a chain of correlations beyond ALIKE joins any two of a group; (n, n)."""
+    """Groups of the n estimates whose correlations are given, (n, n), by their indices.
+
+    Any two estimates of a group are joined by a chain of estimates, each correlated with the next by more than ALIKE.
+    """
     groups: list[list[int]] = []
     for k in range(len(correlation)):
         joined = [group for group in groups if np.abs(correlation[k, group]).max() > ALIKE]

@@ -55,7 +55,7 @@ class _Beyond(NamedTuple):
         return self.drive.smooth
 
     def rows(self, phi: Array) -> Array:
-        """Position, velocity and acceleration, SI by rad, (3, n), at shaft angles (n,); see `Excitation`."""
+        """Position, m or rad, velocity and acceleration by rad of the shaft, (3, n), at shaft angles phi (n,), rad."""
         outwards = self.follower.contacts[self.contact].sense  # own positions grow outwards
         rows: Array = self.drive.rows(phi) - outwards * self.follower.si * self.follower.added(phi)[self.contact]
         return rows
@@ -78,7 +78,7 @@ class _Meant:
         return True
 
     def rows(self, phi: Array) -> Array:
-        """Intended position, velocity and acceleration, SI by rad, (3, n), at shaft angles (n,); see `Excitation`."""
+        """Intended position, m or rad, velocity and acceleration by rad of shaft, (3, n), at angles phi (n,), rad."""
         rows: Array = self.follower.si * self.follower.motion.derivatives(phi, 2)[:3]
         return rows
 
@@ -167,7 +167,10 @@ class Corrected(Follower):
         return self.exact.pressed(contour, phi)
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
-        """Shaft angle and own position of each contact at points (n, 2) with normals; as `Follower.touching`."""
+        """Shaft angle, rad, and position, mm or rad, (n,) each, with each contact on metal at points (n, 2), mm.
+
+        `normals` (n, 2) are outward of the contour. The follower is the exact one; nan is out of reach.
+        """
         return self.exact.touching(points, normals)
 
     def added(self, shaft: Array) -> Array:
@@ -209,7 +212,11 @@ class Corrected(Follower):
         return breaks
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
-        """Motion error and play of a contour in excess of those on the corrected metal; see `Follower`."""
+        """Motion error and play of a contour in excess of those on the corrected metal; no play with one contact.
+
+        The rms and the increments of the error are from the shaft angles phi (n,), rad. Raises ContactError where the
+        follower finds no contact.
+        """
         rests, law = self.resting(contour), _Meant(self.exact)
         size = self.si * float(np.abs(contour.vertices).max()) if self.unit == "mm" else 1.0
         each = [extremes_between(law, rest, size).worst for rest in rests]

@@ -126,7 +126,10 @@ class MadeMotion:
 
     @property
     def lifts(self) -> tuple[Array, Array]:
-        """Lift, velocity and acceleration at the shaft angles of the errors, as made and as intended, (3, n) each."""
+        """Lift, mm or rad, velocity and acceleration by rad of the shaft, as made and as intended, (3, n) each.
+
+        They are at the shaft angles of the errors. The acceleration as made is nan about breaks of the motion.
+        """
         intended = self.errors.intended.copy()
         intended[0] -= intended[0].min()
         made = intended + self.errors.rows

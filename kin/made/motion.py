@@ -70,7 +70,7 @@ class Errors:
     """Errors of a motion at shaft angles (n,), with their standard deviations; mm or rad, derivatives by rad.
 
     shaft (n,)       shaft angles, rad
-    rows (3, n)      error, its velocity and its acceleration; nan about breaks of the motion, where that jumps
+    rows (3, n)      error, its velocity and its acceleration, which is nan about breaks of the motion, where it jumps
     sds (3, n)       standard deviations by the noise of the points
     gain (n,)        what a mm more of metal adds to the position
     intended (3, n)  the intended position, velocity and acceleration

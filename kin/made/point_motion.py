@@ -127,9 +127,9 @@ def measured_motion(
 
     `opposed` contacts are as far apart as the points say, so that play is what their distance varies by. Where
     `span` is a section of the turn, the swing of each section is the negative of that before, over the shaft angle less
-    `lag` times the swing; the mean of all is given, and as `uneven` how far one is off it.
+    `lag` times the swing; the mean of all is given, and as `uneven` the greatest distance of a section from that mean.
 
-    Raises ContactError where a contact finds no metal, GapError for a gap, ValueError as `fit` does.
+    Raises ContactError where a contact finds no metal, GapError for a gap of more than two spans.
     """
     shaft = equal_steps(STEPS)
     curves, outliers = [], 0
@@ -165,7 +165,7 @@ def measured_motion(
 
 
 def _sections(swing: Array, span: float, lag: float) -> tuple[Array, float]:
-    """Mean swing of equal sections over equal shaft angles of the first (n,), and how far one is off it, rad.
+    """Mean swing of equal sections, rad (n,), over shaft angles of the first, and the greatest distance from it.
 
     The swing of each is the negative of that before over the cam's own angle, the shaft's less `lag` times the swing.
     """

@@ -182,7 +182,10 @@ class Profile:
 
 
 def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:
-    """Profile deviation of the surfaces of one part, which is placed as a whole."""
+    """Profile deviation of the surfaces of one part, which is placed as a whole.
+
+    Raises UnsettledError where the placing does not come to rest.
+    """
     wanted = FREE[datum]
     standing = _stacked(surfaces, surfaces[0].placing)
     free = told_apart(standing, wanted)

@@ -217,7 +217,10 @@ class _Points:
         self.gap = float(gaps[self.widest])
 
     def chosen(self, spans: int | None) -> int:
-        """Number of spans: that given, or that of the least cross-validation."""
+        """Number of spans: that given, or that of the least cross-validation.
+
+        Raises ValueError for a given number that is too small, or too large for the points.
+        """
         most = min(max(self.count // POINTS_A_SPAN, LEAST_SPANS), MOST_SPANS)
         if spans is not None:
             if not LEAST_SPANS <= spans <= most:

@@ -98,7 +98,7 @@ def halves(coefficients: Array) -> tuple[Array, Array]:
 
 
 def split(coefficients: Array, share: Array) -> tuple[Array, Array]:
-    """Coefficients (n, k+1, ...) over [0, at] and over [at, 1], `share` (n,)."""
+    """Coefficients (n, k+1, ...) over [0, share] and over [share, 1], `share` (n,) within [0, 1]."""
     rows = np.array(np.moveaxis(coefficients, 0, -1), order="C")
     left, back = np.empty_like(rows), 1.0 - share
     left[0] = rows[0]

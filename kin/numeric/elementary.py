@@ -233,7 +233,7 @@ def maximum(x: Number, y: Number) -> Number:
 
 
 def minimum(x: Number, y: Number) -> Number:
-    """Return the lesser of two numbers, jets or ball jets, as `maximum` does the greater."""
+    """Return the lesser of the two; a ball jet that may switch keeps its value and slope enclosed, no more."""
     return -maximum(-x, -y)
 
 

@@ -72,7 +72,8 @@ def climb(
 
     `slopes(x, which)` gives f, f' and -f''; `breaks`, in [0, 2 pi), are where f'' jumps. Returns x, the step that
     remains (below FINE_STEP and across no break, unless the bracket closed first), and f, f', -f'' at x: (n,) each.
-    Where stretches between breaks are short, the step is small beside the shortest, too.
+    Where stretches between breaks are short, the step is small beside the shortest, too. Raises UnsettledError where
+    MOST_STEPS steps do not do.
     """
     x = x.copy()
     ends = distinct(breaks)

@@ -98,7 +98,10 @@ def longest_of_each(
 ) -> tuple[Window, ...]:
     """Find the longest window of each section between `edges` (m + 1,), the period's 0 and end among them.
 
-    As `dwells`; f leaves the band about each edge, so that no window reaches from one section into the next.
+    Over a window f(x (n,), order) stays within `band`; it is periodic and continuous, and smooth between `breaks`. It
+    leaves the band about each edge, so that no window reaches from one section into the next. Ends are good to 1e-10 of
+    the period, or as far as f's rounding lets them be known. Raises ValueError for a band that is not positive, or is
+    lost in the rounding of f.
     """
     search = _search(f, breaks, band, float(edges[-1]))
     at_nodes = search.node_windows()

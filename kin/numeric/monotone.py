@@ -116,7 +116,8 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array 
     """Interpolate r functions, f(x (n,)) -> (r, n), between places (m + 1,) that rise, breaks among them.
 
     Each is resolved to `resolution` ((r,) or one for all), or to a share of its greatest absolute value, or to its own
-    rounding, whichever is most. Rounding is known by its not going down as cells are halved. Raises RoughError.
+    rounding, whichever is most. Rounding is known by its not going down as cells are halved. Raises RoughError where
+    too many cells are left unresolved.
     """
     basis = _basis()
     widest = (places[-1] - places[0]) / FIRST_CELLS

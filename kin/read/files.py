@@ -30,7 +30,15 @@ def read_drawing(
     bridged: float = 0.0,
     unstated: float = 1.0,
 ) -> Drawing:
-    """Read a drawing, see `DrawingOptions`; raises as `read_dxf`, ValueError for a suffix that is no drawing's."""
+    """Read the contour and the holes that a drawing gives to cut.
+
+    Ends within `gap`, mm, are joined; None is 1e-6 mm, or 2e-8 of a drawing below 50 mm. With `engraved` what is to be
+    engraved is read too. A closed chain may lie inside `deepest` others. Gaps up to `bridged`, mm, are reported and do
+    not raise. `unstated`, mm, is the unit in which `gap` and `bridged` are meant for a drawing that states none.
+
+    Raises OSError as the file system does; ReadError for a damaged file, and for what is not one closed contour with
+    holes; ValueError for a suffix that is no drawing's.
+    """
     path = Path(path)
     read = format_of(path).drawing
     if read is None:
@@ -41,9 +49,12 @@ def read_drawing(
 def read_solid(
     path: Path | str, heights: Sequence[float] = (), units: float | None = None, deepest: int = 1
 ) -> AnySolid:
-    """Read a solid; raises as `read_stl`, `read_3mf` and `read_step` do, ValueError for a suffix that is no solid's.
+    """Read a solid with its sections at `heights`, mm, in which a closed chain may lie inside `deepest` others.
 
     `units`, mm, is the unit of a file that states none; without it such a file is read in mm.
+
+    Raises OSError as the file system does; ReadError for a damaged file, and where a section is not one closed contour
+    with others in it; ValueError for a suffix that is no solid's.
     """
     path = Path(path)
     record = format_of(path)
@@ -55,7 +66,11 @@ def read_solid(
 
 
 def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
-    """Read the triangles of each body, mm; raises as `read_solid` does, ValueError for a file without meshes."""
+    """Read the triangles of each body, mm; `units`, mm, is the unit of a file that states none.
+
+    Raises OSError as the file system does; ReadError for a file that is too large, damaged or none of its format;
+    ValueError for a suffix of files without meshes.
+    """
     path = Path(path)
     record = format_of(path)
     if record.meshes is None:
@@ -65,10 +80,12 @@ def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
 
 
 def read_bodies(path: Path | str, sought: Sequence[Sought], levels: Sequence[float]) -> list[AnySolid]:
-    """Read several solids from one file, the lowest first; raises as `read_3mf` and `read_step` do.
+    """Read several solids from one file, the lowest first.
 
-    Heights are those above each one's own level, mm, and so they are in what is returned. ReadError for a file of
-    a format that does not hold several.
+    Heights are those above each one's own level, mm, and so they are in what is returned.
+
+    Raises OSError as the file system does; ReadError for a format that does not hold several, a damaged file, more or
+    fewer solids, and a section that is not one closed contour with others in it; ValueError for an unknown suffix.
     """
     path = Path(path)
     read = format_of(path).bodies

@@ -55,8 +55,8 @@ class Format:
     most      greatest size of a file that is read, bytes: any is read in 2 GB of memory, and in seconds
     suffixes  endings of files' names; the first is that of its word
     units     whether a file states its unit
-    drawing   reads a drawing, see `read_dxf`
-    solid     reads one part: (path, heights, deepest), see `read_stl`
+    drawing   reads a drawing: (path, options); None for a format that holds none
+    solid     reads one part and its sections at heights, within which chains are nested: (path, heights, deepest)
     bodies    reads several parts of one file, the lowest first: (path, what is sought of each)
     meshes    reads the triangles of each body, mm in a file that states its unit, and else as they stand there
     """
@@ -201,7 +201,7 @@ def format_of(path: Path) -> Format:
 
 
 def oversize(path: Path, name: str) -> str:
-    """Say that a file is larger than is read of its format; empty where it is not. Raises OSError as `stat` does."""
+    """Text that a file is larger than is read of its format; empty where it is not. OSError if it is missing."""
     size, most = path.stat().st_size, FORMATS[name].most
     return "" if size <= most else f"{size / 1e6:.4g} MB, and of a {name} up to {most / 1e6:.4g} MB are read"
 

@@ -16,9 +16,10 @@ _LIBRARIES = ("ezdxf", "matplotlib")
 
 @lru_cache(maxsize=1)
 def prepare_home() -> None:
-    """Lead these libraries to a temporary folder, gone when the process ends, if the home folder is none for them.
+    """Send ezdxf and matplotlib to a temporary folder where the home folder is missing or cannot be written.
 
-    To be called before either is imported; a process that starts others calls it before.
+    The folder is removed when the process ends. The call comes before the import of either library, and before other
+    processes are started.
     """
     import logging
 

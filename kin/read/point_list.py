@@ -72,7 +72,7 @@ def spline_of_points(path: Path, mm: float = 1.0) -> tuple[Contour, int]:
 
 
 def _points(path: Path) -> Array:
-    """Points (n, 2); raises ReadError."""
+    """Points (n, 2), in the file's unit; raises ReadError for a file too large or without such points."""
     if path.stat().st_size > MOST:
         raise ReadError("range", f"larger than {MOST / 1e6:g} MB", path)
     text = path.read_bytes().decode("utf-8-sig", "replace")

@@ -104,7 +104,11 @@ def heading_of(path: Path) -> tuple[str, ...]:
 
 
 def read_points(path: Path) -> PointTable:
-    """Read the points of a file; raises ReadError, and OSError as the file system does."""
+    """Read the points of a file.
+
+    Raises ReadError for a file that is too large, no text, or has too few points or none that are read; OSError as the
+    file system does.
+    """
     size = path.stat().st_size
     if size > MOST_BYTES:
         raise ReadError("range", f"{size / 1e6:.4g} MB, and of points up to {MOST_BYTES / 1e6:.4g} MB are read", path)
@@ -121,7 +125,7 @@ def read_points(path: Path) -> PointTable:
 
 
 def read_contour_points(path: Path, unit: float) -> list[Contour]:
-    """Read closed contours, counter-clockwise, mm, from points that follow one another round each, as `read_points`.
+    """Read closed contours, counter-clockwise, mm, from points that follow one another round each.
 
     Each surface that the file names is one. `unit`, mm, is that of a file that states none. Straight lines join the
     points. Raises ReadError for points that are no places, and for such as are in no order: their lines cross.

@@ -130,7 +130,10 @@ class Expression:
         return None if enclosed.mid[1].any() or enclosed.rad[1].any() else float(enclosed.mid[0, 0])
 
     def on(self, *series: Series) -> Series:
-        """Apply to jets or ball jets, one for each variable."""
+        """Apply to jets or ball jets, one for each variable.
+
+        Raises FormulaDomainError where the formula has no value or no derivative, TypeError for another number of them.
+        """
         if len(series) != len(self.variables):
             raise TypeError(f"the formula is in {', '.join(self.variables)}; {len(series)} series were given")
         model = series[0]
@@ -190,7 +193,7 @@ class Builder:
         self._known: dict[tuple[str, tuple[int, ...], float, float], int] = {}
 
     def constant(self, value: float, error: float, column: int) -> int:
-        """Add a constant known to within `error`, and give its number; `column` is as for `variable`."""
+        """Add a constant known to within `error`, and give its number; `column`, from 0, is its place in the text."""
         return self._place(Instruction("constant", (), value, error, column))
 
     def variable(self, index: int, column: int) -> int:

@@ -66,7 +66,8 @@ class Formula:
 
         Inside are the parameters at which abs, sign, min or max switch, or atan2 jumps: isolated with balls, none is
         missed, and found to the last places. Of switches within rounding of each other, one found twice, only one is a
-        knot. Raises FormulaError where a switch cannot be told from a near miss, or there are too many.
+        knot. Raises FormulaError where a switch cannot be told from a near miss, or there are too many; ValueError
+        unless lower is below upper.
         """
         if not lower < upper:
             raise ValueError(f"no interval from {lower} to {upper}")

@@ -93,7 +93,7 @@ class _Token:
 
 @lru_cache(maxsize=256)
 def parse(text: str, variables: tuple[str, ...]) -> Expression:
-    """Return the expression that a text means; raises FormulaError."""
+    """Expression that a text means; raises FormulaError for a text that is too long, or no formula in `variables`."""
     if len(text) > MOST_CHARACTERS:
         message = f"the formula has {len(text)} characters; {MOST_CHARACTERS} are allowed"
         raise FormulaError(message, MOST_CHARACTERS)

@@ -61,7 +61,7 @@ class _Zero:
 
 
 def signs(g: Expression, lower: float, upper: float) -> Signs:
-    """Return the signs of g over [lower, upper]; raises UnsettledError."""
+    """Signs of g over [lower, upper]; raises UnsettledError where g stays too close to zero, or is zero too often."""
     whole = g.ball(lower, upper, 0).rows[0]
     if whole.zero[0] or _sign(whole)[0]:
         return Signs((), (int(_sign(whole)[0]),), at_start=False, at_end=False)
@@ -93,7 +93,10 @@ def snap(lower: float, upper: float) -> float:
 
 
 def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
-    """Return all zeros of odd multiplicity; those near the edge of a cell are found in both cells."""
+    """Return all zeros of odd multiplicity; those near the edge of a cell are found in both cells.
+
+    Raises UnsettledError where g is close to zero too often, or cannot be bounded.
+    """
     edges = np.linspace(lower, upper, _FIRST_CELLS + 1)
     left, right, kept = edges[:-1], edges[1:], []
     while len(left):

@@ -83,7 +83,9 @@ def lobe(
 
     `powers` are (2, p, q, r, s), rising whole numbers; the coefficients make S to S'''' vanish at u = 1 (R. L.
     Norton, Cam Design and Manufacturing Handbook, chapter on valve trains). With a ramp the lobe meets it at its height
-    with its velocity, S'' to S'''' vanish there, and the ramp lies beyond `half`. The rest is as of `lobe_of`.
+    with its velocity, S'' to S'''' vanish there, and the ramp lies beyond `half`. Where
+    the motion does not repeat (`around` is not 1) the nose stands in the middle. Raises IntentError for powers that
+    give no lobe, and for a `nose` of a motion that does not repeat.
     """
     side = side_of(lift, half, powers, ramp, total=total, field=field)
     return lobe_of(side, side, total, nose=nose, around=around, field=field)

@@ -85,7 +85,7 @@ class Motion:
         return self.motion.derivatives(theta, order, side)
 
     def enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
-        """Enclose S and its derivatives over [lower, upper]: mid, rad, (order + 1, n) each; see `Piecewise`."""
+        """Middles and radii, (order + 1, n) each, of intervals that hold S and its derivatives over [lower, upper]."""
         return self.motion.enclosure(lower, upper, order)
 
     def on(self, t: Series, side: Side = 1) -> Series:
@@ -191,7 +191,7 @@ def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | N
 
     Neighbouring dwells at one level become one.
 
-    `around` says how the end is followed by the beginning, see `Motion`.
+    With `around` 1 the motion repeats; with -1 it goes on as S(total) - S(t - total); with None nothing is said.
     """
     kept: list[Stretch] = []
     at = [float(knots[0])]

@@ -36,9 +36,12 @@ def from_points(
     """Make the C4 quintic spline through displacements s at angles theta (rad, rising, in [0, total]).
 
     Each of `dwells` runs from a point to the next one (beyond `total` over the end), both of one displacement: there
-    S rests, and S' = S'' = 0 at its ends. Without any, and `around` 1, the spline is periodic. Raises IntentError for
-    angles that do not rise, a dwell that no points bound, and too few or too many points; it tells displacements in
-    `unit`, of so many mm or rad.
+    S rests, and S' = S'' = 0 at its ends. Without any, and `around` 1, the spline is periodic.
+
+    Raises IntentError for too few or too many points, numbers that are not finite, angles that do not rise, that lie
+    outside [0, total] or do not fill it where the motion does not repeat, a repeating motion that does not close, and a
+    dwell that no points bound. Where a motion does not close, the message has displacements divided by `unit`, mm or
+    rad.
     """
     angles, values = np.asarray(theta, dtype=float), np.asarray(s, dtype=float)
     if angles.shape != values.shape or angles.ndim != 1 or len(angles) > MOST_POINTS:

@@ -164,7 +164,7 @@ def settled(knots: Sequence[float], functions: Sequence[Stretch], turn: float, t
 
 
 def _on_knots(function: Stretch, ends: tuple[float, float]) -> Stretch:
-    """The function counted from a knot of its own exactly, where folding has rounded that."""
+    """The stretch with its start set to the knot of `ends` from which it differs by rounding alone; else as it is."""
     if isinstance(function, AffineStretch):
         for knot in ends:
             if abs(function.start - knot) <= _FOLDED:
@@ -173,7 +173,7 @@ def _on_knots(function: Stretch, ends: tuple[float, float]) -> Stretch:
 
 
 def demand_whole(rows: Samples, total: float, around: int | None, field: str) -> None:
-    """Refuse rows that do not reach from 0 to `total`, where the motion does not repeat."""
+    """Raise IntentError for rows that do not reach from 0 to `total`, rad, where the motion does not repeat."""
     if around == 1:
         return
     if abs(rows.theta[0]) > SAME_ANGLE or abs(rows.theta[-1] - total) > SAME_ANGLE:

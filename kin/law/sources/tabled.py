@@ -108,7 +108,8 @@ def tabled(rows: Samples, reading: float, total: float, around: int | None, *, r
     """Lay rows out over [0, total], or the turn; TableError, with the line, for rows that can be no motion.
 
     With `around` -1 the motion goes on upside down, over twice the angle; with None it rests at both ends. What rows
-    leave out of a turn is filled as `rest` has it, and is a dwell where it is None and the ends agree.
+    leave out of a turn is filled as `rest` has it, and is a dwell where it is None and the ends agree. Raises
+    IntentError for a `rest` of a motion that does not repeat, for too few rows and for an angle they do not fill.
     """
     rows = demand_rows(rows, total, field)
     within = reading + rows.slack * _slopes(rows)
@@ -223,7 +224,11 @@ def _cycle(rows: Samples, total: float, field: str) -> tuple[Array, Array, Indic
 def demand_rows(
     rows: Samples, total: float, field: str, least: int = _LEAST_ROWS, quantity: str = "displacement"
 ) -> Samples:
-    """Rows without such as are written twice; TableError for other doubled angles, and for more than the whole."""
+    """Rows, rising, without such as are written twice.
+
+    Raises TableError, with the line, for numbers that are not finite, other angles that do not rise, and more than
+    `total`, rad; IntentError for fewer than `least` rows.
+    """
     for column, what in ((rows.theta, "the angle"), (rows.s, f"the {quantity}")):
         bad = np.flatnonzero(~np.isfinite(column))
         if len(bad):

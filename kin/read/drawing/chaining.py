@@ -43,7 +43,7 @@ class Loop(NamedTuple):
 def close_pairs(points: Array, tolerance: float, path: Path | None = None) -> tuple[Indices, Indices]:
     """Pairs i, j (k,), (k,) of points (n, m) no farther apart than `tolerance` in any coordinate; each pair once.
 
-    Those of a file, `path`, are refused where so many lie together that their pairs are beyond number.
+    Raises ReadError for those of a file, `path`, where more than `MOST_TOGETHER` lie together.
     """
     direction = np.cos(SLANT * np.arange(1, points.shape[1] + 1) ** 2)
     along = points @ direction

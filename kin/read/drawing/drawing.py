@@ -108,7 +108,8 @@ def drawing_of(
     """Join what is to be cut, and what is engraved, in drawing units of `unit` mm, to the contours of a drawing in mm.
 
     Heights may differ by as much as the gap. Gaps up to `options.bridged` are reported among `openings`, as is an open
-    chain within the others; without it they raise. Raises ReadError as the readers do.
+    chain within the others; without it they raise. Raises ReadError for nothing to cut, too many pieces, more than one
+    plane, and what is not one closed contour with holes.
     """
     gap, bridged = options.gap, options.bridged
     scale = 1.0 if unit is None else unit
@@ -273,7 +274,11 @@ Closeness: TypeAlias = tuple[float, float, float]
 def chain_most(
     pieces: Pieces, run: Indices, near: Closeness, path: Path, bridged: float
 ) -> tuple[list[Chained], tuple[str, ...]]:
-    """Chain as `chain` does, gaps up to `bridged`, mm, too, without open chains within the rest; say what is open."""
+    """Contours out of pieces whose runs (n,), rising, are joined end to end, and in words what is open.
+
+    Gaps up to `bridged`, mm, are joined too, and open chains within the rest are left out. Raises ReadError for a wider
+    gap, an open outermost contour, and more than two ends that meet.
+    """
     gap, usual, same = near
     width, opened = 0.0, None
     while True:
@@ -291,9 +296,10 @@ def chain_most(
 
 
 def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bool = False) -> list[Chained]:
-    """Contours out of pieces whose runs (n,), rising, are joined end to end, as `loops` does.
+    """Contours out of pieces whose runs (n,), rising, are joined end to end.
 
-    With `some` open chains are left out, where a contour goes round them; else that is "open".
+    With `some` open chains are left out, where a contour goes round them. Raises ReadError: "branch" where more than
+    two ends meet, "gap" or "open" where an end finds no partner or the outermost contour is open.
     """
     gap, usual, same = near
     first = np.flatnonzero(np.diff(run, prepend=-1))

@@ -125,7 +125,10 @@ def parsed(raw: bytes, path: Path) -> Document:
 
 
 def unit_of(document: Document, head: bytes, path: Path) -> float | None:
-    """Mm in a drawing unit, by $INSUNITS or else by a comment "units: mm" on top; None if neither states it."""
+    """Mm in a drawing unit, by $INSUNITS or else by a comment "units: mm" on top; None if neither states it.
+
+    Raises ReadError where $INSUNITS is not a unit for a cam drawing.
+    """
     code = document.header.get("$INSUNITS", 0)
     if code in UNIT_MM:
         return UNIT_MM[code]
@@ -259,7 +262,7 @@ def entities_engraved(drawn: list[Drawn], path: Path) -> CutEntities:
 
 
 def gather(drawn: list[Drawn], layers: set[str], path: Path) -> CutEntities:
-    """Read the entities on some layers, and count the others."""
+    """Read the entities on some layers, and count the others; raises ReadError for one on them that is not read."""
     entities = CutEntities([], [], [], Counter())
     for item in drawn:
         if item.layer.upper() not in layers or item.kind in NOTES:

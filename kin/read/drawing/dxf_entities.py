@@ -26,14 +26,17 @@ def shape_of(entity: Any) -> Shape:  # noqa: ANN401  ezdxf's entities declare th
 
 
 def needs(entity: Any, *attributes: str) -> None:  # noqa: ANN401
-    """Refuse an entity in which ezdxf would fill in a value for one that the file left out."""
+    """Raise UnfitError for an entity whose file leaves out one of `attributes`, which ezdxf would fill in."""
     for name in attributes:
         if not entity.dxf.hasattr(name):
             raise UnfitError("syntax", f"its {name.replace('_', ' ')} is missing")
 
 
 def facing(entity: Any) -> float:  # noqa: ANN401
-    """+1 for an entity seen from above; -1 for one extruded along -z, whose own x axis is turned round."""
+    """+1 for an entity seen from above; -1 for one extruded along -z, whose own x axis is turned round.
+
+    Raises UnfitError for any other extrusion.
+    """
     x, y, z = entity.dxf.get("extrusion", (0.0, 0.0, 1.0))
     if not max(abs(x), abs(y)) <= LEVEL * abs(z):
         raise UnfitError("unsupported", f"it lies in a plane of its own, with the extrusion ({x:g}, {y:g}, {z:g})")
@@ -63,7 +66,7 @@ def circle(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def circular(entity: Any, angles: list[float], sweep: float) -> Shape:  # noqa: ANN401
-    """Return arcs of one circle, each beginning at one of `angles`."""
+    """Arcs of one circle over `sweep`, rad, each from one of `angles`, rad; raises UnfitError without a radius."""
     side = facing(entity)
     (x, y, z), radius = entity.dxf.center, entity.dxf.radius
     if not radius > 0.0:
@@ -79,7 +82,7 @@ def lwpolyline(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def polyline(entity: Any) -> Shape:  # noqa: ANN401
-    """Return a POLYLINE in the plane, as R12 draws contours."""
+    """Chords of a POLYLINE in the plane, as R12 draws contours; raises UnfitError for a mesh or a fitted curve."""
     if not entity.is_2d_polyline:
         raise UnfitError("unsupported", "it is a polyline in space or a mesh")
     if entity.dxf.flags & 0b110:
@@ -92,7 +95,7 @@ def polyline(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def polyline_of(entity: Any, points: Array, bulges: Array, closed: bool, heights: Any) -> Shape:  # noqa: ANN401
-    """Return the chords between points (n, 2) with bulges (n,), back to the first if closed."""
+    """Chords between points (n, 2) with bulges (n,), back to the first if closed; raises UnfitError for one point."""
     side = facing(entity)
     if len(points) < 2:
         raise UnfitError("syntax", f"a polyline of {len(points)} vertices")
@@ -102,7 +105,7 @@ def polyline_of(entity: Any, points: Array, bulges: Array, closed: bool, heights
 
 
 def ellipse(entity: Any) -> Shape:  # noqa: ANN401
-    """Return an ELLIPSE or an arc of one, exactly, as rational quadratic pieces."""
+    """Rational quadratic pieces that are exactly an ELLIPSE or an arc of one; raises UnfitError for unsound axes."""
     needs(entity, "center", "major_axis", "ratio")
     side = facing(entity)
     centre, major = np.array(tuple(entity.dxf.center)), np.array(tuple(entity.dxf.major_axis))
@@ -121,7 +124,10 @@ def ellipse(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def spline(entity: Any) -> Shape:  # noqa: ANN401
-    """Return a SPLINE by its control points, knots and weights, as one Bezier piece a span."""
+    """Bezier pieces, one a span, of a SPLINE by its control points, knots and weights.
+
+    Raises UnfitError for a spline of fit points alone, and for unsound numbers.
+    """
     control = np.array([tuple(p) for p in entity.control_points], dtype=np.float64).reshape(-1, 3)
     knots, count, degree = np.array(entity.knots, dtype=np.float64), len(control), int(entity.dxf.degree)
     weight = np.array(entity.weights, dtype=np.float64) if len(entity.weights) else np.ones(count)

@@ -127,7 +127,7 @@ class Affine(NamedTuple):
         return Affine(c, s, -s, c)
 
     def moved(self, drawn: Shape, rise: float = 0.0, scale: float = 1.0) -> Shape:
-        """Return a shape under the map, each height z at `rise` + `scale` z; raises UnfitError as `scale_and_sense`."""
+        """Shape under the map, each height z at `rise` + `scale` z; raises UnfitError if it makes ellipses of arcs."""
         matrix, shift = np.array([[self.a, self.b], [self.c, self.d]]), np.array([self.e, self.f])
         chords, arcs, beziers = drawn.chords.copy(), drawn.arcs.copy(), drawn.beziers
         if len(chords):

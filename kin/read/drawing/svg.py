@@ -99,7 +99,10 @@ def _parsed(raw: bytes, path: Path) -> Element:
 
 
 def unit_of(root: Element, path: Path) -> float | None:
-    """Mm in a unit of the drawing, by the page's width and height and its viewBox; None if no width is stated."""
+    """Mm in a unit of the drawing, by the page's width and height and its viewBox; None if no width is stated.
+
+    Raises ReadError for sizes that are not read, a unit out of range, and units that differ along width and height.
+    """
     sizes = [_length(root.get(name), path) for name in ("width", "height")]
     box = root.get("viewBox")
     if box is None:
@@ -118,7 +121,7 @@ def unit_of(root: Element, path: Path) -> float | None:
 
 
 def _length(text: str | None, path: Path) -> float | None:
-    """Length in mm; None if it is left out or a share of what surrounds the page."""
+    """Length in mm, None if it is left out or a share of what is around; raises ReadError if it is not read."""
     if text is None or text.strip() == "auto" or text.strip().endswith("%"):
         return None
     match = LENGTH.fullmatch(text)

@@ -75,7 +75,10 @@ def path_of(text: str, to: Affine) -> list[Shape]:
 
 
 def pieces_of(text: str) -> Iterator[Loose]:
-    """Pieces of path data, in absolute numbers; a closing line only where it has a length."""
+    """Pieces of path data, in absolute numbers; a closing line only where it has a length.
+
+    Raises UnfitError for data that do not begin with M, or are not read.
+    """
     pen = first = (0.0, 0.0)
     drawn = False
     for letter, numbers in commands(text):
@@ -107,7 +110,7 @@ def pieces_of(text: str) -> Iterator[Loose]:
 def commands(text: str) -> Iterator[tuple[str, list[float]]]:
     """Letters with their numbers; a letter whose numbers are repeated stands for as many, and M for L after the first.
 
-    Flags of arcs may stand without a space before what follows them.
+    Flags of arcs may stand without a space before what follows them. Raises UnfitError for any other text.
     """
     letter, at, end = "", 0, len(text)
     while at < end:
@@ -137,7 +140,7 @@ VALUE = re.compile(NUMBER)
 
 
 def arguments(text: str, place: int, kind: str) -> tuple[list[float], int]:
-    """Read the numbers of one letter from a place on, and say where they end."""
+    """Numbers of the letter `kind` from a place in the text on, and where they end; raises UnfitError for others."""
     numbers = []
     for k in range(COUNT[kind]):
         gap = GAP.match(text, place)
@@ -157,7 +160,7 @@ def bulge_of(piece: Loose) -> float:
 
     The half chord over the radius is the sine of half the sweep. An arc between one point and itself is nothing, one
     whose radius does not reach across its chord is half a circle: so the standard has it, but a radius short by more
-    than rounding is refused here.
+    than rounding raises UnfitError here, and so do radii of an ellipse.
     """
     rx, ry, _, large, forward, x, y = piece.numbers
     if not (rx > 0.0 and abs(rx - ry) <= ALIKE * rx):

@@ -48,7 +48,10 @@ class _Element(NamedTuple):
 
 
 def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "text"]]:
-    """Corners (t, 3, 3) in file order, in the precision of the vertices; raises ReadError for what is not read."""
+    """Corners (t, 3, 3) of the triangles, in the file's order, unit and precision, and the form of the file.
+
+    Raises ReadError for a file that is empty, cut short or none of the format, and for faces that are no triangles.
+    """
     order, elements, begin = _header(raw, path)
     vertex, face = _elements(elements, path)
     points: NDArray[np.float32] | NDArray[np.float64]
@@ -94,7 +97,7 @@ def _header(raw: bytes, path: Path) -> tuple[str, list[_Element], int]:
 
 
 def _elements(elements: list[_Element], path: Path) -> tuple[_Element, _Element]:
-    """Vertices and faces; raises ReadError where others are there, or these are not as they are read."""
+    """Elements of the vertices and of the faces; raises ReadError for other elements, and other properties of these."""
     there = [element for element in elements if element.number or element.name in {"vertex", "face"}]
     others = [element.name for element in there if element.name not in {"vertex", "face"}]
     if others:

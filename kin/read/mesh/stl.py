@@ -96,7 +96,12 @@ def read_stl(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) 
 
 
 def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path, deepest: int = 1) -> Solid:
-    """Make the part of triangles (t, 3, 3), mm, as `read_stl` does."""
+    """Make the part of triangles (t, 3, 3), mm.
+
+    The contour is that of the first of `heights`, all of which become `sections`; without any it is that of the section
+    at half the part's height, or where a part has steps of the widest one midway between two of them. Raises ReadError
+    for coordinates out of range, a flat part, and a section that does not close or is not one contour with holes.
+    """
     if not bool((np.abs(corners) <= LARGEST).all()):
         raise ReadError("range", "a coordinate is not finite or out of range", path)
     z = corners[:, :, 2]
@@ -201,7 +206,10 @@ def _refuse_apart(mesh: Mesh, path: Path, deepest: int) -> None:
 
 
 def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
-    """Cut at a height; raises ReadError where the part does not reach there."""
+    """Height, mm, of the section that is taken at `height`, or just above it, and its outline.
+
+    Raises ReadError where the part does not reach there, or reaches above and below and has no wall there.
+    """
     z = mesh.points[:, 2]
     if not z.min() < height < z.max():
         message = f"the part reaches from z = {z.min():.9g} to {z.max():.9g} mm: it has no section at {height:.9g}"
@@ -214,7 +222,10 @@ def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
 
 
 def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
-    """Cut midway between horizontal faces at rising `levels`, where the box of the section is largest."""
+    """Height, mm, and outline of the section midway between two of the rising `levels` whose box is largest.
+
+    Raises ReadError where the part has no wall at one of these heights.
+    """
     thick = np.argsort(-np.diff(levels), kind="stable")[:MOST_STEPS]
     cuts = [cut(mesh, float(0.5 * (levels[k] + levels[k + 1])), path) for k in thick]
     return max(cuts, key=lambda section: float(np.prod(np.ptp(section[1].points, axis=0))))
@@ -263,7 +274,7 @@ def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "te
 
 
 def facets(raw: bytes, path: Path) -> Array:
-    """Corners of the facets of the text form."""
+    """Corners (t, 3, 3) of the facets of the text form; raises ReadError where the text is cut short or has a fault."""
     text = raw.strip()
     body, mark, _ = text.rpartition(b"endsolid")
     if not mark:
@@ -295,7 +306,7 @@ def facets(raw: bytes, path: Path) -> Array:
 
 
 def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
-    """Cut at `height`, or halfway to the next corners above should there be some at that very height.
+    """Height of a section, mm, and its outline: at `height`, or halfway to the next corners above if some lie at it.
 
     Each triangle gives an edge from where its boundary comes down through the plane to where it goes up; neighbours
     agree on that point since it belongs to an edge of the mesh.

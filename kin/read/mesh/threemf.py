@@ -49,11 +49,15 @@ PART = "cam"
 
 
 def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> Solid:
-    """Read the part as `read_stl` does: the only object that is built, or of several the one named "cam".
+    """Read the part: the only object that is built, or of several the one named "cam".
 
-    Where a part lies on the plate and which way it is turned there does not count; a place that scales, shears or
-    mirrors it makes it another part, and is applied. Raises OSError as the file system does; ReadError as `read_stl`
-    does, and where it is not clear which object is meant.
+    The contour is that of the first of `heights`, mm, all of which become `sections`; without any it is that of the
+    section at half the part's height, or where a part has steps of the widest one midway between two of them. In a
+    section a closed chain may lie inside `deepest` others. Where a part lies on the plate and which way it is turned
+    there does not count; a place that scales, shears or mirrors it makes it another part, and is applied.
+
+    Raises OSError as the file system does; ReadError for a file that is too large, damaged or no 3MF, where it is not
+    clear which object is meant, and where a section does not close or is not one contour with holes.
     """
     path = Path(path)
     built = read_placed(path)
@@ -69,10 +73,13 @@ def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) 
 
 
 def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
-    """Read as many objects as are sought, the lowest first, as they stand to the lowest; raises as `read_3mf` does.
+    """Read as many objects as are sought, the lowest first, as they stand to the lowest.
 
     Where the lowest lies on the plate and which way it is turned there does not count, unless its place scales, shears
     or mirrors it. Where one does not reach a height it has no such section.
+
+    Raises OSError as the file system does; ReadError for a file that is too large, damaged or no 3MF, where more or
+    fewer objects are built, and where a section does not close or is not one contour with holes.
     """
     path = Path(path)
     built = read_placed(path)
@@ -103,7 +110,10 @@ def _ends(corners: Array) -> tuple[float, float]:
 
 
 def read_placed(path: Path | str) -> tuple[Placed, ...]:
-    """Read every object that is built, in the order of the build; raises as `read_3mf` does."""
+    """Read every object that is built, in the order of the build.
+
+    Raises OSError as the file system does; ReadError for a file that is too large, damaged or no 3MF.
+    """
     path = Path(path)
     if problem := oversize(path, "3mf"):
         raise ReadError("range", problem, path)
@@ -221,7 +231,10 @@ class _Model:
             self.current = None
 
     def placed(self) -> tuple[Placed, ...]:
-        """Every object that is built and printed."""
+        """Every object that is built and printed, in mm.
+
+        Raises ReadError where there is no model, or an object is empty, out of range or of too many triangles.
+        """
         if self.mm is None:
             raise self._fault("there is no model in it")
         objects = []

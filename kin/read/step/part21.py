@@ -87,7 +87,10 @@ class Exchange(NamedTuple):
         return values
 
     def number(self, value: Value, by: int) -> float:
-        """Return a value as a number, of a size that can be computed with."""
+        """Value as a number.
+
+        Raises ReadError, which names instance `by`: "syntax" for no number, "range" for one above LARGEST.
+        """
         if isinstance(value, Typed) and len(value.values) == 1:
             value = value.values[0]
         if isinstance(value, bool) or not isinstance(value, int | float) or isinstance(value, Reference):
@@ -97,13 +100,13 @@ class Exchange(NamedTuple):
         return float(value)
 
     def reference(self, value: Value, by: int) -> int:
-        """Return a value as the number of an instance."""
+        """Number of the instance that a value refers to; raises ReadError, naming instance `by`, for any other."""
         if not isinstance(value, Reference):
             raise self.error(by, f"{shown(value)} is not a reference", "syntax")
         return int(value)
 
     def several(self, value: Value, by: int) -> tuple[Value, ...]:
-        """Return a value that must be a list; raises ReadError otherwise."""
+        """Entries of a value that is a list; raises ReadError, which names instance `by`, for any other value."""
         if not isinstance(value, tuple) or isinstance(value, Typed):
             raise self.error(by, f"{shown(value)} is not a list", "syntax")
         return value

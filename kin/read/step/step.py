@@ -71,9 +71,11 @@ def read_step(path: Path | str, heights: Sequence[float] = (), deepest: int = 1)
 
 
 def read_step_bodies(path: Path | str, sought: Sequence[Sought]) -> list[StepSolid]:
-    """Read as many solids as are sought, the lowest first; raises as `read_step` does.
+    """Read as many solids as are sought, the lowest first.
 
-    Where one of several does not reach a height it has no such section.
+    Where one of several does not reach a height it has no such section. Raises OSError as the file system does;
+    ReadError where the file holds more or fewer solids, for what is not read, and where a section is not one closed
+    contour with others in it.
     """
     path = Path(path)
     bodies = _Body.every(exchange(contents(path, "step"), path), len(sought))
@@ -122,7 +124,7 @@ class _Body:
 
     @staticmethod
     def every(file: Exchange, count: int) -> list[_Body]:
-        """Read all solids of a file, which are `count`."""
+        """Read all solids of a file; raises ReadError where they are not `count`, or one is not read."""
         solids = [*file.of("MANIFOLD_SOLID_BREP"), *file.of("BREP_WITH_VOIDS"), *file.of("FACETED_BREP")]
         if not solids:
             raise ReadError("empty", "it holds no solid", file.path)
@@ -191,7 +193,10 @@ class _Body:
         return max(middles, key=self._area) if len(middles) > 1 else middles[0]
 
     def section(self, z: float) -> Drawing:
-        """Contour and holes at a height."""
+        """Contour and holes at height z, mm.
+
+        Raises ReadError where no face reaches through that height, or the section is not one contour with holes.
+        """
         entities = CutEntities([], [], [], Counter())
         for face in self.faces:
             for piece in face.section(self.space, z):
