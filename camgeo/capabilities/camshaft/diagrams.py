@@ -271,9 +271,9 @@ def _span(event: Event) -> str:
 
 
 def _overlap(spans: Mapping[str, tuple[float, float]], scale: float) -> list[str]:
-    """Say for how long both valves are open, by where each opens and closes, crank degrees; nothing of one alone.
+    """Words for how long both valves are open, by where each opens and closes, crank degrees; none for one valve alone.
 
-    `scale` is how many of the shown degrees one of the crank is. Below 0 neither is open for so long.
+    `scale` is how many of the shown degrees one of the crank is. An overlap below 0 is how long neither is open.
     """
     if len(spans) < len(DEAD_CENTRES):
         return []

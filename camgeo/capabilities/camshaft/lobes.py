@@ -50,7 +50,7 @@ class PlacedLobe:
 
     @property
     def zero(self) -> float:
-        """Shaft angle, rad, at which its motion begins: at_k = zero_k + gamma_k."""
+        """Shaft angle, rad, at which its motion begins: the angle of its metal less the direction of its follower."""
         return self.at - self.lobe.direction
 
     def on_shaft(self, engine: Engine | None) -> ShaftCam:

@@ -35,7 +35,11 @@ FORCES = {
 
 @dataclass(frozen=True, eq=False)
 class Extremes:
-    """Least and greatest value of each force over the turn: contacts, torque, F, reactions and pressures."""
+    """Least and greatest value of each force over the turn.
+
+    `contacts` are normal forces, N, `torque` is the shaft's, N m, `along` the force F along the travel, N or N m.
+    `reactions`, N, are by the names of their columns, `pressure` is Hertz's of each contact, N/mm^2, empty if unknown.
+    """
 
     contacts: tuple[tuple[ExtremeAtAngle, ExtremeAtAngle], ...]
     torque: tuple[ExtremeAtAngle, ExtremeAtAngle]
@@ -156,7 +160,10 @@ def forces_table(running: Running, count: int, units: str = "mm") -> tuple[tuple
 
 
 def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
-    """Every figure of forces that the recipe has, by its name."""
+    """Every figure of forces that the recipe has, by its name; empty without a train whose forces are known.
+
+    The figures have no value where the stem jams in its guide, or the motion is too abrupt to be followed.
+    """
     running = running_of(recipe, design)
     if running is None:
         return {}

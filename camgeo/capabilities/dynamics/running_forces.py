@@ -104,7 +104,7 @@ class FollowerRunning(Running):
 
     @property
     def held_by(self) -> Preload | None:
-        """Preload by interference, None without one, and for one without stiffness."""
+        """Preload by interference; None without one, and where the recipe gives no stiffness of it."""
         preload = self.design.exact.preload
         return None if preload is None or preload.stiffness is None else preload
 
@@ -123,7 +123,10 @@ class FollowerRunning(Running):
     def _pressed(
         self, preload: Preload, rows: Array, lines: Sequence[ContactLine], gap: Array | None = None
     ) -> Elastic | Guided:
-        """Both contacts under preload, N and mm or N mm and rad."""
+        """Both contacts under preload, with the friction of the guide if there is one.
+
+        Units are N and mm, of a follower that swings N mm and rad.
+        """
         pair = elastic_contacts(self.turn, preload, rows)
         pair = pair if gap is None else pair.apart(gap)
         if self.train.guide is None:

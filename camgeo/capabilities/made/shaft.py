@@ -352,7 +352,7 @@ def _on_surface(points: CamPoints, scale: float, probing: Probing) -> MeasuredSu
 
 
 def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float, probing: Probing) -> LobeRows:
-    """Radii of the points of each cam, and of every cam's contour."""
+    """Radii, mm, over the angle about the shaft: of the points of each measured cam, and of every cam's contour."""
     contours = []
     for cam in cams:
         (surface,) = intents(cam.recipe, cam.design)[0].surfaces
@@ -379,7 +379,7 @@ def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float
 
 
 def _lift_rows(measured: Sequence[CamPoints], scale: float, probing: Probing) -> LobeRows:
-    """Lifts of each cam that was measured over the shaft's angle, as read and as meant."""
+    """Lifts, mm or rad, over the shaft's angle of each cam that was measured, as read and as meant."""
     from kin.made.lifts import rows_of_lifts
 
     readings = [_readings(points, scale, probing) for points in measured]

@@ -69,7 +69,10 @@ class Plan:
         return number * self.chunk, min((number + 1) * self.chunk, self.count)
 
     def values(self, first: int, last: int) -> Array:
-        """Values of designs first .. last - 1, (last - first, axes), in the recipe's units. ValueError beyond them."""
+        """Values of designs first .. last - 1, (last - first, axes), in the recipe's units.
+
+        Raises ValueError for designs that the plan does not have.
+        """
         if not 0 <= first <= last <= self.count:
             raise ValueError(f"designs {first} to {last} of {self.count}")
         if self.method == "grid":

@@ -29,8 +29,9 @@ _RANDOM_TRIALS = 24  # and so many elsewhere
 
 
 class CamSample(NamedTuple):
-    """One cam: its sizes by name (mm, rad); widths of pieces (p,), rad; the motion by shares of pieces (4, n).
+    """One cam: its sizes by name, mm and rad, the widths of its pieces (p,), rad, and its motion.
 
+    `rows` (4, n) are the motion, mm or rad, and its derivatives by the share of a piece, at the ends of all cells.
     `counts` (p,) are the cells of the pieces. A plate's motion is its support function, any other's the displacement.
     """
 
@@ -64,7 +65,7 @@ Sampling: TypeAlias = Callable[["Array"], "CamSample | None"]
 
 
 class MotionBatch(NamedTuple):
-    """Cams of m designs: sizes by name (m, 1); the motion with its derivatives (4, g, n), where g is m or 1.
+    """Cams of m designs: sizes by name (m, 1); the motion and its derivatives by rad, (4, g, n), where g is m or 1.
 
     `inside` (n - 2,) says which of the samples but the first and the last lie within a piece.
     """

@@ -62,8 +62,9 @@ Sizes: TypeAlias = "dict[str, Array]"
 
 
 class Contours(NamedTuple):
-    """m contours.
+    """m contours; arrays (m, n) where no other shape is named.
 
+    sound     (m,) whether there is such a contour
     slope     tangent of the pressure angle
     distance  of the contour from the shaft, squared, mm^2
     bend      curvature of the centre's path, 1/mm, for a round touch; None for a face
@@ -94,7 +95,7 @@ def _centre_path(b: Array, a: Array, rates: tuple[Array, Array, Array | float]) 
 
 
 def _spin(sizes: Sizes, side: Side, speed: Array, travel: Array | float) -> Array | None:
-    """Turns of a roller per turn of the shaft; None for a point."""
+    """Turns of a roller per turn of the shaft (m, n); None for a touch of radius 0."""
     return side * speed / sizes["radius"] - travel if (sizes["radius"] > 0.0).all() else None
 
 
@@ -163,7 +164,10 @@ def _arm_face(sizes: Sizes, side: Side, rows: Array) -> Contours:  # noqa: ARG00
 
 
 def plate(rows: Array) -> Contours:
-    """Contours of plates by their support functions (p, p', p''), under a face at right angles to its travel."""
+    """Contours of plates under a face at right angles to its travel.
+
+    `rows` are the support functions p, mm, and their derivatives by rad, (m, n) each.
+    """
     p, q = rows[0], rows[1]
     outside = p.min(axis=1) < -EDGE * p.max(axis=1)
     sound = np.ones(len(p), dtype=np.bool_)

@@ -238,7 +238,10 @@ def _straight_lengths(
 
 
 def _straight_share(inside: Array, outside: Array, lowest: Array, highest: Array) -> tuple[Array, NDArray[np.int8]]:
-    """Share of a cell over which a straight line from `inside` keeps limits; 1 where it leaves above, -1 below."""
+    """Share of a cell over which a straight line from `inside` to `outside` keeps limits, and where it leaves them.
+
+    The second result is 1 where it leaves above, -1 below, 0 where it stays.
+    """
     up, down = outside > highest, outside < lowest
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(up, (highest - inside) / (outside - inside), 1.0)
