@@ -135,7 +135,7 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
 def assert_watertight(path: AnyPath) -> float:
     """Assert that a solid is closed, its faces looking outward, none of them without area or there twice.
 
-    Returns the enclosed volume, mm^3.
+    Returns the enclosed volume, mm^3. Raises CallError for a file that is no solid.
     """
     path = path_of("path", path)
     if not _is_solid(path):
@@ -248,7 +248,10 @@ def _judge(
     gap: float | None,
     angles: int | None = None,
 ) -> list[Entry]:
-    """Judge a file and assert the checks of those names; the report's entries of its surfaces."""
+    """Judge a file and assert the checks of those names; the report's entries of its surfaces.
+
+    Raises CallError for a number of `angles` at which no file is judged, and for a limit below 0.
+    """
     from camgeo import verify as judged
 
     path, recipe = path_of("path", path), recipe_of(recipe)

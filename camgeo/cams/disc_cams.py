@@ -157,7 +157,10 @@ class DiscCam(GuidedCam):
         return moving_frame.Oscillating.on(self.prime, self.guide.pivot, self.guide.arm, self.guide.side)
 
     def face(self, motion: Displacement) -> Face:
-        """The flat face over the shaft angle; raises IntentError where it cannot be driven."""
+        """The flat face over the shaft angle; raises IntentError where it cannot be driven.
+
+        Raises TypeError for a round touch.
+        """
         from camgeo.curve.disc import StraightFace, SwingingFace
 
         if not isinstance(self.touch, Flat):

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 _GuideT = TypeVar("_GuideT", Translating, Oscillating)
 _CUTS = 60  # pairs of cutting planes
 _BROKEN = 1e-12  # of the arm's length: what is left of a broken half plane
-_FEASIBLE = 1e-11  # likewise, of the corners that are tried
+_FEASIBLE = 1e-11  # of the arm's length: by so much a corner that is tried may miss a half plane
 _DOUBLINGS = 30  # of a size, before it is given up
 _PRECISE = 1e-13  # of a size
 _ANGLES = 480  # of the shaft, that stand for all at first
@@ -361,7 +361,7 @@ def least_prime(
     """Least radius of a prime circle, mm, from `start` on, whose pitch curve has a least convex radius of `radius`, mm.
 
     `shape` makes the pitch curve of a prime circle, `bend` measures another radius of it. Just below the result the
-    least convex radius is smaller than `radius`.
+    least convex radius is smaller than `radius`. Raises IntentError where no prime circle gives that radius.
     """
 
     def short(prime: Array) -> Array:

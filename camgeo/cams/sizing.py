@@ -210,7 +210,10 @@ def _stem(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
 
 
 def _arm(cam: SizedDiscCam, motion: Displacement, length: float, side: Side) -> SizedDiscCam:
-    """The cam for a roller, shoe or knife edge on an arm: with base radius and, unless given, pivot."""
+    """The cam for a roller, shoe or knife edge on an arm: with base radius and, unless given, pivot.
+
+    Raises IntentError where a pivot is given beside pressure angles, or neither is.
+    """
     from camgeo.cams.least_size import least_arm
     from camgeo.curve import moving_frame
     from kin.law.programme import IntentError
@@ -230,7 +233,10 @@ def _arm(cam: SizedDiscCam, motion: Displacement, length: float, side: Side) -> 
 
 
 def _face(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
-    """The cam for a flat face, on a stem or on an arm whose pivot is given: with base radius."""
+    """The cam for a flat face, on a stem or on an arm whose pivot is given: with base radius.
+
+    Raises IntentError for limits of the pressure angle, and where every base radius keeps the radius of curvature.
+    """
     from camgeo.cams.least_size import least_face, least_swing
     from kin.law.programme import IntentError
 

@@ -343,7 +343,7 @@ class Cells:
 def _sharp_cells(curve: Curve, stretches: Sequence[tuple[float, float] | Array], density: float, most: int) -> Cells:
     """Cells of some stretches that join, at first about `density` for each unit of parameter, none halved above `most`.
 
-    A bound that is loose at the end is still a bound: it costs sharpness. One that is not finite is refused.
+    A bound that is loose at the end is still a bound: it costs sharpness. Raises CurveError for one that is not finite.
     """
     lows, highs = [], []
     for low, high in stretches:

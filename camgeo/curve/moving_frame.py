@@ -49,7 +49,10 @@ class Displacement:
 
     @staticmethod
     def of(motion: Motion) -> Displacement:
-        """Displacement of a motion over a whole turn or an equal part of one; IntentError unless S and S' join."""
+        """Displacement of a motion over a whole turn or an equal part of one.
+
+        Raises IntentError unless S and S' join at its ends, ValueError for a motion over another angle.
+        """
         repeats = round(TURN / motion.total)
         if not (motion.around == 1 and repeats >= 1 and abs(repeats * motion.total - TURN) <= 1e-9):
             raise ValueError(f"a motion over {motion.total!r} rad does not go round a turn")

@@ -57,8 +57,8 @@ def need_kernel() -> None:
 def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     """Return the kernel's solid: within one outline, the first, with boss, openings, chamfers and cross holes.
 
-    Raises RegionError where a piece is too short for the kernel, an arc is sharper than the chamfer, or the kernel
-    finds the solid unsound; TypeError for a chamfer along anything but arcs.
+    Raises RegionError where a piece is too short for the kernel, an arc is sharper than the chamfer, a cross hole
+    divides the solid, or the kernel finds it unsound; TypeError for a chamfer along anything but arcs.
     """
     stack = _Stack()
     top = solid.thickness
@@ -142,7 +142,7 @@ def raise_shape(shape: Shape, z: float) -> Shape:
 
 
 def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Wire, Wire]:
-    """Walls on the outermost outline; its lowest and its highest loop."""
+    """Walls on the outermost outline; its lowest and its highest loop. Raises TypeError for the chamfer of a spline."""
     if not solid.chamfer:
         return stack.wall(outline, 0.0, solid.thickness)
     if not isinstance(outline, ArcSpline):
@@ -165,7 +165,10 @@ class _Stack:
         self.faces: list[Shape] = []
 
     def loop(self, outline: Outline, z: float) -> Wire:
-        """Closed wire of an outline at a height."""
+        """Closed wire of an outline at a height.
+
+        Raises RegionError where the kernel makes no edge of a piece.
+        """
         from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 
         curves = curves_of(outline, z)
@@ -251,7 +254,10 @@ class _Stack:
 
 
 def _drill(shape: Shape, drill: Drill) -> Shape:
-    """Cut a radial hole, from the shaft outward."""
+    """Cut a radial hole, from the shaft outward.
+
+    Raises RegionError where the hole divides the solid, or the kernel finds it unsound.
+    """
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
     from OCP.gp import gp_Ax2, gp_Dir

@@ -76,7 +76,10 @@ def _line(start: Array, end: Array, z: float) -> Shape:
 
 
 def _splines(outline: BSpline, z: float) -> list[tuple[Shape, tuple[float, float]]]:
-    """Curves of a spline, one for each polynomial: a quadrature of few points a face is good for no more than that."""
+    """Curves of a spline, one for each polynomial: a quadrature of few points a face is good for no more than that.
+
+    Each has its start (x, y), mm. Raises ValueError for a periodic spline, RegionError for a piece that is too short.
+    """
     from OCP.Geom import Geom_BSplineCurve
     from OCP.TColgp import TColgp_Array1OfPnt
     from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal

@@ -116,7 +116,10 @@ def _encloses(loop: Array, point: Array) -> bool:
 def _round_all(
     outlines: Sequence[LayerOutline], tolerance: float, precision: Precision
 ) -> tuple[list[Array], MeshFacts]:
-    """Loops of outlines (n, 2) as written, mm, and the facts of the mesh that they give."""
+    """Loops of outlines (n, 2) as written, mm, and the facts of the mesh that they give.
+
+    Raises ToleranceError where a loop is not within the tolerance after rounding, TypeError for a spline.
+    """
     loops, moved, vertices, dropped = [], 0.0, 0, 0
     bound, opening_errors = EXACT, []
     for layer, outline, _ in outlines:

@@ -173,7 +173,10 @@ def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float
 
 
 def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float) -> list[FittedArcs]:
-    """Circular arcs and biarcs of each stretch: errors seen up to `aim`, proved up to `limit`."""
+    """Circular arcs and biarcs of each stretch: errors seen up to `aim`, mm, proved up to `limit`, mm.
+
+    Raises ToleranceError where rounding takes all of the limit, or it is not reached.
+    """
     slip = _slip(curve, aim)
     # what rounding takes of the tolerance that was asked for
     cover = 2.0 * (rounding(curve.size) + slip)

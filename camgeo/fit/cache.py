@@ -48,7 +48,10 @@ def formula_rounding(unsure: float, contour: Curve) -> float:
 
 
 def _fit(form: str, contour: Curve, tolerance: float, unsure: float) -> Outline:
-    """Outline within a tolerance, of which the formula's rounding takes one share and the judge's rounding another."""
+    """Outline within a tolerance, of which the formula's rounding takes one share and the judge's rounding another.
+
+    Raises ToleranceError where the fit cannot hold it, or the formula's rounding takes more than a quarter of it.
+    """
     if not unsure:
         return _exact_fit(form, contour, tolerance)
     if 4.0 * unsure > tolerance:

@@ -117,6 +117,7 @@ def crossings(curve: Curve, nodes: Array, low: Array, high: Array, tolerance: fl
     if not count:
         return Crossings(low, high)
     first_low, first_high = low, high
+    # where the curve is farthest from each edge, before the inflection and after it
     near, far = 0.5 * (nodes + low), 0.5 * (nodes + high)
     settled = np.zeros(count, dtype=bool)
     enough = max(_SETTLED * tolerance, rounding(curve.size))
@@ -131,11 +132,13 @@ def crossings(curve: Curve, nodes: Array, low: Array, high: Array, tolerance: fl
         chord = end - begin
         length = np.hypot(chord[:, 0], chord[:, 1])
         along = chord / length[:, None]
+        # square to the edge, on the side of its first vertex
         across = np.column_stack([along[:, 1], -along[:, 0]]) * sense[:, None]
         lean = np.sum(tangent * across, axis=2)
         height = np.sum((point[2:] - begin) * across, axis=2) * np.array([[1.0], [-1.0]])
         share = np.sum((point[2:] - begin) * along, axis=2) / length
         with np.errstate(divide="ignore", invalid="ignore"):
+            # how far ahead the extremes lie, their heights, and how fast each vertex moves across with its end
             move = lean[2:] * np.array([[1.0], [-1.0]]) / turn[2:]
             top = height + 0.5 * speed[2:] * turn[2:] * move**2
             rise = lean[:2] * (speed[:2] + tolerance * turn[:2])

@@ -92,7 +92,10 @@ def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
 
 
 def _fit_run(curve: Curve, run: SmoothRun, tolerance: float, full: float) -> ProvedEdges:
-    """Edges of one run, proved to lie within the tolerance; `full` is the tolerance before rounding was taken off."""
+    """Edges of one run, proved to lie within the tolerance; `full` is the tolerance before rounding was taken off.
+
+    Both are mm. Raises ToleranceError where no such edges are found.
+    """
     densities = Density.of(curve, run.stretches, polygon_density)
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
     check_count(needed, "straight edges", full, 2.0, lost=full - tolerance)

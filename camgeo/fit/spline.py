@@ -134,7 +134,7 @@ def _assemble(groups: list[Array], bound: Bound) -> BSpline:
 def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: float) -> list[tuple[Array, float, float]]:
     """Bezier spans (n, 4, 2) over each smooth stretch, with their outward and inward bound.
 
-    Errors are seen up to `tolerance` and proved up to `limit`.
+    Errors are seen up to `tolerance` and proved up to `limit`, mm. Raises ToleranceError where that is not reached.
     """
     along = span_density(curve, stretches)
     out = _joint_offset(curve, along.side, tolerance)

@@ -269,7 +269,7 @@ def _draw_circle(space: Modelspace, circle: ReferenceCircle, mm: float, layer: s
 
 
 def _check_points(points: Array) -> None:
-    """Refuse a contour that comes twice through a point: two pieces drawn twice, or one of no length, show as that."""
+    """Raise ValueError for a contour that comes twice through a point, as one with a piece drawn twice does."""
     place: NDArray[np.complex128] = np.ascontiguousarray(points).view(np.complex128)[:, 0]
     order = np.sort(place)
     twice = np.flatnonzero(order[1:] == order[:-1])

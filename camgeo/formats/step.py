@@ -61,8 +61,8 @@ def write_step(
     """Write solids in a unit, each a product of its own; the proved bound of the written contours, mm.
 
     Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError
-    where a piece is too short for the kernel, an arc is sharper than the chamfer, or the kernel finds a solid unsound,
-    TypeError for a chamfer along anything but arcs, OSError where the file cannot be written.
+    where a piece is too short for the kernel, an arc is sharper than the chamfer, a cross hole divides a solid, or the
+    kernel finds it unsound, TypeError for a chamfer along anything but arcs, OSError where the file cannot be written.
     """
     need_kernel()
     fitted = [layered.outline for body in bodies for layered in body.outlines if layered.circle is None]
@@ -200,7 +200,11 @@ def _string(text: str) -> Any:  # noqa: ANN401 - the kernel has no types
 
 
 def make_step(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Fit, write, read back and judge one STEP file; without the kernel nothing is fitted."""
+    """Fit, write, read back and judge one STEP file; without the kernel nothing is fitted.
+
+    Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
+    solid; SurroundingsError without the kernel, OSError where the file cannot be written.
+    """
     from camgeo.output.part_geometry import contours_of, rim_of, solid_of
 
     recipe, tolerance = job.recipe.in_units_of(request), job.tolerance(request)

@@ -106,7 +106,10 @@ def _page(boxes: Sequence[Box], mm: float) -> tuple[str, str, str, str]:
 
 
 def _path(outline: Outline, mm: float) -> str:
-    """Path element of one closed outline, in drawing units of `mm` mm."""
+    """Path element of one closed outline, in drawing units of `mm` mm.
+
+    Raises ValueError for a spline that is not cubic.
+    """
     match outline:
         case Polygon():
             first = outline.vertices[0] / mm

@@ -124,7 +124,10 @@ def _refusal(search: _Search, longest: int, path: str) -> RecipeErrors:
 
 
 def _checks(recipe: Recipe) -> Sequence[Check]:
-    """Checks of a design that need no file; where a limit of its motion fails, those limits alone."""
+    """Checks of a design that need no file; where a limit of its motion fails, those limits alone.
+
+    Raises RecipeErrors where there is no such motion or curve.
+    """
     limits = tuple(limit for limit in recipe.limits if limit.figure in OF_MOTION)
     if limits:
         try:

@@ -104,7 +104,10 @@ class RunFolder:
         self.folder = self._beside(f"partial-{os.getpid()}")
 
     def __enter__(self) -> Self:
-        """Lock the name, finish or undo a swap that was cut off, clear away what killed runs left, make `folder`."""
+        """Lock the name, finish or undo a swap that was cut off, clear away what killed runs left, make `folder`.
+
+        Raises BusyError where another run of this name is at work, SurroundingsError where the disk refuses.
+        """
         try:
             self._new = [path for path in (self._out, *self._out.parents) if not os.path.lexists(path)]
             lock = self._lock_name()
@@ -132,7 +135,10 @@ class RunFolder:
         return lock_file(self._beside("lock"))
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
-        """Clear away and unlock; a swap that an interrupt cut off is finished here. Folders made for nothing go."""
+        """Clear away and unlock; a swap that an interrupt cut off is finished here. Folders made for nothing go.
+
+        Raises SurroundingsError in place of an OSError of the run.
+        """
         try:
             # what cannot be finished or cleared away now is left to the next run, and says nothing about this one
             with suppress(OSError, SurroundingsError):
@@ -147,7 +153,10 @@ class RunFolder:
             raise _surroundings_error(error, self.folder) from error
 
     def kept_names(self) -> tuple[str, ...]:
-        """Names of files of the last set that this run has not written again, which `commit` may keep."""
+        """Names of files of the last set that this run has not written again, which `commit` may keep.
+
+        Raises SurroundingsError where the last set cannot be read, or its report is none of camgeo.
+        """
         try:
             names = self._last_set(self._out / self._name)
         except OSError as error:
@@ -188,7 +197,11 @@ class RunFolder:
         return folder
 
     def _prepare(self, folder: Path, names: tuple[str, ...], keep: tuple[str, ...]) -> None:
-        """Write the journal and link the old files; nothing outside the private folder changes but an empty folder."""
+        """Write the journal and link the old files; nothing outside the private folder changes but an empty folder.
+
+        Raises SurroundingsError where a file that no report lists is in the way; ValueError for a name that is none of
+        this recipe's, and for a file that was not written.
+        """
         for name in (*names, *keep):
             if not self._is_own_name(name):
                 raise ValueError(f"{name!r} is not the name of a file of {self._name}")
@@ -262,7 +275,10 @@ class RunFolder:
         raise _surroundings_error(error, folder) from error
 
     def _last_set(self, folder: Path) -> tuple[str, ...]:
-        """Files of the set in a folder as its report names them, those that are there, the report last."""
+        """Files of the set in a folder as its report names them, those that are there, the report last.
+
+        Empty where there is no report. Raises SurroundingsError where the report is none of camgeo.
+        """
         if not os.path.lexists(folder):
             return ()
         _make_own(folder)

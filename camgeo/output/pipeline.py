@@ -158,7 +158,7 @@ def _judge(
     """Design and findings on files of any origin.
 
     `bounds` are the tolerance, the unit of files that state none, and the gap over which ends are joined, mm; None for
-    those of the recipe.
+    those of the recipe. Raises CallError for a gap above the tolerance of a drawing.
     """
     from camgeo.common.errors import CallError
     from camgeo.output.sets import sets_of

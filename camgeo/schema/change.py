@@ -111,7 +111,10 @@ def _entry(node: Node, step: str | int) -> Node | None:
 
 
 def _add_entry(source: Source, node: Node, target: str, steps: list[str | int], value: Value) -> str:
-    """Add an entry to the mapping `node` at the path `target`, with the mappings that `steps` name in between."""
+    """Add an entry to the mapping `node` at the path `target`, with the mappings that `steps` name in between.
+
+    Raises RecipeErrors where a step is an entry of a list, or `node` is no mapping.
+    """
     whole = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).removeprefix(".")
     path = f"{target}{'' if whole.startswith('[') or not target else '.'}{whole}"
     for step in reversed(steps[1:]):
@@ -139,7 +142,10 @@ def _add_entry(source: Source, node: Node, target: str, steps: list[str | int], 
 
 
 def _verify_change(source: Source, path: str, text: str, new_path: str = "") -> str:
-    """The new text, whose values at all other paths must be the old ones; the entry may move to `new_path`."""
+    """The new text, whose values at all other paths must be the old ones; the entry may move to `new_path`.
+
+    Raises RecipeErrors where they are not, or the new text is no YAML.
+    """
     try:
         new = Source.of(text, source.file).root
     except RecipeErrors as errors:

@@ -320,7 +320,10 @@ _OfTree = yaml.ScalarEvent | yaml.AliasEvent | yaml.CollectionStartEvent | yaml.
 
 
 def _build(events: Iterator[yaml.Event], lines: tuple[str, ...], file: str) -> Node:
-    """Build the tree of one document; unlike PyYAML's composer it neither recurses nor goes on behind a bound."""
+    """Build the tree of one document; unlike PyYAML's composer it neither recurses nor goes on behind a bound.
+
+    Raises RecipeErrors for a second document, for none, and for a tree above a bound of this module.
+    """
     tree, documents = _Tree(lines, file), 0
     for event in events:
         if isinstance(event, _OfTree):
@@ -381,7 +384,7 @@ class _Tree:
         return node
 
     def _add(self, node: Node, mark: Mark, end: Mark, anchor: str | None) -> None:
-        """Put a node where it belongs."""
+        """Put a node where it belongs; raises RecipeErrors for more than `MAX_NODES` nodes."""
         if self.nodes > MAX_NODES:
             problem = f"more than {MAX_NODES} entries, aliases expanded"
             raise _fault(self.file, mark, problem, remedy="a recipe needs a few dozen")

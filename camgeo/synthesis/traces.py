@@ -43,6 +43,7 @@ def trace_lines(recipe: Recipe, design: Design, tolerance: float) -> list[tuple[
 
     The mechanism stands as at shaft angle 0, where the drawing's x axis is the normal of the face whose lift is given,
     a quarter turn ahead of the frame; mirrored where the shaft turns counter-clockwise. Empty where it does not turn.
+    Raises RecipeErrors for a path that is too rough to be followed within the tolerance.
     """
     from kin.linkage.trace import flattened
     from kin.numeric.monotone import RoughError

@@ -29,7 +29,10 @@ class Pitch:
 
     @staticmethod
     def of(contour: Curve) -> Pitch:
-        """Pitch curve of a roller's whole contour, a `Parallel`, with its own bounds, tighter than the contour's."""
+        """Pitch curve of a roller's whole contour, with its own bounds, tighter than the contour's.
+
+        Raises TypeError for a contour that is no `Parallel`.
+        """
         if not isinstance(contour.shape, Parallel):
             raise TypeError("only a roller's contour has a pitch curve")
         return Pitch(Curve(contour.shape.base, contour.runs))

@@ -407,7 +407,10 @@ def _depth(curve: Curve, contact: _Contact, points: Array, start: float, end: fl
 
 
 def kept_runs(curve: Curve, remainder: Remains) -> tuple[SmoothRun, ...]:
-    """Kept runs in order, from the end of each lost stretch to the beginning of the next."""
+    """Kept runs in order, from the end of each lost stretch to the beginning of the next.
+
+    Raises UndercutError where a run is so short that it is lost in rounding.
+    """
     period = curve.shape.period
     runs = []
     for lost, following in zip(remainder.lost, remainder.lost[1:] + remainder.lost[:1], strict=True):

@@ -152,7 +152,10 @@ def _global(curve: Curve, lost: LostStretch, neck: Neck) -> Undercut:
 
 
 def _neck_of(curve: Curve, lost: LostStretch) -> Neck:
-    """Neck that costs a stretch nowhere bent too much: the least rolling radius on it."""
+    """Neck that costs a stretch nowhere bent too much: the least rolling radius on it.
+
+    Raises UndercutError for a flat face, which has no necks, and where no neck narrower than the roller is found.
+    """
     from camgeo.curve.undercut.bottleneck import neck_from, rolling_radius
     from camgeo.curve.undercut.pairs import Pitch
 
