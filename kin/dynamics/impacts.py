@@ -188,7 +188,7 @@ class _Course:
         return current - gap if after == UPPER else current + gap
 
     def _gaps(self, phi: Array) -> Array:
-        """Upper less lower face, and the rate of that, (2, n)."""
+        """Upper less lower face, and its rate, (2, n), at phi (n,). Raises DynamicsError without an upper one."""
         if self.gap is None:
             raise DynamicsError("there is no upper face")
         at = np.clip(np.searchsorted(self.lower.knots, phi, side="right") - 1, 0, len(self.lower) - 1)

@@ -217,7 +217,10 @@ def _last(train: Train) -> float:
 
 
 def _safe(train: Train, drive: Drive) -> float:
-    """A speed below which no steady state can float: by the integral of the modulus of what a force drives up."""
+    """Speed, turns a minute, below which no steady state can float, by the integral of the modulus of the response.
+
+    Raises DynamicsError where the preload spring is slack over a part of the turn.
+    """
     zeta = train.damping_ratio
     bend = float(np.abs(drive.acceleration).sum(axis=1).max())
     kicks = float(np.abs(drive.jumps).sum())

@@ -75,10 +75,10 @@ class Envelope(Protocol):
         """Enclosed area and length of a regular contour, mm^2 and mm."""
 
     def inset(self, distance: float) -> Envelope:
-        """Give the parallel contour inside, at a distance, mm."""
+        """Envelope of the parallel contour inside this one, at a distance, mm."""
 
     def displaced(self, by: Outwards) -> Envelope:
-        """Give the contour that lies `by` farther outside, to first order; it has no corner where this one has none."""
+        """Contour that lies `by`, mm, farther outside, to first order; it has no corner where this one has none."""
 
 
 class Outwards(Protocol):
@@ -175,7 +175,7 @@ class DisplacedFace:
         return self.face.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Give the distance and the direction of the face, with derivatives."""
+        """Distance, mm, and direction, rad, of the face, with derivatives by the parameter."""
         r, t = self.face.pitch(tau, order, side)
         return r + self.by.rows(tau, order), t
 
@@ -297,11 +297,11 @@ class FlatEnvelope:
         return float(0.5 * weight @ (p * p - slope * slope)), float(weight @ p)
 
     def inset(self, distance: float) -> FlatEnvelope:
-        """Give the parallel contour inside, at a distance, mm."""
+        """Envelope of the parallel contour inside this one, at a distance, mm."""
         return FlatEnvelope(self.pitch, self.out - distance)
 
     def displaced(self, by: Outwards) -> FlatEnvelope:
-        """Give the contour of a face that stands so much farther out: its support function is greater by that."""
+        """Contour of a face that stands farther out: its support function is greater by as much, mm."""
         return FlatEnvelope(DisplacedFace(self.pitch, by), self.out)
 
 
@@ -481,11 +481,11 @@ class RollerEnvelope:
         return area - self.radius * perimeter + np.pi * self.radius**2, perimeter - TURN * self.radius
 
     def inset(self, distance: float) -> RollerEnvelope:
-        """Give the parallel contour inside, that of a larger roller on the same pitch curve."""
+        """Parallel contour inside, at a distance, mm: that of a larger roller on the same pitch curve."""
         return RollerEnvelope(self.pitch, self.radius + distance)
 
     def displaced(self, by: Outwards) -> RollerEnvelope:
-        """Give the contour by a pitch curve that lies so much farther outside along its normals."""
+        """Contour by a pitch curve that lies farther outside along its normals, by as much, mm."""
         return RollerEnvelope(DisplacedPitch(self.pitch, by), self.radius)
 
 

@@ -232,7 +232,10 @@ class _OnArm(Moved):
         return touches
 
     def _rows(self, bearing: FlatContacts, i: int, phi: Array, middle: Array | None = None) -> Array:
-        """Position and two derivatives by phi, (3, n), with face i resting; `middle` as in `ArmFace.touch`."""
+        """Position, rad, and two derivatives by phi, (3, n), at phi (n,), rad, with face i resting on a contour.
+
+        `middle` (n,) are shaft angles that tell which stretch is meant where phi is the end of one.
+        """
         face, contact = self.faces[i], self.contacts[i]
         rows = face.touch(bearing, phi, middle)
         rows[0] -= phi

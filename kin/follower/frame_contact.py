@@ -173,7 +173,7 @@ def laid(mechanism: Mechanism, bearing: FlatContacts, rests: Sequence[FrameRest]
 
 
 def _parted(rests: Sequence[FrameRest], way: Indices, begin: Array, low: Array, high: Array) -> list[Resting]:
-    """Give each way its intervals of all, (n,)."""
+    """Resting of each way, of those of the n intervals that are its own."""
     ends = np.searchsorted(way, np.arange(len(rests) + 1))
     parts = [slice(*pair) for pair in pairwise(ends.tolist())]
     return [

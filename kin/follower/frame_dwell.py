@@ -59,7 +59,7 @@ class _Span(NamedTuple):
         return _Span(*(x + turn for x in self))
 
     def joined(self, other: _Span) -> _Span:
-        """Return what holds for windows of either; `other` begins no earlier."""
+        """Bounds that hold for the windows of both; `other` begins no earlier."""
         return _Span(self.begin, max(self.core, other.core), min(self.rest, other.rest), max(self.end, other.end))
 
 

@@ -66,7 +66,8 @@ class Play:
 
     A yoke: the breadth of the frame less that of the contour, mm. A double roller: the gap at the second roller while
     the first is held in contact, mm. A flat pair: the angle by which the faces stand wider than they need, degrees.
-    The angles are shaft angles, [0, 360). `extremes` as in `MotionError`.
+    The angles are shaft angles, [0, 360). `extremes` is "true" where they are those of all shaft angles, "sampled"
+    where they are those of the angles that were looked at.
     """
 
     least: float
@@ -77,7 +78,7 @@ class Play:
     extremes: Extreme = "true"
 
     def less_sure(self, by: float) -> Play:
-        """Give the play with its least and greatest value moved apart by a possible error."""
+        """Play with its least value lower and its greatest higher by `by`, a possible error in the unit of the play."""
         return replace(self, least=self.least - by, most=self.most + by)
 
 

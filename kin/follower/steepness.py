@@ -114,7 +114,7 @@ class ParameterTable:
     @staticmethod
     @lru_cache(maxsize=8)
     def of(transmission: Transmission) -> ParameterTable:
-        """Tabulate."""
+        """Table of a transmission over one period of its law."""
         tau, _ = _cells(transmission.psi.knots, TABLED)
         phi = transmission.at(tau, 0)[0][0]
         phi[-1] = phi[0] + 2.0 * transmission.delta

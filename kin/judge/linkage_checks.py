@@ -71,7 +71,10 @@ def judge_linkage(
 
 
 def _output_less_sure(mechanism: Mechanism, uneven: float) -> float:
-    """What a contour that is off by `uneven`, mm, can do to the output."""
+    """Greatest error of the output, mm or degrees, that a contour off by `uneven`, mm, can cause.
+
+    Raises FrameError where the mechanism binds within that.
+    """
     off = implied_limit(mechanism, uneven) if uneven else 0.0
     if off is None:
         raise FrameError(f"the mechanism binds within the {uneven:.3g} mm by which the solid's sections differ")
@@ -79,7 +82,10 @@ def _output_less_sure(mechanism: Mechanism, uneven: float) -> float:
 
 
 def _band_less_sure(dwell: DwellAsked, mechanism: Mechanism, off: float) -> float:
-    """Band within which an output stays for certain in the band asked for, if it may be off either way, rad or mm."""
+    """Band of the dwell, rad or mm, less the errors `off`, degrees or mm, by which the output may stray either way.
+
+    Raises FrameError where nothing of the band is left.
+    """
     band = dwell.band - 2.0 * (float(np.radians(off)) if mechanism.unit == "deg" else off)
     if band <= 0.0:
         raise FrameError(

@@ -67,7 +67,7 @@ class OfSurfaces:
 
     @property
     def surface(self) -> SurfaceVerdict:
-        """The first surface."""
+        """Verdict on the first surface; an empty one where none was read."""
         return self.surfaces[0] if self.surfaces else UNREAD
 
     @property

@@ -69,7 +69,7 @@ class Law:
     reverses: bool = False
 
     def derivatives(self, u: float | Array, order: int, side: int = 1) -> Array:
-        """Give s and its derivatives by u, (order + 1, n), at u (n,) in [0, 1]; `side` as for `Piecewise`."""
+        """Law s and its derivatives by u, (order + 1, n), at u (n,) in [0, 1]; at a knot the limit from `side`."""
         return self.motion.derivatives(u, order, side)
 
 
@@ -81,7 +81,7 @@ class Polynomial:
     centre: float = 0.0
 
     def __call__(self, u: Series, /) -> Series:
-        """Give the displacement."""
+        """Displacement, a series of u's own kind."""
         return horner(self.coefficients, u - self.centre if self.centre else u)
 
 
@@ -111,7 +111,7 @@ class AcceleratedPiece(Alike):
         return _Accelerated(self.shape, tuple(rows))
 
     def __call__(self, u: Series, /) -> Series:
-        """Give the displacement."""
+        """Displacement, a series of u's own kind."""
         return self.together(np.array(self.numbers)[:, None])(u)
 
 
@@ -123,7 +123,7 @@ class _Accelerated:
     rows: tuple[Array, ...]
 
     def __call__(self, u: Series, /) -> Series:
-        """Give each displacement."""
+        """Displacement of each piece, a series of u's own kind."""
         start, s, v, rate, scale = self.rows
         if isinstance(u, Jet) and u.order and not u.c[2:].any():
             return self._at_points(u)

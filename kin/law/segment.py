@@ -139,7 +139,7 @@ class Power(Alike):
         return partial(horner, rows)
 
     def __call__(self, u: Series, /) -> Series:
-        """Give the polynomial."""
+        """Value of the polynomial, a series of u's own kind."""
         return horner(self.coefficients, u)
 
 
@@ -151,7 +151,7 @@ class Harmonics:
     terms: tuple[tuple[int, float, float], ...]
 
     def __call__(self, t: Series, /) -> Series:
-        """Sum the series."""
+        """Value of the sum, a series of t's own kind."""
         if isinstance(t, Jet) and len(self.terms) > 0 and not t.c[2:].any():
             return self._at_points(t)
         if isinstance(t, BallJet) and len(self.terms) > _MANY:

@@ -50,7 +50,7 @@ class Circle(Harmonic):
         return self.radius, self.x, self.y
 
     def __call__(self, t: Series, /) -> Series:
-        """Give the support function."""
+        """Support function, mm, a series of t's own kind."""
         total = t.constant(self.radius)
         if self.x:
             total = total + cos(t) * self.x

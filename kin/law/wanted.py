@@ -318,7 +318,7 @@ class _Room:
     bound: float
 
     def __call__(self, tau: Series, /) -> Series:
-        """Give it."""
+        """Value of the function, rad, a series of tau's own kind."""
         psi: Series = self.wanted(tau)
         reach = self.sign * self.bound
         made: Series = asin(self.made(tau + psi * self.lean + (self.offset - 0.5 * reach)))

@@ -92,7 +92,7 @@ class Smooth:
         return pieces
 
     def times(self, factor: float) -> Smooth:
-        """Give the curve times a factor."""
+        """The curve with its values times a factor."""
         return replace(self, coefficients=factor * self.coefficients, sigma=abs(factor) * self.sigma)
 
     @staticmethod
@@ -245,7 +245,7 @@ class _Points:
             raise GapError(f"{gap} on, more than two of {spans} spans")
 
     def _validated(self, spans: int) -> float:
-        """Generalised cross-validation."""
+        """Mean square error by generalised cross-validation, to within a factor of the number of points."""
         coefficients = self.solved(spans)
         off = self.value - _evaluated(coefficients, self.angle)
         return float(off @ off) / (len(off) - spans) ** 2
@@ -268,7 +268,7 @@ class _Points:
         return matrix, right
 
     def solved(self, spans: int) -> Array:
-        """Coefficients (N,)."""
+        """Coefficients (N,), mm, of the spline of least squares with N = `spans` spans."""
         matrix, right = self._normal(spans)
         if spans <= 3 * BLOCK:
             return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)

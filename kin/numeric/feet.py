@@ -148,7 +148,7 @@ def two_best(score: Callable[[Array], Array], points: Array, count: int) -> tupl
 
 
 class Tight(Protocol):
-    """Protocol of a contour with the places where its curvature is tight; see `kin.follower.envelope.Envelope`."""
+    """Protocol of a contour that knows its radii of curvature, and so the places where its curvature is tight."""
 
     def points(self, parameter: Array) -> Array:
         """Points (n, 2) of the contour."""

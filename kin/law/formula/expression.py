@@ -115,7 +115,7 @@ class Expression:
         return result if any(isinstance(argument, np.ndarray) for argument in arguments) else float(result)
 
     def jet(self, t: float | Array, order: int) -> Jet:
-        """Return the Taylor coefficients up to an order at t (n,)."""
+        """Taylor coefficients, (order + 1, n), as a jet at t (n,)."""
         return self.on(Jet.variable(t, order))
 
     def ball(self, lower: float | Array, upper: float | Array, order: int) -> BallJet:

@@ -50,7 +50,7 @@ class Formula:
         return self.expression(*arguments)
 
     def jet(self, t: float | Array, order: int) -> Jet:
-        """Return the Taylor coefficients up to an order at t (n,)."""
+        """Taylor coefficients, (order + 1, n), as a jet at t (n,)."""
         return self.expression.jet(t, order)
 
     def ball(self, lower: float | Array, upper: float | Array, order: int) -> BallJet:

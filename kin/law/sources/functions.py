@@ -22,7 +22,7 @@ class Sines:
     terms: tuple[tuple[float, float], ...]
 
     def __call__(self, u: Series, /) -> Series:
-        """Give the displacement."""
+        """Displacement, a series of u's own kind."""
         total = u.constant(0.0)
         for k, a in self.terms:
             angle = u * k
@@ -38,7 +38,7 @@ class Cosines:
     square: float = 0.0
 
     def __call__(self, u: Series, /) -> Series:
-        """Give the displacement."""
+        """Displacement, a series of u's own kind."""
         total = u * u * self.square if self.square else u.constant(0.0)
         for k, a in self.terms:
             total = total + (1.0 - cos(u * k)) * a
@@ -50,7 +50,7 @@ class RiseFall:
     """64 u**3 (1 - u)**3: up and down again, v, a at rest at both ends (3-4-5-6)."""
 
     def __call__(self, u: Series, /) -> Series:
-        """Give the displacement, 1 at the middle."""
+        """Displacement, a series of u's own kind: 1 at the middle."""
         return (u * (1.0 - u)) ** 3.0 * 64.0
 
 
@@ -72,7 +72,7 @@ class TwoPoint:
         return TwoPoint(_over_power(start), _over_power(turned))
 
     def __call__(self, u: Series, /) -> Series:
-        """Give the displacement."""
+        """Displacement, a series of u's own kind."""
         v, power = 1.0 - u, float(len(self.first))
         return v**power * horner(self.first, u) + u**power * horner(self.last, v)
 
@@ -133,7 +133,7 @@ class Flank:
         return Flank(tuple(fsum(w * c for w, c in zip(weights, column, strict=True)) for column in columns))
 
     def __call__(self, v: Series, /) -> Series:
-        """Give the displacement, 1 at the nose."""
+        """Displacement, a series of v's own kind: 1 at the nose."""
         return v**5.0 * horner(self.coefficients, 1.0 - v)
 
 
@@ -146,7 +146,7 @@ class RampedFlank:
     flank: Flank
 
     def __call__(self, v: Series, /) -> Series:
-        """Give the displacement."""
+        """Displacement, a series of v's own kind: `foot` at v = 0."""
         return self.flank(v) + v * self.slope + self.foot
 
 
@@ -155,5 +155,5 @@ class FromRest:
     """2 u**3 - u**4: from rest to a constant velocity, both without acceleration; 1 at u = 1."""
 
     def __call__(self, u: Series, /) -> Series:
-        """Give the displacement."""
+        """Displacement, a series of u's own kind."""
         return u**3.0 * (2.0 - u)

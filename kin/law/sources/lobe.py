@@ -129,7 +129,7 @@ def lobe_of(
 ) -> Motion:
     """Join the two sides of a lobe at its nose, and rest beyond them.
 
-    Where the motion does not repeat (`around` as for `Motion`), the nose stands in the middle, and IntentError is
+    Where the motion does not repeat, `around` other than 1, the nose stands in the middle, and IntentError is
     raised for one that is given.
     """
     if around != 1 and nose != 0.0:

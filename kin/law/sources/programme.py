@@ -104,7 +104,8 @@ class _Part:
 def programme(segments: Sequence[Step], total: float, *, around: int | None = 1, field: str = "motion") -> Motion:
     """Join segments into a motion over [0, total] rad.
 
-    `around` is as for `Motion`; a matched segment at an end takes its neighbour across it, and rest where it is None.
+    With `around` 1 the motion repeats; with -1 it goes on as S(total) - S(t - total); with None nothing is said. A
+    matched segment at an end takes its neighbour across it, and rest where `around` is None.
     Raises IntentError if the angles do not sum to `total` within 1e-9 rad, for a segment that cannot be, and where
     two matched segments meet with no state given. Velocities that jump are left to `Motion.joints`.
     """

@@ -109,7 +109,7 @@ class Affine(NamedTuple):
         )
 
     def at(self, x: float, y: float) -> tuple[float, float]:
-        """Give the image (x, y) of a point."""
+        """Image (x, y) of a point under the map."""
         return self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f
 
     def scale_and_sense(self) -> tuple[float, float]:

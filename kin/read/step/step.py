@@ -171,7 +171,7 @@ class _Body:
 
     @property
     def lids(self) -> list[Face]:
-        """The horizontal faces."""
+        """Faces that lie in horizontal planes."""
         return [face for face in self.faces if face.surface.level]
 
     @property
@@ -180,7 +180,7 @@ class _Body:
         return len(self.levels) == 2 and all(face.surface.level or face.surface.upright for face in self.faces)
 
     def demand_reached(self, z: float) -> float:
-        """Return a height that is asked for; raises ReadError where the part does not reach there."""
+        """The height z, mm, itself; raises ReadError where the part does not reach there."""
         low, high = self.levels[0], self.levels[-1]
         if not low < z < high:
             message = f"the part reaches from z = {low:.9g} to {high:.9g} mm: it has no section at {z:.9g}"
