@@ -58,7 +58,7 @@ class OfMechanism:
 
     @cached_property
     def breaks(self) -> Array:
-        """Shaft angles of the lift's breaks at either face that drives the frame."""
+        """Shaft angles, rad (m,), of the lift's breaks at either face that drives the frame."""
         shaft: Array = self.mechanism.at(self.mechanism.breaks, 0).shaft[0]
         return shaft
 

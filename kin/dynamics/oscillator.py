@@ -52,17 +52,17 @@ class Oscillator:
 
     @cached_property
     def split(self) -> float:
-        """Damped frequency if it swings, else half the difference of the two rates of decay."""
+        """Damped frequency if it swings, else half the difference of the two rates of decay; rad per unit of time."""
         return math.sqrt(abs(self.natural - self.decay) * (self.natural + self.decay))
 
     @cached_property
     def fast(self) -> float:
-        """Greater modulus of the two roots of lambda^2 + 2 a lambda + r^2 = 0."""
+        """Greater modulus of the two roots of lambda^2 + 2 a lambda + r^2 = 0, per unit of time."""
         return self.natural if self.swings else self.decay + self.split
 
     @cached_property
     def slow(self) -> float:
-        """Lesser modulus of the two roots of lambda^2 + 2 a lambda + r^2 = 0."""
+        """Lesser modulus of the two roots of lambda^2 + 2 a lambda + r^2 = 0, per unit of time."""
         return self.natural if self.swings else self._gentle
 
     @cached_property

@@ -212,7 +212,7 @@ def _rigid_float_rpm(train: Train, drive: Drive) -> float | None:
 
 
 def _last(train: Train) -> float:
-    """The speed beyond which none is sought."""
+    """Speed, turns a minute, beyond which none is sought."""
     return train.natural / _LEAST_RATIO * 60.0 / TURN
 
 

@@ -69,7 +69,7 @@ class Envelope(Protocol):
 
     @property
     def extent(self) -> float:
-        """Greatest of the lengths, mm, that an excess is the difference of: to its last places it is known."""
+        """Greatest length, mm, of those whose difference an excess is: it is known to the rounding of this length."""
 
     def area_and_perimeter(self) -> tuple[float, float]:
         """Enclosed area and length of a regular contour, mm^2 and mm."""
@@ -118,7 +118,7 @@ class LiftPitch:
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles of the lift's breaks."""
+        """Shaft angles, rad (m,), of the lift's breaks."""
         return self.along.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
@@ -145,7 +145,7 @@ class ArmPitch:
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles of the law's breaks."""
+        """Shaft angles, rad (m,), of the law's breaks."""
         return self.law.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:

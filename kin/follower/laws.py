@@ -115,7 +115,7 @@ class Swing:
 
     @cached_property
     def breaks(self) -> Array:
-        """Shaft angles of the law's breaks."""
+        """Shaft angles, rad (m,), of the law's breaks."""
         phi: Array = self.transmission.at(self.transmission.breaks, 0)[0][0]
         return phi
 

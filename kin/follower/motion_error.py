@@ -49,7 +49,7 @@ class MotionError:
         return self.max + self.remainder
 
     def less_sure(self, by: float) -> MotionError:
-        """Count in that every measured position may be off by as much."""
+        """Motion error with figures that hold if every measured position is off by up to `by`, mm or degrees."""
         flat = self.dwell_flatness
         return replace(
             self,

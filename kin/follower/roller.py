@@ -456,7 +456,10 @@ def end_angles(pieces: Arcs, guide: Guide, angles: Array) -> Array:
 
 
 def passing_angles(obstacle: Arcs, guide: Guide) -> Array:
-    """Shaft angles at which the roller's centre comes to the start and to the middle of each piece, if they are few."""
+    """Shaft angles, rad (n,), at which the roller's centre comes to the start and to the middle of each piece.
+
+    Empty for more than MOST_PIECES pieces.
+    """
     if len(obstacle) > MOST_PIECES:
         return np.empty(0)
     points = np.concatenate([obstacle.start, obstacle.points(0.5 * obstacle.length)])

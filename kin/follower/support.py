@@ -112,7 +112,7 @@ class FlatContacts:
         return x, radius
 
     def nodes(self, low: float, high: float, breaks: Array, turned: float = 0.0) -> Array:
-        """low, high, and between them the breaks of q(theta + turned) and of `breaks` (in [0, 2 pi)), rising."""
+        """Angles low and high, rad, and between them, rising, the breaks of q(theta + turned) and `breaks`."""
         all_breaks = np.concatenate([np.mod(self.breaks - turned, TURN), breaks])
         first = int(np.floor(low / TURN))
         turns = TURN * np.arange(first, int(np.ceil(high / TURN)) + 1)

@@ -110,7 +110,7 @@ class _Extremes:
 
     @property
     def greatest(self) -> float:
-        """Greatest error in size."""
+        """Greatest absolute error, rad; infinite for no series."""
         return float(np.abs(self.error).max())
 
     def taken(self, index: NDArray[np.intp]) -> _Extremes:
@@ -132,7 +132,7 @@ class _Search:
         self.grid = np.unique(np.concatenate(parts))[:-1]
 
     def projected(self) -> Array:
-        """The first terms of the wanted law's own series."""
+        """Coefficients (2 m,) of the first terms of the wanted law's own series."""
         period = 2 * self.wanted.delta
         t: Array = np.linspace(0.0, period, 1024, endpoint=False)
         d = -np.sin(self.wanted.at(self.wanted.polar_parameter(t), 0)[1][0])
@@ -216,7 +216,7 @@ class _Search:
         return extremes.taken(np.array([i for i, _, _ in kept]))
 
     def least(self, reference: _Extremes) -> float:
-        """What no series falls below, by the errors at a reference; 0 by one of too few places."""
+        """Lower bound of any series' greatest error, rad, by the errors at a reference; 0 by one of too few places."""
         whole = len(reference.error) == 2 * len(self.odd) + 1
         return float(np.abs(reference.error).min()) if whole else 0.0
 
@@ -230,12 +230,12 @@ class _Search:
         return jacobian
 
     def levelling_change(self, reference: _Extremes, error: Array, jacobian: Array) -> Array:
-        """The change of the coefficients that gives all of a reference one error in turn, as far as it is linear."""
+        """Change of the coefficients (2 m,) after which errors of a reference alternate at one size, to first order."""
         solved: Array = np.linalg.solve(np.column_stack([jacobian, -np.sign(reference.error)]), -error)
         return solved[:-1]
 
     def on_grid(self, coefficients: Array) -> Array:
-        """The best series at the places looked at alone: by the exchange of the linear problem, again and again.
+        """Coefficients (2 m,) of the best series at the places of the grid, by repeated exchange.
 
         A step is halved until the greatest error falls, so that a first series far off leads there too.
         """

@@ -107,7 +107,7 @@ def figures(rows: Callable[[Array], Quantities], shaft: Callable[[Array], Array]
         return max(greatest, least, key=lambda extreme: abs(extreme[0]))
 
     def nearest_zero(name: str) -> float:
-        """Where the absolute value is least."""
+        """Relative angle, rad, at which the absolute value of a quantity is least."""
         least, greatest = extremes(curves, row[name])
         if least[0] >= 0:
             return least[1]

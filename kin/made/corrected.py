@@ -205,7 +205,7 @@ class Corrected(Follower):
 
     @cached_property
     def metal_breaks(self) -> Array:
-        """Shaft angles at which a contact comes upon, or leaves, a break of the contour."""
+        """Shaft angles, rad (m,), at which a contact comes upon, or leaves, a break of the contour."""
         corners = self.metal.corners
         touches = [self.metal.gauge.touching(corners.points, side) for side in (corners.before, corners.after)]
         breaks: Array = np.mod(np.concatenate([angle for touch in touches for angle, _ in touch]), TURN)

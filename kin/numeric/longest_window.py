@@ -382,7 +382,7 @@ class _Family:
         return which, self.take(which).refined(left, right, before, after)
 
     def refined(self, left: Array, right: Array, before: Array, after: Array) -> Array:
-        """Where the difference of slopes, `before` >= 0 at left and `after` <= 0 at right, is 0.
+        """Places (n,) where the difference of slopes is 0; it is `before` >= 0 at left, `after` <= 0 at right.
 
         Illinois' method, and halving where that does not end soon.
         """

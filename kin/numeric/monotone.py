@@ -207,7 +207,7 @@ class MonotonePieces:
         return self.x[piece] + np.clip(t, 0.0, 1.0) * self.width[piece]
 
     def crossings(self, level: float) -> Array:
-        """Every x at which the function passes or touches a level, rising; of a run along it the ends, within noise."""
+        """Every x (m,) at which the function passes or touches `level`, rising; of a run along it both ends."""
         value = self.values - level
         zero = np.abs(value) <= np.maximum(np.append(self.blur, 0.0), np.append(0.0, self.blur))
         through = np.flatnonzero((value[:-1] * value[1:] < 0) & ~zero[:-1] & ~zero[1:])

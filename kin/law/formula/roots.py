@@ -88,7 +88,7 @@ def _sign(row: Ball) -> NDArray[np.int_]:
 
 
 def snap(lower: float, upper: float) -> float:
-    """Return the distance within which two parameters of an interval are one."""
+    """Distance within which two parameters of an interval from `lower` to `upper` are one, a few roundings of them."""
     return _END_ULPS * math.ulp(max(abs(lower), abs(upper)))
 
 

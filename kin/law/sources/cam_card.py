@@ -144,7 +144,7 @@ class _Programme(NamedTuple):
     within: float = 0.0
 
     def least_miss(self) -> tuple[float, list[Array]]:
-        """By how much the rows are missed at best, 0 where they can be met, and the weights of each side that do."""
+        """Least distance by which the rows are missed, 0 where they can be met, and the weights of each side for it."""
         rows, right = self._rows()
         solution = minimise(np.zeros(rows.shape[1]), rows, right, _EXACT)
         return solution.missed, self._weights(solution.x)

@@ -144,7 +144,7 @@ class Curve(NamedTuple):
     period: float
 
     def __call__(self, x: Array, order: int = 0) -> Array:
-        """The function, or a derivative of it, at x (n,)."""
+        """Value of the function, or its derivative of an order, (n,), at x (n,)."""
         if self.period:
             x = self.starts[0] + np.mod(x - self.starts[0], self.period)
         piece = np.maximum(np.searchsorted(self.starts, x, side="right") - 1, 0)
@@ -159,7 +159,7 @@ class Curve(NamedTuple):
         return rows
 
     def peak(self, begin: float, end: float) -> float:
-        """Greatest |acceleration| from angle `begin` to `end`."""
+        """Greatest absolute second derivative from angle `begin` to `end`, rad."""
         _, q1, q2, q3 = self._rows(2)
         root = np.sqrt(np.maximum(q2 * q2 - 3.0 * q1 * q3, 0.0))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -171,7 +171,7 @@ class Curve(NamedTuple):
         return float(np.abs(self(x, 2)).max())
 
     def square(self, begin: float, end: float) -> float:
-        """Integral of the jerk's square from `begin` to `end`."""
+        """Integral of the third derivative's square from angle `begin` to `end`, rad."""
         x = self.starts
         if self.period:
             x = begin + np.mod(x - begin, self.period)
@@ -293,7 +293,7 @@ class _Blocks(NamedTuple):
     beside: Indices  # separators of each block (p, 4)
 
     def solve(self, products: Array, rhs: Array) -> Array:
-        """Solve the equations by blocks: so small that no library calls for threads."""
+        """Solution of the equations, by blocks: so small that no library calls for threads."""
         p, b, n = self.size
         matrix = np.bincount(self.flat, products.ravel()[self.used], p * b * (b + 4) + n * n)
         if not p:

@@ -33,7 +33,7 @@ class Basis:
 
     @cached_property
     def knots(self) -> Array:
-        """All knots, with five more beyond each end."""
+        """Knots (m + 11,): the m + 1 sites and five more beyond each end."""
         x, m = self.sites, len(self.sites) - 1
         if not self.periodic:
             return np.concatenate([[x[0]] * DEGREE, x, [x[-1]] * DEGREE])

@@ -149,7 +149,7 @@ def _likely(rows: Tabled, plain: Least) -> list[tuple[int, ...]]:
     order = np.argsort(-np.abs(plain.pull))[:_MOST_TRIED].tolist()
 
     def falls(group: Sequence[int]) -> float:
-        """Share of the mean square by which it falls where the other rows stay touched."""
+        """Share by which the mean square of the jerk falls without a group of rows, the other rows still touched."""
         left = np.delete(np.arange(k), group)
         return 1.0 - pulls(rows.space, plain.x[left], plain.values[left])[1] / plain.square
 

@@ -188,7 +188,7 @@ class _Body:
         return z
 
     def widest(self) -> float:
-        """Height midway between two levels at which the section is largest."""
+        """Height, mm, midway between two levels, at which the section has the largest area."""
         middles = [0.5 * (low + high) for low, high in zip(self.levels[:-1], self.levels[1:], strict=True)]
         return max(middles, key=self._area) if len(middles) > 1 else middles[0]
 
@@ -216,7 +216,7 @@ class _Body:
 
     @property
     def volume(self) -> float:
-        """Integral of the sections' area, exact but for the layers that a level hole runs through."""
+        """Volume, mm^3: the integral of the sections' area, exact but for layers that a level hole runs through."""
         tubes = [face.surface for face in self.faces if isinstance(face.surface, Tube)]
         total = 0.0
         for low, high in zip(self.levels[:-1], self.levels[1:], strict=True):
