@@ -206,7 +206,7 @@ def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[
     if zone is not None:
         for disc in result.discs:
             off, name = np.abs(disc.profile.e), name_of(disc.part)
-            worst = int(np.argmax(off + disc.uncertain))
+            worst = int(np.argmax(off))
             parameter = np.concatenate([deviation.parameter for deviation in disc.profile.deviations])
             at = disc.surfaces[0].gauge.shaft_angle(parameter[worst : worst + 1])[0]
             check, verdict = _held(PROFILE.name, 2.0 * off, 2.0 * disc.uncertain, zone, unit="mm", at=at)
@@ -220,7 +220,7 @@ def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[
         off, uncertain = np.abs(result.output.worst), COVERAGE * result.output.sds
         judged.append((OUTPUT.name, off, uncertain, limits.output, result.output_unit, result.output.shaft))
     for name, off, uncertain, limit, unit, shaft in judged:
-        scale, at = math.degrees(1.0) if unit == "deg" else 1.0, shaft[int(np.argmax(off + uncertain))]
+        scale, at = math.degrees(1.0) if unit == "deg" else 1.0, shaft[int(np.argmax(off))]
         check, verdicts[name] = _held(name, scale * off, scale * uncertain, limit, unit=unit, at=at)
         checks.append(check)
     return checks, verdicts
@@ -229,7 +229,7 @@ def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[
 def _held(name: str, value: Array, uncertain: Array, limit: float, *, unit: str, at: float) -> tuple[Check, str]:
     """A check by the rule of ISO 14253-1, and its verdict: ok, failed, or not proved where neither is certain.
 
-    `at` is the shaft angle, rad, at which values (n,) and their uncertainties together are greatest.
+    `at` is the shaft angle, rad, at which the values (n,) are greatest.
     """
     sure, above = bool((value + uncertain <= limit).all()), bool((value - uncertain > limit).any())
     verdict = "ok" if sure else "failed" if above else "not proved"
