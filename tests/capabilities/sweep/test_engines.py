@@ -45,11 +45,11 @@ import sys
 from pathlib import Path
 from support.sweepers import PROCEDURES, task
 from camgeo.capabilities.sweep import engines
-from camgeo.capabilities.sweep.engines import Engine
+from camgeo.capabilities.sweep.engines import Workers
 from camgeo.capabilities.sweep.search import search
 if __name__ == "__main__":
     engines._TRIAL = engines._WORTHWHILE = 0.0  # processes after the first chunk
-    search(task(sys.argv[1]), Path(sys.argv[2]), Engine(int(sys.argv[3])), PROCEDURES)
+    search(task(sys.argv[1]), Path(sys.argv[2]), Workers(int(sys.argv[3])), PROCEDURES)
 """
 
 
