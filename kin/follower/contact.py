@@ -36,7 +36,7 @@ PAIRS_AT_ONCE = 1_000_000  # bounds the memory that a hostile contour can ask fo
 def dilated(chain: Arcs, radius: float) -> Arcs:
     """Pieces, in no order, that bound the region a disc's centre cannot enter; the metal lies left of the chain.
 
-    A disc of radius 0, the point of a knife edge, is bounded by the chain itself.
+    `radius` is the disc's, mm. A disc of radius 0, the point of a knife edge, is bounded by the chain itself.
     """
     if radius == 0.0:
         return chain
@@ -138,7 +138,10 @@ class Search:
 
 
 def within_reach(pieces: Arcs, guide: Guide, slack: float) -> NDArray[np.bool_]:
-    """Mask (n,) of the short pieces of which some point may lie as far from the shaft as the roller's centre can."""
+    """Mask (n,) of the short pieces of which some point may lie as far from the shaft as the roller's centre can.
+
+    `slack`, mm, widens the distances of each piece against rounding.
+    """
     nearest, farthest = _distances(pieces, slack)
     least, most = guide.reach()
     within: NDArray[np.bool_] = (farthest >= least) & (nearest <= most)

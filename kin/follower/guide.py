@@ -113,9 +113,9 @@ class Arm:
         return float(np.sqrt(max(self.pivot**2 - self.length**2, 0.0)))
 
     def position(self, r: Array) -> Array:
-        """Angle at the pivot between shaft and roller centre, from the centre's distance r (n,) from the shaft.
+        """Angle at the pivot between shaft and roller centre, rad (n,), at its distance r (n,), mm, from the shaft.
 
-        A distance beyond the arm's reach counts as the end of it.
+        It is negative where `away` is -1. A distance beyond the arm's reach counts as the end of it.
         """
         # Half-angle form: good digits at either end of the reach.
         above = (r - (self.pivot - self.length)) * (r + (self.pivot - self.length))
@@ -264,7 +264,7 @@ class Line:
 
     @property
     def turning(self) -> float:
-        """Zero: the lead falls at all distances from the shaft."""
+        """Zero, mm: the lead goes one way at all distances; it falls if `offset` is above 0, rises if it is below."""
         return 0.0
 
     def position(self, r: Array) -> Array:

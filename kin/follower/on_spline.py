@@ -275,7 +275,10 @@ class BezierSpans:
         return BezierSpans.over(self.path, self.piece[[i]], self.low[[i]], self.high[[i]])
 
     def summit(self, law: IntendedLaw, where: float) -> Array:
-        """Shaft angles, (2,): `where` off the middle of a single span, and a Newton step on to its greatest error."""
+        """Shaft angles (2,), rad, on a stretch that is alone: near its greatest error, and a Newton step closer to it.
+
+        The first is `where`, mm along the centre's path, off the middle of the stretch.
+        """
         path = self.path
         _, rate = path.at(self.piece, self.middle)
         t = np.clip(self.middle + where / rate, self.low, self.high)

@@ -90,6 +90,10 @@ class FlatContacts:
         return extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, breadth, resolution=resolution)
 
     def _contact(self, theta: Array, stretch: Indices, u: Array) -> tuple[Array, Array]:
+        """Points of contact (n, 2), mm, and radii of curvature there (n,), mm, 0 at corners.
+
+        The normals have angles `theta` (n,), rad, and unit vectors `u` (n, 2), and lie on the stretches given.
+        """
         x = self.point[stretch]
         radius = np.zeros(len(x))
         piece = self.piece[stretch]
@@ -102,6 +106,7 @@ class FlatContacts:
             x[arc] = self.contour.centre[i] + r[:, None] * u[arc]
             far = r > NEAR_CENTRE * float(np.abs(self.contour.vertices).max())
             arc, i = arc[far], i[far]
+            # from a centre far away the points lose digits, so these are found from the arc's start
             x[arc] = self.contour.arc_points(i, theta[arc] - self.contour.angle[i])
             if len(bow):
                 row = self.contour.curve[piece[bow]]

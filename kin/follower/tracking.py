@@ -463,7 +463,9 @@ class CentreState:
     """The centre at n places on pieces: what position and shaft angle and their derivatives by s are made of.
 
     With P, T and k point, tangent and curvature of the piece: r = |P|, a = P.T, c = P x T, b = 1 - k c, so that
-    a' = b, c' = k a, (r^2)' = 2 a. q is the derivative of the position, phi_1 that of the shaft angle.
+    a' = b, c' = k a, (r^2)' = 2 a, where s, mm, is the arc length of the path. `position` has the position, mm or rad,
+    and its first and second derivative by s; `phi` is the shaft angle, rad, and `angle` has its two derivatives by s.
+    All are (n,).
     """
 
     guide: Guide

@@ -64,9 +64,9 @@ def failed(name: str, detail: str, *, unit: str = "", limit: float | None = None
 
 
 def less_sure(check: Check, by: float) -> Check:
-    """Give an `at_most` check with `by` added to its value, for an error of the measured thing itself.
+    """Give an `at_most` check with its value greater by `by`, for heights of a solid that differ through rounding.
 
-    A check without a figure is returned as it is.
+    `by` is in the unit of the check. With `by` 0, or without a value or a limit, the check is returned as it is.
     """
     if not by or check.value is None or check.limit is None:
         return check

@@ -103,7 +103,7 @@ def cuts_of(program: Program) -> Iterator[Cut]:
 
 
 def across(move: ToolMove) -> bool:
-    """Whether a move ends beside the place where it starts."""
+    """Whether a move ends at another x or y than it starts at."""
     return move.start[:2] != move.end[:2]
 
 

@@ -133,7 +133,8 @@ def _matched(
 ) -> tuple[list[tuple[Hole, Contour | None]], list[Contour]]:
     """Each opening that is meant with the one found there, None if there is none; and those found besides.
 
-    Two belong together if the middles of their boxes lie within half the size of the one that is meant; nearest first.
+    Two belong together if the middles of their boxes lie within half the size of the one that is meant. Of
+    several, the pair with the least sum of distance and difference in size, mm, comes first.
     """
     size = [_size(hole.contour) for hole in intended]
     place = [_middle(hole.contour) for hole in intended]
@@ -174,7 +175,7 @@ def apart(contour: Contour, other: Contour, fine: float) -> float:
 
 
 def _piece_by_piece(first: Arcs, second: Arcs) -> float:
-    """Bound of how far two chains lie apart, mm, each piece from that of its number; infinite for other numbers."""
+    """Bound of how far two chains lie apart, mm, by their k-th pieces; infinite if their numbers of pieces differ."""
     if len(first) != len(second):
         return math.inf
     turn = np.hypot(*(first.tangent - second.tangent).T) + 0.5 * first.length * np.abs(

@@ -342,6 +342,7 @@ def rightmost_crossing(outline: tuple[Array, Array], y: Array) -> tuple[Array, I
 
 
 def _on_arc(start: Array, end: Array, bulge: float, y: Array) -> list[Array]:
+    """Both x, (k,) each, mm, at which an arc's circle meets lines of given y (k,), mm; -inf where not on the arc."""
     chord = end - start
     middle, left_of = 0.5 * (start + end), np.array([-chord[1], chord[0]])
     centre = middle + left_of * (1.0 - bulge * bulge) / (4.0 * bulge)

@@ -26,7 +26,7 @@ NO_LIMIT = "no limit follows from the tolerance here; give verify.motion_error"
 
 
 def stroke_of(follower: Follower) -> float:
-    """Stroke, mm, or swing, degrees, of the intended motion, looked at at the shaft angles of limits."""
+    """Stroke, mm, or swing, degrees, of the intended motion, as found on a grid of shaft angles that has its breaks."""
     stroke = float(np.ptp(follower.intended(grid(follower.motion.breaks))))
     return float(np.degrees(stroke)) if follower.unit == "deg" else stroke
 

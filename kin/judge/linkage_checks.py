@@ -112,7 +112,10 @@ def _output_check(linkage: LinkageVerdict, limits: Limits, slack: float) -> Chec
 
 
 def _dwell_check(shortest: DwellFound, unit: str, at_least: float) -> Check:
-    """Check the longest dwell in that way of resting in which it is shortest."""
+    """Check that `shortest`, a dwell, lasts `at_least` degrees.
+
+    It is the longest dwell in that way the frame may rest in which this is shortest. `unit` is that of its band.
+    """
     ok, over = shortest.length_deg >= at_least - DWELL_ROUNDING, shortest.over
     at = shortest.start_deg if over == "shaft" else None
     where = f"from {shortest.start_deg:.6g} degrees of the {over} angle"

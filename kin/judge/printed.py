@@ -31,11 +31,14 @@ INSIDE = 1.5  # times the tolerance: a section is looked at so far within two le
 def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: float, path: Path) -> list[Check]:
     """Judge a body's triangles (t, 3, 3), in its own axes, mm: two checks, and a third if both hold.
 
+    `tolerance` is in mm.
+
     watertight  every edge has two triangles, facing outward, none without area
-    thickness   it reaches from the lowest slab's lower face to the highest one's upper face
+    thickness   it reaches from the lowest slab's lower face to the highest one's upper face, to `tolerance`
     outline     just within any two levels farther apart than twice the tolerance the corners of its section, and
-                the middles of its edges, lie on the edge of the union of the slabs there, and the slabs' corners on
-                that of the section; where there is one slab alone the area is its own
+                the middles of its edges, lie within it of the edge of the union of the slabs there, and the slabs'
+                corners within it of the section's; where there is only one slab, the section's area differs from that
+                slab's by no more than the tolerance times the length of the slab's edges
     """
     mesh = welded(corners)
     faults = [*mesh.edge_faults, mesh.degenerate, mesh.duplicate, int(mesh.volume <= 0.0)]

@@ -50,7 +50,7 @@ class Fault(NamedTuple):
 
 
 class Aside(NamedTuple):
-    """Entities that were not read as contour: their layer, type and number."""
+    """Entities of one type, `kind`, on one layer that were not read as contour, and how many there are."""
 
     layer: str
     kind: str

@@ -66,7 +66,11 @@ def circle(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def circular(entity: Any, angles: list[float], sweep: float) -> Shape:  # noqa: ANN401
-    """Arcs of one circle over `sweep`, rad, each from one of `angles`, rad; raises UnfitError without a radius."""
+    """Arcs of one circle over `sweep`, rad, each from one of `angles`, rad.
+
+    Raises UnfitError without a radius above 0, for an extrusion that is not along z, and for numbers that are not
+    finite or too large.
+    """
     side = facing(entity)
     (x, y, z), radius = entity.dxf.center, entity.dxf.radius
     if not radius > 0.0:

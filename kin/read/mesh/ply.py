@@ -144,7 +144,11 @@ def _of_bytes(
 
 
 def _of_text(raw: bytes, vertex: _Element, face: _Element, path: Path) -> tuple[NDArray[np.float64], Indices]:
-    """Vertices (v, 3) and corners of the faces (t, 3) of a file in text form; numbers are read as doubles."""
+    """Vertices (v, 3) and corners of the faces (t, 3) of a file in text form; numbers are read as doubles.
+
+    A corner whose magnitude is not below the number of vertices is -1. Raises ReadError for too few or too many
+    numbers, words that are no numbers, faces that are no triangles, and corners that are no whole numbers.
+    """
     words = raw.split()
     if not words or max(map(len, words)) > LONGEST_WORD:
         reason = "syntax" if words else "truncated"
