@@ -97,6 +97,10 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         return frame_swing(self._swing(), self.frame.ground, self.frame.rocker, self.frame.side)
 
     def _swing(self) -> Motion:
+        """Motion of the swing over the shaft angle that its source gives, half a turn if it gives none.
+
+        Segments that cover half a turn plus the rise, but for rounding, are made anew to fill exactly that.
+        """
         from kin.law.frame_swing import span_of
 
         source, last = self.motion, self.motion.last

@@ -104,7 +104,10 @@ class FlatFacedCam(Cam):
 
     @abstractmethod
     def grow(self, out: float, scale: float) -> FlatFacedCam:
-        """The cam with its metal grown by `out` mm and then scaled, as far as drawings use its own lengths."""
+        """Copy in which the lengths that drawings show are those of metal grown by `out`, mm, then scaled by `scale`.
+
+        It is the cam itself where drawings show none of its lengths.
+        """
 
 
 @dataclass(frozen=True, eq=False)

@@ -141,7 +141,11 @@ class Holding:
     def least_stem(
         self, law: Displacement, angles: tuple[float, float], offset: float | None
     ) -> moving_frame.Translating:
-        """Stem with the least prime circle that keeps the pressure angles, rad; at the best offset unless given, mm."""
+        """Stem with the least prime circle that keeps the pressure angles, rad, on the rise and on the return.
+
+        The offset is the best unless given, mm. Raises IntentError for a motion that stands still, and for an angle
+        that is not between 0 and 90 degrees.
+        """
         from camgeo.cams.least_size import least_stem
 
         return least_stem(law, *angles, offset)
@@ -195,7 +199,10 @@ def base_size(cam: GuidedCam, prime: float, mm: float, pivot: float | None = Non
 
 
 def least_prime_for_roller(law: Displacement, guide: moving_frame.Guide, roller: float) -> float | None:
-    """Prime circle, mm, at which a roller is half the pitch curve's least convex radius; None without one."""
+    """Least radius of the prime circle, mm, not below the guide's, that is large enough for a roller; None without one.
+
+    It is so where the roller's radius `roller`, mm, is at most half the pitch curve's least convex radius.
+    """
     from camgeo.cams.least_size import least_prime
     from camgeo.curve.moving_frame import CentreShape
 

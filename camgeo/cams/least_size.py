@@ -133,8 +133,9 @@ def least_arm(
 ) -> Oscillating:
     """Arm of a length, mm, with the pivot that gives the least prime circle within both pressure angles (rad).
 
-    `second` is the length of the second arm of a bell crank, mm, and the angle between both, rad: its disc keeps the
-    same angles, on the rise and on the return of the first. Raises IntentError where no pivot keeps them.
+    `side` is 1 for a trailing arm, -1 for a leading one. `second` is the length of the second arm of a bell crank, mm,
+    and the angle between both, rad: its disc keeps the same angles, on the rise and on the return of the first. Raises
+    IntentError where no pivot keeps them.
     """
     _demand_angles(rising, falling)
     planes = [_half_planes(motion, length, side, rising, falling)]

@@ -358,7 +358,11 @@ class ExactPair(ExactCam):
 
     @property
     def margins(self) -> list[Margin]:
-        """Distances from turning back, the root of the analytic route, and the arm's end at the shaft or stretched."""
+        """How far the cam is from a velocity ratio of 1, where it cannot be turned through, and from three more limits.
+
+        They are a swing of 90 degrees, where the square root of the analytic route ends, and, in mm, a pitch curve at
+        the shaft and one at the reach of the stretched arm.
+        """
         from kin.law.feasibility import steepest
 
         law = self.law

@@ -185,7 +185,10 @@ class Job:
         return recipe.error(field_path, str(error), None, reached)
 
     def judge(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> MadeFiles:
-        """Read a file back and judge it by the recipe's motion; the file and its checks."""
+        """Read a file back and judge it by the recipe's motion; returns the file and its checks.
+
+        The file has `pieces` and the proved `bound` of its fit.
+        """
         from kin.judge.verify import verify
 
         recipe, tolerance = self.recipe, self.tolerance(request)

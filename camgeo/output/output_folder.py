@@ -127,7 +127,10 @@ class RunFolder:
         return self
 
     def _lock_name(self) -> int | None:
-        """Make the output folder and lock the name in it; another run may clear away an empty one in between."""
+        """Make the output folder and lock the name in it: descriptor of the lock, None where another run holds it.
+
+        Another run may clear away an empty folder in between.
+        """
         for _ in range(TRIES):
             self._out.mkdir(parents=True, exist_ok=True)
             with suppress(FileNotFoundError):
@@ -164,10 +167,11 @@ class RunFolder:
         return tuple(name for name in names if name != self._report and not (self.folder / name).exists())
 
     def commit(self, names: Iterable[str], *, keep: Iterable[str] = ()) -> Path:
-        """Put the files `names` and the report of `folder` in the place of the last set; returns the folder.
+        """Put the files `names` and the report of `folder` in the place of the last set; returns their new folder.
 
-        Files of the last set go, but for those of `keep`; files that are not of the last set stay. Raises
-        SurroundingsError, the last set as it was, where the disk refuses or a file of the user's is in the way.
+        Files of the last set go, but for those of `keep`; files that are not of the last set stay. Raises ValueError
+        for a name that is not one of this recipe's files, and for a file not written; SurroundingsError, the last set
+        as it was, where the disk refuses or a file of the user's is in the way.
         """
         return self._replace(self._name, names, keep)
 
@@ -365,7 +369,10 @@ def _discard(folder: Path) -> None:
 
 
 def _surroundings_error(error: OSError, path: Path) -> SurroundingsError:
-    """Name the path that the system named, or else `path`."""
+    """SurroundingsError for an OSError, at the path that the system named, or else `path`.
+
+    For a permission refused on Windows it advises to close other programs that have the file open.
+    """
     place = Path(os.fsdecode(error.filename)) if isinstance(error.filename, (str, bytes)) else path
     text = error.strerror or str(error)
     if system.WINDOWS and isinstance(error, PermissionError):

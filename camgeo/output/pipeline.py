@@ -40,7 +40,10 @@ REPORT = "report.json"
 
 @dataclass(frozen=True)
 class Outcome:
-    """Outcome of one recipe: its report, whether every check held, and the folder with its files or None."""
+    """Outcome of one recipe: its report, whether every check held, and the folder with its files.
+
+    The folder is None where the files were made in a temporary one.
+    """
 
     report: dict[str, Any]
     ok: bool

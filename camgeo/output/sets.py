@@ -32,7 +32,10 @@ class Requirement:
 
 @dataclass(frozen=True)
 class FileSet:
-    """Files of a set: place in the call, path, and disc, counted from 0; None for all discs."""
+    """Files that are judged together: what is required of them, and the stem of their names without a disc's number.
+
+    `files` has of each file its place in the call, its path, and its disc, None for all discs; both count from 0.
+    """
 
     requirement: Requirement
     stem: str

@@ -76,7 +76,10 @@ def aim(job: Job, request: FileRequest) -> float:
 
 
 class DiscMesh(NamedTuple):
-    """A disc of a cam as a named mesh, and the place (4, 3) where it stands on the shaft, None for z = 0."""
+    """A disc of a cam as a named mesh with facts on it.
+
+    `place` (4, 3) has the disc's three axes and its origin, mm, on the shaft; None for z = 0.
+    """
 
     name: str
     mesh: Mesh

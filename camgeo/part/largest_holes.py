@@ -37,7 +37,10 @@ Circles = list[tuple[tuple[float, float], float]]
 
 
 class Space:
-    """Free space for round holes in a part, which shrinks as holes are added."""
+    """Free space for round holes within a contour, beside the openings `there`; it shrinks as holes are added.
+
+    `wall`, mm, is left to every edge; `edge`, mm, is what a chamfer takes along the contour.
+    """
 
     def __init__(self, looks: Looks, there: Sequence[Opening], wall: float, edge: float) -> None:
         self.looks, self.wall, self.edge = looks, wall, edge

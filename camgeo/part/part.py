@@ -79,7 +79,7 @@ class Part:
 
     @property
     def walled(self) -> bool:
-        """Whether there are edges with a wall between them besides the contour."""
+        """Whether the part has an edge besides the contour, and so walls: a bore, a rim, or a feature with an edge."""
         edges = any(feature.holes or feature.walled for feature, _ in with_records(self.features))
         return self.bore is not None or self.outer is not None or edges
 

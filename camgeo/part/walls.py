@@ -34,7 +34,11 @@ NOWHERE = (float("inf"), float("inf"))  # of a wall that runs all along a face
 
 
 class Gap(NamedTuple):
-    """A wall in mm, negative where edges cross; its place on one edge, and the parameter there of a contour."""
+    """A least wall, mm, negative where edges cross or one lies on the wrong side of the other.
+
+    `place` (x, y), mm, is on one of the edges, NOWHERE along a face; `parameter` is the contour's there, None between
+    other edges.
+    """
 
     wall: float
     place: tuple[float, float]

@@ -20,7 +20,10 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
 
 
 def failure_at(check: dict[str, Any], recipe: Order, field: str, would_do: str = "", shown: str | None = None) -> str:
-    """Text of several lines on a failed check, with the place of a recipe's field and the remedy `would_do`."""
+    """Text of several lines on a failed check, with the place of a recipe's field and the remedy `would_do`.
+
+    `shown` names the recipe's file in place of its path.
+    """
     line, column = recipe.locate(field)
     place = recipe.unplaced or f"{shown or recipe.path}:{line}:{column}"
     rows = [

@@ -38,7 +38,11 @@ def _check(file: Values, values: Values, reader: Reader) -> None:
 
 
 def make_ground(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Write a table, read it back and judge the metal that its wheel leaves."""
+    """Write a table, read it back and judge the metal that its wheel leaves.
+
+    Raises RecipeErrors for a wheel that is not given, a wheel or roller that the contour does not let in, a contour
+    with corners, and a step or tolerance that cannot be held; OSError where the file cannot be written.
+    """
     from camgeo.files.table import write_table
     from camgeo.fit.bound import Bound
     from camgeo.machining.grinding import grinding_table

@@ -35,9 +35,10 @@ def check_step(file: Values, reader: Reader) -> None:
 
 
 def fewest_rows(error: Callable[[int], float], most: float, finest: float = FINEST) -> int | None:
-    """Fewest rows of a turn whose `error` is at most `most`, in its unit; None where no number of rows is enough.
+    """Number of rows of a turn, about the fewest, whose `error` is at most `most`, in its unit; None if none is enough.
 
-    Rows are a whole number of ticks and at least `finest` degrees apart.
+    Steps between rows divide a turn and are whole 1/10000 degrees, from COARSEST down to `finest` degrees. The search
+    takes finer steps to err less; where some err more, fewer rows might do.
     """
     whole = 360 * TICKS
     ticks = [tick for tick in range(int(COARSEST * TICKS), round(finest * TICKS) - 1, -1) if whole % tick == 0]

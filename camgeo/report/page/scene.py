@@ -169,7 +169,10 @@ def pin(size: float, x: float = 0.0, y: float = 0.0) -> FilledShape:
 
 
 def arrow(length: float, size: float, role: str = "force") -> tuple[FilledShape, ...]:
-    """Return an arrow from the origin along x, and a dot at its foot; `size` is that of a joint."""
+    """Return line, tip and foot dot of an arrow from the origin along x, `length` mm long.
+
+    `size`, mm, scales tip and dot as it scales a joint.
+    """
     head, half = 1.6 * size, 0.62 * size
     tip = Ring.through([(length, 0.0), (length - head, half), (length - head, -half)])
     shaft = Ring.through([(0.0, 0.0), (length - head, 0.0)], closed=False)

@@ -226,7 +226,7 @@ def facts(report: dict[str, Any]) -> str:
 
 
 def number(value: float | None) -> str:
-    """Return a figure to six digits, with a hint of the exact value where it has more."""
+    """Return HTML of a figure to six digits, with its exact value as a hint where it has more; NONE for None."""
     return NONE if value is None else _with_hint(f"{value:.6g}", value)
 
 
