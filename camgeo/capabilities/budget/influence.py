@@ -97,10 +97,12 @@ class Influence:
 
 
 class SizeInfluences(NamedTuple):
-    """Influences of a cam by the words of its dimensions: `rows` gives the (m, k, n) of each made size of a word.
+    """Influences of a cam's made sizes, by the words of its dimensions.
 
-    `contacts` has the names of the m contacts. Of two, `upper` is the index of the one that bounds the position from
-    above, and `play` (n,) the nominal play between them, mm or rad; both are None for one contact.
+    `rows` gives, for each made size of a word, its influence (m, k, n) in mm or rad of the motion per mm or rad of the
+    size: k = 1 for a size, 2 for the components of a displacement. `contacts` has the names of the m contacts. Of two,
+    `upper` is the index of the one that bounds the position from above, and `play` (n,) the nominal play between them,
+    mm or rad; both are None for one contact.
     """
 
     rows: Callable[[str], list[Array]]
@@ -112,7 +114,9 @@ class SizeInfluences(NamedTuple):
 def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Influence:
     """Influences of the dimensions of a budget at shaft angles (n,), rad.
 
-    Raises PlaceError for a linkage that does not turn right round.
+    With a zero each influence is less its value there. The profile's errors there and at other angles are independent,
+    so each of its influences gives two contributions, one of them constant. Raises PlaceError for a linkage that does
+    not turn right round.
     """
     zero = budget.zero
     places = shaft if zero is None else np.append(shaft, zero)

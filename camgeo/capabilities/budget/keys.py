@@ -64,6 +64,7 @@ class Budget:
     the distance from the middle of a stem's guide to the foot of the perpendicular from the shaft on the line of
     travel. `fit` is the play that the fits of bore and key add to the tolerances. `sums` says which sum must stay
     within `permitted`. `waves` is the number of waves per turn of the profile's error, None where it is not stated.
+    `runs` made parts are simulated, 0 for none, by random numbers from `seed`.
     """
 
     permitted: float
@@ -252,6 +253,10 @@ def check_budget(values: Values, reader: Reader) -> None:
 
 
 def _check_costs(budget: Values, tolerances: Values, reader: Reader) -> None:
+    """Note costs of dimensions with a stated tolerance, free dimensions without a cost, an exponent without costs.
+
+    A single free dimension needs no cost. A dimension that has only a cost is put into `tolerances` as free.
+    """
     free = [name for name, tolerance in tolerances.items() if tolerance is None]
     for name in budget.get("cost", {}):
         if tolerances.get(name) is not None:
@@ -277,6 +282,8 @@ def _check_guide(budget: Values, tolerances: Values, reader: Reader) -> None:
 
 
 def _check_play(values: Values, reader: Reader) -> None:
+    """Note a limit of play for a follower that is not held from both sides."""
+    # `held`: traits, or dimensions, of a follower held from both sides
     cam, held = values.get("cam", {}), {"swings", "breadth", LINKAGE, CONJUGATE}
     held_twice = held & {*_traits(reader), *dimension_names(_traits(reader))} or isinstance(cam.get("track"), dict)
     if "play" in values["budget"] and not held_twice:
@@ -295,7 +302,10 @@ def _check_made(values: Values, reader: Reader) -> None:
 
 
 def _check_fit(values: Values, reader: Reader) -> None:
-    """Note fits without a bore or a key, sizes that no table has, and what would be counted twice."""
+    """Note a fit of a bore without a tolerance class or beyond the table, and a key without a fit or a keyway.
+
+    Tolerances that the fit or the key would count twice are noted too.
+    """
     budget, part = values["budget"], values.get("part", {})
     tolerances, bore = budget.get("tolerances", {}), part.get("bore")
     hole = bore.get("fit") if isinstance(bore, dict) else None

@@ -224,7 +224,10 @@ def errors_at_contacts(sizes: Sizes, count: int, discs: int, *, on_one_arm: bool
 def contact_places(
     design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None
 ) -> list[ContactPlace]:
-    """Each contact of a follower at shaft angles (n,) on metal that is exact or `read`."""
+    """Each contact of a follower at shaft angles (n,), rad, on exact metal or on the contours `read`, by surface.
+
+    Raises LostError where a contour takes more than two million points.
+    """
     contacts, preload = design.follower.contacts, design.exact.preload
     if preload is not None:  # their errors are those beside what each overlaps the metal by
         contacts = tuple(map(eased_contact, contacts, preload.overlaps))

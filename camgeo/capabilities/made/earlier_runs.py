@@ -93,9 +93,11 @@ def _corrected_files(recipe: Recipe) -> dict[float, list[str]]:
 def _correction(
     recipe: Recipe, design: Design, totals: Mapping[str, Smooth], error: float, corrected: tuple[float, list[str]]
 ) -> dict[str, Any]:
-    """Give the report of a correction: what files have less, and the motion of a part made as these are drawn.
+    """Report entry of a correction: its share and its files, the contour's change, and the motion.
 
-    `error`, mm, is the sum of what is stated for the probes of all runs.
+    The greatest change of the contour and its uncertainty are in the recipe's unit. The motion is that of a part made
+    exactly as those files are drawn, in the recipe's unit or degrees. `error`, mm, is the sum of what is stated for the
+    probes of all runs.
     """
     (share, names), t = corrected, equal_steps(LOOKS)
     shaft = equal_steps(recipe.verify.angles)

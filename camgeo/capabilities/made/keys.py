@@ -226,7 +226,7 @@ def build(values: Values) -> Made | None:
 
 
 def zone_of(recipe: Recipe) -> float | None:
-    """Width of the zone that the profile is held to, mm; None where the key gives none."""
+    """Width of the zone that the profile is held to, mm; None for a recipe without `made.profile`."""
     made = recipe.of(Made)
     return None if made is None else made.profile
 

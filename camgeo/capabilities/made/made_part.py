@@ -37,7 +37,10 @@ TURNED = math.radians(0.25)  # from which on lifts, and cams of a shaft, are sai
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMade:
-    """Result for one surface: its points, its smoothed deviation, the errors of its follower, and the play."""
+    """Result for one surface: its points, its smoothed deviation, the errors of its follower, and the play.
+
+    `play` is None unless two contacts on the surface hold the follower from both sides.
+    """
 
     measured: MeasuredSurface
     fit: SmoothFit

@@ -30,7 +30,11 @@ MOST_LENGTH = 1e3  # mm, of a probe and its errors
 
 
 def claims(path: Path, options: Mapping[str, object]) -> bool:
-    """Whether a file holds measured points, and not rows for a machine."""
+    """Whether a file holds measured points.
+
+    The option `as` decides. Without it a file holds them if it is neither a list of points of a curve nor rows for a
+    drive or a grinder.
+    """
     if "as" in options:
         return options["as"] == "measured"
     if is_point_list(path) or is_drive(path):  # of a curve, which is judged as a contour, or of a motion

@@ -179,7 +179,9 @@ def _placing(recipe: Recipe, placing: Placing) -> dict[str, Any]:
 
 
 def _surface(recipe: Recipe, paths: Sequence[Path], surface: SurfaceMade) -> dict[str, Any]:
+    """Report entry of one surface, lengths in the recipe's unit."""
     mm, curve, count = recipe.mm, surface.fit.curve, len(surface.measured.points)
+    # sum of squares, over the points, of a bell exp(-x^2/2), x in spans
     wide = count / curve.spans * math.sqrt(math.pi)
     outliers = [
         {

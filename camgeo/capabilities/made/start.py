@@ -446,13 +446,16 @@ def _play(measured: _MeasuredCam) -> list[str]:
 
 
 def _lifts(measured: _MeasuredCam) -> str:
-    """Lifts over the shaft angle, a row about each half degree, and the end of the turn or of the part of it."""
+    """CSV text of the motion: lift in the recipe's unit or degrees over the shaft angle in degrees.
+
+    It has a row about each half degree, and one for the end of the turn or of the part of it.
+    """
     motion = measured.motion
     span = math.degrees(motion.span)
     step = max(int(0.5 * len(motion.position) / span), 1)
     zero = float(motion.position.min() if motion.closed else motion.position[0])
     places = motion.position[::step] - zero
-    if motion.zero_ends:  # it is 0 at both
+    if motion.zero_ends:  # the motion is 0 at both ends of the part of a turn
         places, zero = np.append(0.0, motion.position[step::step]), 0.0
     lift = [_in_unit(measured, value) for value in (*places.tolist(), motion.last - zero)]
     angles = [*np.degrees(motion.shaft[::step]).tolist(), span]

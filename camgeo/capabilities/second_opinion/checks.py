@@ -19,7 +19,10 @@ REASONS = {"csv": "a table has no contour", "glb": "a GLB is to look at", "html"
 
 
 def libraries(record: Format) -> frozenset[str]:
-    """Names of the libraries that judge files of a format; none for a format without a contour."""
+    """Names of the libraries that judge files of a format.
+
+    There are none for a format without a contour, and none for a program, which shows the cutter's path.
+    """
     if not record.contour or not record.part:
         return frozenset()
     meshed = {"trimesh"} if record.numbers is not None else set()

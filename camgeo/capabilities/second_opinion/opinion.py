@@ -80,9 +80,10 @@ def demand_libraries(recipe: Recipe) -> None:
 
 
 def look(recipe: Recipe, design: Design, files: Sequence[FileResult], checks: Sequence[Check], clock: Clock) -> Results:
-    """Checks by other libraries of files that were judged with `checks`, and the rows left out, with reasons.
+    """Checks by other libraries of `files`, which were judged with `checks`, and what is left out.
 
-    A file that kin refuses to read is left out too: kin refuses files whose reading would have no bound.
+    A whole file is left out, or one check of it, each with the reason. A file that kin refuses to read is left out too:
+    kin refuses files whose reading would have no bound.
     """
     if not design.contours:
         return Results(skipped=[(f"second opinion[{file.path.name}]", UNMADE) for file in files])
@@ -262,7 +263,10 @@ def _no_fault(name: str, holds: bool, why: str) -> Check:
 
 
 def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN401 - trimesh has no types
-    """Checks of the volume by trimesh against the exact one, for each disc; none without a unit or tolerance."""
+    """Checks of the volume by trimesh against the exact one, for each disc that has a contour and a thickness.
+
+    There are none without a unit or tolerance, or where the mesh of several discs has another number of bodies.
+    """
     from kin.judge.volume import layers_volume_check, volume_check
 
     mm, tolerance = file.units, file.tolerance

@@ -138,9 +138,11 @@ def gather(
     chunks: Iterable[Mapping[str, Array]],
     slack: Callable[[Limit], float] | None = None,
 ) -> Selection:
-    """Select designs from the figures of all chunks, in order; rows may miss a limit by its `slack`.
+    """Select the best designs, at most MOST_ROWS, best first.
 
-    Raises ValueError unless the chunks have the figures of all designs of the plan.
+    The chunks, in order of the index, have figures (m,) by name. A design is listed if it misses no limit by more than
+    its `slack`, in the figure's unit; without `slack`, if it keeps all limits. Raises ValueError unless the chunks have
+    the figures of all designs of the plan.
     """
     cells = BestByCell(plan, most=ranking.most)
     failing = dict.fromkeys((limit.figure for limit in ranking.limits), 0)

@@ -109,7 +109,10 @@ class SweepTask:
         return screen if isinstance(screen, str) else ""
 
     def exact_figures(self, values: Array) -> FigureTable:
-        """All figures of designs with the values (m, axes), each computed exactly, and why one has none."""
+        """All figures of designs with the values (m, axes), each computed exactly, in mm and degrees.
+
+        Each design has a code of why figures of it are missing, 0 if none is.
+        """
         scene = self.scene(self.all_figures)
         return Evaluator.prepare(scene.recipe, scene.paths, figures=scene.figures).evaluate(values)
 

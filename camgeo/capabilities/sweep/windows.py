@@ -343,7 +343,11 @@ def _length(ends: Ends, low: Array, band: float) -> tuple[Array, Array]:
 
 
 def _reach(side: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Distance from the core's end outward over which the output stays within limits; its derivative by the limits."""
+    """Distances (m,), rad of the abscissa, outward from an end of each core where the output stays in [low, high].
+
+    Their derivatives (m,) are by a shift of both limits. `side` (4, m, 3) is `behind` or `ahead` of `Ends`, whose two
+    cells bound the distances.
+    """
     reach, reach_rate, inside = np.zeros_like(low), np.zeros_like(low), np.ones(len(low), dtype=np.bool_)
     for cell in (0, 1):
         f, g, x, v = side[:, :, cell]
