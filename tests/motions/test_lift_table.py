@@ -9,50 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.motion_recipes import BREADTH, HALF, fault, lift, rad, recipe, sampled, written
 
 from camgeo.cli.main import main
 from camgeo.motions.motion import TableMotion
 from camgeo.output import pipeline
-from camgeo.recipe.loading import load, load_text
+from camgeo.recipe.loading import load
 from camgeo.schema.errors import RecipeErrors
 from kin.law.programme import IntentError
 from kin.law.sources.laws import named
 from kin.law.sources.programme import Dwell, Move, programme
-
-rad = math.radians
-BREADTH = "kind: constant-breadth, base_radius: 40"
-HALF = np.arange(0.0, 181.0, 2.0)
-RISE = programme([Move(rad(120), named("modified-sine"), by=20.0), Dwell(rad(60))], math.pi, around=-1)
-
-
-def recipe(motion, folder, head=BREADTH, key="motion", units="mm"):
-    files = "export: {files: [{dxf: {tolerance: 0.01}}]}\nverify: {angles: 360}\n"
-    return load_text(f"units: {units}\ncam: {{{head}, {key}: {motion}}}\n{files}", folder / "case.yaml")
-
-
-def lift(made, degrees, order=0):
-    intent = made.cam.exact().law
-    found = intent.derivatives(np.radians(degrees), order)
-    found[0] -= intent.datum
-    return found
-
-
-def written(folder, angles, values, form="{:g},{:.3f}", *, head=""):
-    rows = [form.format(a, s) for a, s in zip(angles, values, strict=True)]
-    (folder / "lift.csv").write_text("\n".join([*([head] if head else []), *rows, ""]), encoding="utf-8")
-    return rows
-
-
-def sampled(degrees):
-    return RISE.derivatives(np.radians(degrees), 0)[0]
-
-
-def fault(motion, folder, **of):
-    """The one error of reading or making a motion."""
-    with pytest.raises(RecipeErrors) as caught:
-        pipeline.check(recipe(motion, folder, **of))
-    (error,) = caught.value.errors
-    return error
 
 
 @pytest.mark.parametrize(

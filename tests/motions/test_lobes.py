@@ -5,39 +5,12 @@ import re
 
 import numpy as np
 import pytest
+from support.motion_recipes import FLAT, lift, rad, read_motion, recipe
 
 import camgeo
-from camgeo.motions.motion import check_whole_turn, motion_field
 from camgeo.output import pipeline
-from camgeo.recipe.keys import recipe_table
-from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
-from camgeo.schema.fields import Kind
-from camgeo.schema.reader import Reader
-from camgeo.schema.readers import READERS
-from camgeo.schema.yaml_source import entries, read_source
 from kin.law.sources.lobe import lobe
-
-rad = math.radians
-BREADTH = "kind: constant-breadth, base_radius: 40"
-
-
-def recipe(motion, folder, head=BREADTH, key="motion", units="mm"):
-    files = "export: {files: [{dxf: {tolerance: 0.01}}]}\nverify: {angles: 360}\n"
-    return load_text(f"units: {units}\ncam: {{{head}, {key}: {motion}}}\n{files}", folder / "case.yaml")
-
-
-def lift(made, degrees, order=0):
-    intent = made.cam.exact().law
-    found = intent.derivatives(np.radians(degrees), order)
-    found[0] -= intent.datum
-    return found
-
-
-def written(folder, angles, values, form="{:g},{:.3f}", *, head=""):
-    rows = [form.format(a, s) for a, s in zip(angles, values, strict=True)]
-    (folder / "lift.csv").write_text("\n".join([*([head] if head else []), *rows, ""]), encoding="utf-8")
-    return rows
 
 
 def test_a_lobe_stands_in_the_middle_of_a_part_of_a_turn_and_at_0_of_a_whole_one(tmp_path):
@@ -52,24 +25,6 @@ def test_a_lobe_stands_in_the_middle_of_a_part_of_a_turn_and_at_0_of_a_whole_one
     assert whole.derivatives(np.radians(off), 0)[0] == pytest.approx(expected, abs=1e-13)
 
 
-def reader_of(text):
-    source = read_source(f"motion: {text}\n".encode(), "case.yaml")
-    reader = Reader(source, READERS, recipe_table())
-    reader.survey(source.root, "")
-    return reader, entries(source.root)["motion"]
-
-
-def read_motion(text):
-    reader, node = reader_of(text)
-    asked = reader.field(motion_field("motion", Kind.LENGTH, "a turn", whole_turn=True), node, "motion")
-    if asked is not None:
-        check_whole_turn(asked, "motion", reader)
-    if reader.errors:
-        raise RecipeErrors(reader.errors)
-    return asked
-
-
-FLAT = "kind: disc, base_radius: 30, follower: {kind: flat}"
 CARD = "duration: [{at_lift: 1.27 mm, degrees: 228}, {at_lift: 0.15, degrees: 270}]"
 
 

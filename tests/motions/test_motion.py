@@ -5,57 +5,17 @@ import pickle
 
 import numpy as np
 import pytest
+from support.motion_recipes import HALF, ROLLER, fault, lift, rad, read_motion, recipe, sampled, written
 
-from camgeo.motions.motion import FormulaMotion, Segments, check_whole_turn, motion_field
+from camgeo.motions.motion import FormulaMotion, Segments, motion_field
 from camgeo.output import pipeline
 from camgeo.recipe.keys import recipe_table
-from camgeo.recipe.loading import load, load_text
+from camgeo.recipe.loading import load
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.json_schema import table_schema
-from camgeo.schema.reader import Reader
-from camgeo.schema.readers import READERS
-from camgeo.schema.yaml_source import entries, read_source
 from camgeo.synthesis.design import designed
 from kin.law.programme import IntentError
-from kin.law.sources.laws import named
-from kin.law.sources.programme import Dwell, Move, programme
-
-rad = math.radians
-BREADTH = "kind: constant-breadth, base_radius: 40"
-ROLLER = "kind: double-roller, ratio: 2, arm: 60, roller_radius: 8"
-HALF = np.arange(0.0, 181.0, 2.0)
-RISE = programme([Move(rad(120), named("modified-sine"), by=20.0), Dwell(rad(60))], math.pi, around=-1)
-
-
-def recipe(motion, folder, head=BREADTH, key="motion", units="mm"):
-    files = "export: {files: [{dxf: {tolerance: 0.01}}]}\nverify: {angles: 360}\n"
-    return load_text(f"units: {units}\ncam: {{{head}, {key}: {motion}}}\n{files}", folder / "case.yaml")
-
-
-def lift(made, degrees, order=0):
-    intent = made.cam.exact().law
-    found = intent.derivatives(np.radians(degrees), order)
-    found[0] -= intent.datum
-    return found
-
-
-def written(folder, angles, values, form="{:g},{:.3f}", *, head=""):
-    rows = [form.format(a, s) for a, s in zip(angles, values, strict=True)]
-    (folder / "lift.csv").write_text("\n".join([*([head] if head else []), *rows, ""]), encoding="utf-8")
-    return rows
-
-
-def sampled(degrees):
-    return RISE.derivatives(np.radians(degrees), 0)[0]
-
-
-def fault(motion, folder, **of):
-    """The one error of reading or making a motion."""
-    with pytest.raises(RecipeErrors) as caught:
-        pipeline.check(recipe(motion, folder, **of))
-    (error,) = caught.value.errors
-    return error
 
 
 @pytest.mark.thin(2)
@@ -110,23 +70,6 @@ def test_points_of_a_whole_turn_rest_over_its_end():
     assert made.derivatives(np.radians([90.0, 200.0]), 0)[0] == pytest.approx([4 + level, 3 + level], abs=1e-12)
     still = read_motion("{points: [[0, 5], [40, 5]]}").motion(2 * math.pi, "motion", 1)
     assert still.range == (0, 0)
-
-
-def reader_of(text):
-    source = read_source(f"motion: {text}\n".encode(), "case.yaml")
-    reader = Reader(source, READERS, recipe_table())
-    reader.survey(source.root, "")
-    return reader, entries(source.root)["motion"]
-
-
-def read_motion(text):
-    reader, node = reader_of(text)
-    asked = reader.field(motion_field("motion", Kind.LENGTH, "a turn", whole_turn=True), node, "motion")
-    if asked is not None:
-        check_whole_turn(asked, "motion", reader)
-    if reader.errors:
-        raise RecipeErrors(reader.errors)
-    return asked
 
 
 def test_segments_that_repeat_are_made_once_and_stand_on_their_least():

@@ -10,6 +10,7 @@ import json
 from typing import TYPE_CHECKING
 
 import pytest
+from support.budgets import CAM
 
 from camgeo.cli.main import main
 from camgeo.recipe.starter import starter
@@ -17,16 +18,6 @@ from camgeo.recipe.starter import starter
 if TYPE_CHECKING:
     from pathlib import Path
 
-CAM = """\
-cam:
-  kind: disc
-  base_radius: 36
-  follower: {kind: roller, radius: 9, offset: 10}
-  motion: [{rise: 24, over: 100, law: cycloidal}, {dwell: 40}, {return: 24, over: 140, law: cycloidal}, {dwell: 80}]
-part: {thickness: 10, bore: {diameter: 20, fit: H7}, keyway: din6885}
-export: {tolerance: 0.01, files: [dxf]}
-verify: {angles: 360}
-"""
 YOKE = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}\n"
 
 

@@ -5,27 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
+from support.budgets import budget
 
 from camgeo.capabilities.budget.fits import HOLES, KEYWAYS, SHAFTS, UPPER_ENDS, clearance, fit_of, key_clearance
-from camgeo.capabilities.budget.keys import Budget
-from camgeo.recipe.loading import load_text
-
-CAM = """\
-cam:
-  kind: disc
-  base_radius: 36
-  follower: {kind: roller, radius: 9, offset: 10}
-  motion: [{rise: 24, over: 100, law: cycloidal}, {dwell: 40}, {return: 24, over: 140, law: cycloidal}, {dwell: 80}]
-part: {thickness: 10, bore: {diameter: 20, fit: H7}, keyway: din6885}
-export: {tolerance: 0.01, files: [dxf]}
-verify: {angles: 360}
-"""
-
-
-def budget(body: str, cam: str = CAM) -> Budget:
-    value = load_text(f"{cam}budget: {{permitted: 0.05, {body}}}\n", "c.yaml").of(Budget)
-    assert value is not None
-    return value
 
 
 def test_classes_follow_from_the_standard_tolerances() -> None:

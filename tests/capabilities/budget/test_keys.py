@@ -5,22 +5,12 @@ from __future__ import annotations
 import math
 
 import pytest
+from support.budgets import CAM, budget
 from support.places import ROOT
 
-from camgeo.capabilities.budget.keys import Budget
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
 
-CAM = """\
-cam:
-  kind: disc
-  base_radius: 36
-  follower: {kind: roller, radius: 9, offset: 10}
-  motion: [{rise: 24, over: 100, law: cycloidal}, {dwell: 40}, {return: 24, over: 140, law: cycloidal}, {dwell: 80}]
-part: {thickness: 10, bore: {diameter: 20, fit: H7}, keyway: din6885}
-export: {tolerance: 0.01, files: [dxf]}
-verify: {angles: 360}
-"""
 YOKE = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}\n"
 FRAME = """\
 cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [10, 4]}
@@ -31,12 +21,6 @@ cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [10, 4]}
 linkage:
   {kind: slider-crank, coupler: 75, offset: 0, dyads: [{kind: rpr, point: [9, 0], ground: [80, 200]}]}
 """
-
-
-def budget(body: str, cam: str = CAM) -> Budget:
-    value = load_text(f"{cam}budget: {{permitted: 0.05, {body}}}\n", "c.yaml").of(Budget)
-    assert value is not None
-    return value
 
 
 REFUSED = [

@@ -7,21 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from support.budgets import CAM
+
 import camgeo
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-CAM = """\
-cam:
-  kind: disc
-  base_radius: 36
-  follower: {kind: roller, radius: 9, offset: 10}
-  motion: [{rise: 24, over: 100, law: cycloidal}, {dwell: 40}, {return: 24, over: 140, law: cycloidal}, {dwell: 80}]
-part: {thickness: 10, bore: {diameter: 20, fit: H7}, keyway: din6885}
-export: {tolerance: 0.01, files: [dxf]}
-verify: {angles: 360}
-"""
 
 
 def test_report_limit_and_page(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from support.cases import few
+from support.drawn import circle, polygon
 from support.heavy import ezdxf
 from support.places import RECIPES
 
@@ -130,19 +131,6 @@ def test_positions_at_two_levels_are_no_dwell_between_them() -> None:
     dwells = motion.dwells(0.01)
     assert [round(dwell.level, 3) for dwell in dwells if dwell.begin > 3.0] == [1.0]
     assert all(dwell.flatness <= 0.02 for dwell in dwells)
-
-
-def polygon(path: Path, points: np.ndarray[Any, Any], *, unit: int = 4) -> Path:
-    document = ezdxf.new("R2010")
-    document.header["$INSUNITS"] = unit
-    document.modelspace().add_lwpolyline(points.tolist(), close=True, dxfattribs={"layer": "0"})
-    document.saveas(path)
-    return path
-
-
-def circle(count: int, radius: float, middle: tuple[float, float]) -> np.ndarray[Any, Any]:
-    angle = 2.0 * np.pi * np.arange(count) / count
-    return np.column_stack((middle[0] + radius * np.cos(angle), middle[1] + radius * np.sin(angle)))
 
 
 def test_a_polygon_of_few_points_comes_near_its_law(tmp_path: Path) -> None:
