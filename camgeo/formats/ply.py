@@ -1,4 +1,4 @@
-"""Meshes as binary PLY in double precision, in millimetres unless told otherwise; the format states no unit."""
+"""Meshes as binary PLY in double precision, in mm unless another unit is asked for; the format states no unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Meshes as binary STL, in millimetres unless told otherwise."""
+"""Meshes as binary STL, in millimetres unless another unit is asked for."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class FileRequest:
 
     @property
     def form(self) -> FileForm:
-        """What is known of the form that `as` chooses of the format, such as arcs or a spline."""
+        """Record of the form that the key `as` chooses of the format, such as arcs or a spline."""
         return self.format.form(self.as_)
 
     @property

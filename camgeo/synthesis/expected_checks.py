@@ -1,4 +1,4 @@
-"""The checks that a run of a recipe is going to make, told without running it.
+"""Checks that a run of a recipe is going to make, listed without running it.
 
 Only the intended motion is built, which costs milliseconds, no curve and no file. A run may differ where an undercut
 decides: without a contour no file is judged, and a trimmed one only against a limit of the motion that is given; and

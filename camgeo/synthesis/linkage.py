@@ -77,7 +77,7 @@ def _outside(recipe: Recipe, error: OutsideError) -> RecipeErrors:
 def mobility_checks(mechanism: Mechanism, turning: str = "") -> list[Check]:
     """Checks that every loop closes all round (AS after eq. 18), and that the shaft never has to turn back.
 
-    Where the mechanism does not make a full turn there is no shaft angle: the places are then told by the detail alone,
+    Where the mechanism does not make a full turn there is no shaft angle: the places then stand in the detail alone,
     with `turning`, what would let it turn.
     """
     mobility = mechanism.mobility()

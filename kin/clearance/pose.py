@@ -57,7 +57,7 @@ class Still:
 
     slack = (0.0, 0.0)
 
-    def over(self, phi: Array, half: Array) -> PoseCourse:  # noqa: ARG002
+    def over(self, phi: Array, half: Array) -> PoseCourse:  # noqa: ARG002 - it rests at every angle
         """Give the course, (n,) rows, over the intervals [phi - half, phi + half], (n,) each, rad: at rest."""
         pose = np.broadcast_to(np.array([self.x, self.y, self.angle]), (len(phi), 3))
         return PoseCourse(pose, np.zeros_like(pose), np.zeros_like(pose))
@@ -74,7 +74,7 @@ class Turning:
 
     slack = (0.0, 0.0)
 
-    def over(self, phi: Array, half: Array) -> PoseCourse:  # noqa: ARG002
+    def over(self, phi: Array, half: Array) -> PoseCourse:  # noqa: ARG002 - its rates are constant
         """Give the course, (n,) rows, over the intervals [phi - half, phi + half], (n,) each, rad.
 
         The rates are constant: `spread` is 0.

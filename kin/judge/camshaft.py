@@ -107,7 +107,7 @@ class _Sections(NamedTuple):
 def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: float | None = None) -> Verdict:
     """Judge an STL, 3MF or STEP of a camshaft, its lobes at `angles` equal steps of the shaft.
 
-    Checks of a lobe are told by its name. `units`, mm, is the unit of a file that states none.
+    Checks of a lobe carry its name. `units`, mm, is the unit of a file that states none.
 
     Raises OSError as the file system does, ValueError for another suffix.
     """

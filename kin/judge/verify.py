@@ -315,7 +315,7 @@ def _of_solid(path: Path, part: PartIntent, limits: Limits, units: float | None)
 
 
 def _of_solids(path: Path, shaft: ShaftIntent, limits: Limits) -> list[tuple[PartIntent, _Read]]:
-    """Read the solids of all parts of a shaft from one file; each one's checks are told by its name."""
+    """Read the solids of all parts of a shaft from one file; each one's checks carry its name."""
     solids = read_bodies(path, [_sought(part) for part in shaft.parts], shaft.levels)
     parts = []
     for solid, part, level in zip(solids, shaft.parts, shaft.levels, strict=True):

@@ -35,7 +35,7 @@ class DrawingOptions(NamedTuple):
     gap       mm; ends of loose pieces are joined if they lie within it. None: 1e-6, or 2e-8 of a drawing below 50 mm
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
     deepest   how many others a closed chain may lie inside: 1, so that a hole has no island
-    bridged   mm; gaps up to this, and open chains within the contour, are told by `openings` and do not raise
+    bridged   mm; gaps up to this, and open chains within the contour, are reported by `openings` and do not raise
     unstated  mm in the unit in which `gap` and `bridged` are meant for a drawing that states none
     """
 

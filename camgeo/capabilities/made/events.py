@@ -77,17 +77,17 @@ def events_section(
     lifts = stated_lifts(recipe, design, events)
     if not lifts:
         return {}
-    made = MadeMotion(result.surfaces[0].gauge.motion, result.motion)
-    highest = made.highest(lift_pieces(design.exact).greatest()[1])
+    motion = MadeMotion(result.surfaces[0].gauge.motion, result.motion)
+    highest = motion.highest(lift_pieces(design.exact).greatest()[1])
     scale, unit = report_unit(recipe, result.motion_unit)
     entry: dict[str, Any] = {}
     for moved in dict.fromkeys([None, *(row.moved for row in lifts)]):
         entry[_name(moved)] = {
             "lift": _greatest_lift(moved, highest, options, scale) | {"unit": unit},
-            "velocity": _greatest_velocity(moved, made, scale) | {"unit": f"{unit}/rad"},
+            "velocity": _greatest_velocity(moved, motion, scale) | {"unit": f"{unit}/rad"},
         }
     entry["above"] = [
-        {"of": _name(row.moved), "lift": scale * row.lift, "unit": unit, **_above(row, made, design, options, zero)}
+        {"of": _name(row.moved), "lift": scale * row.lift, "unit": unit, **_above(row, motion, design, options, zero)}
         for row in lifts
     ]
     return {"events": entry}
@@ -107,12 +107,12 @@ def _greatest_lift(moved: MovedBody | None, highest: Estimate, options: PointOpt
     return _row(scale, float(made[0, 0]), float(intended[0, 0]), ratio * options.expanded(highest.influence))
 
 
-def _greatest_velocity(moved: MovedBody | None, made: MadeMotion, scale: float) -> dict[str, Any]:
-    rows, intended = made.lifts
+def _greatest_velocity(moved: MovedBody | None, motion: MadeMotion, scale: float) -> dict[str, Any]:
+    rows, intended = motion.lifts
     velocity = np.abs(_moving(moved, rows)[1])
     at = int(np.argmax(velocity))
     ratio = float(_moving(moved, np.array([[rows[0, at]], [1.0], [0.0]]))[1, 0])
-    uncertain = COVERAGE * ratio * float(made.errors.sds[1, at])
+    uncertain = COVERAGE * ratio * float(motion.errors.sds[1, at])
     return _row(scale, float(velocity[at]), float(np.abs(_moving(moved, intended)[1]).max()), uncertain)
 
 
@@ -121,7 +121,7 @@ def _moving(moved: MovedBody | None, rows: Array) -> Array:
     return rows if moved is None else moved.rows(rows)
 
 
-def _above(row: StatedLift, made: MadeMotion, design: Design, options: PointOptions, zero: float) -> dict[str, Any]:
+def _above(row: StatedLift, motion: MadeMotion, design: Design, options: PointOptions, zero: float) -> dict[str, Any]:
     """Angles at which a lift is crossed, degrees of the shaft, and the duration, degrees of the crank.
 
     Each entry has the made and the intended value and the uncertainty. It is None where the lift is not crossed just
@@ -132,7 +132,7 @@ def _above(row: StatedLift, made: MadeMotion, design: Design, options: PointOpti
     except EventError:
         above = None
     else:
-        above = made.above(event.opening, event.closing)
+        above = motion.above(event.opening, event.closing)
     if above is None:
         return dict.fromkeys((*ANGLES, DURATION))
     entry: dict[str, Any] = {}

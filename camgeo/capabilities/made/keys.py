@@ -1,4 +1,4 @@
-"""What a recipe says of the part as made: the zone of its profile, what fixes its axes, and points of earlier runs."""
+"""Key `made` of a recipe: the zone of the profile, mm, the datum of its axes, and files of points of earlier runs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 DATUMS = ("part", "bore", "none")
 ALIGN = {"none": "", "rotation": "g", "best-fit": "gxy"}
-"""What `align` frees: unknowns of a placing by least squares."""
+"""Unknowns of a placing by least squares, by the word after `align`: g a turn, x and y shifts."""
 UNITS = {"mm": 1.0, "inch": 25.4}
 
 

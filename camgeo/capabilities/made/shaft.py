@@ -1,6 +1,6 @@
 """Points of several cams on one shaft: which each is of, all judged about its axis, and the phases between them.
 
-A cam's points are told by their column `z` or `lobe`, turned back by the angle at which the cam stands, and judged as
+A cam's points are known by their column `z` or `lobe`, turned back by the angle at which the cam stands, and judged as
 those of a part of its own. The axis is that of the shaft, so that the profile of a cam may turn about it alone, and
 `--align rotation` turns the shaft as one: what is left of a cam's phase is its own.
 """

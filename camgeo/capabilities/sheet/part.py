@@ -163,7 +163,7 @@ def _side(
     boss: tuple[float, tuple[float, float]],
     chamfer: float,
 ) -> list[tuple[float, float]]:
-    """One face of a stretch of metal, by rising y: its ground, what is raised from that, and the boss.
+    """Points (height, y), mm, of one face of a stretch in the section, by rising y: ground, raised metal, boss.
 
     `heights` are those of the ground and of what is raised from it; `chamfer` is how far an edge lies behind the face.
     """

@@ -34,7 +34,7 @@ from camgeo.part.features import with_records
 from camgeo.part.flat import Flat
 from camgeo.part.keyway import Keyway
 from kin.numeric.errors import CamgeoError
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.capabilities.sheet.frame import Area
@@ -313,10 +313,8 @@ def _draw_face(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) 
         page.marks.append(LineMark(shifted(loop.points, k, layout.face), THICK, "", closed=True))
     boss = drawn.body.boss
     if boss is not None:
-        pattern = "" if boss.above else "dashed"
-        page.marks.append(
-            CircleMark(layout.face, 0.5 * k * boss.diameter, THIN if pattern else THICK, "VIEW", pattern)  # type: ignore[arg-type]
-        )
+        outline = CircleMark(layout.face, 0.5 * k * boss.diameter, THICK, "VIEW")
+        page.marks.append(outline if boss.above else replace(outline, weight=THIN, pattern="dashed"))
     page.line((x - reach - 4.0, y), (x + reach + 2.0, y), layer="CENTRE", pattern="chain")
     solid = drawn.body.thickness is not None
     end = reach + (5.0 if solid else 4.0)

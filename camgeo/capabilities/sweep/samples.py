@@ -29,7 +29,7 @@ _RANDOM_TRIALS = 24  # and so many elsewhere
 
 
 class CamSample(NamedTuple):
-    """One cam: its sizes by name, mm and rad, the widths of its pieces (p,), rad, and its motion.
+    """Sizes of a cam by name, mm and rad, widths of the pieces of its motion (p,), rad, and the motion sampled on them.
 
     `rows` (4, n) are the motion, mm or rad, and its derivatives by the share of a piece, at the ends of all cells.
     `counts` (p,) are the cells of the pieces. A plate's motion is its support function, any other's the displacement.

@@ -148,7 +148,7 @@ def _stem_face(sizes: Sizes, side: Side, rows: Array) -> Contours:  # noqa: ARG0
     return Contours(sound, slope, p * p + q * q, radius=radius, contact=contact)
 
 
-def _arm_face(sizes: Sizes, side: Side, rows: Array) -> Contours:  # noqa: ARG001
+def _arm_face(sizes: Sizes, side: Side, rows: Array) -> Contours:  # noqa: ARG001 - a table of one signature
     """Contours for a face on an arm, nearer the cam than its parallel through the pivot."""
     pivot, nearer, sense = sizes["pivot"], sizes["nearer"], sizes["side"]
     share = (sizes["base"] + nearer) / pivot

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
 
-EVENTS = 1.0  # mm of valve lift, at which events are told beside those of its seat
+EVENTS = 1.0  # mm of valve lift, at which events are given beside those of its seat
 _UNITS = {LIFT: "mm", DURATION: "deg", VELOCITY: "mm/rad", ACCELERATION: "mm/rad^2", SEATING: "mm/deg"}
 
 

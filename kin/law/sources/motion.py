@@ -143,7 +143,7 @@ class Motion:
             low = [(k, a, b) for k, a, b in joint.jumps if k < 2 and abs(b - a) > _CLOSED * self._size]
             if low:
                 at = math.degrees(joint.at)
-                jump = DerivativeJump(joint.at, tuple(low))  # angles are told in degrees, as recipes have them
+                jump = DerivativeJump(joint.at, tuple(low))  # messages have angles in degrees, as recipes do
                 amount = jump.scaled(math.degrees(1.0)).said("deg") if unit == "rad" else jump.said(unit)
                 raise IntentError(f"the motion does not join: {amount}; {_remedy(joint.at, low[0][0])}", field, at)
         return self

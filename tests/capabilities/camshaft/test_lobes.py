@@ -1,4 +1,4 @@
-"""Checks of a camshaft that are told before it is made: those that come, whatever its lobes and files are.
+"""Checks of a camshaft that are listed before it is made: those that come, whatever its lobes and files are.
 
 Holds: camgeo.capabilities.camshaft.starter.
 """
