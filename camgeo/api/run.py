@@ -63,8 +63,8 @@ def check(recipe: OrderSource, *, progress: Callable[[str], None] | None = None,
 
     `progress` is called with each stage as it begins. `options` are those of capabilities, as `camgeo verify --help`
     lists them: further checks. Raises RecipeErrors where there is no such cam or a tolerance cannot be held,
-    SurroundingsError where a package is missing, TypeError for an unknown option. A check that fails raises nothing:
-    `ok` of the report is False then.
+    SurroundingsError where the disk refuses or a package is missing, TypeError for an unknown option. A check that
+    fails raises nothing: `ok` of the report is False then.
     """
     recipe = order_of(recipe)
     demand_callable("progress", progress)

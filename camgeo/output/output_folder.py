@@ -32,7 +32,7 @@ import json
 import os
 import re
 import stat
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
@@ -42,7 +42,7 @@ from camgeo.common.system import link_file, lock_file, retry, unlock
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from types import TracebackType
 
 REPORT = "report.json"
@@ -378,3 +378,15 @@ def _surroundings_error(error: OSError, path: Path) -> SurroundingsError:
     if system.WINDOWS and isinstance(error, PermissionError):
         text += "; if another program has it open, close it there and run the command again"
     return SurroundingsError(text, place)
+
+
+@contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """Path of a folder that goes at the end; raises SurroundingsError in place of an OSError of what is done in it."""
+    import tempfile
+
+    try:
+        with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
+            yield Path(folder)
+    except OSError as error:
+        raise _surroundings_error(error, Path(tempfile.tempdir or os.curdir)) from error

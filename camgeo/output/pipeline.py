@@ -82,13 +82,12 @@ def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> O
     """Make and judge everything in a temporary folder that goes.
 
     A failed check raises nothing. Raises RecipeErrors where no such curve exists or a tolerance cannot be held,
-    SurroundingsError where a missing package prevents all files, or is one of a capability that the recipe uses.
+    SurroundingsError where the disk refuses, or a package is missing for all files or for a capability that is used.
     """
-    import tempfile
-    from pathlib import Path
+    from camgeo.output.output_folder import temporary_folder
 
-    with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-        _, findings = _produce(recipe, recipe.export.files, Path(folder), Clock(progress))
+    with temporary_folder() as folder:
+        _, findings = _produce(recipe, recipe.export.files, folder, Clock(progress))
         demand_any(recipe.path, findings)
         return Outcome(document(recipe, findings), findings.ok, None)
 
@@ -103,15 +102,14 @@ def check_and_show(recipe: Recipe, *, progress: Callable[[str], None] | None = N
     """Outcome of making and judging everything in a temporary folder that goes, and the content of its page.
 
     Pages and other summaries are not made, and no file is demanded. Raises RecipeErrors where no such curve exists or a
-    tolerance cannot be held, SurroundingsError where a package of a capability that the recipe uses is missing.
+    tolerance cannot be held, SurroundingsError where the disk refuses or a package of a capability is missing.
     """
-    import tempfile
-    from pathlib import Path
+    from camgeo.output.output_folder import temporary_folder
 
     clock = Clock(progress)
     requests = tuple(request for request in recipe.export.files if not request.format.summary)
-    with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-        design, findings = _produce(recipe, requests, Path(folder), clock)
+    with temporary_folder() as folder:
+        design, findings = _produce(recipe, requests, folder, clock)
         return Outcome(document(recipe, findings), findings.ok, None), content_of(recipe, design, findings, clock)
 
 

@@ -15,7 +15,7 @@ from support import sets
 from support.sets import NAME, STEPS, export, names_of, write
 
 from camgeo.common.errors import SurroundingsError
-from camgeo.output.output_folder import RunFolder
+from camgeo.output.output_folder import RunFolder, temporary_folder
 
 
 def generation_of(folder, *, size=1):
@@ -420,6 +420,19 @@ def test_killed_at_any_step(tmp_path):
             break
     assert step > 15
     assert mixed >= 5  # the moments between commit and last rename were met
+
+
+def test_a_disk_that_refuses_what_is_only_tried_is_named():
+    folders = []
+
+    def tried():
+        with temporary_folder() as folder:
+            folders.append(folder)
+            (folder / "absent" / "lift.csv").write_text("")
+
+    with pytest.raises(SurroundingsError, match=r"absent/lift\.csv: No such file or directory"):
+        tried()
+    assert not folders[0].exists()
 
 
 @pytest.mark.slow

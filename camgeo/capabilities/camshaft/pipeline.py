@@ -85,11 +85,10 @@ def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = No
     Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held, SurroundingsError where the file
     system refuses or none of the files can be made.
     """
-    import tempfile
-    from pathlib import Path
+    from camgeo.output.output_folder import temporary_folder
 
-    with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-        findings, lobes = _produced(recipe, recipe.export.files, Path(folder), Clock(progress))
+    with temporary_folder() as folder:
+        findings, lobes = _produced(recipe, recipe.export.files, folder, Clock(progress))
         demand_any(recipe.path, findings)
         return Outcome(_report(recipe, findings, lobes), findings.ok, None)
 

@@ -40,8 +40,7 @@ def from_points(
 
     Raises IntentError for too few or too many points, numbers that are not finite, angles that do not rise, that lie
     outside [0, total] or do not fill it where the motion does not repeat, a repeating motion that does not close, and a
-    dwell that no points bound. Where a motion does not close, the message has displacements divided by `unit`, mm or
-    rad.
+    dwell that no points bound. Messages have displacements divided by `unit`, mm or rad.
     """
     angles, values = np.asarray(theta, dtype=float), np.asarray(s, dtype=float)
     if angles.shape != values.shape or angles.ndim != 1 or len(angles) > MOST_POINTS:
@@ -67,7 +66,7 @@ def from_points(
     demand_whole(rows, total, around, field)
     if len(angles) < (2 if dwells else _LEAST):
         raise IntentError(f"a motion needs {_LEAST} points, or two and a dwell", field)
-    rests = sorted(_dwelling(rows, dwell, total, around, field) for dwell in dwells)
+    rests = sorted(_dwelling(rows, dwell, total, around, field=field, unit=unit) for dwell in dwells)
     return laid(rows, rests, total, around, _exact)
 
 
@@ -78,7 +77,9 @@ def _exact(rows: Samples, ends: Ends | None, between: tuple[float, float], /) ->
     return sites, through(sites, np.append(rows.s, rows.s[0]), None)
 
 
-def _dwelling(rows: Samples, dwell: tuple[float, float], total: float, around: int | None, field: str) -> Dwelling:
+def _dwelling(
+    rows: Samples, dwell: tuple[float, float], total: float, around: int | None, *, field: str, unit: float
+) -> Dwelling:
     n, ends = len(rows.theta), []
     for angle in dwell:
         turns = math.floor((angle + SAME_ANGLE) / total) if around == 1 else 0
@@ -93,7 +94,6 @@ def _dwelling(rows: Samples, dwell: tuple[float, float], total: float, around: i
     a, b = float(rows.s[first % n]), float(rows.s[last % n])
     if a != b:
         at = [math.degrees(x) for x in dwell]
-        raise IntentError(
-            f"no dwell from {at[0]:.6g} to {at[1]:.6g} degrees: it would climb from {a:.6g} to {b:.6g}", field
-        )
+        climb = f"{a / unit:.6g} to {b / unit:.6g}"
+        raise IntentError(f"no dwell from {at[0]:.6g} to {at[1]:.6g} degrees: it would climb from {climb}", field)
     return Dwelling(first, last, a)

@@ -88,6 +88,11 @@ def test_what_are_no_points_is_refused(degrees, values, dwells, message, field):
     assert (caught.value.message, caught.value.field) == (message, field)
 
 
+def test_a_dwell_that_climbs_is_told_in_the_unit_of_the_points():
+    with pytest.raises(IntentError, match=r"it would climb from 1 to 2$"):
+        from_points(np.radians([0.0, 90.0, 180.0]), [0.0, 25.4, 50.8], dwells=[(rad(90), rad(180))], unit=25.4)
+
+
 def test_points_over_a_half_turn_go_on_upside_down():
     theta = np.radians(np.arange(0.0, 181.0, 15.0))
     motion = from_points(theta, 6 * (1 - np.cos(theta)) + 0.3 * (1 - np.cos(3 * theta)), math.pi, around=-1)
