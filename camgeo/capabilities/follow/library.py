@@ -206,10 +206,10 @@ class Followed:
     def recipe(self, table: str) -> str:
         """Text of a recipe of a cam with this motion, whose lifts are in the file `table`.
 
-        Its motion is within the reading of the rows, and its contour is within about as much of the file's. It has no
-        opening but a round bore, and passes over others when files are judged by it. Raises CallError for a yoke whose
-        breadth varies by more than two readings, or with an odd number of steps, and for a ring without a round
-        outline.
+        Its motion is within the reading of the rows, and its contour within twice that of the file's, which is its
+        tolerance, so that the file passes when it is judged by the recipe. It has no opening but a round bore, and
+        passes over others when files are judged by it. Raises CallError for a yoke whose breadth varies by more than
+        two readings, or with an odd number of steps, and for a ring without a round outline.
         """
         demand_type("table", table, str, "a str")
         if not table.isprintable() or not table:
@@ -228,7 +228,7 @@ class Followed:
             *([f"part: {{{keys}}}"] if keys else []),
             *([OPENINGS] if self.openings else []),
             "export:",
-            f"  tolerance: {self.reading:.6g}",
+            f"  tolerance: {2.0 * self.reading:.6g}",
             "  files: [dxf, csv, html]",
             "",
         ]
@@ -392,4 +392,4 @@ def judged_by_recipe(followed: Followed) -> Report:
         recipe = Path(folder) / f"{followed.path.stem}.yaml"
         recipe.write_text(followed.recipe("lift.csv"), encoding="utf-8")
         units = next((name for name, mm in UNIT_MM.items() if mm == followed.units), None)
-        return verify(load(recipe), followed.path, units=units, tolerance=2.0 * followed.reading, page=True)
+        return verify(load(recipe), followed.path, units=units, page=True)
