@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 PARTS = 32  # windows of a stretch
 _EACH = 50  # places that a stretch costs to solve
 _STEP = 0.25  # radians of free motion between samples
-_POWER = 4.0  # of the speed, with which kicks grow at most
+_POWER = math.sqrt(20.0)  # p (p + 1) of second derivatives: kicks grow with the power p = 4 of the speed at most
 _PART = 8.0  # radians of free motion in a stretch that is not slow, at most: its kicks' own phase
 _WINDOW = 2.0 / PARTS  # half widths of a stretch
 _GRID = np.linspace(-1.0, 1.0, PARTS + 1)

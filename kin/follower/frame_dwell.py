@@ -129,6 +129,7 @@ def _within(spans: Sequence[tuple[Output, _Span]], band: float) -> Iterator[Wind
     cuts = [_Cut.of(*pair) for pair in spans]
     width = np.array([cut.width for cut in cuts])
     edges = np.append(0.0, np.cumsum(RIDGE[1] * width))
+    starts = edges[:-1].tolist()
     ends = np.array([cut.f(np.array([cut.begin, cut.begin + cut.width])) for cut in cuts])
     values = np.concatenate([output.value for output, _ in spans])
     top = values.max() + ROOF * max(float(np.ptp(values)), band)
@@ -138,14 +139,14 @@ def _within(spans: Sequence[tuple[Output, _Span]], band: float) -> Iterator[Wind
 
     def joined(t: Array, _: int) -> Array:
         value: Array = np.interp(t, roofs, levels)
-        for low, cut in zip(edges.tolist(), cuts, strict=False):
+        for low, cut in zip(starts, cuts, strict=True):
             inside = (t >= low) & (t < low + cut.width)
             value[inside] = cut(t[inside] - low + cut.begin)
         return value[None]
 
-    breaks = [cut.breaks - cut.begin + low for low, cut in zip(edges.tolist(), cuts, strict=False)]
+    breaks = [cut.breaks - cut.begin + low for low, cut in zip(starts, cuts, strict=True)]
     best = longest_of_each(joined, np.concatenate([*breaks, roofs]), band, edges)
-    for low, cut, dwell in zip(edges.tolist(), cuts, best, strict=False):
+    for low, cut, dwell in zip(starts, cuts, best, strict=True):
         yield Window(dwell.start - low + cut.begin, dwell.length, dwell.least, dwell.greatest)
 
 

@@ -38,7 +38,8 @@ CELLS = 16  # of a piece, in the table of shaft angles
 PARTS = 2  # of a piece, from which its bounds are sought
 MOST_CUTS = 8  # in quarters, until the shaft angle is seen to rise
 STEPS = 12  # of Newton's method
-NEAR = 1e-5  # rad: from here a step of second order is good to rounding
+NEAR = 1e-6  # rad: from here a step of second order is good to rounding
+ONCE_ROUND = 1e-8  # rad: what rounding may leave of a turn all round
 ON_CONTOUR = 1e-8  # of the roller: how far along the contour the nearest point may be off
 MOST_PLAY = 0.1  # of the roller: beyond, its nearest point may be another one
 
@@ -108,7 +109,7 @@ class SplinePath:
             row, low, high = quartered(row, low, high, open_)
         else:
             raise UnsettledError("the shaft angle is not seen to rise all along the contour")
-        if abs(self._table.edges[-1] - self._table.edges[0] - TURN) > NEAR:
+        if abs(self._table.edges[-1] - self._table.edges[0] - TURN) > ONCE_ROUND:
             raise UnsettledError("the contour does not go once round the shaft")
 
     @cached_property
