@@ -8,9 +8,9 @@ Property tests: a run repeats the last one's examples, so that a change is judge
 eighth of them; any other, such as `pytest -m slow`, takes all, and every property test counts as slow in it.
 
 Time: the tests of a file run in one process of xdist, so that what they share is made once; compiled modules are kept
-even where the shell asks for none (PYTHONDONTWRITEBYTECODE), since every process that a test starts would compile the
-house anew; one thread for linear algebra, as the processes of xdist share the cores; and what was there before the
-first test is not looked through for garbage again and again.
+even where the shell asks for none (PYTHONDONTWRITEBYTECODE), since every process that a test starts would compile
+the product anew; one thread for linear algebra, as the processes of xdist share the cores; and what was there before
+the first test is not looked through for garbage again and again.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import gc
 import os
 import signal
 import sys
+import threading
 from typing import TYPE_CHECKING
 
 import mpmath
@@ -53,6 +54,16 @@ settings.register_profile("explore", UNTIMED, max_examples=FULL)
 def pytest_runtest_setup() -> None:
     """Mpmath works in as many digits in every test, whatever was imported or run before."""
     mpmath.mp.dps = DIGITS
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown() -> None:
+    """A test that leaves a timer running fails: it would write into the output of another test."""
+    left = [thread for thread in threading.enumerate() if isinstance(thread, threading.Timer)]
+    for timer in left:
+        timer.cancel()
+        timer.join()
+    assert not left
 
 
 def pytest_configure(config: pytest.Config) -> None:

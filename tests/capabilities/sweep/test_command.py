@@ -249,7 +249,9 @@ def test_progress_is_said_in_lines_where_there_is_no_terminal(capsys: pytest.Cap
     progress.clear()
     assert capsys.readouterr().err == "four-bar: 448 of 825 designs\nfour-bar: 2 of 3 polished\n"
     for every in (None, 1e9):
-        Progress("four-bar", every)("448 of 825 designs")
+        soon = Progress("four-bar", every)
+        soon("448 of 825 designs")
+        soon.clear()
     assert capsys.readouterr().err == ""
 
 
