@@ -19,12 +19,13 @@ if TYPE_CHECKING:
 
 
 def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Make and judge the files of one request: one at `path`, or one for each disc beside it.
+    """Make and judge the files of one request: one at `path`, or one beside it for each disc.
 
-    No file is made of an altered part whose contour fails a check: then the failed checks come back alone; nor where
-    the format needs a mechanism that turns right round and this one does not. Raises RecipeErrors where a tolerance
-    cannot be held or no such file can be made, SurroundingsError for a missing extra, OSError where a file cannot be
-    written.
+    Of an altered part whose contour fails a check no file is made, and the failed checks come back alone. Neither files
+    nor checks come back where the format needs a mechanism that turns right round and this mechanism does not. Packages
+    must be there: `foresee` refuses a file that needs a missing one. Raises RecipeErrors where a tolerance cannot be
+    held or no such file can be made, ValueError for a format that only reports on other files, OSError where a file
+    cannot be written.
     """
     job, failed = job.of_file(request)
     if failed:
@@ -53,7 +54,7 @@ def _make_file(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
 
 def demand_capacity(recipe: Recipe, design: Design, request: FileRequest) -> None:
-    """Raise RecipeErrors where a form of file does not hold as many surfaces or discs as the cam has."""
+    """Raise RecipeErrors where the form of the request's file holds fewer surfaces or discs than the cam has."""
     surfaces, discs, form = len(design.exact.surfaces), len(design.discs), request.form
     if discs > form.discs:
         contents = f"{discs} discs"
@@ -72,9 +73,9 @@ def demand_capacity(recipe: Recipe, design: Design, request: FileRequest) -> Non
 
 
 def foresee(job: Job, request: FileRequest) -> None:
-    """Raise the RecipeErrors that `make` is certain to raise, before anything is fitted.
+    """Refuse a request before anything is fitted, where `make` is certain to refuse it.
 
-    Raises MissingExtraError where a package is missing that makes such a file.
+    Raises RecipeErrors where no such file can be made, MissingExtraError where a package that makes it is missing.
     """
     demand_capacity(job.recipe, job.design, request)
     if request.variant:

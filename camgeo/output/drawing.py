@@ -26,10 +26,11 @@ if TYPE_CHECKING:
 
 
 def make_drawing(job: Job, request: FileRequest, path: Path, draw: Draw) -> MadeFiles:
-    """Fit, write, read back and judge one drawing; the file and its checks.
+    """Fit, write, read back and judge one drawing; returns the file and its checks.
 
-    `draw` writes outlines on their layers and remarks, (job, request, path, outlines, remarks), and returns the checks
-    of its further contents.
+    `draw`, (job, request, path, outlines, remarks), writes the outlines on their layers and the remarks, and returns
+    the checks of all else that it writes. Raises RecipeErrors where the tolerance cannot be held or the part gives no
+    sound drawing, OSError where the file cannot be written.
     """
     has_own_unit = request.units not in {None, job.recipe.units}
 

@@ -19,10 +19,11 @@ if TYPE_CHECKING:
 def shaft_of_file(
     recipe: Recipe, design: Design, kind: str, compensation: Compensation | None = None, field: str = "export.files"
 ) -> ShaftIntent:
-    """Intent of the files of a kind, whose discs may differ from the nominal ones by a compensation.
+    """Intent of the files of the format `kind`, whose discs may differ from the nominal ones by a compensation.
 
-    `field` is the path of the request in errors. Raises RecipeErrors for a program without `manufacture` in the recipe,
-    and where by the compensation a roller or an opening would be nothing, or the contour cannot be altered or proved.
+    Each file holds one disc or all. `field` is the request's path in the recipe, at which errors are reported. Raises
+    RecipeErrors for a program without `manufacture` in the recipe, and where the compensation leaves nothing of a
+    roller or of an opening, or the altered contour cannot be made or proved; KeyError for an unknown format.
     """
     from kin.judge.intent import ShaftIntent
 
@@ -44,5 +45,9 @@ def shaft_of_file(
 
 
 def intent_of_file(recipe: Recipe, design: Design, kind: str) -> PartIntent:
-    """Intent of a file with one disc; raises ValueError for several, RecipeErrors for what the recipe does not say."""
+    """Intent of a file of the format `kind` that shows the one disc of `design`.
+
+    Raises ValueError for a design of several discs, RecipeErrors for an entry that the recipe lacks, KeyError for an
+    unknown format.
+    """
     return FORMATS[kind].intent(recipe, design)

@@ -1,4 +1,4 @@
-"""Job of the functions that make files; their refusals become errors at a field of the recipe."""
+"""Job from which files are made: recipe, design and fits; refusals become errors at a field of the recipe."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.judge.check import Check
 
-STEEP = 0.999  # psi'(phi) from which a roller may run past a contour that is within its tolerance
+STEEP = 0.999  # psi'(phi), 1 for a follower that moves along the contour: the roller may miss one within tolerance
 
 
 class MadeFiles(NamedTuple):
@@ -46,8 +46,8 @@ class MadeFiles(NamedTuple):
 class Job:
     """A cam that can be made: its recipe, its exact design, and the fits that its files share.
 
-    `fits` has one for each surface's contour. `kept` has values that capabilities reuse from file to file, by their
-    names; `variants` has the job of each part that differs from the nominal one.
+    `fits` holds one entry for the contour of each surface, in the order of the design. `kept` holds values that
+    capabilities reuse from file to file, by name; `variants` the job of each altered part, by its compensation.
     """
 
     recipe: Recipe
@@ -58,7 +58,7 @@ class Job:
 
     @staticmethod
     def of(recipe: Recipe, design: Design, clock: Clock | None = None) -> Job:
-        """Job for the files of a design; raises ValueError for a design without contours."""
+        """Job for the files of a design, timed by `clock`; raises ValueError for a design without contours."""
         if not design.contours:
             raise ValueError(f"{recipe.name}: there is no contour to be made")
         clock, rounding = clock or Clock(), design.exact.rounding
@@ -69,9 +69,10 @@ class Job:
         )
 
     def of_file(self, request: FileRequest) -> tuple[Job, tuple[Check, ...]]:
-        """Job for the part as one file shows it, and the failed checks that prevent the file.
+        """Job for the part as one file shows it, altered by the file's compensation; no checks.
 
-        Raises RecipeErrors where a roller or an opening would be nothing, or the contour cannot be altered or proved.
+        Where the altered contour fails a check, this same job comes back, and the checks. Raises RecipeErrors where the
+        compensation leaves nothing of a roller or of an opening, or the altered contour cannot be made or proved.
         """
         compensation = request.compensation
         if compensation is None:
@@ -90,7 +91,7 @@ class Job:
             fits = tuple(Fits(contour, self.clock, compensation.scale * fit.unsure) for fit, (_, contour) in pairs)
             self.variants[compensation] = Job(compensated.recipe, compensated.design, fits)
         job, file_recipe = self.variants[compensation], self.recipe.in_units_of(request)
-        if request.units is not None:  # a file's title tells lengths as its numbers do
+        if request.units is not None:  # the title of a file has lengths in the unit of its numbers
             job = replace(
                 job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {compensation.words(file_recipe.mm)}")
             )
@@ -98,7 +99,7 @@ class Job:
 
     @property
     def single(self) -> tuple[Job, ...]:
-        """Jobs of the discs, each with that disc's design and fits alone."""
+        """Jobs of the discs in their order, each with that disc's design and fits alone."""
         fits = iter(self.fits)
         return tuple(
             replace(self, design=design, fits=tuple(islice(fits, len(design.surfaces))))
@@ -107,7 +108,7 @@ class Job:
 
     @property
     def clock(self) -> Clock:
-        """Clock that counts the seconds of the stages."""
+        """Clock that counts the seconds of the run's stages."""
         return self.fits[0].clock
 
     @property
@@ -126,7 +127,7 @@ class Job:
         return self.recipe.field_of(request)
 
     def tolerance(self, request: FileRequest) -> float:
-        """Tolerance of a file, mm: its own, or the export's."""
+        """Tolerance of a file, mm: that of the request, or else of the recipe's `export`."""
         return request.tolerance or self.recipe.export.tolerance
 
     def tolerance_field(self, request: FileRequest) -> str:
@@ -134,20 +135,20 @@ class Job:
         return self.field(request) if request.tolerance is not None else "export.tolerance"
 
     def outlines(self, form: str, tolerance: float) -> tuple[Outline, ...]:
-        """Contour of each surface in a form, within a tolerance, mm, mirrored for a counter-clockwise shaft.
+        """Contour of each surface within a tolerance, mm, mirrored for a counter-clockwise shaft.
 
-        Raises ToleranceError where the fit cannot hold the tolerance.
+        `form` is arcs, spline or polyline. Raises ToleranceError where the fit cannot hold the tolerance.
         """
         return tuple(self._outline(fit, form, tolerance) for fit in self.fits)
 
     def written_outlines(
         self, form: str, tolerance: float, shift_of: Callable[[Outline], float]
     ) -> tuple[Outline, ...]:
-        """Contour of each surface in a form, within the tolerance, mm, after writing.
+        """Contour of each surface that is within a tolerance, mm, when it is written.
 
-        It is mirrored for a counter-clockwise shaft. Writing moves a contour by up to `shift_of`, mm; where that is a
-        quarter of the tolerance or more, the contour is only sure to be within the tolerance before writing. Raises
-        ToleranceError where the fit cannot hold the tolerance.
+        `form` is arcs, spline or polyline; the contour is mirrored for a counter-clockwise shaft. Writing moves an
+        outline by up to `shift_of(outline)`, mm; where that is a quarter of the tolerance or more, the contour is only
+        sure to be within the tolerance before writing. Raises ToleranceError where the fit cannot hold the tolerance.
         """
         outlines = []
         for fit in self.fits:
@@ -164,7 +165,11 @@ class Job:
 
     @contextmanager
     def refusals(self, request: FileRequest) -> Iterator[None]:
-        """Turn errors of a fit or a writer into RecipeErrors at the field to blame, or SurroundingsError."""
+        """Context that turns errors of a fit or a writer into those of a run.
+
+        ToleranceError, RegionError and CurveError become RecipeErrors at the field to blame, MissingExtraError becomes
+        SurroundingsError.
+        """
         recipe = self.recipe
         try:
             yield
@@ -185,9 +190,11 @@ class Job:
         return recipe.error(field_path, str(error), None, reached)
 
     def judge(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> MadeFiles:
-        """Read a file back and judge it by the recipe's motion; returns the file and its checks.
+        """Read a file of one disc back and judge it by the recipe's motion; returns the file and its checks.
 
-        The file has `pieces` and the proved `bound` of its fit.
+        `pieces` is the number of pieces of the fitted contour, `bound` the proved bound of its deviation. Raises
+        ValueError for a cam of several discs, RecipeErrors for an entry that the recipe lacks, OSError where the file
+        cannot be read.
         """
         from kin.judge.verify import verify
 
@@ -201,7 +208,11 @@ class Job:
         return MadeFiles((file,), tuple(self._why_lost(check) for check in verdict.checks))
 
     def judge_together(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> MadeFiles:
-        """Read back a file of several discs, each in its place, and judge it by the recipe's motion."""
+        """Read back a file of several discs, each in its place, and judge it; returns the file and its checks.
+
+        `pieces` is the number of pieces of all fitted contours, `bound` the proved bound that holds for each. Raises
+        RecipeErrors for an entry that the recipe lacks, OSError where the file cannot be read.
+        """
         from kin.judge.together import DiscFile, verify_set
 
         recipe, tolerance = self.recipe, self.tolerance(request)
@@ -212,7 +223,10 @@ class Job:
         return MadeFiles((file,), tuple(self._why_lost(check) for check in verdict.checks))
 
     def combine_discs(self, request: FileRequest, products: Sequence[MadeFiles]) -> MadeFiles:
-        """Join the files of each disc, and judge the play that they leave between them."""
+        """All files and checks of a request with a file for each disc, and the checks of the play between the discs.
+
+        `products` are the judged files of the discs, in the order of the discs.
+        """
         from kin.judge.together import DiscsRead, left_between
 
         files = [replace(file, disc=rank) for rank, product in enumerate(products) for file in product.files]
@@ -241,5 +255,5 @@ class Job:
 
 
 def unjudged(path: Path, request: FileRequest, units: float) -> MadeFiles:
-    """Product of a file that nothing judges, such as a table; `units` is the unit of its numbers, mm."""
+    """A file that nothing judges, such as a table, without checks; `units` is the unit of its numbers in mm."""
     return MadeFiles((FileResult(path, request, units=units),))

@@ -23,10 +23,10 @@ REPORTS = ("report.json", "page.json")
 
 
 def mixtures(folder: Path, names: Collection[str] = ()) -> list[str]:
-    """Messages on the reports in a folder whose files are missing or differ from the listed ones.
+    """Messages, one for each report in a folder of which a listed file is missing or has another checksum.
 
-    With `names`, only on reports that list one of these. A file that is no report of camgeo, or cannot be read, gives
-    no message.
+    With `names` of files, only reports that list any of them are looked at. A file that is no report of camgeo, or
+    cannot be read, gives no message.
     """
     messages = []
     for name in (*REPORTS, *(name for label in registry.labels().values() for name in label.reports)):
@@ -43,7 +43,7 @@ def mixtures(folder: Path, names: Collection[str] = ()) -> list[str]:
 
 
 def _why(folder: Path) -> str:
-    """Cause of a mixture: a run that was cut off leaves its private folder beside the output folder."""
+    """Words for the cause of a mixture: a run that was cut off leaves its private folder beside the output folder."""
     name = folder.name.removesuffix(REJECTED)
     try:
         beside = [path.name for path in folder.absolute().parent.iterdir() if path.name.startswith(f".{name}.")]
@@ -54,7 +54,7 @@ def _why(folder: Path) -> str:
 
 
 def _sums(report: Path) -> dict[str, str]:
-    """Checksums by file name of a report; empty for a file that is none."""
+    """Checksums that a report lists, by file name; empty for a file that is no report or cannot be read."""
     try:
         if not report.is_file():
             return {}
@@ -69,7 +69,7 @@ def _sums(report: Path) -> dict[str, str]:
 
 
 def _sum(path: Path) -> str:
-    """Checksum of a file; empty where there is none that can be read."""
+    """SHA-256 checksum of a file, in hexadecimal; empty where no file can be read."""
     try:
         if not path.is_file():
             return ""

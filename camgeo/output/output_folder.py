@@ -3,7 +3,7 @@
 A set is what a `report.json` names, and the report itself. It lives in ``out/<name>/``, a failed one in
 ``out/<name>.rejected/``. Beside them, only while a run is at work or after one was killed, stand
 
-    .<name>.lock          held by the run that is at work; the system lets go of it when the process ends
+    .<name>.lock          locked by the run that is at work; the system unlocks it when the process ends
     .<name>.partial-<n>   files being written by process n, worth nothing before they are committed
     .<name>.swap          a committed set on its way into place
     .<name>.undo          a swap that failed on its way back
@@ -53,10 +53,10 @@ _OLD = ".old"
 
 @dataclass(frozen=True)
 class Family:
-    """Set of files that a run replaces: a recipe's folder may have several, of different reports.
+    """Kind of a set of files that a run replaces; a recipe's folder may hold several sets, each with its own report.
 
-    `report` names the files of the set; `begins` is how their names may begin, empty for the recipe's own name; `role`
-    tells the private folders from those of the other sets.
+    `report` is the name of the report that lists the files of the set. The names of the files begin with a word of
+    `begins`; where it is empty, with the recipe's name or `report.`. `role` begins the roles of private folders.
     """
 
     report: str = REPORT
@@ -69,7 +69,11 @@ EXPORTED = Family()
 
 @dataclass(frozen=True)
 class _Swap:
-    """Journal of a swap: the folder's name, files that come (the report last), that go, and that were there before."""
+    """Journal of a swap of files in the output folder named `target`.
+
+    It has the names of the files that come, the report last, of those that go, and of all that are linked as they were
+    before.
+    """
 
     target: str
     come: tuple[str, ...]
@@ -86,10 +90,11 @@ TRIES = 10  # to lock a name in a folder that others clear away
 
 
 class RunFolder:
-    """One run's place in the output folder, as a context: files are written to `folder`, then committed or rejected.
+    """Private folder of one run, as a context: files are written to `folder`, then committed or rejected as a set.
 
-    Left without either, or by an exception, nothing has changed. Raises SurroundingsError where another run of this
-    name is at work, and in place of any OSError; ValueError for a name that is none (the recipe's loader refuses it).
+    Left without either, or by an exception, the output folder `out` is as before. `name` is the recipe's. Raises
+    BusyError where another run of this name is at work, SurroundingsError in place of any OSError, ValueError for a
+    name that is no plain file name or ends in `.rejected`.
     """
 
     def __init__(self, out: Path, name: str, family: Family = EXPORTED) -> None:
@@ -104,7 +109,7 @@ class RunFolder:
         self.folder = self._beside(f"partial-{os.getpid()}")
 
     def __enter__(self) -> Self:
-        """Lock the name, finish or undo a swap that was cut off, clear away what killed runs left, make `folder`.
+        """Lock the name, clear away what killed runs left, finish or undo a swap that was cut off, make `folder`.
 
         Raises BusyError where another run of this name is at work, SurroundingsError where the disk refuses.
         """
@@ -129,7 +134,7 @@ class RunFolder:
     def _lock_name(self) -> int | None:
         """Make the output folder and lock the name in it: descriptor of the lock, None where another run holds it.
 
-        Another run may clear away an empty folder in between.
+        It tries again where another run has removed the empty folder in between.
         """
         for _ in range(TRIES):
             self._out.mkdir(parents=True, exist_ok=True)
@@ -138,7 +143,7 @@ class RunFolder:
         return lock_file(self._beside("lock"))
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
-        """Clear away and unlock; a swap that an interrupt cut off is finished here. Folders made for nothing go.
+        """Clear away and unlock; finish a swap that an interrupt cut off. Folders that this run made and left empty go.
 
         Raises SurroundingsError in place of an OSError of the run.
         """
@@ -156,9 +161,9 @@ class RunFolder:
             raise _surroundings_error(error, self.folder) from error
 
     def kept_names(self) -> tuple[str, ...]:
-        """Names of files of the last set that this run has not written again, which `commit` may keep.
+        """Names of files of the last set that this run has not written again, which `commit` may keep; no report.
 
-        Raises SurroundingsError where the last set cannot be read, or its report is none of camgeo.
+        Raises SurroundingsError where the last set cannot be read, or its report is no report of camgeo.
         """
         try:
             names = self._last_set(self._out / self._name)
@@ -176,9 +181,11 @@ class RunFolder:
         return self._replace(self._name, names, keep)
 
     def reject(self, names: Iterable[str] | None = None) -> Path:
-        """Put the set under ``<name>.rejected`` in place of the last one there; `out/<name>` stays as it is.
+        """Put the set into ``<name>.rejected`` in the place of the last set there; returns that folder.
 
-        `names` are its files, by default all that the run has written.
+        The folder `out/<name>` stays as it is. `names` are the files of the set, by default all that the run has
+        written. Raises ValueError for a name that is not one of this recipe's files, and for a file not written;
+        SurroundingsError, the last set as it was, where the disk refuses or a file of the user's is in the way.
         """
         if names is None:
             names = [path.name for path in sorted(self.folder.iterdir()) if path.name != self._report]
@@ -203,8 +210,8 @@ class RunFolder:
     def _prepare(self, folder: Path, names: tuple[str, ...], keep: tuple[str, ...]) -> None:
         """Write the journal and link the old files; nothing outside the private folder changes but an empty folder.
 
-        Raises SurroundingsError where a file that no report lists is in the way; ValueError for a name that is none of
-        this recipe's, and for a file that was not written.
+        Raises SurroundingsError where a file that no report lists is in the way; ValueError for a name that is not one
+        of this recipe's files, and for a file that was not written.
         """
         for name in (*names, *keep):
             if not self._is_own_name(name):
@@ -226,7 +233,7 @@ class RunFolder:
         (self.folder / _JOURNAL).write_text(json.dumps(journal), "utf-8", newline="\n")
 
     def _recover(self) -> None:
-        """Finish what was committed, or what was being undone."""
+        """Go on with a swap that was being undone, then finish one that was committed, if there is any."""
         for role, step in (("undo", self._back), ("swap", self._forward)):
             if self._beside(role).exists():
                 step(self._beside(role))
@@ -260,7 +267,7 @@ class RunFolder:
         self._clear()
 
     def _clear(self) -> None:
-        """Remove the private folders of this name, which no living run but this one can own."""
+        """Remove the private folders of files being written for this name; only this run can own them, by its lock."""
         for path in self._partial():
             _discard(path)
 
@@ -279,9 +286,9 @@ class RunFolder:
         raise _surroundings_error(error, folder) from error
 
     def _last_set(self, folder: Path) -> tuple[str, ...]:
-        """Files of the set in a folder as its report names them, those that are there, the report last.
+        """Names of the files that the report in a folder lists and that are there, the report last.
 
-        Empty where there is no report. Raises SurroundingsError where the report is none of camgeo.
+        Empty where there is no report. Raises SurroundingsError where the report is no report of camgeo.
         """
         if not os.path.lexists(folder):
             return ()
@@ -300,9 +307,9 @@ class RunFolder:
         return (*(name for name in names if _is_file(folder / name)), self._report)
 
     def _is_own_name(self, name: str) -> bool:
-        """Whether a file can be one of this recipe's: a plain name that begins with the recipe's own or is a report.
+        """Whether a file can be one of this recipe's: a plain name that begins as those of its family do.
 
-        Anything else that a report may name, changed by hand, is not touched.
+        Another file that a report names, perhaps changed by hand, is not touched.
         """
         return (
             _is_plain_name(name)
@@ -382,7 +389,7 @@ def _surroundings_error(error: OSError, path: Path) -> SurroundingsError:
 
 @contextmanager
 def temporary_folder() -> Iterator[Path]:
-    """Path of a folder that goes at the end; raises SurroundingsError in place of an OSError of what is done in it."""
+    """Path of a folder that is removed at the end; raises SurroundingsError in place of an OSError within."""
     import tempfile
 
     try:

@@ -1,4 +1,4 @@
-"""A part's body in the words of the file writers: what is cut on a drawing, and what a solid is made of."""
+"""A part's body as file writers need it: the outlines cut on a drawing, and the pieces of a solid."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 def contours_of(design: Design, fitted: Iterable[Outline]) -> list[LayerOutline]:
-    """The contours of a design's surfaces as they are fitted, each on its layer."""
+    """The fitted contours, one for each surface of a design in its order, each on the layer of its surface."""
     return [LayerOutline(made.surface.layer, outline) for made, outline in zip(design.surfaces, fitted, strict=True)]
 
 
 def rim_of(body: Body) -> list[LayerOutline]:
-    """The round outline about the contours of a ring; none of a disc."""
+    """The round outline about the contours of a ring, alone in a list; an empty list for a disc."""
     return [LayerOutline(rim.layer, rim.outline, rim.circle) for rim in (body.rim,) if rim is not None]
 
 
@@ -36,7 +36,7 @@ def openings_of(body: Body) -> list[LayerOutline]:
 
 
 def remarks(body: Body, mm: float) -> list[str]:
-    """Comments for a drawing on features that it does not show, such as depths; lengths in units of `mm` mm."""
+    """Comments for a drawing on what it does not show of features, such as depths; lengths in units of `mm` mm."""
     features = with_records(body.features)
     lines = [f"camgeo {feature.remark(value, mm)}" for feature, value in features if feature.remark is not None]
     lines += [
@@ -48,7 +48,10 @@ def remarks(body: Body, mm: float) -> list[str]:
 
 
 def needs_booleans(body: Body) -> bool:
-    """Whether the mesh of a body is joined and cut of several solids: it is no prism, nor one with a pocket alone."""
+    """Whether the mesh of a body needs solids to be joined or cut.
+
+    A prism needs none, nor does a disc with a pocket on which nothing stands and nothing is engraved.
+    """
     return not (body.prism or (body.pocket is not None and _plain(body)))
 
 
@@ -60,10 +63,12 @@ def _plain(body: Body) -> bool:
 def part_mesh(
     outlines: Sequence[LayerOutline], body: Body, *, tolerance: float, precision: Precision
 ) -> tuple[Mesh, MeshFacts]:
-    """Mesh of a body in its outlines, outermost first: a prism, or prisms joined by manifold3d.
+    """Mesh of a body within a tolerance, mm, and facts on it: a prism, or prisms joined by manifold3d.
 
-    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where outlines cross or a
-    chamfer is too wide, ValueError without a thickness, TypeError for an outermost outline that is no polygon.
+    `outlines` are the outermost one, further contours, then the openings of the body in its order; `precision` is that
+    of the file. Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where outlines
+    cross or a chamfer is too wide, ModuleNotFoundError where manifold3d is needed and missing, ValueError without a
+    thickness, TypeError for a spline.
     """
     if body.thickness is None:
         raise ValueError("a solid needs a thickness")
@@ -74,6 +79,7 @@ def part_mesh(
     if body.pocket is not None:
         from camgeo.files.prism import pocketed_mesh
 
+        # where solids are joined or cut in any case, the openings are cut then, each to its depth
         plain = _plain(body)
         kept = outlines if plain else outlines[: len(outlines) - len(body.openings)]
         mesh, facts = pocketed_mesh(
@@ -85,6 +91,7 @@ def part_mesh(
 
         disc = manifold(mesh.points, mesh.triangles)
         return completed_mesh(disc, facts, solid_of(body), tolerance=tolerance, precision=precision)
+    # without a pocket the outermost outline is extruded, and all else is joined to it or cut out of it
     from camgeo.files.solid import joined_mesh
 
     polygon = outlines[0].outline
@@ -111,7 +118,8 @@ def solid_of(body: Body) -> Solid:
     ]
     boss = None if body.boss is None else body.boss.diameter
     drills = [
-        # a flat or a keyway meets the hole's sides no flatter than the circle does
+        # length: from the shaft to 1 mm beyond the boss; slant: sine of the least angle at which the hole's sides meet
+        # the bore's circle, which a flat or a keyway makes no smaller
         Drill(
             hole.at,
             hole.diameter,

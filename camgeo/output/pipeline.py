@@ -2,7 +2,8 @@
 
 Each stage runs only where the recipe needs it, and imports its modules when it runs; other stages are listed as
 skipped, with the reason. Files are written into a private folder, read back there by kin, and moved to their place only
-when every check holds. A file that needs a missing package is left out before anything is fitted.
+when every check holds. A file that needs a missing package is left out before anything is fitted. Where a function has
+`progress`, it is called with the name of each stage as the stage begins.
 """
 
 from __future__ import annotations
@@ -59,9 +60,10 @@ def export(
 ) -> Outcome:
     """Write a recipe's files into a private folder, judge them there, and move them to `out`/<name> if all checks hold.
 
-    A file that a missing package would make is left out. Raises RecipeErrors where no such curve exists or a tolerance
-    cannot be held, SurroundingsError where the disk does not do what it should, or none of the files can be made. A
-    failed check raises nothing: the set goes to `out`/<name>.rejected.
+    `only` has the formats of the files to be made; empty for all that the recipe lists. A file that needs a missing
+    package is left out. A failed check raises nothing: the set goes to `out`/<name>.rejected. Raises RecipeErrors where
+    no such curve exists or a tolerance cannot be held, SurroundingsError where the disk refuses, or a package is
+    missing for all files or for a capability that is used, BusyError where another run of this name is at work.
     """
     from camgeo.output.output_folder import RunFolder
 
@@ -79,7 +81,7 @@ def export(
 
 
 def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
-    """Make and judge everything in a temporary folder that goes.
+    """Make and judge all files of a recipe in a temporary folder, which is removed.
 
     A failed check raises nothing. Raises RecipeErrors where no such curve exists or a tolerance cannot be held,
     SurroundingsError where the disk refuses, or a package is missing for all files or for a capability that is used.
@@ -93,16 +95,17 @@ def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> O
 
 
 def demand_any(path: Path, findings: Findings) -> None:
-    """Raise SurroundingsError, of the recipe's path, where packages are missing for every file."""
+    """Raise SurroundingsError where no file was made and a package was missing; `path` is the recipe's."""
     if findings.missing and not findings.files:
         raise SurroundingsError(findings.missing[0][1], path)
 
 
 def check_and_show(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
-    """Outcome of making and judging everything in a temporary folder that goes, and the content of its page.
+    """Outcome of making and judging all files in a temporary folder, which is removed, and the content of its page.
 
-    Pages and other summaries are not made, and no file is demanded. Raises RecipeErrors where no such curve exists or a
-    tolerance cannot be held, SurroundingsError where the disk refuses or a package of a capability is missing.
+    Pages and other summaries are not made; files that need a missing package are left out, be it all of them. Raises
+    RecipeErrors where no such curve exists or a tolerance cannot be held, SurroundingsError where the disk refuses or a
+    package of a capability is missing.
     """
     from camgeo.output.output_folder import temporary_folder
 
@@ -122,10 +125,12 @@ def judge_files(
 ) -> dict[str, Any]:
     """Report on files of any origin, judged by a recipe's motion.
 
-    `tolerance`, mm, is by default that of the recipe's file of the same name, or of its export. `units`, mm, is the
-    unit of files that state none; raises UnitsError where a file states another. Ends in drawings within `gap`, mm, are
-    joined; raises CallError for a gap above the tolerance of a drawing. Raises RecipeErrors where there is no such
-    motion or curve, SurroundingsError where a package of a capability that the recipe uses is missing.
+    `tolerance`, mm, is by default that of the recipe's file of the same name, or of its export. `units` is the unit in
+    mm of files that state none, by default the recipe's. Ends in drawings within `gap`, mm, are joined. Raises
+    RecipeErrors where there is no such motion or curve, or the recipe lacks what such a file shows; CallError for a gap
+    above the tolerance of a drawing, UnitsError where a file states another unit than `units`, ValueError for an
+    unknown suffix, OSError where a file cannot be read, SurroundingsError where a package of a capability that the
+    recipe uses is missing.
     """
     _, findings = _judge(recipe, paths, (tolerance, units, gap), Clock())
     return document(recipe, findings)
@@ -140,10 +145,12 @@ def judge_and_show(
 ) -> tuple[dict[str, Any], str]:
     """Report on files of any origin, judged by a recipe's motion, and the HTML of the page that shows them.
 
-    `tolerance`, mm, is by default that of the recipe's file of the same name, or of its export. `units`, mm, is the
-    unit of files that state none; raises UnitsError where a file states another. Ends in drawings within `gap`, mm, are
-    joined; raises CallError for a gap above the tolerance of a drawing. Raises RecipeErrors where there is no such
-    motion or curve, SurroundingsError where a package of a capability that the recipe uses is missing.
+    `tolerance`, mm, is by default that of the recipe's file of the same name, or of its export. `units` is the unit in
+    mm of files that state none, by default the recipe's. Ends in drawings within `gap`, mm, are joined. Raises
+    RecipeErrors where there is no such motion or curve, or the recipe lacks what such a file shows; CallError for a gap
+    above the tolerance of a drawing, UnitsError where a file states another unit than `units`, ValueError for an
+    unknown suffix, OSError where a file cannot be read, SurroundingsError where a package of a capability that the
+    recipe uses is missing.
     """
     from camgeo.report.page.page import page
 
@@ -158,8 +165,9 @@ def _judge(
 ) -> tuple[Design, Findings]:
     """Design and findings on files of any origin.
 
-    `bounds` are the tolerance, the unit of files that state none, and the gap over which ends are joined, mm; None for
-    those of the recipe. Raises CallError for a gap above the tolerance of a drawing.
+    `bounds` are the tolerance, the unit of files that state none, and the gap over which ends are joined, all in mm;
+    None for the recipe's tolerance, the recipe's unit, no gap. Raises CallError for a gap above the tolerance of a
+    drawing.
     """
     from camgeo.common.errors import CallError
     from camgeo.output.sets import sets_of
@@ -170,6 +178,7 @@ def _judge(
     tolerance, units, gap = bounds
     _demand(recipe)
     design = designed(recipe, clock)
+    # results by the place of a file in the call: sets may take files out of their order
     checks, results = list(design.checks), dict[int, FileResult]()
     skipped: list[Skipped] = []
     for file_set in sets_of(recipe, paths, tolerance):
@@ -183,6 +192,7 @@ def _judge(
                 f"a gap of {gap / recipe.mm:.9g} {recipe.units} is more than the tolerance, {within / recipe.mm:.9g}"
             )
             raise CallError(f"{message}, of {file_set.files[0][1].name}: give at most that")
+        # a file that the recipe lists is judged as that request says, any other as the nominal part
         with clock.stage("judge"):
             request = FileRequest(kind) if request_listed is None else request_listed
             file_recipe = recipe if request_listed is None else recipe.in_units_of(request_listed)
@@ -203,10 +213,10 @@ def _judge(
 
 
 def judge_claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
-    """Report on files that the capability `name` claims, such as points measured on a part.
+    """Report on the files of `call`, which the capability `name` judges, such as points measured on a part.
 
-    Raises CallError for files that cannot be judged, SurroundingsError where the disk refuses, RecipeErrors where the
-    recipe has no such motion or curve.
+    Raises CallError for files that cannot be judged, SurroundingsError where the disk refuses, RecipeErrors where there
+    is no such motion or curve, KeyError for a capability that judges no files.
     """
     from camgeo.measures.units import displacement_unit
 
@@ -228,7 +238,7 @@ def judge_claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
 
 
 def _lacking_discs(files: FileSet, intent: ShaftIntent) -> list[Skipped]:
-    """Skipped checks of a set that lacks a disc, with the reason."""
+    """Names of the checks between discs that a set without all discs leaves out, each with the reason."""
     lacking = [part.name for rank, part in enumerate(intent.parts) if not {rank, None} & files.discs]
     names = " and ".join(path.name for _, path, _ in files.files)
     why = f"{names} is judged alone: {' and '.join(lacking)} is not among the files that are given"
@@ -244,13 +254,13 @@ def _demand(recipe: Recipe) -> None:
 def _opinions(
     recipe: Recipe, design: Design, files: list[FileResult], checks: list[Check], clock: Clock
 ) -> list[Results]:
-    """Results of the capabilities' own looks at files, beside the judge's."""
+    """Results of the checks that capabilities make of files, beside the judge's; one for each capability used."""
     capabilities = registry.in_order(recipe.uses)
     return [capability.look(recipe, design, files, checks, clock) for capability in capabilities]
 
 
 def _produce(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> tuple[Design, Findings]:
-    """Design and findings of a run of all stages: design, fits, files, verdicts, page."""
+    """Design and findings of a run of all stages: design, fits, files, verdicts, files that report on the others."""
     from camgeo.output.skipped import skipped_items
 
     _demand(recipe)
@@ -264,6 +274,7 @@ def _produce(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, cl
         from camgeo.output.job import Job
 
         job = Job.of(recipe, design, clock)
+        # all requests are foreseen before the first fit, which may take long
         for request in requests:
             try:
                 foresee(job, request)
@@ -281,6 +292,7 @@ def _produce(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, cl
     findings = _findings(recipe, design, checks, files, clock, skipped=skipped)
     names = {request: request.filename(recipe.name, recipe.export.files) for request in missing}
     findings = replace(findings, missing=tuple((names[request], why) for request, why in missing.items()))
+    # summaries come last: each shows the findings so far, of earlier summaries too
     for request in requests:
         if request.format.summarise is not None and request not in missing:
             path = folder / request.filename(recipe.name, recipe.export.files)
@@ -293,7 +305,7 @@ def _produce(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, cl
 
 
 def content_of(recipe: Recipe, design: Design, findings: Findings, clock: Clock) -> Content:
-    """Content of the page of a run."""
+    """Content of the page of a run; of its files, the page shows those of the nominal cam."""
     from camgeo.report.page.content import content
 
     with clock.stage("page"):
@@ -309,7 +321,10 @@ def _findings(
     *,
     skipped: tuple[tuple[str, str], ...] = (),
 ) -> Findings:
-    """Findings of a run, with the sections, limits and remarks that follow from its checks and files."""
+    """Findings of a run, with the sections, limits and remarks that follow from its checks and files.
+
+    Each step needs the ones before: limits the runs of capabilities, remarks the checks of limits.
+    """
     linkage = None
     if design.driven is not None:
         from camgeo.report.linkage import linkage_section

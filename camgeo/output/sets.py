@@ -34,7 +34,7 @@ class Requirement:
 class FileSet:
     """Files that are judged together: what is required of them, and the stem of their names without a disc's number.
 
-    `files` has of each file its place in the call, its path, and its disc, None for all discs; both count from 0.
+    `files` has (place in the call, path, disc) of each file; place and disc count from 0, a disc of None is all discs.
     """
 
     requirement: Requirement
@@ -48,9 +48,9 @@ class FileSet:
 
 
 def sets_of(recipe: Recipe, paths: Sequence[Path], tolerance: float | None) -> list[FileSet]:
-    """Sets of files of any origin: one file, or the files of all discs of a cam with several.
+    """Sets of files of any origin: one file, or files of different discs of one cam, at most one for each disc.
 
-    `tolerance`, mm, replaces that of the recipe; None leaves it.
+    `tolerance`, mm, replaces the recipe's; None keeps it. Raises ValueError for an unknown suffix.
     """
     count, sets = recipe.cam.arrangement.discs, list[FileSet]()
     for place, path in enumerate(paths):
@@ -61,6 +61,7 @@ def sets_of(recipe: Recipe, paths: Sequence[Path], tolerance: float | None) -> l
         if count == 1 or (disc is None and not FORMATS[kind].by_disc):
             sets.append(FileSet(requirement, stem, [(place, path, 0 if count == 1 else None)]))
             continue
+        # a file joins a set that still lacks its disc, best one of the same stem; else it begins a set
         open_sets = [
             file_set
             for file_set in sets
@@ -77,7 +78,10 @@ def sets_of(recipe: Recipe, paths: Sequence[Path], tolerance: float | None) -> l
 
 
 def _disc_of(recipe: Recipe, path: Path, request: FileRequest | None, count: int) -> tuple[str, int | None]:
-    """Stem of a name without the end for the disc, and that disc, counted from 0; None where the name says none."""
+    """Stem of a name without the end for the disc, and that disc, counted from 0 (`-1` is 0); None without such an end.
+
+    `count` is the number of discs. A name that the recipe gives to its one file of all discs has no such end.
+    """
     match = re.fullmatch(r"(.+)-([1-9])", path.stem)
     whole = request is not None and recipe.filenames(request) == (path.name,)
     if match is None or whole or int(match[2]) > count:

@@ -1,4 +1,4 @@
-"""Things that a run leaves out, with the reasons."""
+"""Files, checks and capabilities that a run leaves out, with the reasons."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Skipped = tuple[str, str]
 
 
 def skipped_items(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> tuple[Skipped, ...]:
-    """Pairs of a thing that a run for these files leaves out and the reason."""
+    """Pairs (name, reason) of the formats, checks and capabilities that a run for these files leaves out."""
     skipped = _skipped_files(recipe, requests, design)
     absent = ((name, label.absent) for name, label in registry.labels().items() if name not in recipe.uses)
     skipped += [(name, why) for name, why in absent if why]
@@ -55,7 +55,7 @@ def _skipped_files(recipe: Recipe, requests: tuple[FileRequest, ...], design: De
 
 
 def scene_of(recipe: Recipe, design: Design) -> CheckFacts:
-    """Facts of a run by which declarations decide which checks are made."""
+    """Facts of a run by which declared checks decide whether they are made."""
     turns = design.driven is None or design.driven.turns
     return CheckFacts(recipe, design.follower, design.trimmed, turns)
 

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit, write, read back and judge the discs of a file, each a mesh in its place.
 
-    Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
-    solid; SurroundingsError for a missing package, OSError where the file cannot be written.
+    `foresee` has to pass before. Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and
+    outlines that make no sound solid; ValueError for a format without meshes, OSError where the file cannot be written.
     """
     write, kind = request.format.write, request.kind
     if write is None:
@@ -44,7 +44,7 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
 
 def foresee(job: Job, request: FileRequest) -> None:
-    """Refuse a file that cannot be made, before anything is fitted.
+    """Refuse a file of meshes that cannot be made, before anything is fitted.
 
     Raises RecipeErrors for a tolerance that the precision of the file cannot hold, MissingExtraError for a part that
     needs a missing package.
@@ -56,18 +56,18 @@ def foresee(job: Job, request: FileRequest) -> None:
 
 
 def numbers(job: Job, request: FileRequest) -> Precision:
-    """Precision of the coordinates in a request's mesh file, in its unit; raises ValueError for other formats."""
+    """Precision of the coordinates in a request's mesh file, in its unit; raises ValueError for one without meshes."""
     return numbers_of(request.format, job.recipe.in_units_of(request).mm)
 
 
 def aim(job: Job, request: FileRequest) -> float:
-    """Tolerance, mm, left to the fit once rounding in the file and a chamfer have taken their share.
+    """Tolerance, mm, of the fit of a cam of one disc, once rounding in the file and a chamfer have taken their share.
 
-    Raises RecipeErrors where nothing is left.
+    Raises RecipeErrors where too little is left, ValueError for several discs or a format without meshes.
     """
     contours = (contour for _, contour in job.design.contours)
     size = max(float(np.abs(contour.sample(contour.cells.low).point).max()) for contour in contours)
-    # between two samples the contour reaches a little farther
+    # 1 % more, as between two samples the contour reaches a little farther
     try:
         fine = numbers(job, request).fit_tolerance(job.tolerance(request), 1.01 * size)
     except ToleranceError as error:
@@ -93,10 +93,10 @@ class DiscMesh(NamedTuple):
 
 
 def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
-    """Mesh of every disc of the cam, within a request's tolerance, in the precision of its file.
+    """Mesh of every disc of the cam in its order, within a request's tolerance, in the precision of its file.
 
     Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
-    solid; SurroundingsError for a missing package.
+    solid; ModuleNotFoundError where manifold3d is needed and missing, which `foresee` refuses.
     """
     discs = job.design.discs
     if len(discs) == 1:
@@ -109,10 +109,11 @@ def cam_meshes(job: Job, request: FileRequest) -> list[DiscMesh]:
 
 
 def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:
-    """Mesh of a cam of one disc with its whole part, within a request's tolerance, in the precision of its file.
+    """Mesh of a cam of one disc with its whole part, and facts on it.
 
+    The mesh is within the request's tolerance, in the precision of its file.
     Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
-    solid; SurroundingsError for a missing package.
+    solid; ModuleNotFoundError where manifold3d is needed and missing, which `foresee` refuses.
     """
     recipe, tolerance, precision = job.recipe, job.tolerance(request), numbers(job, request)
     if recipe.part.thickness is None:
