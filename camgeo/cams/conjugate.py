@@ -2,7 +2,7 @@
 
 The second roller stands `apart` from the first with the shaft between them, the second arm of a bell crank at that
 angle from the first, a second face opposite it (Wunderlich 1971, section 1, the "second cam integral with the first").
-Its position is `apart` less that of the first, so that on its own disc it is an ordinary follower: on a stem half a
+Its position is `apart` less the first contact's, so that on its own disc it is an ordinary follower: on a stem half a
 turn on, with the offset on the other side; on an arm that leads where the first one trails.
 """
 
@@ -52,7 +52,7 @@ FEASIBLE = 1e-11  # of the distance: by so much a limit may be missed
 class Conjugate(Holding):
     """Second contact of a follower on conjugate discs: its touch and its distance `apart` from the first, mm or rad.
 
-    For a bell crank also the length of the second arm, mm.
+    `length` is that of a bell crank's second arm, mm; None on a stem.
     """
 
     closure: ClassVar[str] = "form-closure"
@@ -82,7 +82,7 @@ class Conjugate(Holding):
         return None if self.length is None else (self.length, self.apart)
 
     def follower_name(self, name: str) -> str:
-        """Name of the follower in reports: that of guide and touch, followed by `on conjugate discs`."""
+        """Name of the follower in reports: `name`, of its guide and touch, followed by `on conjugate discs`."""
         return f"{name} on conjugate discs"
 
     def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:
@@ -121,7 +121,11 @@ class Conjugate(Holding):
         )
 
     def grow(self, out: float, scale: float, *, flat: bool) -> Conjugate:
-        """The holding with a smaller second roller, or faces farther apart, and scaled."""
+        """Copy for metal grown by `out` mm, then lengths times `scale`.
+
+        The second roller is smaller, or, with `flat`, the faces are farther apart. Raises GrownError where nothing of
+        that roller is left.
+        """
         gap = scale * self.gap
         if flat:
             return replace(self, apart=scale * (self.apart + 2.0 * out), gap=gap)
@@ -140,7 +144,7 @@ class Conjugate(Holding):
         return replace(own, others={SECOND: second})
 
     def circles(self, surface: str, own: tuple[Circle, ...]) -> tuple[Circle, ...]:
-        """Reference circles; of disc 2 the one at the least distance of its base curve."""
+        """Reference circles of a surface's disc: `own` for disc 1, one at the least distance of disc 2's curve."""
         if surface != SECOND:
             return own
         return (Circle("base circle" if isinstance(self.touch, Flat) else "prime circle"),)
@@ -148,16 +152,21 @@ class Conjugate(Holding):
     def least_stem(
         self, law: Displacement, angles: tuple[float, float], offset: float | None
     ) -> moving_frame.Translating:
-        """Stem with the least prime circle that keeps the pressure angles, rad, on both discs."""
+        """Stem with the least prime circle of disc 1 that keeps `angles`, on rise and return, rad, on both discs.
+
+        An `offset`, mm, is kept; for None the best is found. Raises IntentError for contacts that are not far enough
+        apart, a motion that stands still, and an angle that is not between 0 and 90 degrees.
+        """
         return least_pair(law, *angles, self.apart, offset)
 
     def gentler_size(
         self, exact: ExactGuided, rising: float, falling: float, mm: float
     ) -> tuple[str, GuidedCam] | None:
-        """The size, in words, and the cam of that size, that keep both discs' pressure angles below both angles, rad.
+        """A size in words and the cam of that size, with pressure angles within both limits on both discs.
 
-        For an arm the size is a base radius and the pivot's distance; for a stem a base radius, and where needed a
-        larger distance between the contacts. None if unknown.
+        The limits are `rising` on the rise and `falling` on the return, rad. For an arm the size is a base radius and
+        the pivot's distance; for a stem a base radius, and where needed a larger distance between the contacts. None if
+        unknown.
         """
         from camgeo.cams import least_size
         from camgeo.curve import moving_frame
@@ -183,7 +192,10 @@ class Conjugate(Holding):
         return f"{sentence} and a {self.key} of {apart}", resized.resized(resized.base_radius, None, farther)
 
     def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:
-        """Words for the distance or angle of disc 2 at which its roller is half the least convex radius; else empty."""
+        """Words for the size at which a surface's roller is half the pitch curve's least convex radius, or empty.
+
+        The size is the base radius for disc 1, the distance or angle of the contacts for disc 2.
+        """
         if surface != SECOND:
             return Holding.rounder(self, surface, exact, mm)
         first, second = exact.follower.contacts
@@ -198,7 +210,7 @@ class Conjugate(Holding):
 
 @dataclass(frozen=True)
 class SecondAdvice(RoundAdvice):
-    """Advice for the roller on disc 2, whose radius changes that disc alone."""
+    """Advice for the roller on disc 2, whose radius, `roller` in mm, changes that disc alone."""
 
     roller: float
 
@@ -213,7 +225,7 @@ class SecondAdvice(RoundAdvice):
 
     @property
     def most_radius(self) -> float:
-        """Least distance of the pitch curve of disc 2 from the shaft, mm."""
+        """Least distance of disc 2's pitch curve from the shaft, mm: a roller so large leaves no base circle."""
         from camgeo.curve.measures import nearest
 
         _, second = self.cam.exact().surfaces
@@ -221,7 +233,7 @@ class SecondAdvice(RoundAdvice):
 
 
 def _swing(pivot: float, arm: float, radius: float) -> float:
-    """Angle at the pivot, rad, at which an arm's end is a radius from the shaft; 0 where it never is."""
+    """Angle at the pivot, rad, at which an arm's end is a radius from the shaft, mm; 0 where it never comes so near."""
     cosine = (pivot**2 + arm**2 - radius**2) / (2.0 * pivot * arm)
     return math.acos(cosine) if cosine < 1.0 else 0.0
 
@@ -232,10 +244,11 @@ def _swing(pivot: float, arm: float, radius: float) -> float:
 def least_pair(
     motion: Displacement, rising: float, falling: float, apart: float, offset: float | None = None
 ) -> moving_frame.Translating:
-    """Stem with the least prime circle of disc 1 that keeps both pressure angles (rad) on both of two conjugate discs.
+    """Stem with the least prime circle of disc 1 that keeps both pressure angles on both of two conjugate discs.
 
-    The contacts are `apart`, mm; the best offset is found, or the given one kept. Raises IntentError where they are not
-    far enough apart.
+    The angles are `rising` on the follower's rise and `falling` on its return, rad. The contacts are `apart`, mm. An
+    `offset`, mm, is kept; for None the best is found. Raises IntentError for contacts that are not far enough apart, a
+    motion that stands still, and an angle that is not between 0 and 90 degrees.
     """
     from camgeo.cams import least_size
     from camgeo.curve import moving_frame
@@ -256,6 +269,7 @@ def least_pair(
         return moving_frame.Translating(
             least_size.positive_foot(float((rows[:2, 2] - rows[:2, 1] * offset).max())), offset
         )
+    # the foot d and the offset e nearest to the shaft within all four half planes, their rows of normals of length 1
     rows[2:, 2] -= apart
     scale = np.hypot(1.0, np.array([a, b, b, a]))
     d, e = least_size.nearest_in(rows / scale[:, None], np.zeros(2), FEASIBLE * apart)
@@ -263,9 +277,10 @@ def least_pair(
 
 
 def _pair_rows(motion: Displacement, rising: float, falling: float) -> list[tuple[float, float, float]]:
-    """Rows (x, y, c) of ``x d + y e >= c`` of disc 1, then of disc 2, these to be less by the distance.
+    """Rows (x, y, c) of ``x d + y e >= c`` for a stem's foot d and offset e, mm: two of disc 1, then two of disc 2.
 
-    Disc 2 drives the return, so that its own rise has the limit of that.
+    The last two lack the distance of the contacts, by which c is less. Disc 2 drives the return, so that its own rise
+    has the limit `falling`.
     """
     from camgeo.cams import least_size
 
@@ -278,19 +293,26 @@ def _pair_rows(motion: Displacement, rising: float, falling: float) -> list[tupl
 
 
 def _least_apart(rows: Array, offset: float) -> float:
-    """Least distance of two contacts on a stem, mm, by the rows of both discs."""
+    """Least distance of two contacts on a stem of this offset, mm, by the rows (4, 3) of both discs.
+
+    Where both discs' rows hold with equality the foot of the stem cancels.
+    """
     needs = rows[:, 2] - rows[:, 1] * offset
     return float(needs[:2].max() + needs[2:].max())
 
 
 def least_apart(motion: Displacement, rising: float, falling: float, stem: moving_frame.Translating) -> float:
-    """Least distance of the second roller from that of a stem, mm, that keeps the pressure angles of disc 2, rad."""
+    """Least distance between the rollers' centres, mm, at which disc 2 keeps the pressure angles on a stem.
+
+    They are `rising` on the follower's rise and `falling` on its return, rad. Raises IntentError for an angle that is
+    not between 0 and 90 degrees.
+    """
     rows = np.array(_pair_rows(motion, rising, falling))
     return stem.foot + float((rows[2:, 2] - rows[2:, 1] * stem.offset).max())
 
 
 def opposite_face(motion: Displacement, contact: Contact[Guide, Touch]) -> Face:
-    """Face opposite the first one, over the shaft angle; `motion` is that of the first face."""
+    """Face of the second contact, opposite the first face, over the shaft angle; `motion` is the first face's."""
     from camgeo.curve.disc import StraightFace
 
     guide = contact.guide
@@ -344,7 +366,7 @@ _WANTED = {
 
 
 def conjugate_of(values: Values, touch: Touch) -> Conjugate:
-    """The second contact of values without fault; its touch is like the first one."""
+    """The second contact of values without fault; it has the first contact's touch, but for a radius of its own."""
     if "radius" in values:
         touch = replace(touch, radius=values["radius"])
     apart = values["angle"] if "angle" in values else values["distance"]

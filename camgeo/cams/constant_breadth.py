@@ -30,7 +30,8 @@ ROUNDED = 1e-9  # rad, by which segments may miss their angle (as in kin.law.sou
 class SlidingFrame:
     """Links of the inverted slider-crank on which the square frame slides, mm.
 
-    `rocker` is the rocker's length less the offset of the slide's line; `side` is -1 for the crossed assembly.
+    `ground` is the distance of the fixed pivots, `rocker` the rocker's length less the offset of the slide's line;
+    `side` is 1 for the open assembly, -1 for the crossed one.
     """
 
     ground: float
@@ -42,7 +43,7 @@ class SlidingFrame:
 class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     """A cam between two parallel faces, from the motion over one half turn (Shu and Wu).
 
-    With `swings` that is the swing of the frame over the shaft angle, rad, and the lift follows from `frame`.
+    With `swings` the motion is the swing of the frame over the shaft angle, rad, and the lift follows from `frame`.
     """
 
     kind: ClassVar[str] = "constant-breadth"
@@ -55,14 +56,17 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     preload: Preload | None = None
 
     def lift(self) -> Lift:
-        """The lift of the first face over a whole turn (SW eqs. 2 to 4)."""
+        """The lift of the first face over a whole turn, mm (SW eqs. 2 to 4).
+
+        Raises IntentError for a motion that no such cam has, and TypeError for a swing without `frame`.
+        """
         from kin.law.support_function import lift_constant_breadth
 
         return lift_constant_breadth(self.base_radius, self.half_turn, "swing" if self.swings else "motion")
 
     @cached_property
     def half_turn(self) -> Motion:
-        """The lift over the half turn; for a swing over half a turn of the relative angle."""
+        """The lift over the half turn of the shaft; for a swing over half a turn of the angle between cam and frame."""
         return super().half_turn if self.frame_swing is None else self.frame_swing.half_turn
 
     def joints(self) -> tuple[DerivativeJump, ...]:
@@ -82,12 +86,19 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         return self.swings
 
     def in_frame(self, ground: float, rocker: float, side: float) -> Cam:
-        """The cam with the links that its frame slides on, where they make its lift."""
+        """Copy with the links that its frame slides on; the cam itself where the recipe gives the lift.
+
+        `ground` is the distance of the fixed pivots and `rocker` the rocker's length less the offset of the slide's
+        line, mm; `side` is 1 for the open assembly, -1 for the crossed one.
+        """
         return replace(self, frame=SlidingFrame(ground, rocker, side)) if self.swings else self
 
     @cached_property
     def frame_swing(self) -> FrameSwing | None:
-        """The law of the swing, over the shaft angles that its source gives; None without a swing."""
+        """The law of the swing, over the shaft angles that its source gives; None without a swing.
+
+        Raises TypeError for a swing without `frame`, and IntentError for a swing that no cam drives.
+        """
         if not self.swings:
             return None
         from kin.law.frame_swing import frame_swing
@@ -99,7 +110,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     def _swing(self) -> Motion:
         """Motion of the swing over the shaft angle that its source gives, half a turn if it gives none.
 
-        Segments that cover half a turn plus the rise, but for rounding, are made anew to fill exactly that.
+        Segments that cover half a turn plus the rise, but for rounding, are made anew to fill exactly that angle.
         """
         from kin.law.frame_swing import span_of
 
@@ -124,7 +135,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         return (Circle("base circle", self.base_radius),)
 
     def grow(self, out: float, scale: float) -> ConstantBreadthCam:
-        """The cam with a larger base circle, and scaled."""
+        """Copy with a base radius larger by `out` mm, then multiplied by `scale`: drawings show no other length."""
         return replace(self, base_radius=scale * (self.base_radius + out))
 
 

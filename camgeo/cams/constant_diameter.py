@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ConstantDiameterCam(HalfTurnCam, GuidedCam):
-    """A cam between two opposite rollers of one frame, from the motion over one half turn."""
+    """A cam between two opposite rollers of one frame, from the motion over one half turn; radii in mm."""
 
     kind: ClassVar[str] = "constant-diameter"
     base_radius: float
@@ -61,14 +61,18 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
         return moving_frame.Translating(self.base_radius + self.roller_radius)
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
-        """The cam with the displacement of the first roller over a whole turn, and its preload."""
+        """The cam with the displacement of the first roller over a whole turn, and its preload.
+
+        Raises IntentError for a motion whose velocities do not meet, and for a preload that leaves nothing of the
+        rollers.
+        """
         from camgeo.curve.moving_frame import Displacement
         from kin.law.sources.motion import opposed
 
         return with_preload(ExactGuided(self, Displacement.of(opposed(self.half_turn))), self.preload)
 
     def follower(self, law: Displacement) -> Follower:
-        """A frame with two rollers."""
+        """A frame with two rollers, their centres as far apart as the pitch curve's diameter."""
         s = law.derivatives(np.array([0.0, math.pi]), 0)[0]
         apart = 2.0 * (self.base_radius + self.roller_radius) + float(s.sum())
         contacts = opposite(self.touch, apart, self.centre_guide.foot)
@@ -80,11 +84,14 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
         pivot: float | None = None,  # noqa: ARG002
         holding: Holding | None = None,  # noqa: ARG002
     ) -> ConstantDiameterCam:
-        """The cam with another base radius, mm."""
+        """Copy with the base radius `base`, mm; pivot and holding are of no effect."""
         return replace(self, base_radius=base)
 
     def grow(self, out: float, scale: float) -> ConstantDiameterCam:
-        """The cam with smaller rollers on the same pitch curve, and scaled; raises GrownError without any left."""
+        """Copy with rollers smaller by `out` mm on the same pitch curve, then all lengths times `scale`.
+
+        Raises GrownError where nothing of the rollers is left.
+        """
         if not self.roller_radius > out:
             raise GrownError("the roller's radius", self.roller_radius)
         base, radius = scale * (self.base_radius + out), scale * (self.roller_radius - out)

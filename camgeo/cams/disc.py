@@ -85,7 +85,7 @@ FOLLOWERS: dict[str, FieldTable] = {
 }
 
 
-ON_DISC_2 = (0.0, 1.0)  # shares of a preload
+ON_DISC_2 = (0.0, 1.0)  # shares of a preload: disc 2 alone grows
 FOLLOWER = form_of_kinds("follower", FOLLOWERS, "follower of kind")
 
 TABLE = FieldTable(
@@ -104,7 +104,7 @@ TABLE = FieldTable(
 
 
 def variant(node: Node) -> Arrangement:
-    """Arrangement of a cam as written: guide, touch and number of discs."""
+    """Arrangement of the cam at a node of the recipe: guide, touch and number of discs."""
     follower = entries(node).get("follower") if isinstance(node, Written) else None
     arm = isinstance(follower, Written) and "arm" in entries(follower)
     discs = 2 if isinstance(node, Written) and "conjugate" in entries(node) else 1
@@ -149,7 +149,7 @@ def check(cam: Values, reader: Reader) -> None:
 
 
 def _check_open(cam: Values, reader: Reader) -> None:
-    """Note an open angle without a given size, or without limits that bound it."""
+    """Note an open angle beside `sizing`, or without limits that bound it."""
     angles = cam["motion"].open
     if angles is None:
         return

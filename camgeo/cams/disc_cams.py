@@ -32,7 +32,9 @@ if TYPE_CHECKING:
 class DiscCam(GuidedCam):
     """Size and motion of a disc cam.
 
-    `beyond` is how far the lobe reaches along the shaft from the axis of a round tappet, mm; 0 under a straight face.
+    `base_radius`, mm, is that of the cam's own circle at displacement 0; `side` is 1 for metal inside the contour, -1
+    for a ring. `beyond` is how far the lobe reaches along the shaft from the axis of a round tappet, mm; 0 under a
+    straight face.
     """
 
     kind: ClassVar[str] = "disc"
@@ -62,11 +64,15 @@ class DiscCam(GuidedCam):
         return replace(self, motion=motion)
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
-        """The cam with its displacement over a whole turn, 0 where it is lowest, and its preload."""
+        """The cam with its displacement over a whole turn, 0 where it is lowest, and its preload.
+
+        Raises IntentError for a motion that does not join or that the guide cannot follow, and for a preload of a
+        follower with one contact or greater than its roller's radius.
+        """
         return with_preload(self.nominal(), self.preload)
 
     def nominal(self) -> ExactCam:
-        """The exact cam without its preload."""
+        """The exact cam without its preload; raises IntentError for a motion whose S or S' does not join."""
         from camgeo.curve.moving_frame import Displacement
 
         law = Displacement.of(self._turn.demand_joined("motion", "mm" if self.guide.unit == "mm" else "rad"))
@@ -83,7 +89,7 @@ class DiscCam(GuidedCam):
         return Contact(self.guide, self.touch, self.datum)
 
     def joints(self) -> tuple[DerivativeJump, ...]:
-        """Joints of the motion over the turn, or over the part of it that repeats."""
+        """Joints of the motion over the turn, or over the part of a turn that repeats."""
         return self._turn.joints
 
     def kept(self) -> Kept | None:
@@ -104,7 +110,10 @@ class DiscCam(GuidedCam):
 
     @property
     def datum(self) -> float:
-        """Position of the contact at displacement 0: foot or level on a line, mm, angle of an arm, rad."""
+        """Position of the contact at displacement 0: foot or level on a line, mm, angle of an arm, rad.
+
+        Raises IntentError where the guide does not reach the base or prime circle.
+        """
         match self.guide, self.touch:
             case Translating(offset=offset), Flat(tilt=tilt):
                 return (self.base_radius - offset * math.sin(tilt)) / math.cos(tilt)
@@ -149,7 +158,11 @@ class DiscCam(GuidedCam):
 
     @property
     def centre_guide(self) -> moving_frame.Guide:
-        """Guide of the centre of a round touch: a line of travel, or an arm."""
+        """Guide of the centre of a round touch: a line of travel, or an arm.
+
+        Raises IntentError where the guide does not reach the prime circle, or the roller does not fit the opening, and
+        ValueError for an arm without a length.
+        """
         from camgeo.curve import moving_frame
 
         if isinstance(self.guide, Translating):
@@ -157,9 +170,9 @@ class DiscCam(GuidedCam):
         return moving_frame.Oscillating.on(self.prime, self.guide.pivot, self.guide.arm, self.guide.side)
 
     def face(self, motion: Displacement) -> Face:
-        """The flat face over the shaft angle; raises IntentError where it cannot be driven.
+        """The flat face over the shaft angle.
 
-        Raises TypeError for a round touch.
+        Raises IntentError for a face that cannot be driven and TypeError for a round touch.
         """
         from camgeo.curve.disc import StraightFace, SwingingFace
 
@@ -170,16 +183,20 @@ class DiscCam(GuidedCam):
         return SwingingFace.on(motion, self.base_radius, self.guide.pivot, self.touch.nearer, self.guide.side)
 
     def circles(self) -> tuple[Circle, ...]:
-        """The base circle, tangent to a face at displacement 0, and the prime circle of a round touch."""
+        """The base circle, tangent to a face at displacement 0, and the prime circle of a roller or shoe."""
         return super().circles() if self.touch.radius else (Circle("base circle", self.base_radius),)
 
     def resized(self, base: float, pivot: float | None = None, holding: Holding | None = None) -> DiscCam:
-        """The cam with another base radius, another pivot of an arm, mm, and another holding, if given."""
+        """Copy with the base radius `base`, mm, and, unless None, the distance of an arm's pivot, mm, and a holding."""
         guide = self.guide if pivot is None or isinstance(self.guide, Translating) else replace(self.guide, pivot=pivot)
         return replace(self, base_radius=base, guide=guide, holding=holding or self.holding)
 
     def grow(self, out: float, scale: float) -> DiscCam:
-        """The cam with a smaller roller on the same pitch curve, or a larger base circle under a face; scaled."""
+        """Copy for metal grown by `out` mm, then all lengths times `scale`.
+
+        A round touch is smaller on the same pitch curve; under a flat face the base circle is larger. Raises GrownError
+        where nothing of a round touch is left.
+        """
         match self.guide:
             case Translating(offset=offset):
                 guide: Guide = Translating(scale * offset)
@@ -187,7 +204,7 @@ class DiscCam(GuidedCam):
                 guide = Oscillating(scale * pivot, side, None if length is None else scale * length)
         touch, more = self.touch, out if isinstance(self.touch, Flat) else self.side * out
         if isinstance(touch, Flat):
-            # on an arm the same swing of a face that stands farther out
+            # on an arm the swing stays, and the face stands farther from its parallel through the pivot
             nearer = scale * (touch.nearer - out) if isinstance(self.guide, Oscillating) else 0.0
             touch = Flat(touch.tilt, None if touch.width is None else scale * touch.width, nearer)
         else:

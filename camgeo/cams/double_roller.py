@@ -33,29 +33,31 @@ class RollerPairAdvice(PairAdvice):
     """Advice for two rollers: smaller ones."""
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Words for the radius of the rollers below which there is no undercut."""
+        """Words for a roller radius below `free_at`, mm, or that no radius is proved to have no undercut."""
         if not free_at / mm > 0.0:
             return "no roller radius is proved to have no undercut"
         return f"a roller radius below {downward(free_at / mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """Words for the radius of the rollers that gives the wanted radius of curvature; empty without one above 0."""
+        """Words for a roller radius below `value`, the pitch curve's least; empty unless it is above 0."""
         return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
 
 
 @dataclass(frozen=True)
 class ArmPressure:
-    """Pressure angle of a roller on an arm; each of both rollers runs round the whole pitch curve."""
+    """Pressure angle of a roller on an arm, without a sign; each of both rollers runs round the whole pitch curve."""
 
     law: Transmission
     base: Curve
 
     def __call__(self, t: Array) -> Array:
-        """Angle between the normal and the path of the roller, rad (n,), at parameters t (n,), rad."""
+        """Angle between the normal and the path of the roller, 0 to pi/2 rad (n,), at parameters t (n,), rad."""
+        # the pivot stands at shaft angle phi round the cam, an arm's length from the shaft
         frame, phi = self.base.sample(t), self.law.at(t, 0)[0][0]
         arm = frame.point - self.law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
         arm /= np.hypot(arm[:, 0], arm[:, 1])[:, None]
         normal = frame.normal
+        # the roller's path is at right angles to the arm
         across = np.abs(arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0])
         angle: Array = np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across)
         return angle
@@ -87,7 +89,7 @@ class DoubleRollerCam(PairCam):
         return RollerPairAdvice(self, least_pressure_angle=90.0 * (1.0 - self.mu / self.lam))
 
     def follower(self, law: Transmission, out: float) -> Follower:  # noqa: ARG002
-        """The follower: two rollers on one arm, its pivot as far from the shaft as from them."""
+        """The follower: two rollers on one arm, its pivot as far from the shaft as from the rollers."""
         checks = (*self.law_checks, "pressure-angle")
         contacts = on_one_arm(self.arm, self.arm, self.touch, math.pi, law.alpha)
         return Follower("double roller", contacts, checks, "form-closure")
@@ -105,7 +107,10 @@ class DoubleRollerCam(PairCam):
         return (Circle("prime circle"), Circle("pivot circle", self.arm))
 
     def grow(self, out: float, scale: float) -> DoubleRollerCam:
-        """The cam with smaller rollers on the same pitch curve, and scaled; raises GrownError without any left."""
+        """Copy with rollers smaller by `out` mm on the same pitch curve, then all lengths times `scale`.
+
+        Raises GrownError where nothing of the rollers is left.
+        """
         if not self.roller_radius > out:
             raise GrownError("the roller's radius", self.roller_radius)
         return replace(self, arm=scale * self.arm, roller_radius=scale * (self.roller_radius - out))

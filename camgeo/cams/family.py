@@ -1,7 +1,7 @@
 """Interfaces of every family of cams: the cam of a recipe, its exact form, and advice.
 
-The rest of the package uses these names alone, whatever the family. `Cam` holds what a recipe says; `ExactCam` is that
-cam with its motion worked out.
+The rest of the package uses these names alone, whatever the family. `Cam` holds the data of a recipe; `ExactCam` is
+that cam with its motion worked out. A parameter `mm` is the recipe's unit of length in mm, in which words show lengths.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ UNDERCUT = Field(
 
 
 class Circle(NamedTuple):
-    """A reference circle about the shaft in drawings, radius in mm; None stands for the curve's least distance."""
+    """A reference circle about the shaft in drawings, radius in mm; None for the curve's least distance from it."""
 
     name: str
     radius: float | None = None
@@ -70,7 +70,7 @@ class Margin(NamedTuple):
 
 
 class GrownError(CamgeoError, ValueError):
-    """A follower with a radius of which nothing would be left; its arguments are that radius's name and value, mm."""
+    """Metal growth that leaves nothing of a follower's radius; its arguments are the radius's name and value, mm."""
 
 
 class Proof(NamedTuple):
@@ -85,15 +85,15 @@ class Proof(NamedTuple):
 
 @dataclass(frozen=True)
 class Advice(ABC):
-    """Remedies for failed checks, in the words of a recipe; `mm` is its unit of length, mm.
+    """Remedies for failed checks, in the words of a recipe; the parameter `mm` is its unit of length, mm.
 
-    gain                  error of the follower by that of the contour, None where it varies
+    gain                  ratio of the follower's error to the contour's, None where it varies
     least_pressure_angle  pressure angle without any motion, degrees: no smaller stroke stays below it
-    larger                the size that makes the pressure angle less when it grows; empty without one
-    less_steep            what makes the motion less steep; empty where the recipe gives no stroke
-    radius_field          name of the radius of the touch
+    larger                words for the size that lowers the pressure angle when it grows; empty without one
+    less_steep            words for a motion that is less steep; empty where the recipe gives no stroke
+    radius_field          name of the touch's radius in the words
     trims                 whether undercut may be cut off
-    others                advice for surfaces that need another, by their names
+    others                advice for surfaces that need their own, by the surfaces' names
     """
 
     gain: float | None = field(default=None, kw_only=True)
@@ -105,21 +105,29 @@ class Advice(ABC):
     others: Mapping[str, Advice] = field(default_factory=dict, kw_only=True)
 
     def on(self, surface: str) -> Advice:
-        """Advice for a surface, by its name."""
+        """Advice for the surface of this name: its own among `others`, else this advice."""
         return self.others.get(surface, self)
 
     @property
     def radius(self) -> float:
-        """Radius of a round touch, mm; 0 of others."""
+        """Radius of a round touch, mm; 0 for other touches."""
         return 0.0
 
     @abstractmethod
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Remedy for undercut; `free_at`, mm, is the roller's radius without it, or the growth that radii need."""
+        """Words for a change of the cam that leaves no undercut.
+
+        `free_at`, mm, is the largest roller radius without undercut, or under a flat face the growth of all radii of
+        curvature that undercut needs to vanish.
+        """
 
     @abstractmethod
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """Remedy that raises the least radius of curvature from a value to a limit, both in the recipe's unit."""
+        """Words for a change that brings the least radius of curvature to a limit; empty where no change is known.
+
+        `value` is the least radius and `limit` its bound, both in `unit`, the recipe's. The least radius of a pitch
+        curve has the roller's radius as its limit: a roller with a radius below `value` keeps it.
+        """
 
     def same_pitch(self, mm: float) -> str:  # noqa: ARG002
         """Words for what must change with the roller's radius to keep the pitch curve; empty where nothing must."""
@@ -127,27 +135,28 @@ class Advice(ABC):
 
     @property
     def most_radius(self) -> float:
-        """Radius of a touch, mm, from which on the same pitch curve has no base circle; infinite where any has."""
+        """Least radius of a touch, mm, at which the same pitch curve has no base circle; infinite without one."""
         return math.inf
 
     def chosen_size(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002
-        """The size chosen where the recipe leaves it open, and what bounds it; empty where it is given."""
+        """Words for the size that was chosen, and what bounds it; empty where the recipe gives the size."""
         return ""
 
     def wider_face(self, width: float, mm: float) -> str:  # noqa: ARG002 - a round tappet's has lengths of its own
-        """Remedy for too narrow a face: a follower.width of at least `width`, in the recipe's unit."""
+        """Words for a follower.width of at least `width`, in the recipe's unit."""
         return f"a follower.width of {upward(width)}"
 
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit
-        """Remedy for a follower that swings too far."""
+        """Words for a smaller swing of the follower."""
         return "a smaller swing"
 
 
 @dataclass(frozen=True)
 class Preload:
-    """Preload by interference: overlap of both contacts together with the metal, mm; stiffness of each normal, N/m.
+    """Preload of two contacts: `interference`, mm, by which both together overlap the metal.
 
-    `stiffness` is None where no force is wanted; `shares` of the interference belong to each contact.
+    `shares` are the first and the second contact's parts of it, in sum 1. `stiffness`, N/m, is that of the first and
+    the second contact along their normals; None where no force is wanted.
     """
 
     interference: float
@@ -156,7 +165,7 @@ class Preload:
 
     @property
     def overlaps(self) -> tuple[float, float]:
-        """Overlap of each contact with its metal, mm, with the follower at its intended position."""
+        """Overlap of the first and the second contact with the metal, mm, at the follower's intended position."""
         first, second = self.shares
         return first * self.interference, second * self.interference
 
@@ -175,11 +184,14 @@ class Linear(ABC):
 
     @abstractmethod
     def harmonic(self, path: str) -> tuple[int, bool, float] | None:
-        """Order (0 for the mean), whether a sine, and scale of the harmonic of a field's path; None for others."""
+        """Harmonic that the field at a path of the recipe sets; None for a field that sets none.
+
+        It is the order (0 for the mean), whether it is a sine, and its coefficient per unit of the field's value.
+        """
 
     @abstractmethod
     def without_harmonics(self, orders: set[tuple[int, bool]]) -> Cam:
-        """Copy of the cam with these harmonics (order, whether a sine) set to 0; the mean radius stays."""
+        """Copy of the cam with the harmonics `orders`, (order, whether a sine), set to 0; the mean radius stays."""
 
 
 class ExactCam(ABC):
@@ -192,7 +204,7 @@ class ExactCam(ABC):
 
         @property
         def cam(self) -> Cam:
-            """The cam as far as its own lengths are drawn."""
+            """The cam of the recipe; of grown metal a copy with the lengths that drawings show."""
 
         @property
         def law(self) -> Lift | Displacement | Transmission:
@@ -242,7 +254,7 @@ class ExactCam(ABC):
 
     @property
     def breaks(self) -> Array:
-        """Parameters of the law at which a derivative may jump, rising."""
+        """Parameters of the law, rad (n,), at which a derivative may jump, rising."""
         return self.law.breaks
 
     @property
@@ -268,7 +280,10 @@ class ExactCam(ABC):
         return self.cam.circles()
 
     def steepest(self, surface: Surface) -> tuple[Extreme, Extreme] | None:
-        """Greatest tangents of the pressure angle on the follower's rise and return; None where none is proved."""
+        """Greatest tangents of the pressure angle on the follower's rise and on its return, at shaft angles in rad.
+
+        None for a surface without a series of the tangent.
+        """
         slope = surface.extremes("slope")
         if slope is None:
             return None
@@ -283,7 +298,7 @@ class ExactCam(ABC):
 
     @property
     def margins(self) -> list[Margin]:
-        """Distances of the motion from the limits beyond which it does not exist."""
+        """Distances of the motion from the limits beyond which it does not exist; empty for a family without them."""
         return []
 
     @property
@@ -307,30 +322,33 @@ class ExactCam(ABC):
         return None
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:  # noqa: ARG002
-        """The size, in words, and the cam that keep the pressure angle below both angles, rad; None if unknown."""
+        """A size in words and the cam of that size, whose pressure angle keeps both limits; None if unknown.
+
+        The limits are `rising` on the rise and `falling` on the return, rad.
+        """
         return None
 
     def rounder_pitch(self, surface: str, mm: float) -> str:  # noqa: ARG002
-        """The size, in words, at which a surface's roller is half the pitch curve's least convex radius; else empty."""
+        """Words for the size at which a surface's roller is half the pitch curve's least convex radius; else empty."""
         return ""
 
     @abstractmethod
     def grow(self, out: float, scale: float) -> ExactCam:
-        """The cam with its metal grown by `out` mm and then scaled, with the motion of the follower on it.
+        """The cam with its metal grown by `out` mm along the normal, then all lengths times `scale`, with its motion.
 
-        Raises GrownError where the follower would be nothing.
+        Raises GrownError where the growth leaves nothing of a roller or shoe.
         """
 
 
 @dataclass(frozen=True, eq=False)
 class AlteredCam(ExactCam):
-    """A cam whose metal differs from that of the `nominal` one; law, follower and intended motion are that one's."""
+    """A cam with other metal than the cam `nominal`, whose law, follower and intended motion it keeps."""
 
     nominal: ExactCam
 
     @property
     def cam(self) -> Cam:
-        """The nominal cam, as far as its own lengths are drawn."""
+        """The cam of the nominal exact cam."""
         return self.nominal.cam
 
     @property
@@ -378,14 +396,14 @@ class Cam(ABC):
 
     @property
     def side(self) -> Side:
-        """Side of the contour on which the metal lies: 1 inside, -1 outside, as of a ring."""
+        """Side of the contour on which the metal lies: 1 inside, -1 outside (a ring)."""
         return 1
 
     @abstractmethod
     def exact(self, *, framed: bool = False) -> ExactCam:
-        """The cam with its motion worked out; `framed` where a linkage carries it.
+        """The cam with its motion worked out; `framed` says that a linkage carries the follower.
 
-        Raises kin's IntentError with the field below `cam` that is at fault.
+        Raises kin's IntentError, with the field below `cam` that is at fault, for a motion that the cam cannot have.
         """
 
     @property
@@ -407,7 +425,7 @@ class Cam(ABC):
 
     @property
     def linear(self) -> Linear | None:
-        """The cam as a linear function of harmonics; None for cams that are none."""
+        """The cam as a linear function of harmonics; None for a cam that is no such function."""
         return None
 
     @property
@@ -416,7 +434,11 @@ class Cam(ABC):
         return False
 
     def in_frame(self, ground: float, rocker: float, side: float) -> Cam:  # noqa: ARG002
-        """The cam with the links, mm, that its square frame slides on (`kin.law.frame_swing`)."""
+        """The cam with the links on which its square frame slides; the cam itself where they do not shape it.
+
+        `ground` is the distance of the fixed pivots and `rocker` the rocker's length less the offset of the slide's
+        line, mm; `side` is 1 for the open assembly, -1 for the crossed one.
+        """
         return self
 
     @property
@@ -465,5 +487,5 @@ class Family:
     variant: Callable[[Node], Arrangement] | None = None
 
     def of(self, node: Node | None) -> Arrangement:
-        """Arrangement of a cam as written, None for the usual one; it decides units and figures."""
+        """Arrangement of the cam at a node of the recipe; the family's usual one for None or without `variant`."""
         return self.variant(node) if self.variant and node is not None else self.arrangement

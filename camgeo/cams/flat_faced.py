@@ -32,15 +32,16 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 SAME_BREADTH = 1e-9  # of the size: a breadth that varies by less is constant
-LOOKS = 1440  # shaft angles of a turn at which the breadth is looked at
-STRETCH_LOOKS = 16  # and at so many of any stretch between breaks, however short
+LOOKS = 1440  # shaft angles at which the breadth is sampled
+STRETCH_LOOKS = 16  # samples of each stretch between breaks, however short
 
 
 @dataclass(frozen=True)
 class SizeAdvice(Advice):
-    """Advice for a flat face: a larger cam. `size` is the key that enlarges it, by `share` per unit of radius.
+    """Advice for a flat face: a larger cam, by the key `size`, which grows by `share` per unit of radius.
 
-    `beyond` is how far the lobe reaches from the axis of a round tappet, mm; `beside` and `free` end the sentences.
+    `beside` are words for what grows with it, `free` ends the sentence on undercut. `beyond` is how far the lobe
+    reaches along the shaft from the axis of a round tappet, mm; 0 for a straight face.
     """
 
     size: str = "base radius"
@@ -50,22 +51,25 @@ class SizeAdvice(Advice):
     free: str = "have no undercut"
 
     def wider_face(self, width: float, mm: float) -> str:
-        """Width of the face, or diameter of a round tappet that has this width at the lobe's farther edge."""
+        """Words for the width of a face, or the diameter of a round tappet that is so wide at the lobe's farther edge.
+
+        `width` is in the recipe's unit.
+        """
         across = upward(math.hypot(width, 2.0 * self.beyond / mm))
         return f"a follower.diameter of {across}" if self.beyond else super().wider_face(width, mm)
 
     def enlarge(self, growth: float, unit: str = "") -> str:
-        """Words for a larger size that raises all radii of curvature by more than `growth`, in `unit`."""
+        """Words for a larger size that raises all radii of curvature by more than `growth`; both are in `unit`."""
         if growth == 0.0:  # a radius that is 0 needs no more than not to be
             return f"a larger {self.size}{self.beside}"
         return f"{f'a {self.size} larger by more than {upward(self.share * growth)} {unit}'.rstrip()}{self.beside}"
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Words for a size without undercut."""
+        """Words for a size without undercut; `free_at` is the growth of all radii of curvature that it takes, mm."""
         return f"{self.enlarge(free_at / mm)} would {self.free}"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """Words for a size that gives the wanted radius of curvature."""
+        """Words for a size that raises the least radius of curvature from `value` beyond `limit`, in `unit`."""
         return self.enlarge(limit - value, unit)
 
 
@@ -73,7 +77,7 @@ class FlatFacedCam(Cam):
     """A cam whose follower's face is pushed along its normal; a linkage can carry it in a square frame."""
 
     always_in_a_yoke: ClassVar[bool] = False
-    """Whether the motion is given for two faces, so that a breadth that varies is a fault."""
+    """Whether the motion is for two faces, so that a varying breadth is a fault."""
     preload: Preload | None
 
     @property
@@ -88,10 +92,16 @@ class FlatFacedCam(Cam):
 
     @abstractmethod
     def lift(self) -> Lift:
-        """Distance of the face from the shaft over the shaft angle, mm."""
+        """Distance of the face from the shaft over the shaft angle, mm.
+
+        Raises IntentError for a motion or a function that no cam has.
+        """
 
     def exact(self, *, framed: bool = False) -> ExactCam:
-        """The cam with its support function, and its preload."""
+        """The cam with its support function, and its preload; `framed` names the follower a square frame.
+
+        Raises IntentError for a support function that no cam has, and for a preload of a single face.
+        """
         return with_preload(ExactLifted(self, self.lift(), framed), self.preload)
 
     def joints(self) -> tuple[DerivativeJump, ...]:
@@ -104,7 +114,7 @@ class FlatFacedCam(Cam):
 
     @abstractmethod
     def grow(self, out: float, scale: float) -> FlatFacedCam:
-        """Copy in which the lengths that drawings show are those of metal grown by `out`, mm, then scaled by `scale`.
+        """Copy whose lengths in drawings are for metal grown by `out`, mm, then multiplied by `scale`.
 
         It is the cam itself where drawings show none of its lengths.
         """
@@ -112,7 +122,10 @@ class FlatFacedCam(Cam):
 
 @dataclass(frozen=True, eq=False)
 class ExactLifted(ExactCam):
-    """A flat-faced cam with its lift; `contacts` are given for a cam grown from another, else they follow."""
+    """A flat-faced cam with its lift; `framed` where a linkage carries it in a square frame.
+
+    `contacts` are given for a cam grown from another; without them they follow from the breadth.
+    """
 
     cam: FlatFacedCam
     law: Lift
@@ -177,14 +190,17 @@ class ExactLifted(ExactCam):
         return Proof(deviation <= limit, deviation, limit, "mm", degrees(place))
 
     def grow(self, out: float, scale: float) -> ExactLifted:
-        """The cam with its faces farther out, and scaled."""
+        """The cam with its faces `out` mm farther out, then all lengths multiplied by `scale`."""
         first, *second = self.follower.contacts
         contacts = (first, *(replace(contact, datum=scale * (contact.datum + 2.0 * out)) for contact in second))
         return ExactLifted(self.cam.grow(out, scale), self.law.moved(out, scale), self.framed, contacts)
 
 
 def breadth_of(lift: Lift) -> tuple[float, float, float]:
-    """Mean breadth p(t) + p(t + pi), mm, its greatest deviation from the mean, mm, and the angle of that, rad."""
+    """Middle of the least and the greatest breadth p(t) + p(t + pi), greatest deviation from it, mm, and its place.
+
+    The place is a shaft angle in [0, pi), rad.
+    """
     t = spread(np.mod(lift.breaks, math.pi), math.pi)
     p = lift.derivatives(np.concatenate([t, t + math.pi]), 0)[0]  # continuous: one side of a break will do
     breadth = p[: len(t)] + p[len(t) :]
@@ -199,12 +215,12 @@ def is_constant_breadth(lift: Lift) -> bool:
 
 
 def is_constant(mean: float, deviation: float) -> bool:
-    """Whether a breadth with this mean and greatest deviation counts as constant."""
+    """Whether a breadth with this mean and greatest deviation, mm, counts as constant."""
     return deviation <= SAME_BREADTH * abs(mean)
 
 
 def spread(breaks: Array, end: float) -> Array:
-    """Evenly spread parameters in [0, end) with the breaks among them, and some between any two breaks."""
+    """Parameters in [0, end), rad (n,), rising: evenly spread, at breaks (m,), and some between any two breaks."""
     inside = breaks[(breaks >= 0.0) & (breaks < end)]
     between = np.linspace(inside[:-1], inside[1:], STRETCH_LOOKS + 1)[:-1].ravel()
     return distinct(np.concatenate([np.linspace(0.0, end, LOOKS, endpoint=False), between, inside]))

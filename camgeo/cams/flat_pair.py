@@ -25,14 +25,14 @@ ARRANGEMENT = Arrangement(Oscillating, Flat, 2)
 
 @dataclass(frozen=True)
 class FacePairAdvice(PairAdvice):
-    """Advice for two faces: a smaller swing, as a larger base radius r + const closes no pair."""
+    """Advice for two faces: a smaller swing, as no pair fits a cam with all radii enlarged alike."""
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002
         """Words for a smaller swing, without undercut."""
         return f"{self.less_swing(mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """Words for a larger radius of curvature: empty, as no remedy is known."""
+        """Empty: no remedy is known that gives a larger radius of curvature."""
         return ""
 
 
@@ -77,7 +77,7 @@ class FlatPairCam(PairCam):
         return (Circle("pivot circle", 2.0 * self.arm),)
 
     def grow(self, out: float, scale: float) -> FlatPairCam:  # noqa: ARG002 - the faces stand beside by it
-        """Copy of the pair with its arm scaled; growth of the metal moves the faces of `ExactPair` alone."""
+        """Copy of the pair with its arm times `scale`; growth of the metal moves the faces of `ExactPair` alone."""
         return replace(self, arm=scale * self.arm)
 
 

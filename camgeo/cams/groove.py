@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Groove(Holding):
-    """A groove: `clearance`, its width less the roller's diameter, mm, and depth from the top face, mm, if given."""
+    """A groove: `clearance`, its width less the roller's diameter, and `depth` from the top face if given, mm."""
 
     closure: ClassVar[str] = "form-closure"
     trims: ClassVar[bool] = False
@@ -42,16 +42,16 @@ class Groove(Holding):
         )
 
     def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
-        """A contact on either flank, with the radius of the gauge that judges it."""
+        """Contacts on the inner and the outer flank, each with a roller of its gauge's radius."""
         flanks = self.flanks(first.touch, 1)
         return tuple(replace(first, touch=Roller(flank.radius), surface=flank.name) for flank in flanks)
 
     def grow(self, out: float, scale: float, *, flat: bool) -> Groove:  # noqa: ARG002
-        """Copy of the groove with clearance and depth scaled; growth of the metal leaves both as they are."""
+        """Copy of the groove with clearance and depth times `scale`; growth of the metal leaves both as they are."""
         return Groove(clearance=scale * self.clearance, depth=None if self.depth is None else scale * self.depth)
 
     def advice(self, cam: GuidedCam, own: Advice) -> Advice:
-        """Advice with a roller smaller by the clearance, unless `sizing` gives the size."""
+        """Advice with a roller smaller by the clearance; `own` itself where `sizing` gives the size."""
         if not isinstance(own, RoundAdvice):
             return own
         return GrooveAdvice(cam, self.clearance, larger=own.larger, less_steep=own.less_steep, trims=own.trims)
@@ -64,11 +64,11 @@ class GrooveAdvice(RoundAdvice):
     clearance: float = 0.0
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Words for the radius of a roller without undercut."""
+        """Words for a roller radius without undercut: below `free_at`, mm, less the clearance."""
         return super().free_of_undercut(free_at - self.clearance, mm)
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """Words for the radius of a roller that gives the wanted radius of curvature."""
+        """Words for a roller radius below `value` less the clearance; empty unless that is above 0."""
         return super().rounder(value - self.clearance / (25.4 if unit == "in" else 1.0), limit, unit)
 
 
@@ -93,7 +93,7 @@ GROOVE = Field(
 
 
 def read_track(reader: Reader, field: Field, node: Node, path: str) -> str | Values | None:
-    """Read the word for a side of the metal, or a mapping with the groove."""
+    """Read the word for a side of the metal, or a mapping with the groove; None where a fault was noted."""
     return reader.mapping(field, node, path) if isinstance(node, Mapping) else read_choice(reader, field, node, path)
 
 

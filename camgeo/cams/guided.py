@@ -38,7 +38,7 @@ MARGIN = 1e-3  # rad: sizes are reported rounded, and where two limits meet roun
 
 @dataclass(frozen=True)
 class RoundAdvice(Advice):
-    """Advice for a round touch: a smaller radius on the same pitch curve."""
+    """Advice for a round touch on `cam`: a smaller radius on the same pitch curve."""
 
     cam: GuidedCam
 
@@ -48,18 +48,18 @@ class RoundAdvice(Advice):
         return self.cam.touch.radius
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Words for a smaller roller on the same pitch curve, whose contour has no undercut."""
+        """Words for a radius below `free_at`, mm, on the same pitch curve, or that no radius is proved."""
         if not free_at / mm > 0.0:
             return f"no {self.radius_field} is proved to be free of it"
         return f"a {self.radius_field} below {downward(free_at / mm)}{self.same_pitch(mm)} would be free of it"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """Words for a smaller roller on the same pitch curve, whose contour has the wanted least radius."""
+        """Words for a radius below `value`, the pitch curve's least, on that curve; empty unless it is above 0."""
         mm = 25.4 if unit == "in" else 1.0
         return f"a {self.radius_field} below {downward(value)} {unit}{self.same_pitch(mm)}" if value > 0.0 else ""
 
     def same_pitch(self, mm: float) -> str:
-        """The base radius that keeps the prime circle, in words."""
+        """Words for the base radius that keeps the prime circle with another radius of the touch."""
         word = "less" if self.cam.side > 0 else "and"
         return f" with a base radius of {self.cam.centre_guide.prime / mm:.12g} {word} that radius"
 
@@ -70,9 +70,10 @@ class RoundAdvice(Advice):
 
 
 class Flank(NamedTuple):
-    """A surface beside a centre's path: its name, the side of its metal and the radius of its gauge, mm.
+    """A surface beside a centre's path, at its gauge's radius, mm, with its metal inside (`side` 1) or outside (-1).
 
-    `layer` is that of drawings, `depth` reaches down from the top face, mm, `disc` counts the discs from 0.
+    `layer` is its layer in drawings, `depth` its depth from the top face, mm, None through the whole thickness, `disc`
+    the number of its disc, from 0.
     """
 
     name: str
@@ -87,8 +88,8 @@ class Flank(NamedTuple):
 class Holding:
     """Way in which a follower is held on its cam; in this class a spring or gravity holds it on one surface.
 
-    `closure` names the check of the play between two surfaces, empty without it; `discs` is the number of discs on the
-    shaft, `gap` the axial gap between them, mm; `trims` says whether undercut may be cut off.
+    `closure` names the check of the play between two surfaces, empty for one surface; `discs` is the number of discs on
+    the shaft, `gap` the axial gap between them, mm; `trims` says whether undercut may be cut off.
     """
 
     closure: ClassVar[str] = ""
@@ -98,7 +99,7 @@ class Holding:
 
     @property
     def larger(self) -> str:
-        """The size that makes the pressure angle less when it grows, in words."""
+        """Words for the size that lowers the pressure angle when it grows."""
         return LARGER_BASE
 
     @property
@@ -112,39 +113,42 @@ class Holding:
         return None
 
     def follower_name(self, name: str) -> str:
-        """The follower's name in reports, from that of its guide and touch."""
+        """The follower's name in reports; `name` names its guide and touch."""
         return name
 
     def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:
-        """Every surface that the follower touches."""
+        """Every surface that the follower touches; on the first one the metal lies on `side` of the contour."""
         return (Flank("", side, touch.radius),)
 
     def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
-        """Every contact of the follower, one on each surface, by the first."""
+        """Every contact of the follower, one on each surface; `first` is the contact of a follower with one."""
         return (first,)
 
     def demand(self, first: Contact[Guide, Touch], greatest: float) -> None:
-        """Raise IntentError where a second contact cannot reach the greatest displacement, mm or rad."""
+        """Raise IntentError where a second contact cannot follow to the greatest displacement, mm or rad."""
 
     def grow(self, out: float, scale: float, *, flat: bool) -> Holding:  # noqa: ARG002
-        """The holding with the metal grown by `out` mm and then scaled; GrownError where nothing of a touch is left."""
+        """The holding for metal grown by `out` mm, then all lengths times `scale`; `flat` for flat faces.
+
+        Raises GrownError where nothing of a second touch is left.
+        """
         return self
 
     def advice(self, cam: GuidedCam, own: Advice) -> Advice:  # noqa: ARG002
-        """Advice for all surfaces, from that for a cam with one contact."""
+        """Advice for all surfaces; `own` is the advice for a cam with one contact."""
         return own
 
     def circles(self, surface: str, own: tuple[Circle, ...]) -> tuple[Circle, ...]:  # noqa: ARG002
-        """Reference circles beside a surface, from those of a cam with one contact."""
+        """Reference circles of the disc with the surface of this name; `own` are those of a cam with one contact."""
         return own
 
     def least_stem(
         self, law: Displacement, angles: tuple[float, float], offset: float | None
     ) -> moving_frame.Translating:
-        """Stem with the least prime circle that keeps the pressure angles, rad, on the rise and on the return.
+        """Stem with the least prime circle that keeps `angles`, on the rise and on the return, rad, on every surface.
 
-        The offset is the best unless given, mm. Raises IntentError for a motion that stands still, and for an angle
-        that is not between 0 and 90 degrees.
+        An `offset`, mm, is kept; for None the best is found. Raises IntentError for a motion that stands still, and for
+        an angle that is not between 0 and 90 degrees.
         """
         from camgeo.cams.least_size import least_stem
 
@@ -153,9 +157,10 @@ class Holding:
     def gentler_size(
         self, exact: ExactGuided, rising: float, falling: float, mm: float
     ) -> tuple[str, GuidedCam] | None:
-        """The size, in words, and the cam that keep the pressure angle below both angles, rad; None if unknown.
+        """A size in words and the cam of that size, with pressure angles within both limits; None if unknown.
 
-        The size is the least base radius on this stem; for this length of arm with the pivot's distance.
+        The limits are `rising` on the rise and `falling` on the return, rad. On a stem the size is the base radius, for
+        its own offset; on an arm the base radius and the pivot's distance, for its own length.
         """
         from camgeo.cams.least_size import least_arm, least_stem
 
@@ -169,14 +174,17 @@ class Holding:
         return base_size(cam, arm.prime, mm, arm.pivot)
 
     def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:  # noqa: ARG002
-        """The size, in words, at which a roller is half the pitch curve's least convex radius; empty without one."""
+        """Words for the base radius at which the roller is half the pitch curve's least convex radius; else empty."""
         cam, roller = exact.cam, exact.cam.touch.radius
         prime = least_prime_for_roller(exact.law, cam.centre_guide, roller)
         return "" if prime is None else f"a base radius of {upward((prime - cam.side * roller) / mm)}"
 
 
 def shrink_touch(touch: Touch, out: float, scale: float) -> Touch:
-    """A round touch smaller by `out` mm and then scaled; raises GrownError where nothing of it is left."""
+    """A round touch with its radius less by `out` mm, then times `scale`; a knife edge at radius 0.
+
+    Raises GrownError where `out` is above 0 and not below the radius.
+    """
     radius, kind = touch.radius, Shoe if isinstance(touch, Shoe) else Roller
     if out > 0.0 and not radius > out:  # a knife edge can become a roller, and be scaled
         raise GrownError("the shoe radius" if kind is Shoe else "the roller's radius", radius)
@@ -188,7 +196,7 @@ def base_size(cam: GuidedCam, prime: float, mm: float, pivot: float | None = Non
     """Words for the base radius that gives a prime circle of radius `prime`, mm, and the cam of that size.
 
     `pivot` is the distance of an arm's pivot from the shaft, mm, if it changes too. None where no base radius above 0
-    does.
+    gives that circle.
     """
     base = (prime - cam.side * cam.touch.radius) / mm
     if base <= 0.0:
@@ -199,9 +207,9 @@ def base_size(cam: GuidedCam, prime: float, mm: float, pivot: float | None = Non
 
 
 def least_prime_for_roller(law: Displacement, guide: moving_frame.Guide, roller: float) -> float | None:
-    """Least radius of the prime circle, mm, not below the guide's, that is large enough for a roller; None without one.
+    """Least radius of the prime circle, mm, from the guide's own on, that is large enough for a roller; else None.
 
-    It is so where the roller's radius `roller`, mm, is at most half the pitch curve's least convex radius.
+    A circle is large enough where the roller's radius, mm, is at most half the pitch curve's least convex radius.
     """
     from camgeo.cams.least_size import least_prime
     from camgeo.curve.moving_frame import CentreShape
@@ -220,7 +228,10 @@ class GuidedCam(Cam):
     @property
     @abstractmethod
     def centre_guide(self) -> moving_frame.Guide:
-        """Guide of the centre; raises IntentError where it does not reach the prime circle."""
+        """Guide of the touch's centre.
+
+        Raises IntentError where the guide does not reach the prime circle, or the roller does not fit a ring's opening.
+        """
 
     @abstractmethod
     def joints(self) -> tuple[DerivativeJump, ...]:
@@ -237,14 +248,17 @@ class GuidedCam(Cam):
 
     @abstractmethod
     def resized(self, base: float, pivot: float | None = None, holding: Holding | None = None) -> GuidedCam:
-        """The cam with another base radius, of an arm another distance of the pivot, mm, and perhaps held otherwise."""
+        """Copy with the base radius `base`, mm, and, unless None, the distance of an arm's pivot, mm, and a holding."""
 
     @abstractmethod
     def grow(self, out: float, scale: float) -> GuidedCam:
-        """The cam with a smaller touch on the same pitch curve, scaled; raises GrownError where it would be nothing."""
+        """Copy with a touch smaller by `out` mm on the same pitch curve, then all lengths times `scale`.
+
+        Raises GrownError where nothing of the touch is left.
+        """
 
     def circles(self) -> tuple[Circle, ...]:
-        """The base circle, and the prime circle of a round touch."""
+        """The base circle, and the prime circle of a roller or shoe."""
         circles = [Circle("base circle", self.base_radius)]
         if self.touch.radius:
             circles.append(Circle("prime circle", self.centre_guide.prime))
@@ -252,7 +266,10 @@ class GuidedCam(Cam):
 
 
 def centre_guide_of(contact: Contact[Guide, Touch]) -> moving_frame.Guide:
-    """Guide of the centre of a round touch, by the displacement of that contact."""
+    """Guide of the centre of a contact's round touch; its displacement 0 is the contact's.
+
+    Raises ValueError for a flat face on an arm.
+    """
     from camgeo.curve import moving_frame
 
     guide = contact.guide
@@ -263,14 +280,14 @@ def centre_guide_of(contact: Contact[Guide, Touch]) -> moving_frame.Guide:
 
 @dataclass(frozen=True)
 class Spin:
-    """Turns of a roller per turn of the shaft; `sense` -1 on the inner side of a ring."""
+    """Turns of a roller per turn of the shaft; `radius` in mm, `sense` 1 for metal inside the contour, -1 outside."""
 
     pitch: CentreShape
     radius: float
     sense: float
 
     def __call__(self, tau: Series, side: Before = 1) -> Series:
-        """Turns per turn over jets of the shaft angle."""
+        """Turns per turn of the shaft at jets of the shaft angle; `side` decides at breaks."""
         return self.pitch.spin(tau, side, self.radius, self.sense)
 
 
@@ -337,8 +354,8 @@ class ExactGuided(ExactLed):
     def surfaces(self) -> tuple[Surface, ...]:
         """Surface of each flank: the pitch curve, and the contour parallel to it at the touch's radius.
 
-        The contour lies within the pitch curve, for a ring and an outer flank around it. A knife edge's contour is the
-        parallel at 0: it may be hollow, which a flat face's own contour may not.
+        The contour lies within the pitch curve, for a ring and a groove's outer flank around it. A knife edge's contour
+        is the parallel at 0, as it may be hollow.
         """
         from camgeo.curve.moving_frame import CentreShape
 
@@ -363,10 +380,10 @@ class ExactGuided(ExactLed):
         return Surface(path, curve, radius, side, pitch.pressure_angle, None, series, name, disc, layer, depth)
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
-        """The size and the cam that keep the pressure angle below both angles, rad, by the way the follower is held."""
+        """A size in words and the cam of that size, which keeps both limits, rad, everywhere; None if unknown."""
         return self.cam.holding.gentler_size(self, rising, falling, mm)
 
     def rounder_pitch(self, surface: str, mm: float) -> str:
-        """Words for the size at which the roller is half the pitch curve's least convex radius; else empty."""
+        """Words for the size at which a roller is half the pitch curve's least convex radius; empty for no roller."""
         rolls = isinstance(self.cam.touch, Roller)
         return self.cam.holding.rounder(surface, self, mm) if rolls else ""

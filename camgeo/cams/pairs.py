@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 EXACT = 1e-9  # of the arm: to this the closing equation must hold
 HARMONICS = 7  # highest harmonic of a wanted law, where a recipe gives none
-LOOKS = 1440  # parameters of a law at which its margins are looked at
+LOOKS = 1440  # parameters of a law at which its margins are taken
 _OTHER_PARTS = "both sides of the follower touch the cam at once, so the motion after that follows"
 
 
@@ -68,7 +68,7 @@ class LawRoute:
 
 @dataclass(frozen=True)
 class WantedRoute:
-    """Route by the series D of odd harmonics up to one whose law is nearest to a wanted swing (Wunderlich 6.5)."""
+    """Route by the series D whose law is nearest to a wanted swing, of odd harmonics up to `harmonics` (W 6.5)."""
 
     motion: MotionSource
     harmonics: int
@@ -112,7 +112,7 @@ SwingOf: TypeAlias = Literal["arm", "pair"]
 def _nearest(
     lam: int, mu: int, swing_of: SwingOf, route: WantedRoute, share: float = 1.0
 ) -> tuple[Nearest, Transmission]:
-    """Nearest series for arms of length 1, and the wanted law, both with a share of its strokes."""
+    """Nearest series for arms of length 1, and the wanted law, both with this share of the wanted strokes."""
     from kin.law.transmission import from_law
     from kin.law.wanted import nearest
 
@@ -122,10 +122,11 @@ def _nearest(
 
 
 def _greatest_share(law: Callable[[float], Transmission]) -> float:
-    """Greatest share of the swing, below 1 and to a thousandth, with which a law is possible; 0 if none is seen."""
+    """Greatest share of the swing, below 1 and to a thousandth, with which a law is possible; 0 if none is found."""
     from kin.law.programme import IntentError
 
     low, high = 0.0, 1.0
+    # a possible share first, then halving between it and the least impossible one
     for share in (0.5, 0.25, 0.05):
         try:
             law(share)
@@ -146,7 +147,10 @@ def _greatest_share(law: Callable[[float], Transmission]) -> float:
 
 
 class PairCam(Cam):
-    """A single disk that works a rigid pair of contacts about one pivot; pi/alpha = lam/mu in lowest terms, mu odd."""
+    """A single disk that works a rigid pair of contacts about one pivot; pi/alpha = lam/mu in lowest terms, mu odd.
+
+    `swing_of` tells which swing a recipe gives: an arm's, psi, or the pair's, psi/2. `arm` is the length l, mm.
+    """
 
     swing_of: ClassVar[SwingOf]
     lam: int
@@ -156,20 +160,23 @@ class PairCam(Cam):
     preload: Preload | None
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
-        """The cam with Wunderlich's law of transmission, and its preload."""
+        """The cam with Wunderlich's law of transmission, and its preload.
+
+        Raises IntentError where the route gives no law, and for a preload that leaves nothing of the rollers.
+        """
         return with_preload(ExactPair(self, self.transmission()), self.preload)
 
     @abstractmethod
     def follower(self, law: Transmission, out: float) -> Follower:
-        """The follower; faces stand `out` mm beside the lines through their pivot."""
+        """The follower; faces stand `out` mm beside the lines through their pivot, rollers take no account of it."""
 
     @abstractmethod
     def surface(self, law: Transmission, out: float) -> Surface:
-        """Surface of the disc for a law; for faces they stand `out` mm beside the lines through their pivot."""
+        """Surface of the disc for a law; faces stand `out` mm beside the lines through their pivot."""
 
     @abstractmethod
     def grow(self, out: float, scale: float) -> PairCam:
-        """The pair with its metal grown by `out` mm, then scaled; raises GrownError where a roller would be nothing."""
+        """Copy for metal grown by `out` mm, then lengths times `scale`; raises GrownError where no roller is left."""
 
     @property
     def motion_span(self) -> float:
@@ -178,11 +185,14 @@ class PairCam(Cam):
 
     @property
     def mean_distance(self) -> float:
-        """Mean distance R = 2 l cos(alpha/2) of the arms' ends from the shaft, mm: an arc at it has no swing."""
+        """Distance R = 2 l cos(alpha/2) of the arms' ends from the shaft without a swing, mm."""
         return 2.0 * self.arm * math.cos(0.5 * math.pi * self.mu / self.lam)
 
     def transmission(self) -> Transmission:
-        """Wunderlich's law of transmission, by the recipe's route; raises IntentError where there is none."""
+        """Wunderlich's law of transmission, by the recipe's route; raises IntentError where the route gives no law.
+
+        For routes by D or by a swing the error has the share of it with which a law is possible.
+        """
         from kin.law.programme import IntentError
 
         try:
@@ -234,7 +244,10 @@ class PairCam(Cam):
         return ("closing-equation", "velocity-ratio", *(("law-error",) if isinstance(self.route, WantedRoute) else ()))
 
     def law_error(self) -> Proof:
-        """Proved error of the swing against the wanted one, degrees; the limit is the error of no swing at all."""
+        """Proved error of the swing against the wanted swing, degrees; the limit is the error of no swing at all.
+
+        Raises TypeError for a route without a wanted swing, and IntentError where no bound is proved.
+        """
         from kin.law.wanted import proved_error
 
         if not isinstance(self.route, WantedRoute):
@@ -257,7 +270,10 @@ class PairCam(Cam):
         return None
 
     def joints(self, law: Transmission) -> tuple[DerivativeJump, ...]:
-        """Joints of the swing over 360/lambda degrees; empty where the recipe gives D or an arc by numbers."""
+        """Joints of the swing over 360/lambda degrees, of a route by a swing or by a formula of D or the first arc.
+
+        Empty for other routes.
+        """
         if not isinstance(self.route, LawRoute | DeltaFormulaRoute | CurveRoute):
             return ()
         share = 0.5 if self.swing_of == "pair" else 1.0
@@ -276,7 +292,7 @@ class PairAdvice(Advice):
         return self.cam.touch.radius
 
     def less_swing(self, mm: float) -> str:
-        """Words for a smaller swing; of an arc, for one nearer to the circle about the shaft."""
+        """Words for a smaller swing; for the route by an arc, for a radius nearer to `mean_distance`."""
         if not isinstance(self.cam.route, ArcRoute):
             return super().less_swing(mm)
         return f"an arc.radius nearer to {self.cam.mean_distance / mm:.6g}"
@@ -360,8 +376,8 @@ class ExactPair(ExactCam):
     def margins(self) -> list[Margin]:
         """How far the cam is from a velocity ratio of 1, where it cannot be turned through, and from three more limits.
 
-        They are a swing of 90 degrees, where the square root of the analytic route ends, and, in mm, a pitch curve at
-        the shaft and one at the reach of the stretched arm.
+        They are a swing of 90 degrees, where the square root of the analytic route ends, and, in mm, a pitch curve that
+        passes the shaft and one that passes the point which the stretched arm reaches.
         """
         from kin.law.feasibility import steepest
 
@@ -371,8 +387,9 @@ class ExactPair(ExactCam):
         psi = law.at(tau, 0)[1]
         rate = steepest(law)[1]
         widest = float(np.abs(psi[0]).max())
-        # D = -l^2 sin psi under the roots of the analytic route
+        # the roots of the analytic route are of l^4 - D^2, D = -l^2 sin psi
         edge = Margin("square-root", math.degrees(0.5 * math.pi - widest), "deg", "D reaches l^2: psi = 90 degrees")
+        # the arms' ends are r = 2 l cos((psi + alpha)/2) from the shaft
         reach = float(np.cos(0.5 * (psi[0] + law.alpha)).min())
         pivot = float(1.0 - np.cos(0.5 * (psi[0] + law.alpha)).max())
         return [
@@ -433,7 +450,7 @@ _ROSETTE = mapping(
 
 
 def pair_table(law: str, roller: tuple[Field, ...]) -> FieldTable:
-    """Table of a double roller or a flat pair, with their keys of a roller and the words for the swing."""
+    """Table of keys of a double roller or a flat pair; `law` describes its swing, `roller` are keys of the rollers."""
     routes = (_DELTA, motion_field("law", Kind.ANGLE, law), _ARC, _ROSETTE)
     return FieldTable(
         (

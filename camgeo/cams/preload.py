@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class PreloadedCam(AlteredCam):
-    """The exact cam `nominal` with metal that overlaps its contacts; the motion stays.
+    """The exact cam `nominal` with metal that overlaps its contacts by the preload `held_by`; the motion stays.
 
-    Surface k is that of `grown_metal[k]`.
+    Surface number k is that of the cam `grown_metal[k]`.
     """
 
     grown_metal: tuple[ExactCam, ...]
@@ -43,7 +43,7 @@ class PreloadedCam(AlteredCam):
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """Surfaces of the grown metal, with pressure angles and places of the nominal motion."""
+        """Surfaces of the grown metal, with pressure angles, places of contact and series of the nominal motion."""
         metal = (exact.surfaces[rank] for rank, exact in enumerate(self.grown_metal))
         pairs = zip(metal, self.nominal.surfaces, strict=True)
         return tuple(
@@ -86,7 +86,7 @@ class PreloadedCam(AlteredCam):
         return self.nominal.plate
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
-        """The size and the cam that keep the pressure angle, for the nominal cam."""
+        """A size in words and the nominal cam of that size, which keeps both pressure angles, rad; None if unknown."""
         return self.nominal.less_pressure(rising, falling, mm)
 
     def rounder_pitch(self, surface: str, mm: float) -> str:
@@ -98,15 +98,18 @@ class PreloadedCam(AlteredCam):
         return self.nominal.circles(surface)
 
     def grow(self, out: float, scale: float) -> ExactCam:
-        """The nominal cam grown and scaled, with the same interference, scaled too."""
+        """The nominal cam grown by `out` mm and scaled, with its interference times `scale`.
+
+        Raises GrownError where the growth leaves nothing of a radius, and IntentError where the preload does.
+        """
         preload = replace(self.preload, interference=scale * self.preload.interference)
         return with_preload(self.nominal.grow(out, scale), preload)
 
 
 def with_preload(nominal: ExactCam, preload: Preload | None) -> ExactCam:
-    """An exact cam with its metal grown by each contact's share of an interference; itself without a preload.
+    """An exact cam with its metal grown by each contact's share of an interference; the cam itself for None.
 
-    Raises IntentError for a follower that is not held from both sides, and for a radius of which nothing is left.
+    Raises IntentError for a follower that is not held from both sides, and where nothing of a roller is left.
     """
     if preload is None:
         return nominal
@@ -151,7 +154,10 @@ PRELOAD = mapping(
 
 
 def build_preload(cam: Values, shares: tuple[float, float] = (0.5, 0.5)) -> Preload | None:
-    """Preload of a cam's values without fault, None without one; each contact has one of the `shares`."""
+    """Preload from values of a cam without fault; None where the recipe gives no preload.
+
+    `shares` are the first and the second contact's parts of the interference. One stiffness holds for both contacts.
+    """
     values = cam.get("preload")
     if values is None:
         return None

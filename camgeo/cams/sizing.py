@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 _GuideT = TypeVar("_GuideT", "moving_frame.Translating", "moving_frame.Oscillating")
 ON_RETURN = "pressure-angle-return"
-RETURN = math.radians(45.0)  # that of a follower which a spring holds
-_LESS = 0.99  # of a base radius: a size that is worth telling
-_NEAR = 1e-7  # rad, and of a radius: a limit so near bounds the size
-_SMALL = 1e-3  # of the radius of curvature that is asked for
+RETURN = math.radians(45.0)  # rule for the return of a follower that a spring holds
+_LESS = 0.99  # of a base radius: only a smaller size is worth a remark
+_NEAR = 1e-7  # rad, and of a radius: a figure so near its limit bounds the size
+_SMALL = 1e-3  # of the wanted radius of curvature: where a search begins
 SLACK = 1e-9  # degrees, and of a radius: within this a limit is kept
 
 SIZING = mapping(
@@ -52,9 +52,9 @@ SIZING = mapping(
 
 @dataclass(frozen=True)
 class Sizing:
-    """Greatest pressure angles on the rise and the return, rad, and least convex radius of the metal, mm, if limited.
+    """Greatest pressure angles on the rise and the return, rad, and least convex radius of the metal, mm.
 
-    `place` is the given offset or distance of the pivot, mm; None where there is none.
+    A figure without a limit is None. `place` is the stem's offset or the pivot's distance, mm, None where not given.
     """
 
     angles: tuple[float, float] | None = None
@@ -63,7 +63,7 @@ class Sizing:
 
     @staticmethod
     def of(values: Values, follower: Values) -> Sizing:
-        """Limits of the values of a recipe."""
+        """Limits from the values of a recipe's `sizing`, and the place from those of its `follower`."""
         angle, radius = values.get("pressure-angle"), values.get("radius-of-curvature")
         angles = None if angle is None else (angle["at_most"], angle.get("on_return", angle["at_most"]))
         place = follower["arm"].get("pivot") if "arm" in follower else follower.get("offset")
@@ -72,7 +72,7 @@ class Sizing:
 
 @dataclass(frozen=True, kw_only=True)
 class SizedDiscCam(DiscCam):
-    """A disc cam whose size is found from `sizing`."""
+    """A disc cam whose size is found from the limits of `sizing`."""
 
     sizing: Sizing
 
@@ -84,7 +84,7 @@ class SizedDiscCam(DiscCam):
 
     @property
     def sizes(self) -> dict[str, float]:
-        """Base radius, and offset or pivot chosen with it, mm, by their keys below `cam`."""
+        """Base radius, and offset or pivot's distance if found with it, mm, by their keys below `cam`."""
         sizes = {"base_radius": self.base_radius}
         if self.sizing.place is None and self.sizing.angles is not None:
             if isinstance(self.guide, Translating):
@@ -96,9 +96,9 @@ class SizedDiscCam(DiscCam):
 
 @dataclass(frozen=True)
 class SizedAdvice(Advice):
-    """Advice for a cam whose size is found: other limits under `sizing`; in a ring, which it does not size, a roller.
+    """Advice for a cam whose size is found: other limits under `sizing`; for a ring a smaller roller.
 
-    A pitch curve sized by pressure angles alone stays with another roller.
+    A ring is sized by pressure angles alone, so that its pitch curve stays with another roller.
     """
 
     cam: SizedDiscCam
@@ -109,9 +109,9 @@ class SizedAdvice(Advice):
         return self.cam.touch.radius
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Words for a `sizing` radius of curvature as large as the roller, which is then half the pitch curve's.
+        """Words for a larger radius of curvature under `sizing`: the roller's radius, or twice the present limit.
 
-        In a ring the words are for a smaller roller.
+        For a ring they are for a roller radius below `free_at`, mm; empty unless that is above 0.
         """
         if self.cam.side < 0:
             less = free_at / mm
@@ -120,21 +120,26 @@ class SizedAdvice(Advice):
         return f"{_at_least(radius)} would be free of it"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
-        """Words for the wanted radius of curvature under `sizing`; in a ring for a smaller roller."""
+        """Words for the radius of curvature `limit` under `sizing`; for a ring for a roller radius below `value`."""
         if self.cam.side < 0:
             return f"a {self.radius_field} below {downward(value)} {unit}" if value > 0.0 else ""
         return _at_least(limit)
 
     def chosen_size(self, exact: ExactCam, mm: float) -> str:
-        """Base radius, offset or pivot and what bounds them, in words, and the size with 45 degrees on the return."""
+        """Words for the base radius, the offset or pivot found with it, and the limits that bound them.
+
+        Where a limit on the return below 45 degrees bounds the size, the base radius for 45 follows if much smaller.
+        """
         from kin.law.programme import IntentError
 
         cam, limits, bounding = self.cam, self.cam.sizing, _binding_limits(self.cam, exact)
+        # sizes other than the base radius, by the last part of their keys
         more = "".join(
             f" with {path.rpartition('.')[2]} {_four_digits(x / mm)}" for path, x in cam.sizes.items() if "." in path
         )
         bounds = [f"{name} at {at_deg:.4g} deg" for name, at_deg in bounding.items()]
         sentence = f"base radius {_four_digits(cam.base_radius / mm)}{more}, bound by {' and '.join(bounds)}"
+        # a spring lets the return be steeper than the rise
         if limits.angles is not None and limits.angles[1] < RETURN and ON_RETURN in bounding:
             try:
                 gentler = find_size(replace(cam, sizing=replace(limits, angles=(limits.angles[0], RETURN))))
@@ -154,7 +159,7 @@ def _four_digits(size: float) -> str:
 
 
 def _binding_limits(cam: SizedDiscCam, exact: ExactCam) -> dict[str, float]:
-    """Shaft angle, degrees, of each figure that is at its limit, by its name."""
+    """Shaft angle, degrees, at which each figure that reaches its limit does so, by the figure's name."""
     limits, bounds = cam.sizing, {}
     for surface in exact.surfaces:
         suffix, steepest = f" of {surface.name}" if cam.holding.discs > 1 else "", exact.steepest(surface)
@@ -179,7 +184,10 @@ def _least_convex_radius(surface: Surface) -> tuple[float, float]:
 
 
 def find_size(cam: SizedDiscCam) -> SizedDiscCam:
-    """The cam with the least size that keeps the limits of its `sizing`; raises IntentError where there is none."""
+    """Copy of the cam with the least size that keeps the limits of its `sizing`.
+
+    Raises IntentError where no size keeps them, and TypeError for a round touch on an arm without a length.
+    """
     from kin.law.programme import IntentError
 
     match cam.guide, cam.nominal():

@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from kin.law.support_function import Lift
 
 FREE = 3  # angles of a Reuleaux polygon that follow from the others
-LOOKS = 72  # places at which the size of a formula's values is looked at
-CLOSE_LOOKS = 14_400  # and its radii of curvature, to say how much larger they must be
-SPARE = 1e-3  # of their range: between two of these places one may be less
-LEAST_PART = 1e-9  # of its farthest point from the shaft: a cam with a smaller mean radius is lost in rounding
+LOOKS = 72  # angles at which the size of p is sampled
+CLOSE_LOOKS = 14_400  # angles at which radii of curvature are sampled, to find by how much p must grow
+SPARE = 1e-3  # of the range of these radii: between two samples a radius may be less
+LEAST_PART = 1e-9  # of the farthest point's distance from the shaft: a smaller mean radius is lost in rounding
 LEAST_ANGLE = 0.1  # degrees: on a cam of 50 mm an arc of 0.09 mm
-ROUNDING = 1e-15  # of the same: a mean radius below it is 0
-LEAST_PIECE = 1e-9  # mm: chord of an arc that is one in a drawing; STEP, whose kernel needs more, says so itself
+ROUNDING = 1e-15  # of the farthest point's distance from the shaft: a mean radius below it is 0
+LEAST_PIECE = 1e-9  # mm: shortest chord of an arc in a drawing; STEP, whose kernel needs more, refuses for itself
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,8 @@ class FourierShape:
 class ReuleauxShape:
     """A Reuleaux polygon with an odd number of sides, mm; its corners sharp at rounding 0.
 
-    `angles`, rad, are those for which the cam turns about its first corners, sides - 3 in number; without them the
-    polygon is regular.
+    `angles`, rad, are the turns of the cam about its first corners, sides - 3 in number; without them the polygon is
+    regular.
     """
 
     sides: int
@@ -86,7 +86,11 @@ class SupportCam(FlatFacedCam):
     preload: Preload | None = None
 
     def lift(self) -> Lift:
-        """The support function about the shaft, mm (AS 2023)."""
+        """The support function about the shaft, mm (AS 2023).
+
+        Raises IntentError for a function that no cam has, and for a mean radius that is not above 0 by more than
+        rounding.
+        """
         from kin.law import support_function
 
         shape = self.shape
@@ -112,7 +116,7 @@ class SupportCam(FlatFacedCam):
 
     @property
     def advice(self) -> SizeAdvice:
-        """Advice: a larger mean radius, by the key that sets it; a support function has no stroke."""
+        """Advice: a larger mean radius, by the key that sets it, without words for a stroke."""
         if isinstance(self.shape, ReuleauxShape):
             return ReuleauxAdvice(shape=self.shape, gain=1.0, less_steep="", size="reuleaux.rounding")
         if isinstance(self.shape, HypocycloidShape):
@@ -125,11 +129,11 @@ class SupportCam(FlatFacedCam):
         return LinearSupport(self)
 
     def grow(self, out: float, scale: float) -> SupportCam:  # noqa: ARG002
-        """The cam itself, as drawings use none of its own lengths."""
+        """The cam itself, as drawings show none of its own lengths."""
         return self
 
     def circles(self) -> tuple[Circle, ...]:
-        """The base circle: that of the least distance from the shaft."""
+        """The base circle, at the curve's least distance from the shaft."""
         return (Circle("base circle"),)
 
 
@@ -140,7 +144,7 @@ class ReuleauxAdvice(SizeAdvice):
     shape: ReuleauxShape = field(kw_only=True)
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Words for a larger rounding of the corners, and where that reaches half the breadth for a larger breadth."""
+        """Words for a larger rounding of the corners, and a larger breadth where that would reach half the breadth."""
         sentence = super().free_of_undercut(free_at, mm)
         if self.shape.rounding + free_at < 0.5 * self.shape.breadth:
             return sentence
@@ -164,7 +168,7 @@ class LinearSupport(Linear):
         return replace(self.cam, shaft=(0.0, 0.0))
 
     def harmonic(self, path: str) -> tuple[int, bool, float] | None:
-        """Order, whether a sine, and scale of a field of a Fourier series or a hypocycloid; None for other fields."""
+        """Order, whether a sine, coefficient per unit of a field of a Fourier series or a hypocycloid; else None."""
         if isinstance(self.cam.shape, HypocycloidShape):
             own = {
                 "cam.hypocycloid.size": (self.cam.shape.cusps, False, 1.0),
@@ -179,7 +183,7 @@ class LinearSupport(Linear):
         return (int(order), kind == "sin", 1.0) if kind in {"cos", "sin"} and order.isdigit() else None
 
     def without_harmonics(self, orders: set[tuple[int, bool]]) -> SupportCam:
-        """The cam with these harmonics set to 0; the mean radius stays."""
+        """Copy of the cam with the harmonics `orders`, (order, whether a sine), set to 0; the mean radius stays."""
         shape = self.cam.shape
         if isinstance(shape, FourierShape):
             shape = FourierShape(
@@ -195,8 +199,8 @@ class LinearSupport(Linear):
 def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
     """The lift itself, if its mean radius is above the share `LEAST_PART` of the greatest |p|, or p is 0 throughout.
 
-    2 pi times the mean radius is the perimeter, wherever the shaft is. Raises IntentError else, with the mean in the
-    recipe's unit, `scale` mm.
+    2 pi times the mean radius is the perimeter, wherever the shaft is. Otherwise raises IntentError for a field, with
+    lengths in a unit of `scale` mm.
     """
     from kin.law.programme import IntentError
 
@@ -206,6 +210,7 @@ def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
     if mean > least or not farthest:  # of p = 0 the radius of curvature is held against 0 like any other
         return lift
     mean = 0.0 if abs(mean) < ROUNDING * farthest else mean
+    # the mean must pass its least, and every radius of curvature p + p'' must be above 0
     rows = lift.derivatives(np.linspace(0.0, 2.0 * math.pi, CLOSE_LOOKS, endpoint=False), 2)
     radii = rows[0] + rows[2]  # what is added to p is added to each (AS eq. 3)
     more = max(least - mean, SPARE * float(np.ptp(radii)) - float(radii.min()))
@@ -320,7 +325,7 @@ def check(cam: Values, reader: Reader) -> None:
 
 
 def _least_angle(sides: int, angles: tuple[float, ...] = (), **_: float) -> float:
-    """Least angle, rad, for which the cam turns about a corner; the regular one where no polygon has those given."""
+    """Least angle, rad, by which the cam turns about a corner; the regular polygon's where no polygon has `angles`."""
     from kin.law.programme import IntentError
     from kin.law.reuleaux import closed_angles
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def no_pressure_angle(t: Array) -> Array:
-    """Pressure angle of a flat face at right angles to its way, rad (n,): 0."""
+    """Pressure angle, rad (n,), of a flat face at right angles to its path, at parameters t (n,): 0."""
     return 0.0 * t
 
 
@@ -24,14 +24,18 @@ def no_pressure_angle(t: Array) -> Array:
 class Surface:
     """A surface of a disc that a follower touches.
 
-    `base` is the curve that the motion describes, the pitch curve of a roller or the surface itself; `curve` is the
-    surface, by `radius` (mm, 0 for flat faces) within the base, or around it where the metal lies outside (`side` -1).
-    `pressure` is the angle between the contact's normal and the follower's path, rad, over parameters of the curve
-    (n,), above 0 where the cam drives a rise; `place` is the point of contact on a flat face, mm along it. `series` are
-    figures over the shaft angle whose extremes are proved: slope, the tangent of the pressure angle; contact, the place
-    on a flat face, mm; spin, turns of the roller per turn of the shaft. `name` tells the surface from the cam's others,
-    empty where there is one; `disc` counts the discs on the shaft from 0, `layer` is that of drawings, `depth` reaches
-    down from the top face, mm, None for a surface through the whole thickness.
+    base      curve that the motion describes: the pitch curve of a roller, or under a flat face the surface itself
+    curve     the surface, parallel to `base` at `radius`, mm, 0 for flat faces
+    side      1 for metal inside the surface, which then lies inside `base`; -1 for metal outside, as in a ring
+    pressure  angle between the contact's normal and the follower's path, rad (n,), at parameters of the curve (n,);
+              above 0 where the cam drives a rise, but of two rollers on one arm its size alone
+    place     place of contact along a flat face, mm (n,), at parameters (n,); None for a round touch or two on one arm
+    series    figures over the shaft angle whose extremes are proved: slope, the tangent of the pressure angle;
+              contact, the place on a flat face, mm; spin, turns of the roller per turn of the shaft
+    name      empty where the cam has one surface
+    disc      number of the disc on the shaft, from 0
+    layer     name of the layer in drawings
+    depth     depth from the top face, mm; None for a surface through the whole thickness
     """
 
     base: Curve
@@ -53,7 +57,7 @@ class Surface:
         return f"{self.name.replace(' ', '_')}_" if self.name else ""
 
     def extremes(self, name: str) -> tuple[Extreme, Extreme] | None:
-        """Least and greatest value of one of `series`, computed once; None without such a series."""
+        """Least and greatest value of the series of this name, computed once; None where `series` has none."""
         from camgeo.curve.extremes import both
         from camgeo.curve.rates import stretches
 
