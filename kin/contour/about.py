@@ -1,4 +1,4 @@
-"""Contours about the shaft at the origin: which of them go round it, and which are circles about it."""
+"""Contours about the shaft at the origin: which contours go round it, and which are circles about it."""
 
 from __future__ import annotations
 
@@ -13,20 +13,21 @@ if TYPE_CHECKING:
 
     from kin.contour.contour import Contour
 
-LOOKS = 16  # on each piece: an arc of a whole turn is seen to go round
-ROUND = 1e-4  # of the radius: by so much the corners of a circle may be off it
-FLAT = 0.01  # of the radius: middles of a polygon's edges lie within it by less, that of a D-shaped bore's flat by more
+LOOKS = 16  # points on each piece: enough for an arc of a whole turn to be seen to go round
+ROUND = 1e-4  # of the radius: greatest difference of the corners' distances from the centre
+# Of the radius: the middles of a polygon's edges lie inside the circle by less, that of a D-shaped bore's flat by more.
+FLAT = 0.01
 
 
 def goes_round(contour: Contour) -> bool:
-    """Whether a contour encloses the shaft."""
+    """Whether a contour encloses the shaft, in either sense."""
     points = contour.sample(LOOKS)
     after = np.roll(points, -1, axis=0)
     return bool(abs(np.arctan2(cross(points, after), dot(points, after)).sum()) > np.pi)
 
 
 def circle_about(contour: Contour, x: float = 0.0, y: float = 0.0) -> float | None:
-    """Diameter, mm, of a circle about the place x, y, or of a polygon on one; None of any other contour."""
+    """Diameter, mm, of a contour that is a circle about (x, y), mm, or a polygon on a circle; None for any other."""
     ends, middles = (np.hypot(*(contour.sample(2)[k::2] - (x, y)).T) for k in (0, 1))
     radius = float(ends.mean())
     round_all = np.ptp(ends) <= ROUND * radius and float(np.abs(middles - radius).max()) <= FLAT * radius
@@ -34,10 +35,10 @@ def circle_about(contour: Contour, x: float = 0.0, y: float = 0.0) -> float | No
 
 
 def tracks(contours: Sequence[Contour]) -> list[Contour]:
-    """Contours round the shaft on which a follower can run, the outermost first.
+    """Contours round the shaft on which a follower can run, in the order of falling area; empty where none goes round.
 
-    Circles about the shaft are the outline of a ring or of a groove's blank, or the bore: they count where there is
-    nothing else.
+    Circles about the shaft are the outline of a ring or of a groove's blank, or the bore: they are left out unless
+    all contours round the shaft are circles.
     """
     around = sorted(filter(goes_round, contours), key=lambda contour: -abs(contour.area))
     return [contour for contour in around if circle_about(contour) is None] or around

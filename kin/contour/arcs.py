@@ -1,7 +1,8 @@
 """Lines and arcs by start, tangent, curvature and length: a form without a centre, so nothing is lost as radii grow.
 
-A piece of curvature k at arc length s lies at  start + s sinc(k s / 2) T turned by k s / 2,  a line being k = 0. The
-outward normal of a counter-clockwise contour is the tangent turned clockwise; k > 0 is convex.
+A piece of unit tangent T and curvature k at its start lies, at arc length s, at  start + s sinc(k s / 2) T',  where
+sinc x = sin x / x and T' is T turned counter-clockwise by k s / 2; a line has k = 0. The outward normal of a
+counter-clockwise contour is the tangent turned clockwise; k > 0 is convex. Vectors lie along the last axis, of size 2.
 """
 
 from __future__ import annotations
@@ -19,19 +20,19 @@ if TYPE_CHECKING:
 
 
 def cross(a: Array, b: Array) -> Array:
-    """Plane cross product of vectors (..., 2): positive where b is counter-clockwise of a."""
+    """Plane cross product (...) of vectors a and b (..., 2): positive where b is counter-clockwise of a."""
     product: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     return product
 
 
 def dot(a: Array, b: Array) -> Array:
-    """Scalar product of vectors (..., 2)."""
+    """Scalar product (...) of vectors a and b (..., 2)."""
     product: Array = a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]
     return product
 
 
 def unit(angle: float | Array) -> Array:
-    """u(t) = (cos t, sin t), (..., 2)."""
+    """Unit vectors u(t) = (cos t, sin t), (..., 2), at angles t, rad."""
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
@@ -46,7 +47,7 @@ def right(v: Array) -> Array:
 
 
 def turned(v: Array, angle: Array) -> Array:
-    """Vectors (n, 2) turned counter-clockwise by angles (n,)."""
+    """Vectors (n, 2) turned counter-clockwise by angles (n,), rad."""
     c, s = np.cos(angle), np.sin(angle)
     return np.stack([c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1]], axis=-1)
 
@@ -55,8 +56,8 @@ def turned(v: Array, angle: Array) -> Array:
 class Arcs:
     """n pieces: `start` (n, 2), unit `tangent` (n, 2) there, signed `curvature` (n,), `length` (n,), in mm and 1/mm.
 
-    In a chain each piece ends where the next one starts, the last where the first starts; nothing here relies on it
-    unless a docstring says so.
+    In a chain each piece ends where the next one starts, the last where the first starts; no method needs a chain
+    unless its docstring says so.
     """
 
     start: Array
@@ -90,11 +91,11 @@ class Arcs:
 
     @property
     def end_tangents(self) -> Array:
-        """Unit tangents at the ends (n, 2)."""
+        """Unit tangents (n, 2) at the ends."""
         return self.tangents(self.length)
 
     def cut(self, parts: NDArray[np.intp]) -> tuple[Arcs, Indices]:
-        """Each piece cut into `parts` (n,) equal ones, in order; and the piece that each part comes from."""
+        """Pieces cut into `parts` (n,) equal parts each, in order, and the index of the piece each part comes from."""
         if parts.max(initial=1) == 1:
             return self, np.arange(len(self))
         owner = np.repeat(np.arange(len(self)), parts)
@@ -105,7 +106,7 @@ class Arcs:
         return Arcs(whole.points(s), whole.tangents(s), whole.curvature, step), owner
 
     def joined(self, other: Arcs) -> Arcs:
-        """Both sets of pieces, one after the other."""
+        """The pieces of this set, then those of the other."""
         return Arcs(
             np.concatenate([self.start, other.start]),
             np.concatenate([self.tangent, other.tangent]),
@@ -114,7 +115,7 @@ class Arcs:
         )
 
     def reversed(self) -> Arcs:
-        """Return the pieces in reverse order, each run backwards: of a closed chain what lay left lies right."""
+        """Return the pieces in reverse order, each run backwards: the left side becomes the right side."""
         return Arcs(self.ends, -self.end_tangents, -self.curvature, self.length).take(np.arange(len(self))[::-1])
 
     def turned(self, angle: float) -> Arcs:
@@ -125,23 +126,24 @@ class Arcs:
         return Arcs(turned(self.start, by), turned(self.tangent, by), self.curvature, self.length)
 
     def turns(self) -> Array:
-        """Turn of the tangent at the start of each piece of a chain, counter-clockwise, in [-pi, pi] (n,)."""
+        """Counter-clockwise turn of the tangent (n,), rad in [-pi, pi], at the start of each piece of a chain."""
         before = np.roll(self.end_tangents, 1, axis=0)
         return np.arctan2(cross(before, self.tangent), dot(before, self.tangent))
 
 
 def circle(centre: Array, radius: Array) -> Arcs:
-    """Full circles about centres (n, 2), counter-clockwise."""
+    """Full circles about centres (n, 2) with radii (n,), counter-clockwise from the point at angle 0."""
     start = centre + np.stack([radius, np.zeros_like(radius)], axis=-1)
     tangent = np.broadcast_to(np.array([0.0, 1.0]), start.shape)
     return Arcs(start, tangent, 1.0 / radius, 2.0 * np.pi * radius)
 
 
 def radial(arcs: Arcs, point: Array) -> Array:
-    """Signed distance of points (n, 2) outside the full circle or line of each piece (n,).
+    """Signed distance (n,) of points (n, 2) from the full circle or line of each piece, positive on its right.
 
-    With y from the start and outward normal m, the circle is 2 y.m + k y^2 = 0; the root below takes that to a
-    distance without the cancellation that a far centre would bring.
+    The right is the outside of a circle with k > 0, the inside with k < 0. With y from the start and the right normal
+    m, the circle is 2 y.m + k y^2 = 0; the root below takes that to a distance without the cancellation that a far
+    centre would bring.
     """
     y = point - arcs.start
     height = 2.0 * dot(y, right(arcs.tangent)) + arcs.curvature * dot(y, y)
@@ -150,7 +152,7 @@ def radial(arcs: Arcs, point: Array) -> Array:
 
 
 def nearest_on(arcs: Arcs, point: Array) -> tuple[Array, Array]:
-    """Arc length of the point of each piece nearest to `point` (n, 2), and the unsigned distance there: (n,), (n,).
+    """Arc length (n,) on each piece of its place nearest to `point` (n, 2), and the unsigned distance (n,) there.
 
     Pieces may turn by at most half a turn.
     """

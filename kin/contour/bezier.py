@@ -1,7 +1,8 @@
 """Rational Bezier pieces, thousands at a time, as arrays of control points and weights.
 
-A piece is X(t)/w(t) with X = sum w_i P_i B_i(t) and w = sum w_i B_i(t), t in [0, 1], all weights positive; with equal
-weights it is polynomial. Splines and ellipses become such pieces exactly (up to rounding).
+A piece x(t) is X(t)/w(t) with X = sum w_i P_i B_i(t) and w = sum w_i B_i(t), t in [0, 1], where P_i are the control
+points, w_i > 0 their weights and B_i the Bernstein polynomials of degree d; with equal weights it is polynomial.
+Splines and ellipses become such pieces exactly (up to rounding).
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ LENGTH_HALVINGS = 30
 
 
 class Unrolled(NamedTuple):
-    """Pieces cut where the sense of turning of their tangent changes, and for each the row it was cut from (n,)."""
+    """n parts whose tangents each turn one way by less than pi, and the row (n,) of the piece each was cut from."""
 
     pieces: Beziers
     row: Indices
@@ -53,7 +54,7 @@ class Beziers:
 
     @staticmethod
     def joined(parts: list[Beziers]) -> Beziers:
-        """Several sets in one, the lower degrees elevated to the highest (which leaves the curves as they are)."""
+        """All pieces of `parts`, in order, elevated to the highest degree, which leaves the curves as they are."""
         parts = [p for p in parts if p.count]
         if not parts:
             return Beziers.empty()
@@ -63,9 +64,10 @@ class Beziers:
 
     @staticmethod
     def from_ellipse(centre: Array, major: Array, minor: Array, first: float, last: float) -> Beziers:
-        """Exact pieces of centre + major cos t + minor sin t for t from `first` to `last` (either sense), (2,) vectors.
+        """Exact pieces of centre + major cos t + minor sin t, vectors (2,), for t from `first` to `last`, rad.
 
-        Each piece spans at most a quarter turn: quadratic, with the middle weight cos(half its span).
+        The curve may run in either sense. Each piece spans at most a quarter turn: quadratic, with the middle weight
+        cos(half its span).
         """
         count = max(1, int(np.ceil(abs(last - first) / (pi / 2.0) - 1e-12)))
         knots = np.linspace(first, last, count + 1)
@@ -109,7 +111,7 @@ class Beziers:
 
     @staticmethod
     def from_homogeneous(points: Array) -> Beziers:
-        """Pieces from (m, d+1, 3) arrays of (w x, w y, w)."""
+        """Pieces with homogeneous control points (w x, w y, w), (m, d+1, 3)."""
         w = points[:, :, 2]
         if w.size and bool((w == w.flat[0]).all()) and w.flat[0] == 1.0:
             return Beziers(points[:, :, :2].copy(), w.copy())
@@ -127,7 +129,7 @@ class Beziers:
 
     @cached_property
     def homogeneous(self) -> Array:
-        """(w x, w y, w), (m, d+1, 3)."""
+        """Homogeneous control points (w x, w y, w), (m, d+1, 3)."""
         return np.concatenate([self.control * self.weight[:, :, None], self.weight[:, :, None]], axis=2)
 
     @cached_property
@@ -139,7 +141,8 @@ class Beziers:
     def velocity(self) -> Array:
         """Bernstein coefficients (m, k+1, 2) of a positive multiple of the derivative by t.
 
-        The derivative itself (k = d-1) where all pieces are polynomials, else the numerator X' w - X w' (k = 2d-1).
+        It is the derivative itself (k = d-1) where all pieces are polynomials, else w^2 times it, X' w - X w'
+        (k = 2d-1).
         """
         d = self.degree
         relative = self.control - self.control[:, :1]
@@ -155,12 +158,12 @@ class Beziers:
 
     @cached_property
     def bend(self) -> Array:
-        """Bernstein coefficients (m, d-1, 2) of the second derivative by t, of polynomials of degree 2 or more."""
+        """Bernstein coefficients (m, d-1, 2) of the second derivative by t; for polynomials of degree >= 2 only."""
         return derivative(self.velocity)
 
     @cached_property
     def directions(self) -> tuple[Array, Array]:
-        """Directions of the tangent at both ends, 2 x (m,) radians; a vanishing end derivative takes its limit."""
+        """Angles of the tangents at the starts and at the ends, rad (m,); a vanishing derivative takes its limit."""
         v = self.velocity
         size = np.hypot(v[:, :, 0], v[:, :, 1])
         alive = size > VANISHING * size.max(axis=1, keepdims=True, initial=0.0)
@@ -170,7 +173,7 @@ class Beziers:
         return np.arctan2(first[:, 1], first[:, 0]), np.arctan2(last[:, 1], last[:, 0])
 
     def elevated(self, degree: int) -> Beziers:
-        """Return the same curves with control points of a higher degree."""
+        """Return the same curves with control points of a higher degree; the pieces themselves for a lower one."""
         h = self.homogeneous
         while h.shape[1] - 1 < degree:
             d = h.shape[1]
@@ -183,7 +186,7 @@ class Beziers:
         return Beziers(self.control[rows], self.weight[rows])
 
     def turned_round(self, which: NDArray[np.bool_]) -> Beziers:
-        """Return the same curves, those of the mask (m,) run through backwards."""
+        """Return the same curves in the same order, the pieces of the mask (m,) run through backwards."""
         w = which[:, None]
         control = np.where(w[:, :, None], self.control[:, ::-1], self.control)
         return Beziers(control, np.where(w, self.weight[:, ::-1], self.weight))
@@ -216,22 +219,23 @@ class Beziers:
         return v / values(self.weight[rows], t)[:, None] ** 2
 
     def rows(self, rows: Indices, t: Array) -> tuple[Array, Array, Array]:
-        """Points and two derivatives by t, (n, 2) each, of the polynomials `rows`, of degree 2 or more, at t (n,)."""
+        """Points, first and second derivatives by t, (n, 2), of polynomial pieces `rows` of degree >= 2 at t (n,)."""
         return self.point(rows, t), values(self.velocity[rows], t), values(self.bend[rows], t)
 
     def farthest(self, rows: Indices, theta: Array) -> Array:
-        """Parameters t (n,) where x(t).u(theta) is greatest, for pieces that turn one way by less than pi.
+        """Parameters t (n,) where x(t).u(theta) is greatest on pieces `rows` (n,) that turn one way by less than pi.
 
-        On such a piece the slope x'.u falls through zero at most once, when theta lies in its normals' range.
+        u(theta) is the unit vector at the angle theta (n,), rad, which must lie in the range of the piece's normals:
+        then the slope x'.u falls through zero at most once.
         """
         u = np.stack([np.cos(theta), np.sin(theta)], axis=1)
         slope = np.einsum("nkc,nc->nk", self.velocity[rows], u)
         return rising_root(-slope)
 
     def area_over_chords(self) -> float:
-        """Area between the pieces and their chords, mm^2, above 0 where they bulge to the right of the chord.
+        """Sum of the signed areas between pieces and chords, mm^2, positive where a piece bulges to the chord's right.
 
-        By Gauss's rule, exact for polynomials, else to rounding.
+        Gauss's rule gives it exactly for polynomials, else to rounding.
         """
         if not self.count:
             return 0.0
@@ -248,7 +252,10 @@ class Beziers:
 
     @cached_property
     def lengths(self) -> Array:
-        """Arc length of each piece, mm (m,): Gauss's rule on finer and finer parts, until two agree to 1e-13 of it."""
+        """Arc length of each piece, mm (m,).
+
+        Gauss's rule is applied to halved parts until a part and its halves agree to 1e-13 of the piece's length.
+        """
         nodes, weights = gauss(GAUSS_NODES)
         row, begin, step = np.arange(self.count), np.zeros(self.count), 1.0
 
@@ -273,18 +280,20 @@ class Beziers:
         return total
 
     def unrolled(self) -> Unrolled:
-        """Pieces cut at their inflections and cusps, so that each one's tangent turns one way, by less than pi."""
+        """Pieces cut at inflections and cusps, and halved until the tangent of each part turns by less than pi."""
         v = self.velocity
         if v.shape[1] == 1 or not self.count:
             return Unrolled(self, np.arange(self.count))
         bend = turning_numerator(v)
         low, high = bend.min(axis=1, initial=0.0), bend.max(axis=1, initial=0.0)
-        both = (low < 0.0) & (high > 0.0)
-        cuts: dict[int, list[float]] = {int(i): roots(bend[i]) for i in np.flatnonzero(both)}
+        # The Bernstein coefficients bound the curvature's numerator: without both signs there is no inflection.
+        doubtful = (low < 0.0) & (high > 0.0)
+        cuts: dict[int, list[float]] = {int(i): roots(bend[i]) for i in np.flatnonzero(doubtful)}
         rows = np.repeat(np.arange(self.count), [1 + len(cuts.get(i, ())) for i in range(self.count)])
         ends = [np.array([0.0, *cuts.get(i, ()), 1.0]) for i in range(self.count)] if cuts else []
         a = np.concatenate([e[:-1] for e in ends]) if cuts else np.zeros(self.count)
         b = np.concatenate([e[1:] for e in ends]) if cuts else np.ones(self.count)
+        # Parts [a, b] of their rows that still turn too far are halved; `first` and `second` mark the new halves.
         for _ in range(CUSP_HALVINGS):
             whole = (a == 0.0) & (b == 1.0)
             parts = self.take(rows).part(a, b) if not bool(whole.all()) else self.take(rows)
@@ -299,12 +308,13 @@ class Beziers:
         if rows.size == self.count:
             return Unrolled(self, np.arange(self.count))
         cut = self.take(rows).part(a, b)
+        # Parts of one piece meet to the last bit.
         same = rows[1:] == rows[:-1]
         cut.control[1:, 0][same] = cut.control[:-1, -1][same]
         return Unrolled(cut, rows)
 
     def turns_little(self) -> NDArray[np.bool_]:
-        """Where every hodograph vector points along the chord, so that the tangent stays within pi/2 of it (m,)."""
+        """Mask (m,) of pieces whose hodograph vectors all point along the chord: the tangent is within pi/2 of it."""
         chord = self.control[:, -1] - self.control[:, 0]
         forward = np.einsum("nkc,nc->nk", self.velocity, chord)
         size = np.abs(forward).max(axis=1, keepdims=True)
@@ -312,7 +322,10 @@ class Beziers:
 
 
 def turning_numerator(velocity: Array) -> Array:
-    """Bernstein coefficients (m, 2k) of v x v', whose sign is that of the curvature; rounding is set to zero."""
+    """Bernstein coefficients (m, 2k) of v x v', which has the curvature's sign; rounding is set to zero.
+
+    `velocity` (m, k+1, 2) are the Bernstein coefficients of v.
+    """
     change = derivative(velocity)
     bend = cross_product(velocity, change)
     scale = np.hypot(*np.moveaxis(velocity, 2, 0)).max(axis=1) * np.hypot(*np.moveaxis(change, 2, 0)).max(axis=1)

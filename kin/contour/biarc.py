@@ -22,7 +22,10 @@ MOST_TURN = np.pi / 2.0
 
 
 class Pair(NamedTuple):
-    """Two arcs tangent to each other, a pair for each of m curves, and a bound (m,), mm, of their distance from it."""
+    """Two arcs tangent to each other for each of m curves, and a bound (m,), mm, of their distance from the curve.
+
+    The bound is infinite where no pair of arcs serves.
+    """
 
     first: Arcs
     second: Arcs
@@ -30,11 +33,11 @@ class Pair(NamedTuple):
 
 
 def arcs_along(beziers: Beziers, tolerance: float) -> tuple[Arcs, Indices]:
-    """Arcs along the pieces, nowhere farther than `tolerance` mm from them, and the row of each (k,).
+    """Arcs along the pieces, in order, nowhere farther than `tolerance` mm from them, and the row of each (k,).
 
-    Tangents are continuous wherever the curve's are. The pieces turn one way by less than pi, as `Beziers.unrolled`
-    leaves them. Each is halved until a pair of arcs with its end points and end tangents is proved close enough. Cost
-    grows as tolerance^(-1/3). Raises ValueError where rounding keeps the arcs farther away than that.
+    Tangents are continuous wherever the curve's are. Each piece must turn one way by less than pi (`Beziers.unrolled`);
+    it is halved until a pair of arcs with its end points and end tangents is proved close enough. Cost grows as
+    tolerance^(-1/3). Raises ValueError where rounding keeps the arcs farther than the tolerance from a piece.
     """
     extent = float(np.abs(beziers.control).max(initial=0.0))
     if not tolerance > ROUNDING * extent:
@@ -72,7 +75,7 @@ def arcs_along(beziers: Beziers, tolerance: float) -> tuple[Arcs, Indices]:
 
 
 def chords(curves: Beziers) -> Arcs:
-    """Return the straight lines between the ends of curves."""
+    """Return the chords of the curves, straight lines from start to end."""
     chord = curves.control[:, -1] - curves.control[:, 0]
     length = np.hypot(chord[:, 0], chord[:, 1])
     tangent = chord / np.where(length > 0.0, length, 1.0)[:, None]
@@ -80,19 +83,21 @@ def chords(curves: Beziers) -> Arcs:
 
 
 def pair_of(curves: Beziers) -> Pair:
-    """Two arcs through the ends of each curve, with its tangents there, and the proof of how close they are.
+    """Two arcs through the ends of each curve, with its tangents there, and a proved bound of their distance from it.
 
-    Of the family of such pairs, the one whose two tangent lengths d are equal: |c - d (T0 + T1)| = 2 d for the chord c.
-    Where the curve passes the normal in their common point it goes over from the one arc to the other.
+    With the chord c and the end tangents T0 and T1, both tangent lengths are d, which |c - d (T0 + T1)| = 2 d gives.
+    Where the curve crosses the normal in the arcs' common point, it passes from the first arc to the second.
     """
     start, end = curves.control[:, 0], curves.control[:, -1]
     out, into = (unit(angle) for angle in curves.directions)
-    chord, both = end - start, out + into
-    along, square = dot(chord, both), dot(chord, chord)
+    chord, sum_ = end - start, out + into
+    along, square = dot(chord, sum_), dot(chord, chord)
+    # the positive root of the quadratic for d, without cancellation
     with np.errstate(invalid="ignore", divide="ignore"):
-        side = square / (along + np.sqrt(along * along + square * np.maximum(4.0 - dot(both, both), 0.0)))
+        side = square / (along + np.sqrt(along * along + square * np.maximum(4.0 - dot(sum_, sum_), 0.0)))
     usable = np.isfinite(side) & (side > 0.0)
     joint = (start + end + np.where(usable, side, 0.0)[:, None] * (out - into)) / 2.0
+    # each arc turns by twice the angle between its chord and its tangent
     first_chord, second_chord = joint - start, end - joint
     half = np.arctan2(cross(out, first_chord), dot(out, first_chord))
     other_half = np.arctan2(cross(second_chord, into), dot(second_chord, into))
@@ -104,6 +109,7 @@ def pair_of(curves: Beziers) -> Pair:
     tangent = turned(second_chord / safe[1][:, None], -other_half)
     second = Arcs(joint, tangent, 2.0 * np.sin(other_half) / safe[1], sizes[1] / np.sinc(other_half / np.pi))
 
+    # the curve is cut where it crosses the joint's normal, and each part is held against the circle of its own arc
     w = curves.weight
     passing = rising_root(np.einsum("nkc,nc->nk", curves.control - joint[:, None], tangent) * w)
     before, after = split(curves.homogeneous, passing)
@@ -115,16 +121,18 @@ def pair_of(curves: Beziers) -> Pair:
 
 
 def off_circle(homogeneous: Array, point: Array, tangent: Array, curvature: Array) -> Array:
-    """Bound (m,) on the distance of curves (m, d+1, 3) from the circles through points with tangents and curvatures.
+    """Upper bounds (m,), mm, of the distance of curves from circles; infinite where the proof fails.
 
-    With y from the point and l the left normal there, g = k y^2/2 - y.l vanishes on the circle, and a point lies
-    2 g/(1 + sqrt(1 + 2 k g)) outside it. Along the curve g is a polynomial over w^2: its coefficients bound it.
+    The curves are homogeneous control points (m, d+1, 3); each circle goes through `point` (m, 2) with the unit
+    `tangent` (m, 2) and `curvature` k (m,). With y from the point and l the left normal there, g = k y^2/2 - y.l
+    vanishes on the circle, and a point lies 2 g/(1 + sqrt(1 + 2 k g)) outside it. Along the curve g is a polynomial
+    over w^2: its coefficients bound it.
     """
     w = homogeneous[:, :, 2]
     y = homogeneous[:, :, :2] - point[:, None] * w[:, :, None]
     square = bernstein_product(y[:, :, 0], y[:, :, 0]) + bernstein_product(y[:, :, 1], y[:, :, 1])
     across = bernstein_product(np.einsum("nkc,nc->nk", y, left(tangent)), w)
     g = np.abs(curvature[:, None] / 2.0 * square - across).max(axis=1) / w.min(axis=1) ** 2
-    room = 1.0 - 2.0 * np.abs(curvature) * g
-    bound: Array = np.where(room > 0.0, 2.0 * g / (1.0 + np.sqrt(np.maximum(room, 0.0))), np.inf)
+    radicand = 1.0 - 2.0 * np.abs(curvature) * g
+    bound: Array = np.where(radicand > 0.0, 2.0 * g / (1.0 + np.sqrt(np.maximum(radicand, 0.0))), np.inf)
     return bound

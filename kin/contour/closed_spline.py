@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 
 def closed_spline(points: Array) -> Array:
-    """Give the cubic Bezier pieces (n, 4, 2) of the closed spline through points (n, 2), four or more, none twice."""
+    """Give control points (n, 4, 2) of the cubic Bezier pieces of the closed spline through points (n, 2).
+
+    Piece i runs from point i to the next. There must be four points or more, no two neighbours alike.
+    """
     chords = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
     slopes = _slopes(points, chords)
     end, turned = np.roll(points, -1, axis=0), np.roll(slopes, -1, axis=0)
@@ -23,10 +26,11 @@ def closed_spline(points: Array) -> Array:
 
 
 def _slopes(points: Array, chords: Array) -> Array:
-    """Derivatives (n, 2) by the chords' length at each point, of the closed spline: a cyclic tridiagonal system.
+    """Derivatives m (n, 2) of the closed spline by the chord length at each point: a cyclic tridiagonal system.
 
-    Of each row i: m[i-1]/h[i-1] + 2 m[i] (1/h[i-1] + 1/h[i]) + m[i+1]/h[i] = 3 (d[i-1]/h[i-1] + d[i]/h[i]), where d are
-    the slopes of the chords. It is solved by elimination with two right sides, and closed by the first unknown.
+    Row i is m[i-1]/h[i-1] + 2 m[i] (1/h[i-1] + 1/h[i]) + m[i+1]/h[i] = 3 (d[i-1]/h[i-1] + d[i]/h[i]), where h are the
+    lengths of the chords and d their slopes. Unknowns 1 to n - 1 are solved for as functions of unknown 0; row 0 then
+    gives unknown 0.
     """
     before = np.roll(chords, 1)
     d = (np.roll(points, -1, axis=0) - points) / chords[:, None]
@@ -38,6 +42,7 @@ def _slopes(points: Array, chords: Array) -> Array:
     sides[:, :2] = right
     sides[1, 2] -= low[1]
     sides[-1, 2] -= high[-1]
+    # forward elimination of rows 2 to n - 1, then back substitution down to row 1
     factors = np.zeros(count)
     rows = sides.tolist()
     pivot = middle.tolist()
@@ -49,6 +54,7 @@ def _slopes(points: Array, chords: Array) -> Array:
     solved[-1] = [value / pivot[-1] for value in rows[-1]]
     for i in range(count - 2, 0, -1):
         solved[i] = [(a - high[i] * b) / pivot[i] for a, b in zip(rows[i], solved[i + 1], strict=True)]
+    # row 0 with m[1] and m[n-1] as functions of m[0]
     table = np.array(solved)
     first = right[0] - low[0] * table[-1, :2] - high[0] * table[1, :2]
     first /= middle[0] + low[0] * table[-1, 2] + high[0] * table[1, 2]

@@ -30,7 +30,7 @@ PAIRS_AT_ONCE = 1_000_000
 ARC_TOLERANCE = 1e-9
 MOST_SHARE = 2e-11
 ARC_SHARE = 1e-12
-# Arcs within this share of the extent tell what is near from what is far.
+# Of the extent: the distance within which the rough arcs stand for a spline; they only sort near places from far ones.
 ROUGH_SHARE = 1e-4
 # How many times finer than asked for the arcs at hand may be to serve instead.
 ALIKE = 4.0
@@ -47,7 +47,10 @@ HALVINGS = 60
 
 
 class Support(NamedTuple):
-    """q (k,) = max over the contour of x.u(theta), the point (k, 2) and the piece (k,) that reach it."""
+    """q (k,) = max over the contour of x.u(theta), mm, the point x (k, 2) that reaches it, and its piece (k,).
+
+    u(theta) is the unit vector at the angle theta.
+    """
 
     q: Array
     point: Array
@@ -55,7 +58,7 @@ class Support(NamedTuple):
 
 
 class Box(NamedTuple):
-    """Box parallel to the axes: least and greatest x and y, mm."""
+    """Box with sides parallel to the axes: least and greatest x and y, mm."""
 
     x_min: float
     y_min: float
@@ -67,8 +70,9 @@ class Box(NamedTuple):
 class Contour(Pieces):
     """Pieces end to end, closed: end[i] is start[i+1], the last end the first start, within the reader's gap.
 
-    Counter-clockwise when it comes from a reader; every measure here takes either sense, only `area`, `turning` and
-    `is_convex` tell them apart. `arcs_within`, mm, is how closely arcs stand in for its splines by default.
+    A reader gives it counter-clockwise; every measure takes either sense, and only the signs of `area`, `turning` and
+    `joints`, and `is_convex`, depend on it. `arcs_within` is the greatest distance, mm, of the arcs that stand for
+    splines by default; None for 1e-9 mm, but from 1e-12 to 2e-11 of the extent (the greatest coordinate).
     """
 
     arcs_within: float | None = None
@@ -85,7 +89,10 @@ class Contour(Pieces):
 
     @staticmethod
     def from_bulges(vertices: Array, bulges: Array) -> Contour:
-        """Lines and arcs from vertex to vertex (n, 2) and back; bulge (n,) = tan(sweep/4) of the piece that follows."""
+        """Return lines and arcs from vertex to vertex (n, 2) and back, with bulges (n,).
+
+        A bulge is tan(sweep/4) of the piece that starts at its vertex: 0 of a line, positive counter-clockwise.
+        """
         start = np.asarray(vertices, dtype=np.float64)
         end = np.roll(start, -1, axis=0)
         return Contour.from_pieces(Pieces.from_chords(start, end, np.asarray(bulges, dtype=np.float64)))
@@ -126,7 +133,7 @@ class Contour(Pieces):
 
     @cached_property
     def hull_edges(self) -> tuple[Array, Indices]:
-        """Normals (h,) of the hull's edges, rising in [0, 2 pi), and the vertex (h,) at the end of each edge."""
+        """Angles (h,) of the hull edges' normals, rising in [0, 2 pi), and the vertex (h,) that ends each edge."""
         corners = self.hull
         if corners.size < 2:
             return np.zeros(corners.size), corners
@@ -137,10 +144,10 @@ class Contour(Pieces):
         return normal[order], following[order]
 
     def support(self, theta: Array) -> Support:
-        """Support function at angles theta (k,): q, contact point and piece, exact over every point of the contour.
+        """Support function at angles theta (k,), rad: exact over every point of the contour.
 
-        Among vertices the farthest is found on their convex hull by bisection; each curved piece is tried at the angles
-        within its own range of normals. Cost grows as n + k log n for a contour that goes round once.
+        The farthest vertex is found on the convex hull by bisection; each curved piece is tried at the angles within
+        its own range of normals. Cost grows as n + k log n for a contour that goes round once.
         """
         theta = np.asarray(theta, dtype=np.float64).reshape(-1)
         u = unit(theta)
@@ -162,7 +169,10 @@ class Contour(Pieces):
         return support
 
     def _raise(self, support: Support, tried: Indices, numbers: Indices, theta: Array, u: Array) -> None:
-        """Let pieces `tried` compete at the angles number `numbers`; write into `support` where they reach farther."""
+        """Write pieces `tried` into `support` where they reach farther, each at the angle with the index in `numbers`.
+
+        theta (k,) in [0, 2 pi) and u (k, 2) are all angles of `support` and their unit vectors.
+        """
         q, point, piece = support
         is_arc = self.kind[tried] == ARC
         arc, a = tried[is_arc], numbers[is_arc]
@@ -185,12 +195,12 @@ class Contour(Pieces):
 
     @cached_property
     def normals(self) -> Array:
-        """Angles in [0, 2 pi) at which the support function changes its form, rising.
+        """Angles (m,) in [0, 2 pi) at which the support function changes its form, rising.
 
-        For a convex contour these are the normals at both ends of each piece; else those of them and of hull edges that
-        are active, and the normals of lines that touch the contour twice. Between two of them one corner, arc or Bezier
-        piece is the farthest throughout; one that is farthest over less than half a degree, between two such lines, may
-        be overlooked. Angles that differ by rounding alone are given once.
+        For a convex contour these are the normals at both ends of each piece. Else they are the normals of hull edges
+        and of ends of curved pieces that are farthest there, and the normals of lines that touch the contour twice.
+        Between two of them one corner, arc or Bezier piece is the farthest throughout; one that is farthest over less
+        than half a degree, between two such lines, may be overlooked. Neighbours differ by more than rounding.
         """
         if self.is_convex:
             return apart(np.concatenate(self.directions) - np.pi / 2.0)
@@ -210,9 +220,9 @@ class Contour(Pieces):
         return apart(np.concatenate([active, self._switches(probes)]))
 
     def _switches(self, theta: Array) -> Array:
-        """Angles at which the farthest point leaps: strictly between neighbours in theta (k,), rising, and of theta.
+        """Angles at which the farthest piece changes, unordered: between neighbours of theta (k,), and at theta itself.
 
-        Between two of theta it is found by bisection, to the last places: `HALVINGS` exceed the bits of a number.
+        theta rises. Between two of its angles a change is found by bisection to the last bits.
         """
         width = np.diff(theta, append=theta[0] + TURN)
         wide = width > 4.0 * np.finfo(float).eps / INSET
@@ -231,7 +241,7 @@ class Contour(Pieces):
 
     @cached_property
     def area(self) -> float:
-        """Signed area, mm^2, positive if counter-clockwise: Green's theorem, closed forms but for rational pieces."""
+        """Signed area, mm^2, positive if counter-clockwise: exact, for rational pieces to rounding (Green)."""
         v = self.vertices - self.vertices.mean(axis=0)
         polygon = float(np.sum(cross(v, np.roll(v, -1, axis=0)))) / 2.0
         arc = self.kind == ARC
@@ -245,13 +255,13 @@ class Contour(Pieces):
 
     @cached_property
     def box(self) -> Box:
-        """Exact bounding box, mm: extremes of arcs and Bezier pieces count, not only their ends."""
+        """Exact bounding box, mm, of whole arcs and Bezier pieces, not only of their ends."""
         point = self.support(np.array([0.0, 0.5, 1.0, 1.5]) * np.pi).point
         return Box(float(point[2, 0]), float(point[3, 1]), float(point[0, 0]), float(point[1, 1]))
 
     @cached_property
     def joints(self) -> Array:
-        """Turn of the tangent at the start of each piece, from the piece before it, in [-pi, pi) (n,)."""
+        """Turn of the tangent (n,), rad in [-pi, pi), from the end of the piece before to the start of each piece."""
         first, last = self.directions
         return wrapped(first - np.roll(last, 1))
 
@@ -262,7 +272,7 @@ class Contour(Pieces):
 
     @cached_property
     def is_convex(self) -> bool:
-        """Whether it turns left throughout, and once, up to the rounding of the tangents' angles."""
+        """Whether the contour turns left throughout, and once, up to the rounding of the tangents' angles."""
         extent = float(np.abs(self.vertices).max())
         chord = np.hypot(*(self.end - self.start).T)
         share = np.divide(extent, chord, out=np.zeros(len(self)), where=chord > 0.0)
@@ -272,18 +282,19 @@ class Contour(Pieces):
         return left_pieces and left_joints and self.turning == 1
 
     def sample(self, per_piece: int) -> Array:
-        """Points (n * per_piece, 2) in order, the starts among them, evenly along each piece (a Bezier's parameter)."""
+        """Points (n * per_piece, 2) in order, the starts among them, evenly by length or Bezier parameter."""
         piece = np.repeat(np.arange(len(self)), per_piece)
         share = np.tile(np.arange(per_piece) / per_piece, len(self))
         return self.points(piece, share)
 
     def as_arcs(self, tolerance: float | None = None) -> tuple[Arcs, Indices]:
-        """Lines and arcs in order, each turning by at most half a turn, and the piece each belongs to (k,).
+        """Lines and arcs in order, each turning by at most half a turn, and the index of the piece of each (k,).
 
-        Exact on lines and arcs; on Bezier pieces within `tolerance` mm, proved, and smooth; by default 1e-9 mm, but
-        from 1e-12 to 2e-11 of the extent. Cost grows as tolerance^(-1/3). Raises ValueError where rounding is larger.
+        Lines and arcs are exact. Bezier pieces are replaced by smooth chains of arcs, proved to lie within `tolerance`
+        mm; by default within `spread`. Cost grows as tolerance^(-1/3). Raises ValueError for a tolerance below
+        rounding.
         """
-        # the arcs of the default are kept: where they are not many more, they serve for what is asked
+        # the arcs of the default are kept: they serve where they are not many more than the tolerance needs
         usual = self._arc_tolerance
         if tolerance is None or not self.beziers.count or usual <= tolerance <= ALIKE * usual:
             return self._usual_arcs
@@ -291,28 +302,28 @@ class Contour(Pieces):
 
     @cached_property
     def rough(self) -> tuple[Arcs, float]:
-        """Few lines and arcs in order, and how far they may be from the contour, mm: 0 without Bezier pieces."""
+        """Few lines and arcs in order, and their greatest distance from the contour, mm: 0 without Bezier pieces."""
         off = ROUGH_SHARE * float(np.abs(self.vertices).max()) if self.beziers.count else 0.0
         return self.as_arcs(off)[0], off
 
     def within(self, tolerance: float | None) -> Contour:
-        """Return the contour for whose splines arcs within `tolerance` mm stand by default; None: the usual ones."""
+        """Return the contour with `arcs_within` set to `tolerance`, mm or None; itself without Bezier pieces."""
         return replace(self, arcs_within=tolerance) if self.beziers.count and tolerance != self.arcs_within else self
 
     @property
     def is_spline(self) -> bool:
-        """Whether it consists of polynomial Bezier pieces alone, whose rows are in its order."""
+        """Whether the contour consists of polynomial Bezier pieces alone, in the order of the rows of `beziers`."""
         every = np.array_equal(self.curve, np.arange(self.beziers.count))
         return every and not self.beziers.rational
 
     @property
     def spread(self) -> float:
-        """Greatest distance, mm, of the arcs that stand for splines by default from the splines; 0 without splines."""
+        """Greatest distance, mm, from the splines of the arcs that stand for them by default; 0 without splines."""
         return self._arc_tolerance if self.beziers.count else 0.0
 
     @property
     def _arc_tolerance(self) -> float:
-        """Greatest distance, mm, of the arcs that stand for splines by default from the splines."""
+        """`arcs_within`, mm, or the distance that None stands for."""
         if self.arcs_within is not None:
             return self.arcs_within
         extent = float(np.abs(self.vertices).max())
@@ -324,7 +335,7 @@ class Contour(Pieces):
 
     @cached_property
     def plain(self) -> tuple[Arcs, Indices]:
-        """Lines and arcs of the contour in order, each turning by at most half a turn, and the piece of each (k,)."""
+        """Lines and arcs without Bezier pieces, in order, each of at most half a turn, and the piece of each (k,)."""
         first, _ = self.directions
         size = np.where(self.kind == ARC, self.radius, 1.0)
         curvature = np.where(self.kind == ARC, np.copysign(1.0, self.sweep) / size, 0.0)
@@ -348,17 +359,17 @@ class Contour(Pieces):
         return arcs.joined(bows).take(order), owner[order]
 
     def distance(self, points: Array, tolerance: float | None = None) -> Array:
-        """Distance of points (k, 2) from the contour, mm (k,).
+        """Unsigned distance of points (k, 2) from the contour, mm (k,).
 
-        It is exact from lines and arcs, and good to `tolerance`, mm, from Bezier pieces: by default 1e-9 mm, but from
-        1e-12 to 2e-11 of the extent. Raises ValueError for a tolerance below rounding.
+        It is exact from lines and arcs, and within `tolerance`, mm, by default within `spread`, from Bezier pieces.
+        Raises ValueError for a tolerance below rounding.
         """
         _, distance = nearest(self.as_arcs(tolerance)[0], np.asarray(points, dtype=np.float64))
         return distance
 
 
 def apart(theta: Array) -> Array:
-    """Return angles brought to [0, 2 pi), rising, without those that differ from the one before by rounding."""
+    """Return angles theta (k,), rad, brought to [0, 2 pi), rising; angles that only rounding parts are given once."""
     reduced = np.mod(theta, TURN)
     rising = np.sort(np.where(reduced < TURN, reduced, 0.0))
     return rising[np.diff(rising, prepend=-1.0) > NORMAL_ROUNDING]
@@ -372,7 +383,10 @@ def less_sine(x: Array) -> Array:
 
 
 def paired(ranges: NormalRanges, theta: Array) -> list[tuple[Indices, Indices]]:
-    """All pairs of a range and an angle within it, theta (k,) rising in [0, 2 pi): batches of numbers of either."""
+    """All pairs of a range and an angle within it, as batches of indices of ranges and of angles.
+
+    theta (k,), rad, rises in [0, 2 pi).
+    """
     ring = np.concatenate([theta, theta + TURN])
     first = np.searchsorted(ring, ranges.low, side="left")
     count = np.minimum(np.searchsorted(ring, ranges.low + ranges.width, side="right") - first, theta.size)

@@ -29,10 +29,11 @@ def is_convex_polygon(points: Array) -> bool:
 
 
 def convex_hull(points: Array) -> Indices:
-    """Indices of the corners of the hull of points (n, 2), counter-clockwise from the leftmost; no three in line.
+    """Indices (h,) of the hull's corners among points (n, 2), counter-clockwise from the leftmost; no three in line.
 
-    Andrew's monotone chain. A point on or inside the chord of its neighbours in the sorted chain is no corner, so all
-    such points may go at once: whole passes as long as they pay, then point by point from where the last pass stopped.
+    Fewer than three distinct points are all returned. Andrew's monotone chain. A point on or inside the chord of its
+    neighbours in the sorted chain is no corner, so all such points may go at once: whole passes as long as they pay,
+    then point by point from where the last pass stopped.
     """
     order = np.lexsort((points[:, 1], points[:, 0]))
     same = np.concatenate([[False], (points[order[1:]] == points[order[:-1]]).all(axis=1)])
@@ -43,27 +44,30 @@ def convex_hull(points: Array) -> Indices:
 
 
 def chain(points: Array, order: Indices) -> Indices:
-    """Indices of the points (n, 2), out of the sorted `order` (m,), that remain once each right turn is dropped.
+    """Indices, out of the sorted `order` (m,) of points (n, 2), that remain once each right turn is dropped.
 
     The chain through them turns left at every inner point: it is one half of the convex hull.
     """
-    rest: Indices = order
-    while rest.size > 2:
-        p = points[rest]
+    kept: Indices = order
+    while kept.size > 2:
+        p = points[kept]
         edge = np.diff(p, axis=0)
-        keep = np.ones(rest.size, dtype=bool)
+        keep = np.ones(kept.size, dtype=bool)
         keep[1:-1] = cross(edge[:-1], edge[1:]) > 0.0
-        gone = rest.size - int(np.count_nonzero(keep))
+        gone = kept.size - int(np.count_nonzero(keep))
         if gone == 0:
-            return rest
-        rest = rest[keep]
-        if gone < WORTHWHILE_SHARE * rest.size:
-            return repaired(points, rest)
-    return rest
+            return kept
+        kept = kept[keep]
+        if gone < WORTHWHILE_SHARE * kept.size:
+            return repaired(points, kept)
+    return kept
 
 
 def repaired(points: Array, order: Indices) -> Indices:
-    """Finish what `chain` began, on its order (m,): from one right turn to the next, stepping back at each."""
+    """Indices out of `order` (m,) that remain once each right turn is dropped, point by point.
+
+    It suits the few right turns that whole passes leave: after each dropped point its neighbours are looked at again.
+    """
     p = points[order]
     edge = np.diff(p, axis=0)
     wrong = np.flatnonzero(cross(edge[:-1], edge[1:]) <= 0.0) + 1
@@ -83,5 +87,5 @@ def repaired(points: Array, order: Indices) -> Indices:
             alive[i] = False
             after[j], before[k] = k, j
             stack += (k, j)
-    rest: Indices = order[np.array(alive)]
-    return rest
+    kept: Indices = order[np.array(alive)]
+    return kept

@@ -1,4 +1,4 @@
-"""What a sound contour has not: places where it crosses or touches itself or another."""
+"""Places where a contour crosses or touches itself or another, which a sound contour does not."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ SHORTEST_LOOP = 1e-7
 BRANCH = 4
 # Pairs of boxes that are looked at together, which bounds the memory.
 PAIRS_AT_ONCE = 500_000
-# A contour with so many crossings needs no more of them.
+# Crossings, or common points, after which the search ends: the verdict is clear.
 ENOUGH = 200
 
 
 class Crossings(NamedTuple):
-    """Common points (k, 2) of pieces that are not neighbours in them, and the numbers of both pieces (k, 2)."""
+    """Common points (k, 2), mm, and the indices of the two pieces that have each in common (k, 2)."""
 
     point: Array
     piece: Indices
 
 
 def crossings(contour: Contour) -> Crossings:
-    """Points at which the contour crosses, touches or covers itself, to a nanometre: one a pair of pieces there.
+    """Points at which the contour crosses, touches or covers itself, to 1e-9 mm; joints of pieces do not count.
 
     A convex contour, or one seen whole from its middle or from the origin, has none, without further work. Else pieces
     whose boxes overlap are found by descending a tree of boxes against itself, and intersected in closed form. The
-    search ends early at a contour that has hundreds.
+    search ends early once it has hundreds. Raises ValueError where the contour's `arcs_within` is below rounding.
     """
     nothing = Crossings(np.zeros((0, 2)), np.zeros((0, 2), dtype=np.intp))
     if contour.is_convex or seen_whole(contour, contour.start.mean(axis=0)) or seen_whole(contour, np.zeros(2)):
@@ -63,7 +63,10 @@ def crossings(contour: Contour) -> Crossings:
 
 
 def meetings(contour: Contour, other: Contour) -> Crossings:
-    """Points that two contours have in common, to within a nanometre, with the piece of either."""
+    """Points that two contours have in common, to 1e-9 mm, with the piece of the first and of the other; some hundreds.
+
+    Raises ValueError where the `arcs_within` of a contour is below rounding.
+    """
     first, first_owner = contour.as_arcs()
     second, second_owner = other.as_arcs()
     meetings = []
@@ -76,7 +79,10 @@ def meetings(contour: Contour, other: Contour) -> Crossings:
 
 
 def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
-    """A point (x, y), mm, that two of the contours have in common; None if all keep apart."""
+    """A point (x, y), mm, that the boundaries of two contours have in common; None if they all keep apart.
+
+    Raises ValueError where the `arcs_within` of a contour is below rounding.
+    """
     boxes = np.array([contour.box for contour in contours]).reshape(-1, 4)
     for k, outline in enumerate(contours[:-1]):
         x_min, y_min, x_max, y_max = boxes[k]
@@ -91,7 +97,7 @@ def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
         for other, distance in zip(others, away, strict=True):
             x_min, y_min, x_max, y_max = other.box
             if distance - off > np.hypot(x_max - x_min, y_max - y_min):
-                continue  # no point of the other is so far from its first
+                continue  # no point of the later contour is so far from its first point
             common = meetings(outline, other).point
             if len(common):
                 return float(common[0, 0]), float(common[0, 1])
@@ -99,7 +105,10 @@ def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
 
 
 def distinct(crossings: list[tuple[Array, Indices]]) -> Crossings:
-    """Return the crossings without those found again at the end of one link and the start of the next."""
+    """Return the points (k, 2) and pairs of pieces (k, 2) of all parts, those of one pair within 1e-7 mm only once.
+
+    A point at the joint of two arcs of one piece is found with both.
+    """
     point = np.concatenate([np.zeros((0, 2)), *(p for p, _ in crossings)])
     piece = np.concatenate([np.zeros((0, 2), dtype=np.intp), *(n for _, n in crossings)])
     order = np.lexsort((point[:, 1], point[:, 0], piece[:, 1], piece[:, 0]))
@@ -145,9 +154,9 @@ def boxes(chain: Arcs) -> Levels:
 
 
 def overlapping(first: Levels, second: Levels, *, mirrored: bool) -> Iterator[tuple[Indices, Indices]]:
-    """Pairs of pieces, one from either tree, whose boxes overlap, in batches (k,), (k,).
+    """Batches of indices (k,), (k,) of pieces, one from either tree, whose boxes overlap.
 
-    `mirrored`: both trees are the same one, and of (i, j) and (j, i) only that with i < j is wanted.
+    `mirrored`: both trees are the same, and each pair is given once, with i < j.
     """
     top = max(len(first), len(second)) - 1
     i, j = np.indices((len(first[-1][0]), len(second[-1][0]))).reshape(2, -1)
@@ -175,7 +184,7 @@ def overlapping(first: Levels, second: Levels, *, mirrored: bool) -> Iterator[tu
 
 
 def branches(runs: Indices, levels: Levels, level: int) -> Indices:
-    """Return the boxes, one level down, under `runs` (k,): (k, BRANCH), or (k, 1) in the lower tree of the two."""
+    """Return indices (k, BRANCH) of the boxes one level down under boxes `runs` (k,); (k, 1) beyond the tree's top."""
     if level >= len(levels):
         return runs[:, None]
     numbers: Indices = runs[:, None] * BRANCH + np.arange(BRANCH)
@@ -183,7 +192,7 @@ def branches(runs: Indices, levels: Levels, level: int) -> Indices:
 
 
 class Shared(NamedTuple):
-    """Common points (k, 2), the number of the pair that has each (k,), and the arc lengths at which either meets it."""
+    """Common points (p, 2), the index of the pair that has each (p,), and its arc lengths (p,) on both pieces."""
 
     point: Array
     pair: Indices
@@ -194,8 +203,9 @@ class Shared(NamedTuple):
 def common_points(first: Arcs, second: Arcs, i: Indices, j: Indices) -> Shared:
     """Points common to pieces i of `first` and j of `second`, (k,) each: crossings, and ends of one on the other.
 
-    Relative to the start of the one, the circles are  k y^2 + 2 m.y = 0  and  k' y^2 + 2 m''.y + c = 0;  their
-    difference is the line through both intersections, also where one or both are lines themselves.
+    With y from the start of piece i, right normals m and m' and curvatures k and k', the circles are
+    k y^2 + 2 m.y = 0  and  k' y^2 + 2 n.y + c = 0,  n = m' - k' g, g from start to start. The difference of their
+    multiples is the line  v.y = w  through both intersections, also where one piece or both are lines.
     """
     a, b = first.take(i), second.take(j)
     gap = b.start - a.start
@@ -205,6 +215,7 @@ def common_points(first: Arcs, second: Arcs, i: Indices, j: Indices) -> Shared:
     lines = (a.curvature == 0.0) & (b.curvature == 0.0)
     v = np.where(lines[:, None], m, b.curvature[:, None] * m - a.curvature[:, None] * m2)
     w = np.where(lines, 0.0, a.curvature * c / 2.0)
+    # the line is met with the more curved of both circles
     flatter = np.abs(a.curvature) < np.abs(b.curvature)
     k = np.where(flatter, b.curvature, a.curvature)
     m = np.where((flatter | lines)[:, None], m2, m)

@@ -14,14 +14,16 @@ if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
     from kin.numeric.arrays import Array
 
-LOOKS = 40  # halvings of a path that is held against a contour
+LOOKS = 40  # halvings of a path
 
 
 def least_distance(arcs: Arcs, chain: Arcs, side: float, radius: float, tolerance: float) -> tuple[float, Array]:
-    """Least distance of a path outside (side 1) or inside (-1) a chain, and where; sharp below the radius.
+    """Least signed distance, mm, of a path `arcs` from a closed counter-clockwise chain, and its place (2,).
 
-    A path that keeps clear of the chain is measured piece against piece, in closed form: one that runs beside it would
-    have to be halved without end. Of one that meets it the depth is found within a hundredth.
+    `side` is 1 for a path outside, -1 for one inside; the distance is negative on the wrong side. From `radius`, mm, on
+    it may be too large: such a path keeps clear. A path that does not meet the chain is measured piece against piece,
+    in closed form: one that runs beside it would have to be halved without end. Where it meets the chain, the distance
+    is found to a hundredth of `tolerance`, mm, or of radius less distance, whichever is greater.
     """
     arcs, chain = _bent_little(arcs), _bent_little(chain)
     middle = arcs.points(0.5 * arcs.length)
@@ -44,7 +46,7 @@ def _bent_little(arcs: Arcs) -> Arcs:
 
 
 def _beside(arcs: Arcs, chain: Arcs, reach: float) -> tuple[float, Array]:
-    """Least distance below `reach` of pieces from a chain, and where; infinite without any."""
+    """Least distance of pieces from a chain, where below `reach`, and its place (2,); else infinite and any place."""
     grown = [(low - reach, high + reach) for low, high in boxes(arcs)]
     best, place = np.inf, arcs.start[0]
     for i, j in overlapping(grown, boxes(chain), mirrored=False):
@@ -60,13 +62,12 @@ def _beside(arcs: Arcs, chain: Arcs, reach: float) -> tuple[float, Array]:
 
 
 def _deepest(arcs: Arcs, chain: Arcs, side: float, radius: float, tolerance: float) -> tuple[float, Array]:
-    """Least distance of a path that meets the chain or lies beyond it, and where.
+    """Least signed distance of a path that meets the chain or lies beyond it, and its place (2,).
 
-    A piece no point of which can come nearer than the nearest found, or than the radius, by a hundredth of the
-    tolerance or of the depth needs no closer look. Where some still do after all looks, the least is what they cannot
-    come below.
+    A piece is halved only if a point of it can come nearer than the nearest so far, and than the radius, by a hundredth
+    of the tolerance or of the depth. Where pieces are left after all halvings, their lower bound is the result.
     """
-    best, place, floor = np.inf, arcs.start[0], np.inf
+    best, place, lower = np.inf, arcs.start[0], np.inf
     for _ in range(LOOKS):
         middle = arcs.points(0.5 * arcs.length)
         distance = side * signed_distance(chain, middle)
@@ -77,7 +78,7 @@ def _deepest(arcs: Arcs, chain: Arcs, side: float, radius: float, tolerance: flo
         near = bound < min(best, radius) - 0.01 * max(tolerance, radius - best)
         if not near.any():
             return best, place
-        floor = float(bound.min())
+        lower = float(bound.min())
         arcs = arcs.take(near)
         arcs, _ = arcs.cut(np.full(len(arcs), 2, dtype=np.intp))
-    return min(best, floor), place
+    return min(best, lower), place

@@ -1,4 +1,4 @@
-"""Distance from many points to a chain of many pieces, by chords of runs of pieces and how far these rise over them."""
+"""Distance from many points to a chain of many pieces, by chords of runs of pieces and the runs' height over them."""
 
 from __future__ import annotations
 
@@ -18,34 +18,33 @@ if TYPE_CHECKING:
 
     Places = NDArray[np.complex128]
 
-RUN = 8  # pieces under one chord, chords under the next
+RUN = 8  # pieces under one chord, and chords under one of the next level
 BLOCK = 1024  # points at a time
 FEW_PAIRS = 1024  # of a point and a piece: each is looked at
 MOST_PAIRS = 200_000  # of a point and a run; where more remain, fewer points are taken at a time
-ROUNDING = (
-    1e-13  # of the greatest coordinate: by which bounds are widened, so that every piece equally near is looked at
-)
+# Of the greatest coordinate: by so much bounds are widened, so that every piece equally near is looked at.
+ROUNDING = 1e-13
 
 
 def nearest(arcs: Arcs, points: Array) -> tuple[Indices, Array]:
-    """Return the piece nearest to each of the points (m, 2), and the distance, (m,) each; exact.
+    """Return the index of the piece nearest to each of the points (m, 2), and the unsigned distance, (m,) each; exact.
 
-    Of pieces equally near it is the first. `arcs` is best in the order of a chain, where neighbours lie together. Cost
-    grows as m log n.
+    Of pieces equally near it is the first. Pieces may turn by at most half a turn and are best in the order of a chain,
+    where neighbours lie together. Cost grows as m log n.
     """
     piece, _, distance = _foot(arcs, points)
     return piece, distance
 
 
 def _foot(arcs: Arcs, points: Array) -> tuple[Indices, Array, Array]:
-    """The piece nearest to each of the points (m, 2), the foot's arc length on it, and the distance, (m,) each."""
+    """The piece nearest to chosen of the points (m, 2), the foot's arc length on it, and the distance, (m,) chosen."""
     if len(arcs) * len(points) <= FEW_PAIRS:
         shape = len(points), len(arcs)
         every = arcs.take(np.tile(np.arange(shape[1]), shape[0]))
         s, distance = (row.reshape(shape) for row in nearest_on(every, np.repeat(points, shape[1], axis=0)))
         piece = distance.argmin(axis=1)
-        each = np.arange(shape[0]), piece
-        return piece, s[each], distance[each]
+        chosen = np.arange(shape[0]), piece
+        return piece, s[chosen], distance[chosen]
     if arcs not in _CHORDS:
         _CHORDS[arcs] = _levels(arcs)
     levels = _CHORDS[arcs]
@@ -56,6 +55,10 @@ def _foot(arcs: Arcs, points: Array) -> tuple[Indices, Array, Array]:
 
 
 def _nearest(arcs: Arcs, levels: list[_Chords], points: Array, slack: float) -> tuple[Indices, Array, Array]:
+    """The results of `_foot` for a block of points: from the longest runs down, those too far away are dropped.
+
+    `query` and `run` (k,) are the pairs of a point and a run still open, sorted by points.
+    """
     count = len(levels[-1].start)
     query, run = np.repeat(np.arange(len(points)), count), np.tile(np.arange(count), len(points))
     place, best = _places(points), np.full(len(points), np.inf)
@@ -92,20 +95,20 @@ def signed_distance(chain: Arcs, points: Array) -> Array:
 
 
 def feet(chain: Arcs, points: Array) -> tuple[Array, Array]:
-    """Distance of points (m, 2) from a closed counter-clockwise chain, mm (m,), and the nearest points of it (m, 2).
+    """Distance of points (m, 2) from a closed counter-clockwise chain, mm (m,), and the chain's nearest points (m, 2).
 
     The distance is positive outside and negative inside.
     """
     piece, s, distance = _foot(chain, points)
-    here = chain.take(piece)
-    side = radial(here, points)
-    at_start, at_end = s <= 0.0, s >= here.length
+    own = chain.take(piece)
+    side = radial(own, points)
+    at_start, at_end = s <= 0.0, s >= own.length
     corner = np.flatnonzero(at_start | at_end)
     if corner.size:  # there the side of one piece may mislead; the two normals together do not
         before = chain.take((piece - at_start)[corner])
         after = chain.take(((piece + at_end) % len(chain))[corner])
         side[corner] = dot(points[corner] - after.start, right(before.end_tangents) + right(after.tangent))
-    return np.copysign(distance, side), here.points(s)
+    return np.copysign(distance, side), own.points(s)
 
 
 def _first_of_each(sorted_index: Indices) -> Indices:
@@ -126,19 +129,19 @@ class _Chords:
 
     @staticmethod
     def between(start: Places, end: Places, sagitta: Array) -> _Chords:
-        """Chords by their ends; one that closes on itself has no length, and any heading."""
+        """Chords by their ends; one whose ends coincide has length 0 and heading 1."""
         length = np.abs(end - start)
         closed = length == 0.0
         return _Chords(start, np.where(closed, 1.0, (end - start) / np.where(closed, 1.0, length)), length, sagitta)
 
     def bounds(self, run: Indices, place: Places) -> tuple[Array, Array]:
-        """Least distance that places (m,) can have from runs (m,), and one that they have from a point of them."""
+        """Lower and upper bounds (m,), (m,) of the distance of places (m,) from runs (m,)."""
         length = self.length[run]
         offset = (place - self.start[run]) * self.heading[run].conj()
         along, across = offset.real, offset.imag**2
         beyond = along - length
         outside = np.maximum(np.maximum(-along, beyond), 0.0)
-        # the ends of a chord lie on its run
+        # the ends of a chord lie on its run: the nearer one gives the upper bound
         reach = np.sqrt(np.minimum(along**2, beyond**2) + across)
         return np.sqrt(outside**2 + across) - self.sagitta[run], reach
 
@@ -147,7 +150,7 @@ def _places(points: Array) -> Places:
     return points[:, 0] + 1j * points[:, 1]
 
 
-_CHORDS: WeakKeyDictionary[Arcs, list[_Chords]] = WeakKeyDictionary()  # of each chain, as long as it is there
+_CHORDS: WeakKeyDictionary[Arcs, list[_Chords]] = WeakKeyDictionary()  # of each chain, while it is in use
 
 
 def _levels(arcs: Arcs) -> list[_Chords]:
@@ -160,7 +163,7 @@ def _levels(arcs: Arcs) -> list[_Chords]:
         heads = np.arange(0, len(start), RUN)
         owner = np.arange(len(start)) // RUN
         whole = _Chords.between(start[heads], end[np.append(heads[1:], len(end)) - 1], np.zeros(len(heads)))
-        # what lies along a chord is farthest from a longer one at an end
+        # a point of a shorter chord is farthest from the longer one at an end
         off = np.maximum(whole.bounds(owner, start)[0], whole.bounds(owner, end)[0])
         sagitta = np.maximum.reduceat(off + sagitta, heads)
         levels.append(replace(whole, sagitta=sagitta))

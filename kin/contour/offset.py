@@ -18,13 +18,13 @@ from kin.numeric.places import place_text
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Mask
 
-STEPS = 60
-SETTLED = 1e-13  # of the size: a meeting is found to this
-SMOOTH = 1e-3  # times `fine`: what a joint's corner may move a parallel by before it counts as one
+STEPS = 60  # of Newton's method
+SETTLED = 1e-13  # of the size: accuracy of a meeting
+SMOOTH = 1e-3  # times `fine`: a joint at which a corner would move the parallel by less is taken as smooth
 
 
 class TightError(CamgeoError, ValueError):
-    """A piece that has no parallel at the distance, with its number and a place on it."""
+    """A piece has no parallel at the distance; `piece` is its index in the chain, `place` its start (x, y), mm."""
 
     def __init__(self, message: str, piece: int, place: tuple[float, float]) -> None:
         super().__init__(message)
@@ -40,6 +40,8 @@ def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
     are left out, as are kinks that move the curve by less than a thousandth of `fine`. Raises TightError, which names
     the piece, where a piece has no parallel: its radius is too small, or its neighbours cut it away.
     """
+    # A piece of length s and curvature k has a parallel of length s (1 - k d), turned inside out where that is
+    # negative.
     stretched = loop.length * (1.0 - loop.curvature * distance)
     left_out = _left_out(stretched, fine)
     tight = np.flatnonzero(~left_out & (stretched <= 0.0))
@@ -55,6 +57,7 @@ def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
         chain.curvature / (1.0 - chain.curvature * distance),
         stretched[kept],
     )
+    # [begin, end] of each moved piece, as arc lengths, is what its joints leave of it
     begin, end = np.zeros(len(kept)), moved.length.copy()
     following = np.roll(np.arange(len(kept)), -1)
     leave, enter = moved.ends, moved.start[following]
@@ -65,6 +68,7 @@ def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
     smooth = apart * np.abs(turn) <= SMOOTH * fine
     neighbours = (kept[following] - kept) % len(loop) == 1
     rounded = ~smooth & neighbours & (distance * turn < 0.0)
+    # smooth joints meet midway, along the tangents; other corners where the pieces, run on, meet
     joint = 0.5 * (leave + enter)
     end += np.where(smooth, dot(joint - leave, out), 0.0)
     begin[following] += np.where(smooth, dot(joint - enter, into), 0.0)
@@ -77,6 +81,7 @@ def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
     swallowed = np.flatnonzero(end <= begin)
     if swallowed.size:
         raise _tight(loop, int(kept[swallowed[0]]), distance)
+    # each piece by its start and bulge, with the arc of a rounded corner before it
     points, bulges = [], []
     spanned = np.tan(0.25 * moved.curvature * (end - begin))
     for i in range(len(kept)):
@@ -91,10 +96,10 @@ def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
 
 
 def _left_out(stretched: Array, fine: float) -> Mask:
-    """Tell the pieces (n,) of a closed chain that are short, and with those beside them no longer than `fine`."""
+    """Mask (n,) of the pieces of a closed chain whose run of short neighbours is together no longer than `fine`, mm."""
     length = np.abs(stretched)
     short = length <= fine
-    first = int(np.argmin(short))  # which stays
+    first = int(np.argmin(short))  # a piece that stays: runs are counted from it
     run = np.cumsum(~np.roll(short, -first))
     together = np.bincount(run, np.roll(np.where(short, length, 0.0), -first))
     left_out: Mask = short & np.roll(together[run] <= fine, first)
@@ -102,14 +107,17 @@ def _left_out(stretched: Array, fine: float) -> Mask:
 
 
 def chain_of(points: Array, bulges: Array) -> Arcs:
-    """Lines and arcs from point to point (n, 2) and back, by bulges (n,), each turning by at most half a turn."""
+    """Lines and arcs from point to point (n, 2) and back, each turning by at most half a turn.
+
+    A bulge (n,) is tan(sweep/4) of the piece that starts at its point.
+    """
     return Contour.from_bulges(points, bulges).as_arcs()[0]
 
 
 def _meeting(first: Arcs, other: Arcs) -> tuple[Array, float, float] | None:
     """Where two pieces (1,), run on beyond their ends, meet near the end of one and the start of the other.
 
-    The point (2,) and the arc lengths on both, by Newton's method; None where it finds none.
+    Returns the point (2,) and the arc lengths on both, by Newton's method; None where it does not converge.
     """
     s, t = first.length.copy(), np.zeros(1)
     size = float(np.abs(first.start).max() + first.length[0] + other.length[0])

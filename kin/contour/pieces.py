@@ -23,14 +23,15 @@ __all__ = ["ARC", "BEZIER", "LINE", "TURN", "NormalRanges", "Pieces", "wrapped"]
 
 LINE, ARC, BEZIER = 0, 1, 2
 
-# A bulge below this bends its chord by less than the rounding of the chord's own length.
+# An arc with a bulge below this is off its chord by less than the rounding of the chord's length.
 STRAIGHT_BULGE = 1e-18
 
 
 class NormalRanges(NamedTuple):
-    """Curved pieces (indices, (c,)) and the normals at which each can be farthest: from `low` over `width`, (c,).
+    """Curved pieces (c,) as indices, and the angles of the normals at which each can be the farthest.
 
-    `low` lies in [0, 2 pi). Each normal in the range belongs to one point of the piece.
+    They run counter-clockwise from `low` (c,) in [0, 2 pi) over `width` (c,), rad. Each normal in the range belongs to
+    one point of the piece.
     """
 
     piece: Indices
@@ -87,7 +88,7 @@ class Pieces:
 
     @staticmethod
     def from_arcs(centre: Array, radius: Array, angle: Array, sweep: Array) -> Pieces:
-        """Arcs about centres (n, 2) with radii, polar angles of the start and signed sweeps (n,)."""
+        """Arcs about centres (n, 2) with radii (n,), polar angles (n,) of the starts, and signed sweeps (n,), rad."""
         n = radius.size
         return Pieces(
             kind=np.full(n, ARC, dtype=np.uint8),
@@ -119,7 +120,7 @@ class Pieces:
 
     @staticmethod
     def joined(parts: list[Pieces]) -> Pieces:
-        """All pieces of `parts` (one at least), in order."""
+        """All pieces of `parts`, one part at least, in order."""
         if len(parts) == 1:
             return parts[0]
         offsets = np.cumsum([0] + [p.beziers.count for p in parts[:-1]])
@@ -155,7 +156,7 @@ class Pieces:
         )
 
     def turned_round(self, which: NDArray[np.bool_] | None = None) -> Pieces:
-        """Return the same pieces in the same order, those of the mask (n,) run through backwards; all by default."""
+        """Return the same pieces in the same order, those of the mask (n,), by default all, run through backwards."""
         w = np.ones(len(self), dtype=bool) if which is None else which
         beziers = self.beziers
         if beziers.count:
@@ -207,7 +208,7 @@ class Pieces:
 
     @cached_property
     def directions(self) -> tuple[Array, Array]:
-        """Angles of the tangent at the start and at the end of each piece, radians, 2 x (n,)."""
+        """Angles of the tangents at the starts (n,) and at the ends (n,), rad."""
         chord = self.end - self.start
         first = np.arctan2(chord[:, 1], chord[:, 0])
         last = first.copy()
@@ -222,7 +223,7 @@ class Pieces:
 
     @cached_property
     def turns(self) -> Array:
-        """Signed turn of the tangent along each piece, radians (n,)."""
+        """Turn of the tangent (n,), rad, along each piece, counter-clockwise positive."""
         first, last = self.directions
         return np.where(self.kind == ARC, self.sweep, wrapped(last - first))
 
@@ -240,18 +241,18 @@ class Pieces:
 
     @cached_property
     def normal_ranges(self) -> NormalRanges:
-        """Ranges of normal directions, rad, over which each curved piece can be the farthest."""
+        """Ranges of normals over which each curved piece can be the farthest."""
         curved = np.flatnonzero(self.kind != LINE)
         first, last = (d[curved] for d in self.directions)
         turn = self.turns[curved]
-        # Turning left, the bow bulges to the right of its tangent; turning right, to the left.
+        # A piece that turns left bulges to the right of its tangents, one that turns right to their left.
         low = np.where(turn >= 0.0, first - np.pi / 2.0, last + np.pi / 2.0)
         low = np.mod(low, TURN)
         low[low >= TURN] = 0.0
         return NormalRanges(curved, low, np.abs(turn))
 
     def arc_points(self, pieces: Indices, turn: Array) -> Array:
-        """Points (k, 2) of arcs, `turn` (k,) radians on from their starts, counter-clockwise positive."""
+        """Points (k, 2) of the arcs `pieces` (k,), `turn` (k,) rad counter-clockwise from their starts."""
         half = turn / 2.0
         middle = self.angle[pieces] + half
         along = np.stack([-np.sin(middle), np.cos(middle)], axis=1)
@@ -259,7 +260,7 @@ class Pieces:
         return points
 
     def points(self, pieces: Indices, share: Array) -> Array:
-        """Points (k, 2) at shares (k,) in [0, 1] of the length of pieces (k,), of a Bezier's parameter."""
+        """Points (k, 2) on `pieces` (k,), at shares (k,) in [0, 1] of their lengths, or of Bezier parameters."""
         start, end = self.start[pieces], self.end[pieces]
         x = start + share[:, None] * (end - start)
         kind = self.kind[pieces]

@@ -2,8 +2,8 @@
 
 The exact contour is taken as points p with outward normals n. About the middles of both areas the distances at equal
 directions are compared for every turn at once, by their correlation; from the turns that fit best Newton's method goes
-on by least squares over the turn, the shift and, where these do not do, an offset all round: the distance of a placed
-point from the file's contour changes by n per shift, by the moment of n per turn. What is found is words alone: the
+on by least squares over the turn, the shift and, where these are not enough, an offset all round: the distance of a
+placed point from the file's contour changes by n per shift, by the moment of n per turn. The result is words alone: the
 contour stays wrong.
 """
 
@@ -22,20 +22,21 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 POINTS = 720  # directions in which distances are compared
-LOOKS = 8  # on each piece of the file's
-MOST_PIECES = 20_000  # beyond, nothing is looked for
+LOOKS = 8  # points on each piece of the file's contour
+MOST_PIECES = 20_000  # of the file's contour: beyond, no placement is looked for
 STARTS = 6  # turns from which the fit goes on
 STEPS = 12  # of Newton's method
 NEAR = 2.0  # tolerances within which a placed contour fits
-FACTORS = (1.0, 25.4, 1.0 / 25.4, 10.0, 0.1, 1000.0, 1e-3)
-SAME_SIZE = 0.1  # share by which an area may differ from that of one of these
+FACTORS = (1.0, 25.4, 1.0 / 25.4, 10.0, 0.1, 1000.0, 1e-3)  # mixed-up units: inches, centimetres, metres
+SAME_SIZE = 0.1  # share by which the size may differ from a factor: as much as an offset
 
 
 def placement(contour: Contour, exact: Array, tolerance: float) -> str:
     """Words for how the exact contour must be placed, turned, mirrored, scaled or offset to fit a file's contour.
 
-    `exact` are some hundred points of it (n, 2), in order; `tolerance` is in mm. Empty where no turn, shift, mirror
-    image, change of unit or offset makes it fit, or none is needed.
+    `exact` are some hundred points (n, 2) of the exact contour, mm, in order; `tolerance` is in mm. Empty where no
+    turn, shift, mirror image, change of unit or offset makes it fit, where none is needed, and for a contour that is
+    clockwise or of more than 20,000 pieces.
     """
     if len(contour) > MOST_PIECES or not contour.area > 0.0:
         return ""
@@ -70,12 +71,12 @@ def _words(placed: Array, factor: float, exact: Array, tolerance: float, *, mirr
 
 
 def _rounded(value: float, accuracy: float) -> float:
-    """The value to as many decimals as an accuracy has; 0 for less."""
+    """The value to as many decimals as an accuracy has; 0 for a value no larger than the accuracy."""
     return round(value, max(0, int(np.ceil(-np.log10(accuracy))))) if abs(value) > accuracy else 0.0
 
 
 def _fitted(contour: Contour, exact: Array, tolerance: float) -> Array | None:
-    """Turn, rad, shift and offset, mm, of the exact contour that fits, the least turned one; None where none does."""
+    """Turn, rad, shift and offset, mm, as (4,), that fit the exact contour, of the least turn; None where none does."""
     chain, _ = contour.as_arcs()
     normal = _normals(exact)
     fits = []
@@ -86,6 +87,7 @@ def _fitted(contour: Contour, exact: Array, tolerance: float) -> Array | None:
                 points, outward = _turned(exact, placed[0]), _turned(normal, placed[0])
                 apart = signed_distance(chain, points + placed[1:3]) + placed[3]
                 off = float(np.abs(apart).max())
+                # least squares for the changes of turn, shift and offset that bring all distances to 0
                 moment = cross(points, outward)
                 slope = np.column_stack([moment, outward, np.ones(len(points))])[:, :columns]
                 step = np.linalg.lstsq(slope, -apart, rcond=1e-9)[0]
@@ -99,10 +101,10 @@ def _fitted(contour: Contour, exact: Array, tolerance: float) -> Array | None:
 
 
 def _starts(points: Array, exact: Array) -> list[Array]:
-    """Placements to begin with, of the turns at which the distances about the middles of both areas agree best."""
+    """Placements (4,) to begin with: turns at which the distances about the middles of both areas agree best, and 0."""
     middles = [_middle(points), _middle(exact)]
-    there, here = (_radii(outline - middle) for outline, middle in zip((points, exact), middles, strict=True))
-    fit = np.fft.irfft(np.fft.rfft(there - there.mean()) * np.conj(np.fft.rfft(here - here.mean())), POINTS)
+    of_file, own = (_radii(outline - middle) for outline, middle in zip((points, exact), middles, strict=True))
+    fit = np.fft.irfft(np.fft.rfft(of_file - of_file.mean()) * np.conj(np.fft.rfft(own - own.mean())), POINTS)
     peaks = np.flatnonzero((fit >= np.roll(fit, 1)) & (fit >= np.roll(fit, -1)))
     best = peaks[np.argsort(-fit[peaks], kind="stable")][:STARTS]
     turns = [*(best * TURN / POINTS).tolist(), 0.0]

@@ -1,4 +1,4 @@
-"""A flat region ready to be held against another: short pieces in its own axes, their normals, corners, a point inside.
+"""A flat region ready to be measured against another: short pieces in its own axes, normals, corners, a point inside.
 
 Distances between lines and arcs are exact. The distance from a point to a region is signed, negative inside.
 """
@@ -33,16 +33,16 @@ GRID = 24  # points along each side of the grid on which a point inside is looke
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """The inside of an outer contour less that of its holes. Features: n pieces, then corners, then a point inside.
+    """The inside of an outer contour less its holes, as n features: pieces, then corners, then a point inside.
 
-    arcs        the pieces, material on their left; corners and the point are pieces without length
+    arcs        the features (n): material on the left of pieces; corners and the point are pieces without length
     boundary    number of features that lie on the boundary: all but the last
     pieces      number of features that are pieces
-    middle      (n, 2), and `reach` (n,) half the length: the feature lies within that of its middle
+    middle      (n, 2), and `reach` (n,) half the length: the feature lies within `reach` of its middle
     normal      (n, 2) outward unit normal at the middle, and `fan` (n,) by how far, rad, other normals differ from it
     centre      (n, 2), and `off` (n,): every line along a normal passes within `off` mm of it; inf without a centre
-    widened     (pieces,) by how much of its `fan` a piece shares a smooth joint's turn
-    at_start    (n, 2) sum of the outward normals on both sides of the start, and `at_end`
+    widened     (pieces,) the part of a piece's `fan`, rad, that is the turn of a smooth joint at one of its ends
+    at_start    (n, 2) sum of the outward normals on both sides of the start, and `at_end` of the end
     """
 
     arcs: Arcs
@@ -60,7 +60,7 @@ class Region:
 
     @staticmethod
     def of(outer: Contour, holes: Sequence[Contour] = ()) -> Region:
-        """Return the region; the contours' own sense does not matter."""
+        """Return the region inside `outer` and outside the holes; the sense of each contour does not matter."""
         chains = [_chain(outer, outward=True), *(_chain(hole, outward=False) for hole in holes)]
         box = outer.vertices.max(axis=0) - outer.vertices.min(axis=0)
         longest = float(np.hypot(box[0], box[1])) / PARTS
@@ -102,7 +102,7 @@ class Region:
 
     @cached_property
     def inner_point(self) -> Array:
-        """A point well inside (2,): the deepest on a grid."""
+        """The deepest point (2,) of a grid of 24 by 24 over the region."""
         low, high = self.chain.start.min(axis=0), self.chain.start.max(axis=0)
         share = (np.arange(GRID) + 0.5) / GRID
         x, y = np.meshgrid(*(low[k] + share * (high[k] - low[k]) for k in (0, 1)))
@@ -112,7 +112,7 @@ class Region:
 
     @cached_property
     def disc(self) -> tuple[Array, float]:
-        """Centre (2,) and radius of a disc that holds the region."""
+        """Centre (2,) and radius, mm, of a disc that holds the region."""
         low, high = self.chain.start.min(axis=0), self.chain.start.max(axis=0)
         centre: Array = 0.5 * (low + high)
         gap = self.middle - centre
@@ -123,27 +123,28 @@ class Region:
         return self.nearest(points)[1]
 
     def nearest(self, points: Array) -> tuple[Indices, Array]:
-        """Return the piece nearest to each of the points (m, 2), and the distance, negative inside: (m,) each."""
+        """Return the piece nearest to each of the points (m, 2) (m,) and the distance (m,), negative inside."""
         piece, distance = nearest(self.chain, points)
         return piece, np.copysign(distance, self.side(piece, points))
 
     def no_deeper(self, arcs: Arcs, piece: Indices) -> Array:
-        """Lower bound (k,) of the signed distance of all points of arcs, each by one `piece` (k,) of the boundary.
+        """Lower bounds (k,) of the signed distance from the region over all points of `arcs` (k).
 
-        No point is deeper than it is far from that piece. Along a straight line the distance from a straight one is
-        greatest at an end; an arc strays from its chord by no more than a length squared times an eighth of curvature.
+        Each is had from one `piece` (k,) of the boundary: no point is deeper than it is far from that piece. Along a
+        straight line the distance from a straight piece is greatest at an end; an arc is off its chord by no more than
+        its length squared times an eighth of its curvature.
         """
-        here = self.arcs.take(piece)
-        first, away = nearest_on(here, arcs.start)
-        last, away_last = nearest_on(here, arcs.ends)
-        bow = np.abs(here.curvature) * (last - first) ** 2 + np.abs(arcs.curvature) * arcs.length**2
+        own = self.arcs.take(piece)
+        first, away = nearest_on(own, arcs.start)
+        last, away_last = nearest_on(own, arcs.ends)
+        bow = np.abs(own.curvature) * (last - first) ** 2 + np.abs(arcs.curvature) * arcs.length**2
         bound: Array = -np.maximum(away, away_last) - 0.125 * bow
         return bound
 
     def side(self, feature: Indices, points: Array) -> Array:
-        """Signed numbers (m,) of points (m, 2), by the feature (m,) nearest to each: above 0 outside the region.
+        """Signs of points (m, 2) as numbers (m,), by the feature (m,) nearest to each: positive outside the region.
 
-        Only the sign has a meaning. At a corner the normal there decides, which respects both pieces that meet in it.
+        Their size has no meaning. At a corner the sum of the normals of both pieces that meet there decides.
         """
         arcs = self.arcs.take(feature)
         s, _ = nearest_on(arcs, points)
@@ -166,14 +167,14 @@ def _cut(chain: Arcs, longest: float) -> Arcs:
 
 
 class _Points(NamedTuple):
-    """Corners and others (m, 2), and the sum of the outward normals there (m, 2)."""
+    """Features without length (m, 2), and the sum of the outward normals there (m, 2)."""
 
     place: Array
     normal: Array
 
 
 def _region(arcs: Arcs, widened: Array, points: _Points, at_start: Array, at_end: Array) -> Region:
-    """Collect what is known of pieces (n,), whose joints widen their normals by `widened` (n,), and of points."""
+    """Region of pieces `arcs` (n), whose smooth joints widen their normals by `widened` (n,), rad, and of points."""
     m, n = len(points.place), len(arcs)
     dots = Arcs(points.place, np.tile([1.0, 0.0], (m, 1)), np.zeros(m), np.zeros(m))
     k, length = arcs.curvature, arcs.length
@@ -197,7 +198,7 @@ def _region(arcs: Arcs, widened: Array, points: _Points, at_start: Array, at_end
 
 
 class Gaps(NamedTuple):
-    """Distance (k,) of pairs of pieces, 0 where they meet, and the points (k, 2) on either that have it."""
+    """Distance (k,) of pairs of pieces, 0 where they meet, and the nearest points (k, 2) on each."""
 
     distance: Array
     first: Array
@@ -205,10 +206,10 @@ class Gaps(NamedTuple):
 
 
 def gaps(first: Arcs, second: Arcs) -> Gaps:
-    """Distance between pieces pair by pair, none of which turns by more than half a turn; exact.
+    """Distances of pieces of `first` from those of `second`, pair by pair, none of more than half a turn; exact.
 
-    The least distance is at an end of one of them, or along a common normal: through the centre of the more curved one
-    and square to the other, unless they cross.
+    Unless they cross, the least distance is at an end of one piece, or along a common normal: through the centre of the
+    more curved piece and square to the other.
     """
     ends, feet = _ends(first, second)
     bent = np.flatnonzero((first.curvature != 0.0) | (second.curvature != 0.0))
@@ -253,10 +254,10 @@ def _ends(first: Arcs, second: Arcs) -> tuple[Gaps, Array]:
 
 
 def _along_normal(inner: Arcs, outer: Arcs) -> tuple[Array, Array]:
-    """Point of each `inner` piece, an arc, on the line through its centre square to `outer`; its distance from that."""
+    """Distance from `outer` of the point of each `inner` arc on the normal of `outer` through its centre; the point."""
     k = inner.curvature
     centre = inner.start + left(inner.tangent) / k[:, None]
-    # towards the other centre, times the other curvature: a line needs no case of its own
+    # towards the centre of `outer`, times its curvature: a line needs no case of its own
     towards = outer.curvature[:, None] * (outer.start - centre) - right(outer.tangent)
     size = np.hypot(towards[:, 0], towards[:, 1])
     middle = inner.points(0.5 * inner.length) - centre
@@ -278,7 +279,7 @@ def _chosen(condition: NDArray[np.bool_], pieces: Arcs, other: Arcs) -> Arcs:
 
 
 def farthest(arcs: Arcs, point: Array) -> Array:
-    """Greatest distance of pieces that turn by less than half a turn from `point` (n, 2): (n,), exact."""
+    """Greatest distance (n,) of each piece from a point (n, 2); exact for pieces of less than half a turn."""
     ends = np.maximum(np.hypot(*(arcs.start - point).T), np.hypot(*(arcs.ends - point).T))
     k = arcs.curvature
     bent = np.flatnonzero(k != 0.0)
