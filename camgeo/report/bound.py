@@ -1,4 +1,7 @@
-"""Title of a check, and its limit in words and as a sign, which say whether the limit itself is allowed."""
+"""Title of a check, and its limit in words and as a sign, which say whether the limit itself is allowed.
+
+A check is an entry of the list `checks` of a report (docs/report.md).
+"""
 
 from __future__ import annotations
 

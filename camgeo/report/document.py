@@ -33,16 +33,25 @@ if TYPE_CHECKING:
     from kin.law.sources.motion import Kept
 
 BELOW = "below rounding"
-ROUNDING = 1e-11  # mm, in or degrees: rounding of sums of doubles of some hundred
+ROUNDING = 1e-11  # mm, in or degrees: rounding of sums of numbers of some hundred
 DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part"})  # stages of the exact cam
 
 
 @dataclass(frozen=True)
 class Findings:
-    """Results of a run in mm and degrees; sections are in the recipe's units already.
+    """Results of a run, lengths in mm and angles in degrees.
 
-    `displacements` are factor and unit of the follower's displacements in the report. `missing` has pairs of a file
-    that could not be made and the missing package with the command that installs it.
+    stages         (name, seconds) of each stage
+    skipped        (name, reason) of each format, check or capability that was left out
+    follower       name of its kind
+    missing        (file, reason) of each file that could not be made: the missing package and how to install it
+    kept           names of files of an earlier run that stay beside the new ones
+    linkage        section of the report, in the recipe's units; None without one, as `preload`
+    joints         joints of the motion at which derivatives jump
+    table          how closely the motion keeps to its table of rows; None without a table
+    displacements  factor from mm or rad to the unit of the follower's displacements in the report, and that unit
+    contours       measures of the exact contours, by the names of the surfaces
+    sections       sections of capabilities by their keys, in the recipe's units
     """
 
     checks: tuple[Check, ...]
@@ -64,7 +73,7 @@ class Findings:
 
     @property
     def ok(self) -> bool:
-        """True where every check holds."""
+        """Whether every check holds."""
         return all(check.ok for check in self.checks)
 
 
@@ -99,12 +108,12 @@ def document(recipe: Order, findings: Findings) -> dict[str, Any]:
 
 
 def as_json(report: object) -> str:
-    """JSON text of a report or of several; strict JSON, so an infinite figure is null."""
+    """JSON text of a report or of several; a figure that is nan or infinite is null, as strict JSON has neither."""
     return json.dumps(finite(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def file_entry(name: str, data: bytes) -> dict[str, Any]:
-    """Entry of a file in a report: its path, size in bytes and checksum."""
+    """Entry of a file in a report: path, size in bytes and SHA-256 checksum; `name` is the path, `data` the content."""
     return {"path": name, "bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
 
 
@@ -334,7 +343,7 @@ def pieces_word(file: dict[str, Any]) -> str:
 
 
 def table(report: dict[str, Any]) -> str:
-    """Table of every check and file of a report, as aligned text."""
+    """Tables of a report as aligned text: checks and remarks, files, those of capabilities; skipped items and times."""
     rows: list[Sequence[str]] = [("check", "", "value", "limit", "unit", "at", "file")]
     rows += [
         (
@@ -348,6 +357,7 @@ def table(report: dict[str, Any]) -> str:
         )
         for check in report["checks"]
     ]
+    # a remark has no side of its own: its figure lies on the unusual side of the rule
     for remark in report.get("remarks", ()):
         rule, place = remark["rule"], remark["at_deg"]
         side = "" if rule is None else ">=" if remark["value"] < rule else "<="
@@ -357,6 +367,7 @@ def table(report: dict[str, Any]) -> str:
     text = align(rows)
     if report.get("remarks"):
         text += "\n\n" + "\n".join(f"remark {remark['name']}: {remark['sentence']}" for remark in report["remarks"])
+    # a file of several surfaces has a row for each
     rows = [("file", "bytes", "pieces", "tolerance", "proved", "measured", "motion max", "rms", "at")]
     for file in (
         {**file_entry, **surface} for file_entry in report["files"] for surface in file_entry.get("surfaces") or [{}]
@@ -384,7 +395,7 @@ def table(report: dict[str, Any]) -> str:
 
 
 def verdict(report: dict[str, Any]) -> str:
-    """Lines of `summary` with the verdict last, so that it stays in sight under a table."""
+    """Lines of `summary` with its first line, the verdict, last, so that it stays in sight under a table."""
     first, *failed = summary(report).split("\n")
     return "\n".join([*failed, first])
 
@@ -427,9 +438,9 @@ def value_text(check: dict[str, Any]) -> str:
 
 
 def error_text(value: float | None, unit: str = "", digits: int = 6, limit: float | None = None) -> str:
-    """Measured error with its unit; `below rounding` for one that is only rounding, far from its limit.
+    """Measured error to `digits` significant digits, with its unit; empty for None.
 
-    Empty for None.
+    It is `below rounding` where it is only rounding and less than a thousandth of the limit, if there is one.
     """
     if value is None:
         return ""
@@ -439,7 +450,7 @@ def error_text(value: float | None, unit: str = "", digits: int = 6, limit: floa
 
 
 def align(rows: Sequence[Sequence[str]]) -> str:
-    """Rows of cells as text in columns."""
+    """Rows of cells, at least one row and equally many cells in each, as lines of text in columns."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     padded = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
     return "\n".join(line.rstrip() for line in padded)

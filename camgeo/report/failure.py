@@ -1,4 +1,7 @@
-"""Text of a failed check for an engineer: figure, limit, place, remedy."""
+"""Text of a failed check for an engineer: figure, limit, place, remedy.
+
+A check is an entry of the list `checks` of a report (docs/report.md).
+"""
 
 from __future__ import annotations
 
@@ -39,7 +42,7 @@ def failure_at(check: dict[str, Any], recipe: Order, field: str, would_do: str =
 
 
 def headline(check: dict[str, Any]) -> str:
-    """Text of one line on a failed check."""
+    """Text of one line on a failed check: name, file, figure, limit, place; without a figure the reason."""
     file = check.get("file")
     text = f"{title(check)} of {file}" if file else title(check)
     if check["value"] is None:
@@ -51,7 +54,7 @@ def headline(check: dict[str, Any]) -> str:
 
 
 def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
-    """Change of the recipe that would let the check hold; empty where none is known or the check itself says it."""
+    """Sentence on a change of the recipe that would let the check hold; empty where none is known."""
     declared = declaration(check["name"])
     return "" if declared is None or declared.remedy is None else declared.remedy(check, report, recipe)
 

@@ -1,7 +1,7 @@
 """The linkage in the report: mobility, figures of the intended motion, dwells, and the errors of the files.
 
-Angles in degrees, lengths in the recipe's unit, velocities and accelerations by radian of shaft or relative angle. A
-place has both angles: of the shaft, and the relative one between cam and frame, over which AS plot.
+In the section, angles are in degrees, lengths in the recipe's unit, velocities and accelerations by radian of shaft or
+relative angle. A place has both angles: the shaft's, and the relative angle between cam and frame.
 """
 
 from __future__ import annotations
@@ -24,7 +24,11 @@ if TYPE_CHECKING:
 
 
 def linkage_section(recipe: Recipe, driven: DesignedLinkage, files: Sequence[FileResult]) -> dict[str, Any]:
-    """Section of the report on the linkage of a recipe, as plain data; `error` is that of the worst file."""
+    """Section of the report on the linkage of a recipe, as plain data.
+
+    Its `error` is that of the file with the greatest error of the output, and is absent without judged files. Of a
+    mechanism that does not turn right round it has mobility alone.
+    """
     mechanism, mobility = driven.mechanism, driven.mechanism.mobility()
     length_unit = in_units(recipe, None, "mm")[1]
     scale, unit = (math.degrees(1.0), "deg") if mechanism.unit == "deg" else (1.0 / recipe.mm, length_unit)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from kin.law.contacts import Arrangement, Guide, Touch
     from kin.numeric.arrays import Array
 
-JOINT = 0.045  # of the cam's reach: the size of a joint
+JOINT = 0.045  # of the cam's greatest radius: the size of a joint, a pin of which is still seen on a page
 EXACT = "exact"
 SIGN = "above 0 where the cam drives a rise"
 PUSHED = "above 0 where a disc pushes its own contact outwards"
@@ -34,10 +34,11 @@ PUSHED = "above 0 where a disc pushes its own contact outwards"
 
 @dataclass(frozen=True, eq=False)
 class FileError:
-    """Distance of a file's contour outside the exact one in each step: least and greatest (STEPS,), negative inside.
+    """Distance of a file's contour from the exact one, in the recipe's unit, above 0 outside.
 
-    `surface` is the contour's name, empty where the cam has one. Files with the same error share an entry, under all
-    their names. Lengths, `tolerance` too, are in the recipe's unit.
+    `low` and `high` (STEPS,) are the least and the greatest distance in each step of the shaft, nan where the contour
+    is cut away. `surface` is the contour's name, empty where the cam has one. Files with the same error share an entry,
+    whose name lists them. `tolerance` is the file's, in the recipe's unit.
     """
 
     name: str
@@ -54,7 +55,7 @@ class FileError:
 
 @dataclass(frozen=True, eq=False)
 class Traced:
-    """Points and outward normals (STEPS, 2) of an exact contour in the cam's axes, at the middle of each step."""
+    """Points and outward normals (STEPS, 2) of an exact contour in the cam's axes, at one place in each step."""
 
     point: Array
     normal: Array
@@ -64,8 +65,9 @@ class Traced:
 class Content:
     """Drawing, plots and errors of a page; lengths in the recipe's unit, the scene for the recipe's sense of rotation.
 
-    `relative` (STEPS + 1,) is the angle between cam and frame, rad, at the steps of the shaft angle, to which it is
-    equal without a linkage. `contours` are the exact ones by the names of their surfaces; `errors` are of the files.
+    `rests` are the dwells. `relative` (STEPS + 1,) is the angle between cam and frame, rad, at the steps of the shaft
+    angle; without a linkage it is the shaft angle. `contours` are the exact ones by the names of their surfaces;
+    `errors` are of the files' contours.
     """
 
     scene: Scene
@@ -111,9 +113,10 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
 def mechanism(
     recipe: Recipe, design: Design, drawn: list[Drawn] | None = None
 ) -> tuple[Scene, list[curves.Plot], Array]:
-    """Return what moves, in the recipe's unit and as the shaft turns, plots, and the relative angle (STEPS + 1,), rad.
+    """Return scene, plots of the motion, and the angle between cam and frame (STEPS + 1,), rad.
 
-    Without what is `drawn` the cam has the exact contours.
+    The scene is in the recipe's unit and for the recipe's sense of rotation. It shows the contours `drawn`, by default
+    the exact ones.
     """
     scene, plots, relative = _mechanism(recipe, design, drawn or [(EXACT, _exact_rings(recipe, design))])
     scene = scene.scaled(1.0 / recipe.mm)
@@ -181,6 +184,7 @@ def _discs(design: Design, drawings: list[Drawn], bore: float | None, size: floa
 def _mechanism(recipe: Recipe, design: Design, drawings: list[Drawn]) -> tuple[Scene, list[curves.Plot], Array]:
     """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
     _, rings_of_discs = drawings[0]
+    # the greatest radius scales the symbols and ends the lines that pass the cam
     reach = max(float(np.hypot(*rings[0].flattened().T).max()) for rings in rings_of_discs)
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contours else "The cam is not made: a check of the exact contour fails."
@@ -188,11 +192,13 @@ def _mechanism(recipe: Recipe, design: Design, drawings: list[Drawn]) -> tuple[S
         *lower, upper = (disc_design.name for disc_design in design.discs)
         note = f"{upper.capitalize()} stands in front of {' and '.join(lower)} and is drawn through. {note}".rstrip()
     first = design.exact.surfaces[0]
+    # the line at the zero of the motion begins at the contour of a ring, and not at a bore
     if first.side < 0:
         bore = 2.0 * float(np.hypot(*first.curve.sample(np.zeros(1)).point[0]))
     if design.driven is not None and design.driven.turns:
         from camgeo.report.page.linked import SteppedMechanism, linkage_bodies, path_bodies
 
+        # a mechanism that turns: its links move the frame, against which the cam turns
         driven = SteppedMechanism.of(design.driven.mechanism)
         discs = _discs(design, drawings, bore, size, driven.cam)
         bodies = linkage_bodies(driven, size)
@@ -209,6 +215,7 @@ def _mechanism(recipe: Recipe, design: Design, drawings: list[Drawn]) -> tuple[S
         details = "; ".join(check.detail for check in design.driven.checks if not check.ok and check.detail)
         slides = "The mechanism does not make a full turn: the cam is shown in a frame that only slides. "
         note = f"{slides}{details[0].upper()}{details[1:]}. {note}" if details else slides + note
+    # the follower alone, on its guide
     view = view_of(recipe, design)
     bodies, more = DRAWN[design.follower.arrangement](view, reach, size)
     shaft = pivot("shaft", 0.0, 0.0, size, "O" if view.guide.unit == "deg" else "")
@@ -246,7 +253,7 @@ def _two_faces(view: View[Oscillating, Flat], _: float, size: float) -> _Drawing
 def _round_contact(
     view: View[Guide, Round], size: float
 ) -> tuple[guided.Touch, Array, list[MovingBody], list[curves.Plot]]:
-    """Return roller, shoe or edge, the displacement (STEPS + 1,), mm or rad, the contact, and the plot of its angle."""
+    """Return roller, shoe or edge, displacement (STEPS + 1,), mm or rad, contacts, and the plot of pressure angles."""
     angle = view.pressure(SHAFT)
     touch = guided.touch_of(view.touch, angle, size)
     plots = [curves.pressure(view.recipe, {view.touch.word: angle}, SIGN)]
@@ -254,7 +261,7 @@ def _round_contact(
 
 
 def _contacts(view: View[Guide, Touch], size: float, within: float = 0.0) -> list[MovingBody]:
-    """Return the contact of each surface; the arrow is longer by `within`, mm."""
+    """Return the contact of each surface; its arrow is longer by `within`, mm, which a roller covers."""
     surfaces = view.design.exact.surfaces
     names = [f"contact, {surface.name}" if surface.name else "contact" for surface in surfaces]
     return [
@@ -275,7 +282,10 @@ def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
 def _face_contact(
     view: View[Guide, Flat], size: float
 ) -> tuple[Array, float, float, list[MovingBody], list[curves.Plot]]:
-    """Return the displacement (STEPS + 1,), ends of the contact's run along the face, mm, the contact, and plots."""
+    """Return displacement (STEPS + 1,), low and high end of the contact's run on the face, mm, contacts, and plots.
+
+    The displacement is in mm or rad; the ends have a margin.
+    """
     place, angle = view.place(SHAFT), view.pressure(SHAFT)
     plots = [
         curves.pressure(view.recipe, {view.touch.word: angle}),

@@ -56,10 +56,11 @@ class Series:
 
 @dataclass(frozen=True, eq=False)
 class Plot:
-    """Curves over one angle; `limits` are lines across (value, name), `note` a remark below.
+    """Curves over the shaft angle or the relative angle, in `unit`.
 
-    `axis` is the quantity's name beside the upright axis, the title where it is empty. The axis always spans the values
-    that it `holds`: 0 for a force, the tolerance for an error.
+    `limits` are lines across, pairs (value, name); with `dwells` the dwells are shaded; `note` stands below. `axis` is
+    the quantity's name beside the upright axis, by default the title. That axis always spans the values of `holds`: 0
+    for a force, the tolerance for an error.
     """
 
     title: str
@@ -86,7 +87,7 @@ def group_alike(items: Iterable[T], alike: Callable[[T, T], bool]) -> list[list[
 
 
 def merge_alike(plots: Sequence[Plot]) -> list[Plot]:
-    """Plots, of those with the same curves the first alone, under the titles of all."""
+    """Plots without repetitions: of plots with the same curves the first is kept, under the titles of all."""
     return [
         replace(alike[0], title=join_titles([plot.title for plot in alike]), series=_distinct(alike[0].series))
         for alike in group_alike(plots, _same_curves)
@@ -94,7 +95,7 @@ def merge_alike(plots: Sequence[Plot]) -> list[Plot]:
 
 
 def _distinct(series: Sequence[Series]) -> tuple[Series, ...]:
-    """Series of a plot, of those with the same values the first alone, under the names of all."""
+    """Series without repetitions: of series with the same values the first is kept, under the names of all."""
     groups = group_alike(series, lambda first, row: equal(first.values, row.values))
     return tuple(replace(rows[0], name=join_titles([row.name for row in rows])) for rows in groups)
 
@@ -108,7 +109,7 @@ def _same_curves(plot: Plot, other: Plot) -> bool:
 
 
 def equal(values: Array, other_values: Array) -> bool:
-    """Whether two curves differ by less than a picture shows, `SAME` of their range."""
+    """Whether two curves (n,) differ by less than a picture shows, `SAME` of the first one's range."""
     span = float(np.ptp(values[np.isfinite(values)])) if np.isfinite(values).any() else 0.0
     return bool(np.allclose(values, other_values, rtol=1e-12, atol=SAME * span, equal_nan=True))
 
@@ -125,7 +126,7 @@ def join_titles(titles: Sequence[str]) -> str:
 
 @dataclass(frozen=True)
 class DwellBand:
-    """A dwell over the shaft angle, degrees."""
+    """A dwell over the shaft angle: where it starts and its length, degrees."""
 
     start: float
     length: float
@@ -133,7 +134,11 @@ class DwellBand:
 
 
 def derivatives(recipe: Recipe, title: str, unit: str, rows: Array) -> list[Plot]:
-    """Return plots of a motion and its derivatives by radian, rows (4, STEPS + 1), converted by `per`."""
+    """Return plots of a motion, velocity, acceleration and jerk, with the recipe's limits of each.
+
+    `rows` (4, STEPS + 1) are the motion in `unit` and its derivatives by the shaft angle in rad; they are plotted by
+    radian or by second (`per`).
+    """
     plots = [Plot(title, unit, (Series(title.lower(), rows[0]),), dwells=True)]
     for order, name in enumerate(DERIVATIVES[1:], start=1):
         factor, power, note = per(recipe, order)
@@ -159,7 +164,10 @@ def with_powers(unit: str) -> str:
 
 
 def per(recipe: Recipe, order: int) -> tuple[float, str, str]:
-    """Return factor, unit and note of a derivative: by radian, or by second where the shaft's speed is given."""
+    """Return factor, ending of the unit, and note of the derivative of this order by the shaft angle in rad.
+
+    It is by radian, `/rad²`, or by second, `/s²`, where the recipe gives the shaft's speed.
+    """
     rpm = recipe.rpm
     if rpm is None:
         return 1.0, POWERS[order - 1], ""
@@ -175,7 +183,8 @@ def motion(recipe: Recipe, design: Design) -> list[Plot]:
 
 
 def output(recipe: Recipe, driven: SteppedMechanism) -> list[Plot]:
-    """Return plots of a linkage: output and its derivatives, the frame and its velocity, angles of force."""
+    """Return plots of a linkage: output and its derivatives, frame and its velocity, transmission and force angle."""
+    # derivatives may jump where the turn closes: its end has those of the left side
     mechanism = driven.mechanism
     state, end = mechanism.at(driven.theta[:-1], ORDER), mechanism.at(driven.theta[-1:], ORDER, -1)
     rows = np.concatenate([state.over_shaft(state.output), end.over_shaft(end.output)], axis=1)
@@ -202,7 +211,10 @@ def output(recipe: Recipe, driven: SteppedMechanism) -> list[Plot]:
 
 
 def pressure(recipe: Recipe, angles: Mapping[str, Array], note: str = "") -> Plot:
-    """Return the plot of pressure angles, rad (STEPS + 1,), by the name of the roller or face, with their limits."""
+    """Return the plot of pressure angles, rad (STEPS + 1,), by the name of roller or face, with the recipe's limits.
+
+    A limit on the rise bounds angles above 0, one on the return those below.
+    """
     series = tuple(Series(name, DEGREES * row) for name, row in angles.items())
     sides = {PRESSURE_ANGLE: (1.0, -1.0), ON_RISE: (1.0,), ON_RETURN: (-1.0,)}  # above 0 a rise, below 0 a return
     lines = limits(recipe, sides, series)
@@ -210,7 +222,7 @@ def pressure(recipe: Recipe, angles: Mapping[str, Array], note: str = "") -> Plo
 
 
 def short(value: float) -> str:
-    """Return a figure to four digits, without an exponent where it is large."""
+    """Return a figure to four significant digits as text, without an exponent where it is large."""
     return f"{float(f'{value:.4g}'):.12g}"
 
 
@@ -237,14 +249,14 @@ def limits(
 
 
 def levers(recipe: Recipe, lengths: tuple[Array, Array]) -> Plot:
-    """Return the plot of the levers of a flat pair's contacts about its pivot, mm (STEPS + 1,) each."""
+    """Return the plot of the levers of a flat pair's contacts about its pivot, mm (STEPS + 1,) for faces A and B."""
     series = tuple(Series(f"face {name}", row / recipe.mm) for name, row in zip("AB", lengths, strict=True))
     note = "a flat face is pushed along its normal; the lever is that of the push about the pivot"
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note, axis="lever")
 
 
 def shown_unit(recipe: Recipe, si: str) -> tuple[float, str]:
-    """Return the factor from an SI unit of force, moment or pressure to the shown unit, and that unit's name."""
+    """Return the factor from an SI unit of force, moment or pressure, such as `N`, to the shown unit, and its name."""
     factor, unit = in_pounds(recipe.units, 1.0, si)
     return factor, with_powers(unit)
 
@@ -282,7 +294,7 @@ def preload(recipe: Recipe, design: Design) -> list[Plot]:
 def along(recipe: Recipe, places: Mapping[str, Array], width: float | None = None) -> Plot:
     """Return the plot of the places at which flat faces are touched, mm (STEPS + 1,), by the names of the faces.
 
-    `width`, mm, is that of a face centred on its stem; its edges are drawn.
+    The edges of a face of a `width`, mm, are drawn half of it from its axis.
     """
     note = "along the face, from the axis of its stem or the pivot of its arm"
     unit = length_unit(recipe)
@@ -293,13 +305,15 @@ def along(recipe: Recipe, places: Mapping[str, Array], width: float | None = Non
 
 
 def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exact: Exact) -> Plot:
-    """Return the plot that shows undercut: the contour's radius of curvature, or the curvature of a pitch curve.
+    """Return the plot that shows undercut: the curvature of a pitch curve, or else the contour's radius of curvature.
 
-    A ring, which is undercut where it is hollow, has no margin in the note.
+    The note has the least radius of curvature and its margin from undercut, but for a ring with a pitch curve.
+    `exact` is the surface's contour at the page's steps.
     """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
     bend, surface = surface_design.bent, surface_design.surface
     unit, radius = length_unit(recipe), surface.side * surface.radius
+    # the margin in words: a contour offset by the roller's radius is undercut where the pitch curve bends more
     margin, name = "", f", {surface.name}" if surface.name else ""
     if bend.value is not None and math.isfinite(bend.value) and radius >= 0.0:
         margin_mm = (bend.value - radius) / recipe.mm
@@ -307,6 +321,7 @@ def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exa
         margin = f"least radius {bend.value / recipe.mm:.5g} {unit}, {abs(margin_mm):.5g} {unit} {side} undercut"
         if surface_design.contour is not None and is_sharp(surface_design.contour):
             margin = "radius 0 about sharp corners, as the recipe has them"
+    # of a pitch curve the curvature, as its radius is infinite at an inflection
     if radius:
         values = close_turn(exact.curvature[:: exact.per]) * recipe.mm
         limit = recipe.mm / radius
@@ -336,7 +351,10 @@ def curvature(recipe: Recipe, design: Design, surface_design: SurfaceDesign, exa
 
 
 def backlash(recipe: Recipe, design: Design, files: Sequence[FileContours]) -> list[Plot]:
-    """Return plots of the follower's backlash between two contours of files: sides of a groove, or discs of a pair."""
+    """Return plots of the follower's backlash between two contours of files: sides of a groove, or discs of a pair.
+
+    Empty for a cam with one contour, and where the follower loses contact.
+    """
     from camgeo.synthesis.intent import closures_between, intents
     from kin.follower.motion_error import ContactError
     from kin.judge.closure import left_over
@@ -371,7 +389,10 @@ def close_turn(values: Array) -> Array:
 
 
 def rests(recipe: Recipe, design: Design) -> list[DwellBand]:
-    """Return the dwells: exact rests of a follower, or the longest times of an output within its band."""
+    """Return the dwells over the shaft angle: exact rests of a follower, or of an output its stays within the band.
+
+    Of those stays only the longest are listed, down to `COUNTS` of the longest.
+    """
     if design.driven is not None:
         unit = "°" if design.driven.mechanism.unit == "deg" else f" {length_unit(recipe)}"
         scale = DEGREES if unit == "°" else 1.0 / recipe.mm

@@ -1,7 +1,8 @@
 """Scenes of the followers that stand by themselves: yoke, double roller, flat pair.
 
 The shaft turns clockwise and stands at the origin; the line from it to a follower's pivot, and the normal of face 1,
-lie along +x. Angles of `step` k are k/STEPS of a turn.
+lie along +x. At step k of STEPS the shaft angle is k/STEPS of a turn. Lengths are in mm, angles in rad; `size` is the
+size of a joint, by which parts are scaled, `reach` the cam's greatest radius.
 """
 
 from __future__ import annotations
@@ -34,10 +35,11 @@ def cam(
     name: str = "cam",
     role: str = "metal",
 ) -> MovingBody:
-    """Return a disc of the cam: pairs of a name and rings, of which the first shows, and the shapes `on_it`.
+    """Return a disc of the cam with its contours, of which the first is shown at first, and the shapes `on_it`.
 
-    A thin dashed line along its own x axis shows the zero of the motion where the part has no timing mark: a full line
-    would look like a mark to be made. `turned` (STEPS + 1,) is its angle, rad.
+    `contours` are pairs of a name, such as a file's, and rings, the outline first; `bore` is a diameter, `turned`
+    (STEPS + 1,) the angle of the disc. A thin dashed line along its own x axis shows the zero of the motion where the
+    part has no timing mark: a full line would look like a mark to be made.
     """
     hole = 0.5 * bore if bore else 0.0
     shapes = [
@@ -51,7 +53,7 @@ def cam(
 
 
 def dashes(start: float, end: float, size: float) -> tuple[Ring, ...]:
-    """Return a dashed line along the x axis, each dash as long as a joint and the gap half of it, or nearly so."""
+    """Return the dashes of a line along the x axis, each as long as a joint and the gap half of that, or nearly so."""
     count = max(1, round((end - start) / (1.5 * size)))
     period = (end - start) / (count - 1.0 / 3.0)  # a dash at either end
     begins = start + period * np.arange(count)
@@ -59,19 +61,19 @@ def dashes(start: float, end: float, size: float) -> tuple[Ring, ...]:
 
 
 def edge_ahead(ring: Ring) -> float:
-    """Return the x, mm, of the vertex nearest to the x axis ahead of the shaft; the greatest |x|, |y| without one."""
+    """Return the x of the vertex with x > 0 that is nearest to the x axis; without one the greatest |x| or |y|."""
     beyond = ring.flattened()
     ahead = beyond[beyond[:, 0] > 0.0]
     return float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(np.abs(beyond).max())
 
 
 def contact(name: str, x: Array, y: Array, direction: Array | float, size: float, *, within: float = 0.0) -> MovingBody:
-    """Return a contact with an arrow in the direction of the push, longer by the length `within` a roller, mm."""
+    """Return a contact at (x, y), (n,) each, with an arrow in the direction of the push, rad, longer by `within`."""
     return MovingBody(name, CONTACTS, arrow(6.0 * size + within, size), poses(x, y, direction))
 
 
 def flat(view: View[Translating, Flat], reach: float, size: float) -> list[MovingBody]:
-    """Return the yoke of two parallel faces, with guides and contacts; `reach` is the cam's."""
+    """Return the yoke of two parallel faces, its guide and both contacts."""
     p, slope = view.travel(SHAFT, 1)
     q, back = view.travel(SHAFT + 0.5 * TURN, 1)
     return [
@@ -82,9 +84,9 @@ def flat(view: View[Translating, Flat], reach: float, size: float) -> list[Movin
 
 
 def faces(p: Array, breadth: float, reach: float, size: float, y: float = 0.0) -> list[MovingBody]:
-    """Return a frame of two faces, the first at x = p (n,), mm, the second `breadth` behind, and its guide.
+    """Return a frame of two faces, the first at x = p (n,), the second `breadth` behind it, and its guide.
 
-    Its stem lies on a line at `y`, mm; `reach` is the cam's greatest radius, `size` scales the parts.
+    Its stem lies on a line at `y`.
     """
     thick, half_stem, gap = 2.2 * size, 1.3 * size, 1.0 * size
     run = 4.5 * size
@@ -101,7 +103,7 @@ def faces(p: Array, breadth: float, reach: float, size: float, y: float = 0.0) -
 
 
 def guide(start: float, length: float, half: float, size: float, y: float = 0.0) -> MovingBody:
-    """Return a fixed guide of two blocks about a stem on a line at y."""
+    """Return a fixed guide from x = `start`: two blocks, `half` to either side of a line at y, the axis of the stem."""
     shapes = [
         FilledShape("fixed", (box(start, y + side * half, start + length, y + side * (half + 1.3 * size)),), "guide")
         for side in (-1.0, 1.0)
@@ -110,7 +112,10 @@ def guide(start: float, length: float, half: float, size: float, y: float = 0.0)
 
 
 def double_roller(view: View[Oscillating, Roller], size: float) -> tuple[list[MovingBody], tuple[Array, Array]]:
-    """Return the arm with its two rollers, and for rollers A and B the pressure angle (STEPS + 1,), rad."""
+    """Return the arm with its two rollers, pivot and contacts, and the pressure angles of rollers A and B.
+
+    They are (STEPS + 1,) each, from 0 to a quarter turn.
+    """
     psi, slope = view.travel(SHAFT, 1)
     arm, alpha, radius = view.guide.pivot, view.contacts[0].apart, view.touch.radius
     ends = [(arm * float(np.cos(s * alpha)), arm * float(np.sin(s * alpha))) for s in (-1.0, 1.0)]
@@ -124,6 +129,7 @@ def double_roller(view: View[Oscillating, Roller], size: float) -> tuple[list[Mo
     labels = tuple(Letter(text, *end) for text, end in zip("AB", ends, strict=True))
     # each arm a shape of its own: where they overlap about the pivot the even-odd rule would leave a hole
     shapes = (*(FilledShape("follower", (arm_ring,), "arm") for arm_ring in arms), *rollers, *pins)
+    # the arm turns by psi, seen from the pivot, which is as far from the shaft as from the rollers
     bodies = [
         MovingBody("arm", "follower", shapes, poses(arm, 0.0, -psi), labels),
         pivot("pivot", arm, 0.0, size, "P", angle=0.0),
@@ -140,13 +146,17 @@ def double_roller(view: View[Oscillating, Roller], size: float) -> tuple[list[Mo
         point = centre - radius * normal
         direction = np.unwrap(np.arctan2(normal[:, 1], normal[:, 0]))
         bodies.append(contact(f"contact of {name}", point[:, 0], point[:, 1], direction, size, within=radius))
+        # the roller moves square to the arm: its pressure angle is a quarter turn less the normal's angle to the arm
         across = np.abs(ray[:, 0] * normal[:, 1] - ray[:, 1] * normal[:, 0])
         angles.append(np.arctan2(np.abs(np.sum(ray * normal, axis=1)), across))
     return bodies, (angles[0], angles[1])
 
 
 def flat_pair(view: View[Oscillating, Flat], size: float) -> tuple[list[MovingBody], tuple[Array, Array]]:
-    """Return the pair of faces, and for faces A and B the lever of the contact about the pivot (STEPS + 1,), mm."""
+    """Return the pair of faces, its pivot and contacts, and the levers of the contacts on faces A and B.
+
+    The levers, about the pivot, are (STEPS + 1,) each.
+    """
     away, half, thick = view.guide.pivot, view.contacts[0].apart, 2.0 * size
     swing = view.travel(SHAFT)[0]
     bodies: list[MovingBody] = []

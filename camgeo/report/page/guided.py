@@ -1,7 +1,8 @@
 """Scenes of the followers that are led on a stem or an arm: roller, knife edge, shoe, flat face, frame of two rollers.
 
 The part that touches the cam has axes of its own: x along the travel, the origin at the roller's centre, or where a
-flat face meets the axis of its stem. Stem or arm is one body, the touching part another.
+flat face meets the axis of its stem. Stem or arm is one body, the touching part another. Lengths are in mm, angles in
+rad; `size` is the size of a joint, by which parts are scaled.
 """
 
 from __future__ import annotations
@@ -33,10 +34,10 @@ MARGIN = 2.0  # of a face or a shoe beyond the contact
 
 @dataclass(frozen=True, eq=False)
 class Touch:
-    """Part of a follower that touches the cam, in axes with x along the travel; mm.
+    """Part of a follower that touches the cam, in axes with x along the travel.
 
     `foot` is the x at which its stem or arm begins, `ahead` the greatest x of its shapes, `within` the length of the
-    contact's normal inside them.
+    contact's normal that they cover.
     """
 
     name: str
@@ -47,7 +48,7 @@ class Touch:
 
 
 def touch_of(touch: Round, angle: Array, size: float, suffix: str = "") -> Touch:
-    """Return a roller, shoe or knife edge at pressure angles (n,), rad; `suffix` of its name tells several apart."""
+    """Return a roller, a shoe as wide as pressure angles (n,) need, or a knife edge; `suffix` ends the name."""
     match touch:
         case Roller(radius=radius):
             return roller(radius, size, f"roller{suffix}")
@@ -70,7 +71,7 @@ def knife_edge(size: float) -> Touch:
 
 
 def shoe(radius: float, angle: Array, size: float) -> Touch:
-    """Return a shoe: the arc that pressure angles (n,), rad, use, and a margin at either end."""
+    """Return a shoe: the arc that is touched at pressure angles (n,), and a margin at either end."""
     beyond = MARGIN * size / radius
     most = 0.5 * math.pi
     high = min(max(float(angle.max()), 0.0) + beyond, most)
@@ -84,7 +85,7 @@ def shoe(radius: float, angle: Array, size: float) -> Touch:
 
 
 def face(tilt: float, low: float, high: float, size: float) -> Touch:
-    """Return a flat face whose normal is turned by `tilt`, rad, from `low` to `high` along it, mm; `size` scales it."""
+    """Return a flat face from `low` to `high` along it, its normal turned by `tilt` from the travel."""
     c, s = math.cos(tilt), math.sin(tilt)
     corners = np.array([(0.0, low), (0.0, high), (THICK * size, high), (THICK * size, low)])
     outline = Ring.through(corners @ np.array([[c, s], [-s, c]]))
@@ -95,7 +96,10 @@ def face(tilt: float, low: float, high: float, size: float) -> Touch:
 
 
 def on_stem(touch: Touch, x: Array, y: float, reach: float, size: float) -> list[MovingBody]:
-    """Return the follower on a stem at places x (n,) of a line at y, with its guide beyond the cam's `reach`."""
+    """Return the follower on a stem at places x (n,) of a line at y, with its guide beyond the cam.
+
+    `reach` is the cam's greatest radius.
+    """
     half, run = HALF_STEM * size, 4.5 * size
     start = max(float(x.max()) + touch.ahead, reach) + size
     length = start + run + 2.0 * size - float(x.min())
@@ -116,10 +120,10 @@ def on_arm(
     *,
     short: float = 0.0,
 ) -> list[MovingBody]:
-    """Return the follower on an arm at swings s (n,), rad; `origin` is that of the touch's axes in the arm's, mm.
+    """Return the follower on an arm at swings s (n,) from the start of the motion, and its pivot.
 
-    The arm's own x leads from the pivot to the touching part, its travel is `side` times y. The arm is drawn to a place
-    `short` mm nearer the pivot than `origin`.
+    The arm's own x leads from the pivot to the touching part, whose travel is along `side` times y. `origin` is the
+    origin of the touching part's axes in those of the arm. The arm is drawn to a place `short` nearer the pivot.
     """
     arm = contact.guide
     angle = math.pi + arm.side * (contact.datum + s)
@@ -137,9 +141,9 @@ def on_arm(
 def contact_body(
     surface: Surface, name: str, size: float, roller_radius: float = 0.0, *, ahead: float = 0.0
 ) -> MovingBody:
-    """Return the contact at each shaft angle, with the direction in which the cam pushes: inwards for a ring.
+    """Return the contact at each shaft angle, with an arrow in the direction of the push: inwards for a ring.
 
-    The follower stands `ahead` rad of the x axis; the arrow is longer by the radius of the roller within, mm.
+    The line of the follower stands `ahead` counter-clockwise of the x axis. The arrow is longer by `roller_radius`.
     """
     frame = surface.curve.sample(np.mod(SHAFT + ahead, TURN))
     back = np.exp(-1j * SHAFT)
@@ -159,9 +163,9 @@ def roller_frame(
     y: float = 0.0,
     facing: float = 0.0,
 ) -> list[MovingBody]:
-    """Return a slotted frame with one touching part at x (n,) of a line at y and another `apart` mm behind.
+    """Return a slotted frame with a touching part at x (n,) of a line at y, another `apart` behind it, and its guide.
 
-    The shaft has the radius `hole`, mm. The second part is turned by `facing`, rad.
+    The slot clears a shaft of the radius `hole`. The second part is turned by `facing`.
     """
     first, second = touches
     inner = max(hole, 1.2 * size) + 0.6 * size

@@ -1,7 +1,9 @@
 """Scene of a linkage: square frame, joints, links and dyads in the fixed frame, with contacts and forces.
 
 Axes of AS Figure 7: shaft A at the origin, pivot B at (r1, 0), the shaft turning clockwise. The frame's axes are
-u(theta_3) along the coupler and n across; the face of lift S has the normal n, the face of S1 has -u.
+u(theta_3) along the coupler and n across; the face of lift S has the normal n, the face of S1 has -u. Lengths are in
+mm, angles in rad; `size` is the size of a joint, by which parts are scaled. Loop 0 of a chain is the linkage, loop k
+the k-th dyad.
 """
 
 from __future__ import annotations
@@ -29,14 +31,15 @@ if TYPE_CHECKING:
     from kin.numeric.elementary import Jet
 
 QUARTER = 0.25 * TURN
-TRACED = 3  # every so many places a path has a point
+TRACED = 3  # steps from one point of a path to the next, 1.5 degrees of the shaft
 
 
 @dataclass(frozen=True, eq=False)
 class SteppedMechanism:
-    """A mechanism at equal steps of the shaft: relative angle, poses of all links; each (STEPS + 1,), mm and rad.
+    """A mechanism at equal steps of the shaft; values are (STEPS + 1,).
 
-    `lifts` (4, 2, STEPS + 1) are lift and slope of the four faces, whose normals stand a quarter turn apart.
+    `theta` is the relative angle between cam and frame, `solved` has the poses of all links. `lifts` (4, 2, STEPS + 1)
+    are lift, mm, and slope, mm/rad, of the four faces, whose normals stand a quarter turn apart.
     """
 
     mechanism: Mechanism
@@ -46,7 +49,7 @@ class SteppedMechanism:
 
     @staticmethod
     def of(mechanism: Mechanism) -> SteppedMechanism:
-        """Solve a mechanism that turns, at the page's equal steps of the shaft."""
+        """Solve a mechanism that turns right round, at the page's steps of the shaft."""
         from kin.numeric.elementary import Jet
 
         theta = mechanism.relative(SHAFT)
@@ -71,15 +74,15 @@ class SteppedMechanism:
         return self.lifts[0, 1], self.lifts[1, 1]
 
     def joints(self, loop: int) -> dict[str, Joint]:
-        """Joints of a loop by their letters; loop 0 is the linkage, dyads follow."""
+        """Joints of a loop by their letters."""
         return self.mechanism.chain.joints(self.solved, loop)
 
     def output(self, loop: int) -> Array:
-        """Poses (STEPS + 1, 3) of the link that a loop drives."""
+        """Poses (STEPS + 1, 3), x, y and angle, of the link that a loop drives."""
         return _pose(self.mechanism.chain.output(loop).pose(self.solved))
 
     def angles(self) -> tuple[Array, Array]:
-        """Transmission angle and force angle, rad, from 0 to a quarter turn."""
+        """Transmission angle and force angle, (STEPS + 1,) each, from 0 to a quarter turn."""
         linkage, state = self.mechanism.linkage, self.solved.linkage
         sine, cosine = linkage.transmission(state)
         pushed, resisted = linkage.force_angle(state, *self.slopes)
@@ -101,7 +104,7 @@ class Layers(NamedTuple):
 
 
 def linkage_bodies(driven: SteppedMechanism, size: float) -> list[MovingBody]:
-    """Return frame, links, pivots, contacts and forces, the hindmost first; `size` is that of a joint."""
+    """Return links with the frame, pivots, joints, contacts and forces, the hindmost first."""
     mechanism = driven.mechanism
     loops = [
         MAKERS[type(loop)](driven, number, loop, size)
@@ -133,7 +136,7 @@ def _inverted(driven: SteppedMechanism, number: int, linkage: InvertedSliderCran
 
 
 def _rocker(driven: SteppedMechanism, length: float, size: float) -> list[MovingBody]:
-    """Return the linkage's rocker, of any length but 0."""
+    """Return the linkage's rocker; none where its length is 0."""
     if length <= 0.0:
         return []
     rocker = FilledShape("rocker", (bar((0.0, 0.0), (length, 0.0), 1.5 * size),), "rocker")
@@ -260,7 +263,7 @@ def _rpr(driven: SteppedMechanism, number: int, dyad: RPR, size: float) -> Layer
     )
 
 
-# What draws each kind of loop, at its number in the chain.
+# Function that draws each kind of loop: (mechanism, number of the loop, loop, size).
 MAKERS: dict[type, Callable[..., Layers]] = {
     FourBar: _four_bar,
     InvertedSliderCrank: _inverted,
@@ -272,7 +275,10 @@ MAKERS: dict[type, Callable[..., Layers]] = {
 
 
 def path_bodies(driven: SteppedMechanism, traces: Sequence[TracedPoint], mm: float, size: float) -> list[MovingBody]:
-    """Return the paths of points of moving links over the turn, and the points."""
+    """Return for each traced point of a moving link its path over the turn, and the point itself.
+
+    `mm` is the length of the recipe's unit, in which names give the points.
+    """
     bodies = []
     for trace in traces:
         x, y = map(value, driven.mechanism.chain.carrier_of(trace.on).pose(driven.solved).point(*trace.point))
@@ -298,7 +304,7 @@ def _contacts(driven: SteppedMechanism, size: float) -> list[MovingBody]:
 
 
 def _forces(driven: SteppedMechanism, size: float) -> list[MovingBody]:
-    """Return the force of the frame on the next link, and the point where the contacts' normals meet on its line.
+    """Return the point where the contacts' normals meet, and the force of the frame on the next link, through it.
 
     The arrow points in the direction of the push while that link moves against a load.
     """

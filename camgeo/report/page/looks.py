@@ -47,7 +47,7 @@ LOOKS = {
 
 
 def rules() -> str:
-    """Return rules of CSS, one for each role, with colours as variables, which differ on a dark page."""
+    """Return rules of CSS, one for each role, a line each; colours are variables, which differ on a dark page."""
     return "".join(
         f".drawing .{role.replace(' ', '.')} {{ fill: {_variable(look.fill)}; fill-opacity: {look.opacity}; "
         f"stroke: {_variable(look.edge)}; stroke-width: {look.width}px; }}\n"
@@ -61,7 +61,7 @@ def _variable(name: str) -> str:
 
 @cache
 def colours() -> dict[str, str]:
-    """Return the light colours of the style by their names, `#rrggbb`."""
+    """Return the light colours of the style by their names, each as `#rrggbb`."""
     return dict(re.findall(r"--([a-z-]+): (#[0-9a-f]{6})", asset("drawing.css").partition("@media")[0]))
 
 

@@ -1,4 +1,4 @@
-"""Contour of the cam on a page: as the files draw it, exact, and the error between both."""
+"""Contour of the cam on a page: as the files draw it, the exact one, and the distance between both."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ MOST_LOOKS = 6  # for each step of the turn
 
 
 def exact(curve: Curve, *, whole: bool = False) -> Ring:
-    """Return a curve as a ring of about `POINTS` points; `whole`: with the loops that trimming takes away."""
+    """Return a curve as a ring of about `POINTS` points; with `whole` it keeps the loops that trimming takes away."""
     period = curve.shape.period
     runs = [(0.0, period)] if whole else [(run.low, run.high) for run in curve.runs]
     points = []
@@ -52,8 +52,8 @@ class FileContours:
     """Contours read from a file, mm, for a shaft that turns clockwise.
 
     `contours` and `arcs` are by the names of the surfaces, `pieces` is the number of all pieces. `rings` are for
-    drawing: the outline of each disc in the file with its holes, of a ring the contour among them. `tolerance`, mm, is
-    the file's. `disc` is the disc that the file holds, None for all.
+    drawing: of each disc in the file its outline and holes; the contour of a ring is a hole. `tolerance`, mm, is the
+    file's. `disc` is the disc that the file holds, counted from 0, None for all.
     """
 
     name: str
@@ -79,7 +79,10 @@ def contours_of(recipe: Recipe, file: FileResult) -> FileContours | None:
 
 
 def group_files(files: Sequence[FileContours], discs: int) -> list[list[FileContours]]:
-    """Groups of files that show the whole cam: one file with all discs, or one file for each of `discs` discs."""
+    """Groups of files that show the whole cam: one file with all discs, or successive files of each of `discs` discs.
+
+    Files of an incomplete group are left out.
+    """
     groups: list[list[FileContours]] = []
     for file in files:
         if file.disc and groups and groups[-1][-1].disc == file.disc - 1:
@@ -98,10 +101,11 @@ def _drawing_ring(arcs: Arcs) -> Ring:
 
 @dataclass(frozen=True, eq=False)
 class Exact:
-    """The exact contour at equal steps of the angle at which it is touched, `per` for each of `STEPS` steps.
+    """The exact contour where it is touched at equal steps of the angle between cam and frame.
 
-    `point`, mm, and `normal` are (STEPS * per, 2); `radius` of curvature, mm, and `curvature` (STEPS * per,) are of the
-    base curve, the pitch curve of a roller; `kept` is true at points that belong to the made contour.
+    Each of the `STEPS` steps of a turn has `per` of them.
+    `point`, mm, and `normal` are (STEPS * per, 2); `radius` of curvature, mm, and `curvature`, 1/mm, (STEPS * per,) are
+    of the base curve, the pitch curve of a roller; `kept` is true at points that belong to the made contour.
     """
 
     per: int
@@ -113,7 +117,7 @@ class Exact:
 
     @staticmethod
     def of(design: Design, surface: SurfaceDesign, per: int) -> Exact:
-        """Sample the contour of one of a design's surfaces at `per` points in each of `STEPS` steps of the shaft."""
+        """Sample the contour of one of a design's surfaces at `per` angles in each of `STEPS` steps."""
         shaft = TURN * np.arange(STEPS * per) / (STEPS * per)
         curve = surface.surface.curve
         t = next(iter(design.motion.parameters(shaft, shaft).values()))
@@ -128,14 +132,14 @@ class Exact:
 
     @staticmethod
     def looks(files: list[FileContours]) -> int:
-        """Number of places in each step at which the errors of these files are measured, 1 to `MOST_LOOKS`."""
+        """Number of places in each step at which the errors of these files are measured, from 1 to `MOST_LOOKS`."""
         pieces = max((file.pieces for file in files), default=0)
         return min(MOST_LOOKS, max(1, math.ceil(PER_PIECE * pieces / STEPS)))
 
     def error(self, arcs: Arcs) -> tuple[Array, Array]:
-        """Least and greatest distance of a file's contour outside the exact contour in each step, mm, (STEPS,) each.
+        """Least and greatest distance of a file's contour from the exact contour in each step, mm, (STEPS,) each.
 
-        Measured from the exact contour, so negative where the file lies inside; nan where the contour is cut away.
+        It is above 0 where the file's contour lies outside, below 0 inside; nan where the exact contour is cut away.
         """
         from kin.contour.nearest import signed_distance
 

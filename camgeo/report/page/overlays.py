@@ -1,7 +1,8 @@
-"""Overlays of a page that a recipe asks for: constructions of the papers over the mechanism, turning with the shaft.
+"""Overlays of a page that a recipe lists: constructions of the papers over the mechanism, turning with the shaft.
 
 Instant centres and contact normals of a yoke (SW Figure 1); chord polygon, isoptic circle and pedal of two contacts on
-one arm (W Figures 4, 5, 8, 9 and section 5); the evolute of any contour. Angles of `step` k are k/STEPS of a turn.
+one arm (W Figures 4, 5, 8, 9 and section 5); the evolute of any contour. At step k of STEPS the shaft angle is k/STEPS
+of a turn.
 """
 
 from __future__ import annotations
@@ -29,17 +30,18 @@ if TYPE_CHECKING:
 
 POINTS = 720  # of a curve on the cam
 MOST_CHORDS = 100
-LEAP = 0.1  # of that distance: what is farther apart from one point to the next is not joined
-SLIGHT = 0.06  # of that distance: a piece of an evolute no longer than this is left out
-FAR = 1.6  # of the cam's reach: an evolute is drawn up to there
+LEAP = 0.1  # of the distance FAR: points of an evolute farther apart than this are not joined
+SLIGHT = 0.06  # of the distance FAR: a piece of an evolute no longer than this is left out
+FAR = 1.6  # of the cam's reach: an evolute is drawn up to this distance from the shaft
 LINE, DOT, CURVE = "construction", "overlay dot", "overlay"
 
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """A design in a turn: `turned` is the angle of the cam, `relative` its angle to the follower's frame.
+    """A design over a turn, as overlays need it.
 
-    Both (STEPS + 1,), rad; `reach` is the cam's greatest radius, `size` that of a joint, mm.
+    `turned` is the angle of the cam's axes, `relative` the angle between cam and frame, (STEPS + 1,) each, rad. `reach`
+    is the cam's greatest radius, `size` the size of a joint, mm.
     """
 
     view: View[Guide, Touch]
@@ -59,14 +61,17 @@ class Stage:
         return MovingBody(name, OVERLAYS, (shape,), poses(places.real, places.imag, 0.0), labels)
 
     def line(self, name: str, places: Array, direction: Array, ends: tuple[float, float]) -> MovingBody:
-        """Return a straight line along complex directions (n,) through places (n,), between two distances from them."""
+        """Return a straight line through complex places (n,), mm, along complex directions (n,).
+
+        It runs between two distances from its place, `ends`, mm.
+        """
         angle = np.unwrap(np.angle(direction))
         shape = FilledShape(LINE, (_ring(np.array(ends)),), name)
         return MovingBody(name, OVERLAYS, (shape,), poses(places.real, places.imag, angle))
 
 
 def overlay_bodies(names: Sequence[str], stage: Stage) -> list[MovingBody]:
-    """Return the bodies of overlays by their names."""
+    """Return the bodies of the overlays with these names; raises KeyError for an unknown name."""
     return [body for name in names for body in MADE[name](stage)]
 
 
@@ -80,6 +85,7 @@ def _evolute(stage: Stage) -> list[MovingBody]:
     bodies = []
     for surface in exact.surfaces:
         rings = []
+        # smooth stretches between breaks; the ends lie just inside, where derivatives are those of the stretch
         for low, high in pairwise(places.tolist()):
             t = np.linspace(low, high, max(3, math.ceil(POINTS * (high - low) / TURN)))
             t[[0, -1]] += 1e-9 * (high - low) * np.array([1.0, -1.0])
@@ -90,6 +96,7 @@ def _evolute(stage: Stage) -> list[MovingBody]:
             rings += [_ring(part) for part in long if abs(part[0]) <= far]
         if rings:
             bodies.append(stage.on_cam(f"evolute, {surface.name}" if surface.name else "evolute", rings))
+    # the centre of contact 1, in its place on the turning cam; where it is too far off, the dot stays on the contact
     surface, standing = stage.view.surface(stage.view.contacts[0]), np.exp(1j * stage.turned)
     t = np.mod(next(iter(exact.motion.parameters(SHAFT, stage.relative).values())), TURN)
     frame, centre = surface.curve.sample(t), _centre(surface, t) * standing
@@ -129,14 +136,20 @@ def _instant_centres(view: View[Translating, Flat], stage: Stage) -> list[Moving
 
 @dataclass(frozen=True, eq=False)
 class Arms:
-    """Two contacts on one arm (W 4.1): arms of length l, mm, that include 2 alpha, and psi by the shaft angle, rad."""
+    """Two contacts on one arm (W 4.1): arms of length l, mm, with the angle 2 alpha between them.
+
+    `psi` gives the swing, rad, at shaft angles (n,), rad.
+    """
 
     length: float
     alpha: float
     psi: Callable[[Array], Array]
 
     def ends(self, shaft: Array) -> tuple[Array, Array]:
-        """A and B (n,) at shaft angles, complex, the pivot on the x axis: of faces the feet of the normals from O."""
+        """Ends A and B of the arms at shaft angles (n,), complex (n,), mm, the pivot on the x axis.
+
+        Of two faces they are the feet of the perpendiculars from the shaft O.
+        """
         turned = np.exp(-1j * self.psi(shaft))
         a, b = (self.length * (1.0 + turned * np.exp(1j * side * self.alpha)) for side in (-1.0, 1.0))
         return a, b

@@ -50,7 +50,10 @@ def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
 
 
 def head(recipe: Order, report: dict[str, Any], more: str = "") -> str:
-    """Return the HTML with which a page begins: what it may load, its style with `more` rules, name, verdict, note."""
+    """Return the HTML with which a page begins: what it may load, its style, name, remark and verdict.
+
+    `more` has further rules of style.
+    """
     ok = report["ok"]
     parts = {
         "title": escape(recipe.name),
@@ -73,7 +76,7 @@ def _fill(name: str, parts: dict[str, str]) -> str:
 
 
 def script_json(values: object) -> str:
-    """Return plain data as JSON that is safe within a script element."""
+    """Return plain data as JSON that is safe within a script element; nan and infinities become null."""
     text = json.dumps(finite(values), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     return text.replace("<", "\\u003c")
 
@@ -81,9 +84,9 @@ def script_json(values: object) -> str:
 def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str, Any]:
     """Return the data of the page's script; angles in degrees, lengths in the recipe's unit.
 
-    `drawing` is the mechanism at shaft angle 0 as SVG, the group of body k with the id `body-k`; `bodies` has the
-    motion of each: rows of x, y and angle at equal steps of a turn, packed (`pack_numbers`). `marks` are the places on
-    the contour, in the axes of the cam, of failed checks and remarks of `report`.
+    `drawing` is the mechanism at shaft angle 0 as SVG, in which the group of body k has the id `body-k`; `bodies` has
+    the motion of each body: rows of x, y and angle at equal steps of a turn, packed by `pack_numbers`. `marks` are the
+    places on the contour, in the axes of the cam, of failed checks and remarks of `report`.
     """
     return {
         **picture(recipe, content.scene, content.relative),
@@ -109,7 +112,10 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
 
 
 def picture(recipe: Recipe, drawn: Scene, relative: Array) -> dict[str, Any]:
-    """Return the part of `scene` that moves; `relative` (STEPS + 1,) is the angle between cam and frame, rad."""
+    """Return those entries of `scene` that show and move the mechanism.
+
+    `relative` (STEPS + 1,) is the angle between cam and frame, rad.
+    """
     view = svg.Viewport.of(drawn)
     extent = max(view.width, view.height) / view.scale
     return {
@@ -172,8 +178,8 @@ def _plot(plot: Plot) -> dict[str, Any]:
 def pack_numbers(values: Array, extent: float | None = None) -> dict[str, Any]:
     """Return values (n,) as `{"d": digits, "v": [first, step, step, ...]}` in units of the last digit.
 
-    Rounded to `SHARE` of the extent, by default of the range of the values, but to no more than sixteen places. A row
-    with values that are not finite is `{"n": [...]}`, null where they are not; an empty one `{"n": []}`, a constant one
+    They are rounded to `SHARE` of `extent`, by default of their range, but to no more than sixteen digits. A row with
+    values that are not finite is `{"n": [...]}`, with null in their places; an empty row `{"n": []}`, a constant row
     `{"c": value}`.
     """
     good = values[np.isfinite(values)]

@@ -19,7 +19,7 @@ INCH = 72.0  # px of the drawing in what matplotlib takes for an inch
 
 
 def png(scene: Scene, step: int) -> bytes:
-    """Draw a scene at a step of the turn; raises ModuleNotFoundError without matplotlib."""
+    """PNG file of a scene at a step of the turn, 0 to STEPS; raises ModuleNotFoundError without matplotlib."""
     prepare_home()
     import matplotlib as mpl
     from matplotlib.figure import Figure

@@ -25,7 +25,7 @@ SEEN = 24  # a body's extent is taken from every so many places
 
 @dataclass(frozen=True, eq=False)
 class FilledShape:
-    """Rings filled together by the even-odd rule; `role` says what it is and so how it looks."""
+    """Rings filled together by the even-odd rule; `role` is a word of `looks.LOOKS`, by which the shape is coloured."""
 
     role: str
     rings: tuple[Ring, ...]
@@ -43,9 +43,10 @@ class Letter:
 
 @dataclass(frozen=True, eq=False)
 class MovingBody:
-    """Shapes that move as one: `pose` (STEPS + 1, 3), or (1, 3) of a fixed body, has x, y, mm, and angle, rad.
+    """Shapes that move as one: `pose` (STEPS + 1, 3), or (1, 3) of a fixed body, has x, y and angle, rad.
 
-    `kind` groups bodies that a page shows and hides together. An `upright` body is not mirrored with the scene.
+    `kind` groups bodies that a page shows and hides together. The shapes of an `upright` body are not mirrored with the
+    scene, only its place.
     """
 
     name: str
@@ -56,12 +57,12 @@ class MovingBody:
     upright: bool = False
 
     def at(self, step: int) -> tuple[float, float, float]:
-        """Return x, y and angle at a step of the turn."""
+        """Return x, y and angle, rad, at a step of the turn, 0 to STEPS."""
         x, y, angle = self.pose[step if len(self.pose) > 1 else 0].tolist()
         return x, y, angle
 
     def placed(self, points: Array, step: int) -> Array:
-        """Return points (n, 2) of the body's own axes in the scene's axes at a step, mm."""
+        """Return points (n, 2) of the body's own axes in the scene's axes at a step."""
         x, y, angle = self.at(step)
         c, s = math.cos(angle), math.sin(angle)
         placed: Array = points @ np.array([[c, s], [-s, c]]) + (x, y)
@@ -70,13 +71,13 @@ class MovingBody:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Bodies from the hindmost to the foremost, and a note below the drawing."""
+    """Bodies from the hindmost to the foremost, in mm until they are scaled, and a note below the drawing."""
 
     bodies: tuple[MovingBody, ...]
     note: str = ""
 
     def scaled(self, factor: float) -> Scene:
-        """Return the scene in another unit of length."""
+        """Return the scene with all lengths times `factor`, for another unit."""
         return replace(self, bodies=tuple(_enlarged(body, factor) for body in self.bodies))
 
     def mirrored(self) -> Scene:
@@ -110,7 +111,7 @@ class Scene:
 
 
 def digits_for(extent: float, share: float) -> int:
-    """Decimal digits that hold a share of an extent; at least 0."""
+    """Decimal digits after the point that a share of an extent needs; at least 0."""
     return max(0, math.ceil(-math.log10(extent * share))) if extent > 0.0 else 0
 
 

@@ -31,7 +31,10 @@ BESIDE = 13.0  # px from a joint's middle to that of its letter, along either ax
 
 @dataclass(frozen=True)
 class Viewport:
-    """Place of a scene in its drawing: a length of 1 is `scale` px, (x, y) is the upper left corner; size in px."""
+    """Place of a scene in its drawing, `width` by `height` px.
+
+    A length of 1 in the scene is `scale` px; (x, y) is the upper left corner, in the scene's axes.
+    """
 
     scale: float
     x: float
@@ -61,7 +64,7 @@ def moving(scene: Scene) -> str:
 
 
 def still(scene: Scene, step: int, title: str) -> str:
-    """Return a picture at a step of the turn as an SVG file, on a ground of its own.
+    """Return a picture at a step of the turn, 0 to STEPS, as the text of an SVG file, on a ground of its own.
 
     Colours and widths are literal attributes, and each letter is drawn twice: programs other than browsers know no
     variables of style sheets and no strokes that do not scale, and paint the edge of a letter over it.

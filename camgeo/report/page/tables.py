@@ -15,7 +15,7 @@ from camgeo.report.document import error_text, pieces_word, value_text
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    Row = tuple[str, float | None, str, float | None]
+    Row = tuple[str, float | None, str, float | None]  # name, value, unit, shaft angle in degrees
 
 NONE = "–"
 MANY = 40  # checks, beyond which those of files that hold are folded up
@@ -193,9 +193,9 @@ def preload(report: dict[str, Any]) -> str:
 
 
 def figure_table(title: str, figures: Sequence[Row], units: str) -> str:
-    """Return an HTML table of figures with value, unit and shaft angle.
+    """Return an HTML table of figures: (name, value, unit, shaft angle in degrees), None where there is no angle.
 
-    Where `units` are inches, forces, moments and pressures are in pounds, with the SI value behind.
+    Where `units` is `inch`, forces, moments and pressures are in pounds, with the SI value behind.
     """
     rows = []
     for name, si_value, si, shaft_deg in figures:
@@ -207,7 +207,7 @@ def figure_table(title: str, figures: Sequence[Row], units: str) -> str:
 
 
 def skipped_list(report: dict[str, Any]) -> str:
-    """Return the items of a list of things that were left out, with the reasons; the page itself is not listed."""
+    """Return the items of a list of what was left out, with the reasons; pages and other summaries are not listed."""
     words = {item["what"] for item in report["skipped"]}
     pages = {word for word in words if word in FORMATS and FORMATS[word].summary}
     items = [item for item in report["skipped"] if item["what"] not in pages]
@@ -226,7 +226,7 @@ def facts(report: dict[str, Any]) -> str:
 
 
 def number(value: float | None) -> str:
-    """Return HTML of a figure to six digits, with its exact value as a hint where it has more; NONE for None."""
+    """Return HTML of a figure to six digits, with its exact value as a hint where it has more; a dash for None."""
     return NONE if value is None else _with_hint(f"{value:.6g}", value)
 
 
@@ -245,7 +245,10 @@ def _with_hint(short: str, value: float) -> str:
 
 
 def place_button(angle: float | None, over: str) -> str:
-    """Return a button that turns the shaft to an angle, degrees; a dash without one."""
+    """Return a button that turns the shaft to an angle, degrees; a dash for None.
+
+    `over` is `relative` where it is the angle between cam and frame, else `shaft`.
+    """
     if angle is None:
         return NONE
     name = "relative angle" if over == "relative" else "shaft angle"
@@ -264,7 +267,7 @@ def _cell(text: str, kind: str = "") -> str:
 
 
 def beside(unit: str, value: float | None, si: str) -> str:
-    """Return a unit for reading; behind a unit of pounds stands the value in N, N m or N/mm²."""
+    """Return a unit for reading; behind a unit of pounds stands the value in `si`, N, N m or N/mm²."""
     behind = "" if unit == si or value is None else f" ({value:.6g} {si})"
     return escape(_unit(f"{unit}{behind}"))
 
@@ -279,12 +282,12 @@ def _bytes(count: int) -> str:
 
 
 def named_row(name: str, *cells: str) -> str:
-    """Return a row of a table that its first cell names, HTML each."""
+    """Return a row of a table with `name` as the head of the row; name and cells are HTML."""
     return f'<tr><th scope="row">{name}</th>{"".join(f"<td>{cell}</td>" for cell in cells)}</tr>'
 
 
 def html_table(caption: str, head: Sequence[str], rows: Sequence[str], kind: str = "plain") -> str:
-    """Return a table with its caption, the heads of its columns and its rows, HTML each."""
+    """Return a table with its caption, the heads of its columns and its rows, HTML each; `kind` is its class in CSS."""
     cells = "".join(f'<th scope="col">{name}</th>' if name else "<td></td>" for name in head)
     region = f'<div class="wide" tabindex="0" role="region" aria-label="{caption}">'
     body = f"<thead><tr>{cells}</tr></thead><tbody>{''.join(rows)}</tbody>"
