@@ -16,7 +16,7 @@ KINDS = {"BORE": "bore", "HOLES": "holes", "MARK": "mark", "ENGRAVE": "mark"}
 
 
 def holes_of(body: Body) -> tuple[Hole, ...]:
-    """Record for kin of every opening, in the cam's axes."""
+    """Record for kin of every opening, in the body's order and in the cam's axes."""
     return tuple(_hole(opening) for opening in body.openings)
 
 
@@ -25,6 +25,7 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
     thickness = body.thickness
     if thickness is None:
         return ()
+    # a layer reaches from one height at which a section changes to the next: faces, chamfers, floors
     through = tuple(_hole(opening) for opening in body.openings if opening.depth is None)
     edge = body.edge
     heights = {0.0, thickness, edge, thickness - edge}
@@ -44,6 +45,7 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
         insets = (_inset(low, thickness, edge), _inset(high, thickness, edge))
         blank = round_hole("outline", "thickness", (0.0, 0.0), body.outer) if body.outer and high <= floor else None
         layers.append(Layer(low, high, (*through, *shallow), blank, insets))
+    # the boss has layers of its own beyond the faces, with the holes that pass through it
     boss = body.boss
     if boss is not None:
         outline = round_hole(boss.name, "hub", (0.0, 0.0), boss.diameter)

@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 class Body:
     """A part without its contour; lengths in mm.
 
-    `openings` are listed from the bore outward; `bore` is its diameter or width; `features` are as the recipe has them.
-    `least_radius` is the contour's, where it is convex. `outer` is the diameter of a ring, of which the contour is an
-    opening too; None for a disc. `pocket` is the depth of the recess between two surfaces, None where it goes through
-    or there is none. `checks` are those of openings that sought their place.
+    `openings` begin with the bore; `bore` is its diameter, or its width across flats; `features` are the values that
+    the recipe gives. `least_radius` is the contour's least radius of curvature where it is convex, infinite without a
+    chamfer. `outer` is the diameter of a ring, whose contour is an opening too; None for a disc. `pocket` is the depth
+    of the recess between two surfaces, None where it goes through or there is none. `checks` are those of features that
+    are placed here.
     """
 
     thickness: float | None
@@ -67,9 +68,9 @@ class Body:
     def fineness(self) -> float:
         """Share of a tolerance within which a polygon must be fitted so that its chamfer's inner edge keeps it too.
 
-        Let f be the polygon's distance from the contour, e at most, and b half its turn at a corner, 4 e = r b^2 for a
-        radius of curvature r. Its parallel at the distance c is off by f and by up to c b^2/2 r/(r - c) = 2 e c/(r - c)
-        more, to first order.
+        Let e be the greatest distance of the polygon from the contour, r the radius of curvature and b half the turn at
+        a corner, so that 4 e = r b^2. The parallel at the distance c is off by e and, to first order, by up to
+        c b^2/2 r/(r - c) = 2 e c/(r - c) more: by e (r + c)/(r - c).
         """
         share = self.edge / self.least_radius
         return (1.0 - share) / (1.0 + share)
@@ -91,7 +92,7 @@ class Body:
         return (self.thickness or 0.0) + (0.0 if self.boss is None else self.boss.above)
 
     def mirrored(self) -> Body:
-        """Body mirrored about the x axis."""
+        """Body mirrored about the x axis, as for a shaft that turns the other way."""
         features = tuple(
             value if feature.mirrored is None else feature.mirrored(value)
             for feature, value in with_records(self.features)
@@ -100,10 +101,12 @@ class Body:
 
 
 def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
-    """Make the part of a recipe round a contour; openings without a stated place are placed here.
+    """Body of a recipe's part round a contour; features without a stated place are placed here.
 
-    Raises CurveError where the sharpest place of a contour that is to be chamfered cannot be proved.
+    `pocket` is the depth, mm, of the recess between two surfaces, None where there is none. Raises CurveError where the
+    sharpest place of a contour that is to be chamfered cannot be proved.
     """
+    # a feature is placed between the openings before it and the boss
     openings = [*_bore(part), *part.openings]
     checks: list[Check] = []
     standing = [] if part.boss is None else [part.boss.circle]
@@ -119,7 +122,7 @@ def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
 
 
 def _bore(part: Part) -> list[Opening]:
-    """The bore, with what shapes it; none of a part without one."""
+    """The bore, shaped by a feature such as a keyway, alone in a list; empty for a part without one."""
     if part.bore is None:
         return []
     if part.sides:

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Bolts:
-    """Bolt circle of equal round holes at equal angles: diameter `circle` through their centres, `hole` each, mm."""
+    """Bolt circle of equal round holes at equal angles, the first in direction `start`, rad.
+
+    `circle` is the diameter of the circle through their centres, `hole` that of each hole, mm.
+    """
 
     count: int
     circle: float

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
-LEAST_SIZE = 1e-3  # mm: of what is cut, drilled or stands; a file's reader takes much less for nothing
+LEAST_SIZE = 1e-3  # mm: least size of an opening or a boss; readers of files take much smaller ones for none
 SIDES = {"square": 4, "hexagon": 6}
 TABLE = FieldTable(
     (
@@ -29,7 +29,10 @@ TABLE = FieldTable(
 
 
 def read_bore(reader: Reader, field: Field, node: Node, path: str) -> float | Values | None:
-    """Read a diameter in mm, or the mapping of a bore with flats or with a tolerance class."""
+    """Diameter in mm, or values of the mapping of a bore with flats or with a tolerance class; None where it is faulty.
+
+    Faults are noted in the reader.
+    """
     if isinstance(node, Scalar):
         return read_numeric(reader, length(field.name, field.about), node, path)
     return reader.mapping(field, node, path)
@@ -53,14 +56,17 @@ FIELD = Field(
 
 
 def diameter_of(part: Values) -> float | None:
-    """Diameter of a round bore, mm; None of one with flats, and without a bore."""
+    """Diameter of a round bore, mm; None for a bore with flats, and without a bore."""
     bore = part.get("bore")
     diameter: float | None = bore.get("diameter") if isinstance(bore, dict) else bore
     return diameter
 
 
 def width_of(part: Values) -> tuple[float | None, str]:
-    """Diameter of a round bore or width across flats, mm, with the word for it; None without a bore."""
+    """Diameter of a round bore or width across flats, mm, and the word for it, `diameter` or `width`.
+
+    The size is None without a bore.
+    """
     bore, diameter = part.get("bore"), diameter_of(part)
     if diameter is not None or bore is None:
         return diameter, "diameter"
@@ -68,7 +74,11 @@ def width_of(part: Values) -> tuple[float | None, str]:
 
 
 def check_bore(part: Values, reader: Reader, shaping: list[str]) -> None:
-    """Note a direction of a round bore, and features that shape a round one (`shaping`) where there are several."""
+    """Note faults of the bore in the reader.
+
+    `shaping` are the keys of the features that shape a round bore: they do not go with flats, nor with each other. A
+    round bore has no direction.
+    """
     bore = part.get("bore")
     if diameter_of(part) is None:
         if bore is not None and "fit" not in bore:
@@ -83,7 +93,7 @@ def check_bore(part: Values, reader: Reader, shaping: list[str]) -> None:
 
 
 def build_bore(part: Values) -> Values:
-    """Fields of `Part` that say its bore."""
+    """Arguments of `Part` that describe its bore, by their names."""
     bore = part.get("bore")
     form: Values = bore if isinstance(bore, dict) else {}
     sides = next((SIDES[name] for name in SIDES if name in form), 0)

@@ -1,4 +1,4 @@
-"""Every edge of a part against every other: the least wall, the pair that has it, and where."""
+"""Every edge of a part against every other: the least wall, the pair that has it, and its place."""
 
 from __future__ import annotations
 
@@ -37,16 +37,16 @@ MOST_NAMED = 6  # pairs named in a message
 ROUND = {"bore": "part.bore", **dict(feature.round for feature in FEATURES if feature.round is not None)}
 """Beginnings of the names of round openings, and the fields that state their diameters."""
 OPENING, OUTLINE = "opening", "outline"  # as edges: a surface, and the round outline about it
-ROUNDING = 1e-9  # mm, by which a wall that is just held may lie below its limit
+ROUNDING = 1e-9  # mm, by which a wall that just keeps its limit may lie below it
 
 
 def bore_check(
     bore: float, surfaces: Sequence[Looks], least: float | None, shaft_deg: Callable[[float], float]
 ) -> Check:
-    """Check the wall round a bore of this diameter, mm, in a part that has nothing else.
+    """Check the wall between a bore of this diameter, mm, and the contour, in a part without other edges.
 
-    `least` is the wall asked for, mm; without one it must be above 0. `shaft_deg` gives the shaft angle, degrees, of a
-    parameter.
+    `least` is the recipe's least wall, mm; None where the wall only has to be above 0. `shaft_deg` gives the shaft
+    angle, degrees, of a parameter of the contour.
     """
     wall, at = max(least_wall(looks, bore) for looks in surfaces)
     ok = wall > 0.0 if least is None else wall >= least
@@ -57,10 +57,11 @@ def bore_check(
 def part_checks(
     body: Body, surfaces: Sequence[Looks], least: float | None, shaft_deg: Callable[[float], float]
 ) -> list[Check]:
-    """Check the walls of a part round its surfaces, and that the lightening holes asked for found room.
+    """Checks of a part: its least wall, what features check of the contour, and the places that features had to find.
 
-    `least` is the wall asked for, mm; without one it must be above 0. `shaft_deg` gives the shaft angle, degrees, of a
-    parameter.
+    `surfaces` are the contours of the disc. `least` is the recipe's least wall, mm; None where walls only have to be
+    above 0. `shaft_deg` gives the shaft angle, degrees, of a parameter of the contour. A part without two edges has no
+    check of walls.
     """
     checks = []
     limit = 0.0 if least is None else least
@@ -83,9 +84,10 @@ def part_checks(
 
 
 def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
-    """Say which diameters of bore, bolt holes and dowel hole, and which outline of a ring, would leave every wall.
+    """Remedy in words: diameters of round openings, and of the outline of a ring, with which every wall is kept.
 
-    Of two openings the later of the recipe's gives way; empty where another edge must, or where nothing is left.
+    Of two openings that of the later key is made smaller. Empty where another edge would have to move, or where an
+    opening would vanish.
     """
     across = {opening.name: 2.0 * opening.circle[1] for opening in body.openings if opening.circle is not None}
     most: dict[str, float] = {}
@@ -134,7 +136,7 @@ def thinnest(possible: Iterable[Possible], limit: float) -> list[Pair]:
 
 
 def walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
-    """Walls between all pairs of edges; those of openings far apart are left out."""
+    """Walls between all pairs of edges, not yet computed; pairs of openings that are far apart are left out."""
     yield from _outline_walls(body, surfaces)
     for opening in body.openings:
         yield to_surface(opening, body, surfaces)
@@ -158,7 +160,7 @@ def _outside(opening: Opening, other: Opening) -> Pair:
 
 
 def _outline_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
-    """Walls between the round outline of a body and what it has in it, the surfaces first."""
+    """Walls between the round outline of a ring and the surfaces, then the openings within it; none for a disc."""
     if body.outer is None or body.rim is None:
         return
     radius = 0.5 * body.outer

@@ -47,7 +47,7 @@ LEAST, MOST = TABLE[0].over, TABLE[-1].to
 
 
 def key_for(bore: float) -> Row | None:
-    """Row of the table for a bore in mm; None outside it. A bore of 6 mm itself takes the first row."""
+    """Row of the table for a bore in mm; None outside the table. A bore of 6 mm itself takes the first row."""
     if bore == LEAST:
         return TABLE[0]
     return next((row for row in TABLE if row.over < bore <= row.to), None)

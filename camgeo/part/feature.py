@@ -30,7 +30,7 @@ WALL = "wall"  # name of the check on the least wall, and of the figure
 
 
 class Site(NamedTuple):
-    """Part in which a feature seeks its place: the contour, and the openings and the boss that are there.
+    """Part in which a feature is placed: the contour, and the outlines of openings and boss that are there.
 
     `wall` is the recipe's least wall, mm, None where it states none; `edge`, mm, is what a chamfer takes off the
     contour.
@@ -43,7 +43,7 @@ class Site(NamedTuple):
 
 
 class Placed(NamedTuple):
-    """Openings for which a place was found, and the check of their number; None where no check is needed."""
+    """Openings for which a place was found, and a check of that; the check is None where it could only hold."""
 
     openings: Sequence[Opening]
     check: Check | None = None
@@ -52,8 +52,8 @@ class Placed(NamedTuple):
 class Boss(NamedTuple):
     """Round body about the shaft that stands on the disc; lengths in mm.
 
-    `name` is that of its edge, and of the check of files. `above` and `below` are its heights beyond the upper and the
-    lower face of the disc, 0 where it does not stand.
+    `name` is the name of its edge, and of the check of files. `above` and `below` are its heights beyond the upper and
+    the lower face of the disc, 0 on a face without it.
     """
 
     name: str
@@ -75,7 +75,10 @@ class Boss(NamedTuple):
 
 
 class Refusal(NamedTuple):
-    """Why a feature does not go with something, and what to do; `unless` tells by its keys where it does."""
+    """Problem of a feature in a part where it cannot be made, and the remedy.
+
+    `unless` is true of keys of the feature with which it can be made all the same.
+    """
 
     problem: str
     remedy: str
@@ -83,10 +86,11 @@ class Refusal(NamedTuple):
 
 
 class FeatureCheck(NamedTuple):
-    """Check of a feature: its name in reports and its unit, and of what it is made.
+    """Check of a feature: its name in reports, its unit, and what is checked.
 
-    `exact`: of the exact cam; `files`: of no file, of solids, or of all files with a contour but programs. `strict`: a
-    figure equal to its limit fails. `remedy` gives what would let it hold, of the check and the report as plain JSON.
+    `exact` is whether the exact cam is checked; `files` whether no file is, solids are, or all files with a contour but
+    programs. With `strict` a figure equal to its limit fails. `remedy`, (check, report, recipe), both as plain JSON,
+    gives a sentence on a change that lets the check hold.
     """
 
     name: str
@@ -100,8 +104,8 @@ class FeatureCheck(NamedTuple):
 class Callout(NamedTuple):
     """A size of a feature on a shop drawing: a text with a leader, and a note below it, empty for none.
 
-    The leader ends on the circle of this centre and radius, mm, at `angle`, rad. `value` is a diameter, mm, that is a
-    dimension; None of words.
+    The leader ends on the circle of this centre and radius, mm, at `angle`, rad. `value` is the diameter, mm, where the
+    text is a dimension; None for other texts.
     """
 
     text: str
@@ -115,8 +119,8 @@ class Callout(NamedTuple):
 class SheetView(NamedTuple):
     """A part as a shop drawing shows it, perhaps mirrored.
 
-    `part` as in the recipe, `openings` as drawn, by their names. `number` writes a size in mm, `degrees` a direction of
-    the recipe, rad; `direction` gives that direction in the drawing, rad.
+    `part` is as in the recipe, `openings` are as drawn, by name. `number` gives the text of a size in mm, `degrees` the
+    text of a direction of the recipe, rad; `direction` gives that direction in the drawing, rad.
     """
 
     part: Part
@@ -126,12 +130,12 @@ class SheetView(NamedTuple):
     direction: Callable[[float], float]
 
     def circle(self, name: str, diameter: float, half_turns: float) -> Callout:
-        """Callout of a circle about the shaft, its leader at so many half turns."""
+        """Callout of a circle about the shaft of a diameter, mm, its leader at an angle of so many half turns."""
         text = f"Ø{self.number(diameter)}"
         return Callout(text, name, (0.0, 0.0), 0.5 * diameter, half_turns * math.pi, diameter)
 
     def named(self, word: str) -> list[tuple[tuple[float, float], float]]:
-        """Centre and radius of each round opening whose name begins with a word, mm."""
+        """Centre (x, y) and radius, mm, of each round opening whose name begins with a word."""
         return [
             opening.circle
             for name, opening in self.openings.items()
@@ -141,11 +145,12 @@ class SheetView(NamedTuple):
 
 @dataclass(frozen=True)
 class Feature(Generic[T]):
-    """A feature of the part: all that the core asks of it; fields that do not apply are left out.
+    """A feature of the part: all that the core needs of it; fields that do not apply are left out.
 
-    Openings, a boss, chamfered edges and cross holes are what solids are made of, and what the judge is given.
+    Solids are made, and files judged, by openings, a boss, chamfered edges and cross holes alone. In the functions T is
+    the value of the feature in a part.
 
-    kind      class of its value, which `Part.of` and `Body.of` give
+    kind      class of its value, which `Part.of` gives
     field     its key of `part`
     needs     other keys of `part` that it cannot be without, each with the reason
     of_ring   whether a ring may have it, `of_pair` whether conjugate discs may
@@ -153,24 +158,25 @@ class Feature(Generic[T]):
     locates   whether it fixes the angle of the part on its shaft
     holes     whether it cuts holes, `walled` whether there are walls between it and other edges without them
     check     notes the faults between its keys and others of `part`
-    make      its value by what was read of it and of all of `part`; without it `kind` takes its keys
-    bore      outline of the bore that it shapes, of a radius in mm
-    openings  what it cuts where the recipe says
-    place     what it cuts where it finds a place, in the order of the features
-    boss      boss that it is
+    make      its value: (what was read under its key, values of `part`); without it `kind` is called with its keys
+    bore      outline of the bore that it shapes: (value, radius of the round bore, mm)
+    openings  what it cuts at places that the recipe states
+    place     what it cuts at places that it has to find, in the order of the features
+    boss      boss that it makes
     edge      chamfer of 45 degrees that it gives both edges of the contour, mm
     cross     radial hole that it drills through a boss of a disc of this thickness, mm
-    walls     walls round it besides those of its openings, of a body with these surfaces
+    walls     walls round it besides those of its openings: (value, body, surfaces)
     contour   check of a contour of the part; the last argument gives the shaft angle, degrees, of its parameter
-    judged    what is checked of it
+    judged    check by which reports name it
     round     beginning of the names of its round openings, and the field that states their diameter
-    grown     its value with metal grown by `out` mm, then scaled
+    grown     its value with all metal enlarged: (value, mm to every side, scale of the result)
     mirrored  its value in a part mirrored about the x axis
-    steadies  change of it that draws the centre of mass to the shaft
-    metric    its metric standard size, and what to give instead beside a bore by the inch; empty of any other
-    remark    what a drawing does not show of it, in units of so many mm
-    unmilled  why a program for a milling machine leaves it
-    callouts  its sizes on a shop drawing, beside a bore's own view
+    steadies  words for a change of it that draws the centre of mass to the shaft
+    metric    words for its metric standard size and for what to give instead where the bore is in inches; empty for a
+              size that follows no metric standard
+    remark    words for what a drawing does not show of it: (value, mm in the unit of lengths)
+    unmilled  why a milling program does not make it
+    callouts  its sizes on a shop drawing, beside those of the bore
     """
 
     kind: type[T]
@@ -208,10 +214,7 @@ class Feature(Generic[T]):
         return self.field.name
 
     def build(self, part: Values) -> T | None:
-        """Make the feature's value from the keys of `part`, in which there is no fault.
-
-        None where the recipe does not give the feature.
-        """
+        """Value of the feature by the keys of `part`, which are without fault; None where `part` does not have it."""
         if self.name not in part:
             return None
         if self.make is not None:
@@ -221,11 +224,11 @@ class Feature(Generic[T]):
 
 
 class NothingLeftError(CamgeoError, ValueError):
-    """An opening that is no wider than what is taken from it."""
+    """An opening is no wider than what an enlargement of the metal takes from it."""
 
 
 def narrowed(width: float, out: float, scale: float) -> float:
-    """Width of an opening, mm, when metal has grown by `out`, mm, on either side and is scaled.
+    """Width of an opening, mm, once the metal is enlarged by `out`, mm, on either side and then scaled.
 
     Raises NothingLeftError where that closes the opening.
     """
@@ -236,28 +239,28 @@ def narrowed(width: float, out: float, scale: float) -> float:
 
 
 def angle(name: str, about: str) -> Field:
-    """Make the field of a direction, an angle in the recipe that is rad as a value."""
+    """Field of a direction, from -360 to 360 degrees in the recipe; its value is in rad."""
     return Field(name, Kind.ANGLE, about, default="0", at_least=-360, at_most=360)
 
 
 def count(name: str, about: str, *, least: int = 1, required: bool = False) -> Field:
-    """Make the field of a number of holes."""
+    """Field of a number of holes, from `least` to `MOST_HOLES`."""
     return Field(name, Kind.INTEGER, about, required, at_least=least, at_most=MOST_HOLES)
 
 
 def optional(name: str, about: str, *fields: Field, alternatives: Collection[str] = ()) -> Field:
-    """Make the field of a feature that is a mapping, of whose `alternatives` exactly one is given."""
+    """Field of a feature that is a mapping of `fields`; of the keys `alternatives` exactly one has to be given."""
     table = FieldTable(fields, alternatives=tuple((word, ()) for word in alternatives))
     return Field(name, Kind.TABLE, about, default="none", table=table)
 
 
 def check_below(reader: Reader, path: str, value: float | None, bound: float, what: str) -> None:
-    """Note a length that was given, mm, and is not below a bound."""
+    """Note a fault at `path` where a length, mm, is given and not below a bound, mm; `what` names the bound."""
     if value is not None and value >= bound:
         limit = size_words(bound, reader)
         reader.fault_at(path, f"not below {what}", size_words(value, reader), f"give less than {limit}")
 
 
 def size_words(value: float, reader: Reader) -> str:
-    """Write a length of so many mm in the recipe's unit."""
+    """Text of a length, given in mm, in the recipe's unit."""
     return f"{value / reader.mm:.6g} {reader.units}"

@@ -20,7 +20,7 @@ EDGE_KEYS = tuple(f"part.{feature.name}" for feature in FEATURES if feature.edge
 
 
 def with_records(values: Iterable[object]) -> list[tuple[Feature[Any], Any]]:
-    """Pairs of a feature's record and its value, in the order of the values."""
+    """Pairs of a feature's record and its value, in the order of the values; raises KeyError for no feature's value."""
     return [(RECORDS[type(value)], value) for value in values]
 
 
@@ -35,9 +35,9 @@ def edge_of(values: Iterable[object]) -> float:
 
 
 def values_read(part: Values) -> Iterator[object]:
-    """Values of the features that make a boss or chamfer edges, of keys of `part` of which some may be faulty.
+    """Values of the features that make a boss or chamfer edges, from keys of `part` of which faulty ones are missing.
 
-    One of which a required key is missing is left out.
+    A feature without one of its required keys is left out.
     """
     for feature in FEATURES:
         if feature.name in part and (feature.boss is not None or feature.edge is not None):

@@ -25,7 +25,7 @@ STANDARDS = ("din6885", "jis-b1301")  # which have the same widths and depths
 class Keyway:
     """Keyway in a round bore, mm: `depth` is t2 of DIN 6885, from the bore's circle to the keyway's bottom.
 
-    `at` is the direction of its middle, rad; `standard` is whether width and depth follow that standard by the bore.
+    `at` is the direction of its middle, rad. With `standard`, width and depth are those of DIN 6885 for the bore.
     """
 
     width: float
@@ -46,7 +46,7 @@ TABLE = FieldTable(
 
 
 def read_keyway(reader: Reader, field: Field, node: Node, path: str) -> Values | None:
-    """Read the word for the standard's keyway, or its mapping."""
+    """Values of a keyway, from the word of a standard or from a mapping; None where it is faulty, which is noted."""
     if isinstance(node, Scalar):
         if node.text in STANDARDS:
             return {"standard": node.text}

@@ -1,8 +1,8 @@
 """Search for lightening holes: the largest circles that keep a wall from every edge, or a ring of them.
 
-The space round a point is its distance to the nearest edge. It is looked at on a grid and climbed from the best places;
-a hole's diameter then follows from the exact distances of its centre, rounded down. So a wall is kept exactly, while
-"largest" means the best that the search found.
+The space round a point is its distance from the nearest edge. It is computed on a grid, and climbed from the best
+places; a hole's diameter then follows from the exact distances of its centre, rounded down. So a wall is kept exactly,
+while "largest" means the largest that the search found.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from camgeo.part.walls import Looks
     from kin.numeric.arrays import Array
 
-GRID = 37  # points of the search each way
+GRID = 37  # points of the grid in each direction
 STARTS = 12  # places from which the search climbs
 CENTRE, DIAMETER = 0.01, 0.1  # mm: steps of centres and diameters
 RINGS = 400  # radii of a ring that are tried
-SHORT = 0.25  # of the step of a climb: as far it looks too,
-SHRINK = 0.125  # and its step shrinks by this where it finds nothing better
+SHORT = 0.25  # of the step of a climb: the short step, tried beside the long one
+SHRINK = 0.125  # factor of the step of a climb where neither step leads higher
 FAR = 1e-9  # mm: covers the rounding of a bound on a distance
 
 
@@ -54,14 +54,14 @@ class Space:
         self.polygon = Arcs(self.ring[kept], tangent, np.zeros(int(kept.sum())), length[kept])
 
     def about(self, points: Array) -> Array:
-        """Radius (n,) that a hole about points (n, 2) can have, mm; negative where none fits.
+        """Radius (n,), mm, that a hole about points (n, 2), mm, can have; negative where none fits.
 
         The contour is taken as a polygon.
         """
         return self.left(points, self.inside(points))
 
     def inside(self, points: Array) -> Array:
-        """Distance of points (n, 2) inside the contour, taken as a polygon, less its chamfer (n,)."""
+        """Distance (n,), mm, of points (n, 2) inside the contour, taken as a polygon, less its chamfer."""
         return -signed_distance(self.polygon, points) - self.edge
 
     def left(self, points: Array, inside: Array) -> Array:
@@ -103,6 +103,7 @@ def largest(space: Space, count: int, least: float) -> Circles:
     x, y = (np.linspace(a, b, GRID) for a, b in zip(low.tolist(), high.tolist(), strict=True))
     grid = np.column_stack([part.ravel() for part in np.meshgrid(x, y)])
     inside = space.inside(grid)
+    # points without space are left out once: space only shrinks
     free = space.left(grid, inside) > 0.0
     grid, inside = grid[free], inside[free]
     pitch = float((high - low).max()) / (GRID - 1)
@@ -122,7 +123,11 @@ def largest(space: Space, count: int, least: float) -> Circles:
 
 
 def _climbed(space: Space, points: Array, step: float) -> tuple[float, float]:
-    """Climb the space from points (n, 2) in eight directions by long and short steps; the best place reached."""
+    """Best place (x, y), mm, that climbs of the space from points (n, 2) reach.
+
+    They climb by long and short steps in eight directions; `step`, mm, is the first long step. The array of points is
+    overwritten.
+    """
     turns = np.arange(16) * 0.25 * np.pi
     share = np.repeat([1.0, SHORT], 8)
     ways = share[:, None] * np.column_stack([np.cos(turns), np.sin(turns)])
@@ -141,7 +146,10 @@ def _climbed(space: Space, points: Array, step: float) -> tuple[float, float]:
 
 
 def ring(space: Space, count: int, start: float, least: float) -> Circles:
-    """Equal holes at equal angles, on the circle on which they are largest; none where they are below `least`."""
+    """Equal holes at equal angles, the first at `start`, rad, on the circle on which they are largest.
+
+    Empty where their diameter is below `least`, mm.
+    """
     angle = start + 2.0 * np.pi * np.arange(count) / count
     u = np.column_stack([np.cos(angle), np.sin(angle)])
     reach = float(np.hypot(space.ring[:, 0], space.ring[:, 1]).max())
@@ -152,6 +160,7 @@ def ring(space: Space, count: int, start: float, least: float) -> Circles:
         equal: Array = np.minimum(about, radii * between - 0.5 * space.wall)
         return equal
 
+    # the best radius of the circle, looked for four times over a range that narrows about it
     low, high = 0.0, reach
     for _ in range(4):
         radii = np.linspace(low, high, RINGS)

@@ -16,9 +16,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Lightening:
-    """Round holes that are placed where there is room, `wall` from every edge; none smaller than `least` across.
+    """Round holes that are placed where there is room, `wall`, mm, from every edge.
 
-    `ring` equal ones at equal angles from `start`, or up to `largest` of them, each the largest that still fits.
+    Their number is `ring`, of equal holes at equal angles from the direction `start`, rad, or at most `largest`, each
+    the largest that still fits. `least` is the least diameter, mm; None for twice the wall.
     """
 
     wall: float
@@ -35,7 +36,7 @@ def _check(part: Values, reader: Reader) -> None:
 
 
 def _place(lightening: Lightening, site: Site) -> Placed:
-    """Holes in a contour round what is there."""
+    """Holes between the contour and the openings that are there, and the check of their number."""
     from camgeo.part.largest_holes import Space, largest, ring
     from camgeo.part.shapes import disc
     from kin.judge.check import Check

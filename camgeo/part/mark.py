@@ -24,9 +24,9 @@ MARGIN = 1e-9  # mm: rounding of a wall that is just held
 
 @dataclass(frozen=True)
 class Mark:
-    """A slot on the ray at 0, engraved into the upper face or cut through; `radius` is that of its outer end.
+    """A slot on the ray at 0, engraved `depth` deep into the upper face or cut through; lengths in mm.
 
-    Without a radius the slot lies as far out as the wall lets it.
+    `radius` is the distance of its outer end from the shaft; None for as far out as the wall lets it.
     """
 
     kind: Literal["engrave", "cut"] = "engrave"
@@ -47,7 +47,10 @@ def _check(part: Values, reader: Reader) -> None:
 
 
 def _place(mark: Mark, site: Site) -> Placed:
-    """The mark where the recipe has it, or as far out on the ray as the wall lets it; else what would have room."""
+    """The mark where the recipe has it, or as far out on the ray as the wall lets it.
+
+    Without room there is no opening, and the check names the greatest mark, or else the wall, that leaves some.
+    """
     opening = _opening(mark, site, site.wall)
     if opening is not None:
         return Placed((opening,))
@@ -76,9 +79,10 @@ def _greatest(fits: Callable[[float], bool]) -> float:
 
 
 def _opening(mark: Mark, site: Site, wall: float | None) -> Opening | None:
-    """The mark at its `radius`, whatever its wall; else as far out as `wall`, mm, or its width to the contour permits.
+    """The mark at its `radius`, whatever its wall; else as far out as the wall to the contour permits.
 
-    None without room on the ray, and for a mark that is not longer than wide.
+    That is `wall`, mm, or without one the width of the mark. None without room on the ray, and for a mark that is not
+    longer than wide.
     """
     from camgeo.part.shapes import Opening, slot
     from camgeo.part.walls import contour_gap, distance_inside
@@ -115,7 +119,7 @@ def _opening(mark: Mark, site: Site, wall: float | None) -> Opening | None:
 
 
 def _no_room(mark: Mark, fits: Mark | None = None, wall: float = 0.0) -> Check:
-    """The check that fails as there is no room: the greatest mark of its shape that has some, or the wall that does."""
+    """Check that fails as there is no room; it names the mark `fits`, or the `wall`, mm, for which there is some."""
     from camgeo.common.rounding import downward
     from kin.judge.check import Check
     from kin.numeric.lengths import amount_words

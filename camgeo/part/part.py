@@ -25,7 +25,7 @@ _NO_SIZES = frozenset({"wall", "least"})  # what has to be left, which may be as
 class Part:
     """The part round the contour; lengths in mm.
 
-    `thickness` is that of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or
+    `thickness` is the disc's along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or
     6) are given; `bore_at`, rad, is then the direction of one flat's normal. `fit` is the tolerance class of a round
     bore, empty where none is stated; files have the nominal size. `wall` is the least wall permitted between any two
     edges; without it the least wall is reported and must be above 0. `outer` is the diameter of a ring, whose opening
@@ -43,7 +43,7 @@ class Part:
     features: tuple[object, ...] = ()
 
     def of(self, kind: type[T]) -> T | None:
-        """Give the feature of this class, None where the part has none."""
+        """Value of the feature of this class; None where the part does not have it."""
         return next((value for value in self.features if isinstance(value, kind)), None)
 
     @property
@@ -57,13 +57,13 @@ class Part:
         return edge_of(self.features)
 
     def with_sharp_edges(self) -> Part:
-        """Give the part without what chamfers the edges of its contour."""
+        """The part without features that chamfer the edges of its contour."""
         kept = tuple(value for feature, value in with_records(self.features) if feature.edge is None)
         return replace(self, features=kept)
 
     @property
     def plain(self) -> bool:
-        """Whether there is nothing but a round bore or none."""
+        """Whether the part has no edge besides the contour and a round bore, if any."""
         return not self.sides and self.outer is None and not self.features
 
     @property
@@ -85,7 +85,7 @@ class Part:
 
     @property
     def openings(self) -> list[Opening]:
-        """Openings at the places that the recipe states: not the bore, nor openings that seek their place."""
+        """Openings at places that the recipe states, without the bore and without those that have to find a place."""
         features = with_records(self.features)
         return [each for feature, value in features if feature.openings is not None for each in feature.openings(value)]
 
@@ -112,7 +112,7 @@ PART = mapping(
 
 
 def check_part(part: Values, reader: Reader) -> None:
-    """Note the faults between the fields of `part` that were read."""
+    """Note the faults between the fields of `part` that were read, in the reader."""
     _check_needs(reader, "density", "thickness", "the mass is that of a solid")
     bore.check_bore(part, reader, [each.name for each in FEATURES if each.bore is not None and each.name in part])
     for feature in FEATURES:

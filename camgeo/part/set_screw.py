@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 class SetScrew:
     """Radial hole from the hub's outside into the bore, in direction `at`, rad; lengths in mm.
 
-    `height` is that of its axis above the face of the disc; None for half the hub.
+    `height` is the height of its axis above the face of the disc; None for half the height of the hub.
     """
 
     diameter: float
@@ -42,7 +42,7 @@ def _check(part: Values, reader: Reader) -> None:
 
 
 def _cross(screw: SetScrew, boss: Boss, thickness: float) -> CrossHole:
-    """Radial hole of the screw, in the upper one of two bosses."""
+    """Radial hole of the screw, in the boss above the disc, or in the boss below where there is none above."""
     from kin.judge.layers import CrossHole
 
     beyond = 0.5 * (boss.above or boss.below) if screw.height is None else screw.height

@@ -1,6 +1,6 @@
 """Closed outlines of lines and arcs for what is cut into a part: circles, keyed bores, flats, polygons, slots.
 
-In the cam's axes, mm, counter-clockwise. A circle is two halves; `centre` and `radius` of one are kept for drawing.
+In the cam's axes, mm, counter-clockwise. A circle is two halves, and keeps its centre and radius for drawing.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ Layer = Literal["CUT", "BORE", "HOLES", "MARK", "ENGRAVE"]
 class Opening:
     """One closed outline cut into the part: through everything, or `depth` mm into the upper face of the disc.
 
-    `layer` is that of a drawing; `circle` is the centre and radius of a round one, None of any other. `island`: it
-    lies in the metal within the inner of two surfaces.
+    `layer` is the layer of a drawing; `circle` is the centre and radius of a round opening, mm, None for any other.
+    `island` is whether it lies in the metal within the inner of two surfaces.
     """
 
     name: str
@@ -82,7 +82,7 @@ def hole_at(name: str, circle: float, diameter: float, angle: float) -> Opening:
 def keyed(radius: float, width: float, depth: float, angle: float) -> ArcSpline:
     """Circle about the origin with a keyway of this width, mm; its bottom is `depth` beyond the circle (DIN 6885 t2).
 
-    `angle`, rad, is the direction of the keyway's middle.
+    `angle`, rad, is the direction of the keyway's middle. Raises ValueError for a keyway wider than the circle.
     """
     half = 0.5 * width
     bottom, corner = radius + depth, math.sqrt(radius * radius - half * half)
@@ -92,7 +92,10 @@ def keyed(radius: float, width: float, depth: float, angle: float) -> ArcSpline:
 
 
 def flattened(radius: float, across: float, angle: float) -> ArcSpline:
-    """Circle about the origin with a flat, `across` mm from its opposite side; its normal points to `angle`, rad."""
+    """Circle about the origin with a flat, `across` mm from the opposite side of the circle.
+
+    The flat's normal points to `angle`, rad. Raises ValueError where `across` is not between 0 and the diameter.
+    """
     height = across - radius
     half = math.sqrt(radius * radius - height * height)
     sweep = 2.0 * (math.pi - math.acos(height / radius))

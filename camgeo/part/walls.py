@@ -1,7 +1,8 @@
 """Least walls: what is left of the metal between two edges of a part, and where.
 
-A least distance stands where the line between two feet meets an edge square. Between two looked-at points of one edge
-the square is met where the product of foot vector and tangent changes its sign upwards, and is root-found there.
+The line of a least distance is square to the edges at both ends. Between two sampled points of an edge such a place
+lies where the scalar product of the vector from the other edge's nearest point and the tangent changes its sign from
+below to above 0; it is found there as a root.
 """
 
 from __future__ import annotations
@@ -25,12 +26,12 @@ if TYPE_CHECKING:
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
-LOOKS_PER_TURN = 768  # points of a contour, about, at which the distance is looked at
-PART_TURN = 0.1  # rad: an arc is looked at about so often
-PARTS = 12  # and each of its pieces at least so often
+LOOKS_PER_TURN = 768  # points of a contour, about, between which least distances are sought
+PART_TURN = 0.1  # rad: an arc is cut into parts that turn by about this
+PARTS = 12  # least number of parts of a line or an arc
 SETTLED = 1e-9  # of the interval: a least distance is off by the square of this
 
-NOWHERE = (float("inf"), float("inf"))  # of a wall that runs all along a face
+NOWHERE = (float("inf"), float("inf"))  # place of a wall that is the same all along a face
 
 
 class Gap(NamedTuple):
@@ -46,14 +47,14 @@ class Gap(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two edges and the wall between them."""
+    """Names of two edges, and the wall between them."""
 
     one: str
     other: str
     gap: Gap
 
     def __str__(self) -> str:
-        """Tell the pair, the wall and the place."""
+        """Text with the names of the pair, its wall and the place."""
         place = "" if self.gap.place == NOWHERE else f" at {place_words(*self.gap.place, digits=4)}"
         return f"{self.one} and {self.other}: {length_words(self.gap.wall, '.4g')} {UNIT}{place}"
 
@@ -66,9 +67,10 @@ class Possible(NamedTuple):
 
 
 class Looks(NamedTuple):
-    """A contour, and the frames at the ends of the intervals (n,) between which its distance is looked at.
+    """A contour in intervals (n,) of its parameter from `low` to `high`, in each of which distances are sought.
 
-    The metal lies on `side` of it; `name` is that of the surface.
+    `first` and `last` are its frames at the ends of the intervals. The metal lies inside it for `side` 1, outside for
+    -1; `name` is the surface's.
     """
 
     contour: Curve
@@ -81,7 +83,7 @@ class Looks(NamedTuple):
 
     @staticmethod
     def of(contour: Curve, side: Side = 1, name: str = "") -> Looks:
-        """Cut the cells of a contour into parts of about its period over LOOKS_PER_TURN."""
+        """Cut the cells of a contour into intervals of at most its period over LOOKS_PER_TURN."""
         cells = contour.cells
         width = cells.high - cells.low
         parts = np.maximum(np.ceil(width * (LOOKS_PER_TURN / contour.shape.period)), 1.0).astype(np.intp)
@@ -164,7 +166,10 @@ def contour_gap(looks: Looks, chain: Arcs) -> Gap:
 
 
 def to_surface(opening: Opening, body: Body, surfaces: Sequence[Looks]) -> Possible:
-    """The wall between an opening or a boss and the surface in whose metal it lies, or its chamfer: the widest."""
+    """The wall between an opening or a boss and the surface in whose metal it lies, or that surface's chamfer.
+
+    Of the walls to the surfaces, that is the widest one.
+    """
     edge = body.edge
     other = "chamfer" if edge else "contour"
 
@@ -183,7 +188,7 @@ def known(name: str, other: str, gap: Gap) -> Possible:
 
 
 def outside_gap(chain: Arcs, other: Arcs) -> Gap:
-    """Least wall, mm, between two closed chains side by side; negative where they cross or one holds the other."""
+    """Least wall, mm, between two closed chains side by side; negative where they cross or one contains the other."""
     gap = _chain_gap(chain, other, 1.0)
     held = float(signed_distance(chain, other.start[:1])[0])
     return gap if held > 0.0 else Gap(min(gap.wall, held), _place(other.start[0]))
