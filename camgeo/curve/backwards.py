@@ -29,12 +29,12 @@ class Backwards:
 
     @property
     def period(self) -> float:
-        """Period of the parameter."""
+        """Period of the parameter, in its own unit."""
         return self.base.period
 
     @property
     def breaks(self) -> Array:
-        """Breaks of the base in the negated parameter, from 0 to less than the period, rising."""
+        """Breaks (m,) of the base in the negated parameter, from 0 to less than the period, rising."""
         return np.sort(np.mod(-np.asarray(self.base.breaks, dtype=np.float64), self.period))
 
     @property
@@ -63,7 +63,7 @@ class Backwards:
         return radii
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
-        """Frame at parameters t (n,)."""
+        """Frame at parameters t (n,); at a break the limit from above (side 1) or from below (side -1)."""
         frame = self.base.sample(-t, -side)
         return Frame(frame.point, -frame.tangent, frame.speed, -frame.turn, -frame.speed_slope, frame.turn_slope)
 
@@ -74,7 +74,7 @@ class Backwards:
         return sign * speed, -sign * turn
 
     def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Speed and turn as series."""
+        """Speed, mm, and turn, rad, as series at jets or ball jets of the parameter."""
         speed, turn = self.base.rates(-tau, -side)
         return speed, -turn
 
@@ -85,7 +85,7 @@ class Backwards:
 
 
 def backwards(curve: Curve) -> Curve:
-    """A curve run through the other way; a contour outside its base is then inside, as a roller's contour is."""
+    """Curve run through the other way; a `Parallel` outside its base is then inside it, as a roller's contour is."""
     shape = curve.shape
     turned = Parallel(Backwards(shape.base), -shape.distance) if isinstance(shape, Parallel) else Backwards(shape)
     return Curve(turned, runs_backwards(curve.runs), curve)
@@ -99,6 +99,9 @@ def runs_backwards(runs: Sequence[SmoothRun]) -> tuple[SmoothRun, ...]:
 
 
 def least_hollow(contour: Curve) -> tuple[float, float]:
-    """Least radius of the hollow stretches of a contour, mm, and its parameter; infinite without a hollow."""
+    """Least radius of the hollow stretches of a contour, mm, and its parameter; infinite without a hollow.
+
+    The radius is counted above 0 in a hollow. Raises CurveError where the proof does not end.
+    """
     radius, place = least_radius(backwards(contour))
     return radius, -place

@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 ROUNDING = 64.0 * float(np.finfo(np.float64).eps)  # of the curve's size: what sampled speeds and points may be off
 SHARPNESS = 1e-12  # of the curve's size: how far a proved least radius may lie below the one found
 SPLITS = 8  # parts into which an undecided interval is divided
-LOOSE = 1e-9  # of the curve's size: the same, of curves that hardly differ from a circle over long stretches
+LOOSE = 1e-9  # of the curve's size: this sharpness for curves that hardly differ from a circle over long stretches
 MANY = 2_000  # intervals left undecided by `SHARPNESS` show such a curve
-NEAR = 100.0  # an end this many times `SHARPNESS` from the least counts as a minimum
+NEAR = 100.0  # times the tolerance: an end with so little more than the least radius counts as a minimum
 GROWTH = 1.6  # from part to part away from a minimum already found
-LEVELS = 30
+LEVELS = 30  # divisions of undecided intervals
 MOST_INTERVALS = 100_000  # undecided at a time
-FRESH = 1_000  # so many undecided: the bounds over them are formed anew, not taken over from their cells
-_FALSE_POSITIONS = 40  # steps of that rule, at the most; then halving alone
+FRESH = 1_000  # with so many undecided their bounds are formed anew, not taken over from their cells
+_FALSE_POSITIONS = 40  # steps of the rule of false position; then halving alone
 _ROOT_STEPS = _FALSE_POSITIONS + 56  # of a bracket: 53 halvings reach the rounding of its ends
 
 
@@ -48,7 +48,10 @@ class Reversal:
 
 @dataclass(frozen=True)
 class Least:
-    """A least radius of curvature, mm, its parameter, and how much smaller it may be, mm, beyond `SHARPNESS`."""
+    """A least radius of curvature, mm, its parameter `at`, and the bound `excess` by which it may be smaller, mm.
+
+    The excess is 0 where the radius is proved to `SHARPNESS` of the curve's size.
+    """
 
     radius: float
     at: float
@@ -59,7 +62,7 @@ def least_radius(curve: Curve) -> tuple[float, float]:
     """Least radius of curvature of the convex stretches, in mm, and its parameter; negative where it undercuts.
 
     One-sided limits at breaks count. No radius lies below the result by more than `SHARPNESS` of the curve's size
-    (up to rounding of the samples); of an enclosure that is wider, the result is the lower end. A curve without a
+    (up to rounding of the samples); where it is proved less sharply, the result is its lower bound. A curve without a
     convex stretch has (inf, its first parameter). Raises CurveError where the proof does not end.
     """
     least = enclosed_least_radius(curve)
@@ -69,11 +72,9 @@ def least_radius(curve: Curve) -> tuple[float, float]:
 def enclosed_least_radius(curve: Curve) -> Least:
     """Least radius of curvature of the convex stretches, mm, and its parameter, with a bound of its error, mm.
 
-    Infinite, at the first parameter, for a curve without a convex stretch. Raises CurveError where the proof does not
-    end.
-
-    Stretches that are circles but for rounding would be divided without end: where there are many, and no sign is in
-    doubt, it is proved to `LOOSE` of the curve's size only.
+    The radius is infinite, at the first parameter, for a curve without a convex stretch. Raises CurveError where the
+    proof does not end. Stretches that are circles but for rounding would be divided without end: with many of them,
+    and the radius's sign not in doubt, it is proved to `LOOSE` of the curve's size only.
     """
     cells = curve.cells
     possible = _may_hold_least(cells)
@@ -96,6 +97,7 @@ def enclosed_least_radius(curve: Curve) -> Least:
     if least < best:
         best, place = least, worst
     for _ in range(LEVELS):
+        # minima inside intervals where the radius falls and rises
         dips = state.part(state.dips & (state.floor(best - tolerance) < 0.0))
         ends = _radius_slope(dips.at_low), _radius_slope(dips.at_high)
         bottoms = roots(lambda t: _radius_slope(curve.sample(t)), dips.low, dips.high, ends, 1e-7)
@@ -103,6 +105,7 @@ def enclosed_least_radius(curve: Curve) -> Least:
             radius = _radius(curve.sample(bottoms))
             if radius.min() < best:
                 best, place = float(radius.min()), float(bottoms[np.argmin(radius)])
+        # intervals that may hold a smaller radius; of a near circle they are too many for the full sharpness
         state = state.part(state.floor(best - tolerance) < 0.0)
         if not excess and state.low.size > MANY and not 0.0 <= best <= loose:
             tolerance = excess = max(loose, tolerance)
@@ -111,6 +114,7 @@ def enclosed_least_radius(curve: Curve) -> Least:
             return Least(best, place, excess)
         if state.low.size > MOST_INTERVALS:
             break
+        # about a minimum found, steps so fine that h cannot leave its ends' values by the tolerance
         grade = 0.5 * math.sqrt(8.0 * tolerance / max(state.bend(best).max(), 1e-300))
         minima = np.empty(0) if excess else np.concatenate([bottoms, state.ends_below(best + NEAR * tolerance)])
         state = state.subdivided(curve, minima, grade, fresh=not excess)
@@ -134,7 +138,7 @@ def _least_arc(curve: Curve, radii: Array, possible: Mask) -> tuple[float, float
     cells = curve.cells
     arcs = np.flatnonzero(possible & ~np.isnan(radii))
     if arcs.size:
-        # the sign of the radius does not tell: inside a roller that is too large a convex arc has a negative one
+        # a negative radius may be convex too: a pitch curve's arc inside a roller that is too large
         arcs = arcs[curve.sample(0.5 * (cells.low[arcs] + cells.high[arcs])).turn > 0.0]
     if not arcs.size:
         return math.inf, float(cells.low[0])
@@ -143,10 +147,11 @@ def _least_arc(curve: Curve, radii: Array, possible: Mask) -> tuple[float, float
 
 
 def reversals(curve: Curve) -> tuple[Reversal, ...]:
-    """Stretches over which the speed is negative, ends root-found, and those over which it is exactly zero.
+    """Stretches over which the speed is negative, their ends exact roots, and stretches over which it is zero.
 
-    In order of the parameter; one that runs across the seam of a closed run ends beyond it. None is missed whose speed
-    falls below zero by more than `ROUNDING` of the curve's size. Raises CurveError where the proof does not end.
+    They are in order of the parameter; a stretch across the seam of a closed run ends beyond the run. None is missed
+    whose speed falls below zero by more than `ROUNDING` of the curve's size. Raises CurveError where the proof does not
+    end.
     """
     cells = curve.cells
     doubtful = cells.rows[0] <= 0.0
@@ -158,6 +163,7 @@ def reversals(curve: Curve) -> tuple[Reversal, ...]:
     stretches = _arcs_below_zero(state, arcs, tolerance)
     state = state.part(doubtful & np.isnan(arcs))
     for _ in range(LEVELS):
+        # decided: no speed below 0, all below 0, at most one change of sign, or no more than rounding between the ends
         a, b = state.at_low, state.at_high
         swing = 0.125 * state.speed_bend * (state.high - state.low) ** 2
         least, most = np.minimum(a.speed, b.speed), np.maximum(a.speed, b.speed)
@@ -178,7 +184,8 @@ def reversals(curve: Curve) -> tuple[Reversal, ...]:
 
 
 def _may_hold_least(cells: Cells) -> Mask:
-    """Convex cells whose radii are not proved to be above those of another cell (n,)."""
+    """Whether a cell may be convex and hold the least radius (n,): no other cell's radii are proved to be smaller."""
+    # bounds of sigma/omega by the signs of its terms
     speed_low, speed_high, turn_low, turn_high = cells.rows[:4]
     with np.errstate(divide="ignore", invalid="ignore"):
         lowest = speed_low / np.where(speed_low >= 0.0, turn_high, turn_low)
@@ -221,7 +228,7 @@ class _Intervals:
         return self.turn_bend if math.isinf(v) else self.speed_bend + abs(v) * self.turn_bend
 
     def floor(self, v: float) -> Array:
-        """Proved lower bound of ``sigma - v omega``, of ``-omega`` for an infinite v, over each interval (n,)."""
+        """Proved lower bound of ``sigma - v omega``, mm, of ``-omega`` for an infinite v, over each interval (n,)."""
         if math.isinf(v):  # nothing convex has been found yet
             ends = np.minimum(-self.at_low.turn, -self.at_high.turn)
             return ends - 0.125 * self.turn_bend * (self.high - self.low) ** 2
@@ -230,12 +237,12 @@ class _Intervals:
         return np.minimum(a, b) - 0.125 * self.bend(v) * (self.high - self.low) ** 2
 
     def ends_below(self, v: float) -> Array:
-        """Ends of intervals (m,) at which the radius is at most v."""
+        """Ends of intervals (m,) at which the radius is at most v, mm."""
         ends = np.concatenate([self.low[_radius(self.at_low) <= v], self.high[_radius(self.at_high) <= v]])
         return distinct(ends)
 
     def _holding(self, minima: Array) -> Mask:
-        """Whether one of the minima (m,), in any order, lies in each interval (n,), its ends included."""
+        """Whether any of the minima (m,) lies in each interval (n,), its ends included."""
         rising = np.append(np.sort(minima), np.inf)
         inside: Mask = rising[np.searchsorted(rising, self.low)] <= self.high
         return inside
@@ -264,7 +271,7 @@ class _Intervals:
         owners, low, high = owners[order], np.concatenate(lows)[order], np.concatenate(highs)[order]
         speed_bend, turn_bend = self.speed_bend[owners], self.turn_bend[owners]
         if fresh and len(self.low) > FRESH:
-            # Where terms cancel, as on a circle that its formula does not tell, a bound falls with the width.
+            # where terms cancel, as in the formula of a circle, a bound falls with the width
             anew = curve.shape.bounds(low, high)
             speed_bend, turn_bend = np.fmin(speed_bend, anew.speed_bend), np.fmin(turn_bend, anew.turn_bend)
         return _Intervals.of(curve, low, high, speed_bend, turn_bend)
@@ -276,7 +283,7 @@ def _extent(frame: Frame) -> float:
 
 
 def _radius(frame: Frame) -> Array:
-    """Radius of curvature where the curve is convex, else infinite (n,)."""
+    """Radius of curvature, mm (n,), where the curve is convex, else infinite."""
     radius: Array = np.full(frame.speed.shape, np.inf)
     np.divide(frame.speed, frame.turn, out=radius, where=frame.turn > 0.0)
     return radius
@@ -297,12 +304,10 @@ def _least_end(state: _Intervals) -> tuple[float, float]:
 def roots(
     function: Callable[[Array], Array], low: Array, high: Array, values: tuple[Array, Array], precision: float
 ) -> Array:
-    """Roots of a function that changes its sign in each interval (n,), enclosed to `precision` of the interval.
+    """Roots (n,) of a function that changes its sign between `low` and `high` (n,), to `precision` of the interval.
 
-    `values` are the function's at both ends, (n,) each.
-
-    The Illinois form of the rule of false position, halving where it is slow, and throughout where it stays so: every
-    bracket is closed within the steps that there are.
+    `function` takes and gives (n,); `values` are its values at `low` and at `high`, (n,) each. The method is the
+    Illinois form of the rule of false position, with halvings where it is slow, so that every bracket is closed.
     """
     a, b = low, high
     fa, fb = values
@@ -313,7 +318,7 @@ def roots(
             break
         with np.errstate(divide="ignore", invalid="ignore"):
             x = b - fb * (b - a) / (fb - fa)
-        # a step beyond the root closes the bracket; small steps alone are no sign of one
+        # steps are half the precision or more, so that the last one passes the root and closes the bracket
         x = np.where(np.abs(x - b) < 0.5 * close, b + np.copysign(0.5 * close, a - b), x)
         halve = ~((x >= np.minimum(a, b)) & (x <= np.maximum(a, b))) | (step % 8 == 7) | (step >= _FALSE_POSITIONS)
         x = np.where(closed, b, np.where(halve, 0.5 * (a + b), x))
@@ -352,7 +357,7 @@ def _below_zero(curve: Curve, state: _Intervals, tolerance: float) -> list[tuple
 
 
 def _join(curve: Curve, pieces: list[tuple[float, float, bool]]) -> tuple[Reversal, ...]:
-    """Join pieces that touch, also across the seam of a closed run."""
+    """Reversals from pieces (start, end, still): pieces that touch are joined, also across the seam of a closed run."""
     merged: list[list[Any]] = []
     for start, end, still in sorted(pieces):
         if merged and start <= merged[-1][1] and merged[-1][2] == still:

@@ -48,7 +48,7 @@ class CurveError(CamgeoError, ValueError):
 
 
 def columns(x: Array, y: Array) -> Array:
-    """Two rows (n,) as points (n, 2): what np.column_stack does, in a third of its time where n is small."""
+    """Coordinates x and y (n,) as points (n, 2): np.column_stack, in a third of its time where n is small."""
     out = np.empty((x.size, 2))
     out[:, 0], out[:, 1] = x, y
     return out
@@ -70,7 +70,7 @@ class Frame:
 
     @property
     def rows(self) -> tuple[Array, ...]:
-        """Fields of the record, in their order."""
+        """Fields of the record, in their order, (n, 2) or (n,)."""
         return self.point, self.tangent, self.speed, self.turn, self.speed_slope, self.turn_slope
 
     def split(self, count: int) -> tuple[Frame, Frame]:
@@ -82,8 +82,8 @@ class Frame:
         return Frame(*(row[chosen] for row in self.rows))
 
     def joined(self, other: Frame) -> Frame:
-        """Frames of this record followed by those of the other."""
-        return Frame(*(np.concatenate(both) for both in zip(self.rows, other.rows, strict=True)))
+        """Frames of this record followed by the frames of the other."""
+        return Frame(*(np.concatenate(pair) for pair in zip(self.rows, other.rows, strict=True)))
 
     @property
     def normal(self) -> Array:
@@ -92,13 +92,13 @@ class Frame:
 
     @property
     def curvature(self) -> Array:
-        """Signed curvature (n,), 1/mm, positive where the curve is convex; infinite at a cusp."""
+        """Signed curvature (n,), 1/mm, positive where the curve is convex; infinite or nan where the speed is 0."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return self.turn / self.speed
 
     @property
     def curvature_slope(self) -> Array:
-        """Derivative of the curvature by arc length (n,), 1/mm^2."""
+        """Derivative of the curvature by arc length (n,), 1/mm^2; infinite or nan where the speed is 0."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return (self.turn_slope * self.speed - self.turn * self.speed_slope) / self.speed**3
 
@@ -127,21 +127,21 @@ class Bounds:
 
 
 class Shape(Protocol):
-    """A curve as a family of profiles gives it; `Curve` adds what follows for all families."""
+    """A curve as a family of profiles gives it; `Curve` adds the measures that are the same for all families."""
 
     @property
     def period(self) -> float:
-        """Period of the parameter."""
+        """Period of the parameter, in its own unit."""
         ...
 
     @property
     def breaks(self) -> Array:
-        """Parameters in [0, period) at which speed or turn, or their derivatives, jump."""
+        """Parameters (m,) in [0, period), rising, at which speed or turn, or their derivatives, jump."""
         ...
 
     @property
     def repeats(self) -> int:
-        """Number of equal parts of the turn, each the one before turned about the shaft."""
+        """Number of equal parts of the turn, each of which is the part before it turned about the shaft."""
         ...
 
     @property
@@ -176,7 +176,7 @@ class Shape(Protocol):
         ...
 
     def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Speed and turn as series, of a parameter that is a jet or a ball jet; of fewer orders than that."""
+        """Speed, mm, and turn, rad, as series at jets or ball jets of the parameter, of fewer orders than `tau`."""
         ...
 
 
@@ -184,7 +184,7 @@ class Shape(Protocol):
 class SmoothRun:
     """Part of a curve without corners: parameters from `low` to `high`, and the breaks of curvature inside.
 
-    A closed run is the whole curve, its end is its beginning.
+    A closed run is the whole curve, its end its beginning.
     """
 
     low: float
@@ -194,18 +194,18 @@ class SmoothRun:
 
     @property
     def stretches(self) -> Array:
-        """Ends (m, 2) of the smooth stretches between breaks, in order."""
+        """Parameters (m, 2) of the ends of the smooth stretches between breaks, in order."""
         knots = np.array([self.low, *self.breaks, self.high])
         return np.column_stack([knots[:-1], knots[1:]])
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A closed counter-clockwise curve: a shape, and the runs of it that are kept.
+    """A closed counter-clockwise curve: a shape, and the runs that are kept.
 
     One closed run is the ordinary case. Several open runs are a contour trimmed where it would undercut: they meet in
-    corners, the end of each run in the beginning of the next. `mirror` is the curve of which this one is the reverse:
-    the bounds are taken from it.
+    corners, the end of each run in the beginning of the next. For a curve run through the other way, `mirror` is the
+    curve run forward, whose bounds it takes.
     """
 
     shape: Shape
@@ -216,8 +216,8 @@ class Curve:
     def whole(shape: Shape) -> Curve:
         """Curve of the whole turn, begun at a break so that no stretch runs across the seam.
 
-        A break at which a convex stretch meets a concave one is no place to begin; where all are such, the curve begins
-        in the middle of a stretch.
+        A break where convex meets concave or straight is no place to begin; where all breaks are, the curve begins in
+        the middle of a stretch.
         """
         breaks = np.asarray(shape.breaks, dtype=np.float64)
         if not breaks.size:
@@ -243,7 +243,7 @@ class Curve:
     def size(self) -> float:
         """Greatest distance from the shaft among the ends of the cells, mm.
 
-        With hardly any cells, as of a circle, their middles count too: the ends may be the shaft itself.
+        With two cells or fewer, as a circle has, their middles count too: the ends may be the shaft itself.
         """
         t = np.append(self.cells.low, self.cells.high[-1])
         if len(t) <= 3:
@@ -253,7 +253,7 @@ class Curve:
 
     @cached_property
     def cells(self) -> Cells:
-        """Proved bounds over the whole curve, computed when first asked for."""
+        """Proved bounds over the whole curve, computed on first use; raises CurveError where a bound is not finite."""
         return Cells.of(self) if self.mirror is None else self.mirror.cells.backwards()
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
@@ -261,14 +261,14 @@ class Curve:
         return self.shape.sample(t, side)
 
     def stretch_of(self, t: Array) -> NDArray[np.intp]:
-        """Index of the shape's stretch in which each parameter (n,) lies; stretch 0 begins at the first break."""
+        """Indices (n,) of the shape's stretches in which parameters t (n,) lie; stretch 0 begins at the first break."""
         breaks = np.asarray(self.shape.breaks, dtype=np.float64)
         if breaks.size == 0:
             return np.zeros(t.shape, dtype=np.intp)
         return (np.searchsorted(breaks, t % self.shape.period, side="right") - 1) % breaks.size
 
     def span(self, low: Array, high: Array) -> tuple[Frame, Frame]:
-        """Frames at the two ends of intervals that span no break, each taken from inside its interval."""
+        """Frames at `low` and at `high` (n,) of intervals that span no break, each the limit from inside."""
         side = np.repeat([1, -1], [low.size, high.size])
         return self.shape.sample(np.concatenate([low, high]), side).split(low.size)
 
@@ -285,19 +285,19 @@ class Curve:
         return int(self.stretch_of(np.array([0.5 * (stretch[0] + stretch[1])]))[0])
 
     def steady(self, stretch: Sequence[float] | Array) -> tuple[float, float] | None:
-        """Speed and turn where both are exactly constant over a stretch (a dwell, a Reuleaux arc), else None."""
+        """Speed, mm, and turn, rad, where both are exactly constant over a stretch (start, end); else None."""
         speed, turn = self._steady[self._index(stretch)]
         return None if np.isnan(speed) else (float(speed), float(turn))
 
     def radius(self, stretch: Sequence[float] | Array) -> float | None:
-        """Signed radius of curvature, in mm, where a stretch is exactly a circular arc, else None."""
+        """Signed radius of curvature, mm, where a stretch (start, end) is exactly a circular arc, else None."""
         radius = float(self._radii[self._index(stretch)])
         return None if np.isnan(radius) else radius
 
 
 @dataclass(frozen=True)
 class Cells:
-    """Proved bounds on a partition of the curve: `low`, `high` (m,) in order of the parameter, `rows` (8, m)."""
+    """Proved bounds on a partition of the curve: `low`, `high` (m,), rising, and `rows` (8, m), those of `Bounds`."""
 
     low: Array
     high: Array
@@ -322,29 +322,30 @@ class Cells:
         return _sharp_cells(curve, stretches, CELLS_PER_TURN / period, MOST_CELLS)
 
     def backwards(self) -> Cells:
-        """Bounds of the curve run through the other way, with its parameter and its turn negated."""
+        """Bounds of the curve run through the other way: its parameter and its turn are negated."""
         order = [0, 1, 3, 2, 4, 5, 6, 7]  # of `Bounds`: the lower bound of the turn is the upper one of its negative
         rows = self.rows[order, ::-1] * np.array([1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0])[:, None]
         return Cells(-self.high[::-1], -self.low[::-1], rows)
 
     def over(self, low: Array, high: Array) -> Bounds:
-        """Bounds over intervals (n,) that lie between two breaks: the worst of the cells each one touches."""
+        """Bounds over intervals from `low` to `high` (n,) between breaks: the worst of the cells that each touches."""
         first = np.clip(np.searchsorted(self.low, low, side="right") - 1, 0, self.low.size - 1)
         last = np.clip(np.searchsorted(self.low, high, side="left") - 1, first, self.low.size - 1)
         worst = self.rows[:, first]
         for step in range(1, int(np.max(last - first, initial=0)) + 1):
-            other = self.rows[:, np.minimum(first + step, last)]
-            worst[0:4:2] = np.minimum(worst[0:4:2], other[0:4:2])
-            worst[1:4:2] = np.maximum(worst[1:4:2], other[1:4:2])
-            worst[4:] = np.maximum(worst[4:], other[4:])
+            cell = self.rows[:, np.minimum(first + step, last)]
+            worst[0:4:2] = np.minimum(worst[0:4:2], cell[0:4:2])
+            worst[1:4:2] = np.maximum(worst[1:4:2], cell[1:4:2])
+            worst[4:] = np.maximum(worst[4:], cell[4:])
         return Bounds(*worst)
 
 
 def _sharp_cells(curve: Curve, stretches: Sequence[tuple[float, float] | Array], density: float, most: int) -> Cells:
-    """Cells of some stretches that join, at first about `density` for each unit of parameter, none halved above `most`.
+    """Cells of stretches that join, at first about `density` for each unit of parameter, none halved above `most`.
 
     A bound that is loose at the end is still a bound: it costs sharpness. Raises CurveError for one that is not finite.
     """
+    # even cells of each stretch, a single one where speed and turn are constant
     lows, highs = [], []
     for low, high in stretches:
         count = 1 if curve.steady((low, high)) else max(CELLS_PER_STRETCH, int(np.ceil(density * (high - low))))
@@ -353,6 +354,7 @@ def _sharp_cells(curve: Curve, stretches: Sequence[tuple[float, float] | Array],
         highs.append(knots[1:])
     low, high = np.concatenate(lows), np.concatenate(highs)
     rows = curve.shape.bounds(low, high).rows()
+    # halve the cells with loose bounds, and keep all in order of the parameter
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         loose = _loose(curve, low, high, rows) & (low < middle) & (middle < high)
@@ -379,7 +381,7 @@ def _sharp_cells(curve: Curve, stretches: Sequence[tuple[float, float] | Array],
 
 
 def _repeat_cells(part: Cells, stretches: Array) -> Cells:
-    """Cells of the whole turn from those of its first part, and the stretches (parts, m, 2) of all parts."""
+    """Cells of the whole turn from the cells of its first part, and the stretches (parts, m, 2) of all parts."""
     owner = np.searchsorted(stretches[0, :, 0], part.low, side="right") - 1
     low = part.low + (stretches[:, owner, 0] - stretches[0, owner, 0])
     opens = np.flatnonzero(np.diff(owner, prepend=-1))
@@ -395,7 +397,7 @@ def _repeat_cells(part: Cells, stretches: Array) -> Cells:
 
 
 def _loose(curve: Curve, low: Array, high: Array, rows: Array) -> NDArray[np.bool_]:
-    """Cells whose bounds on the second derivatives are not finite or far above what the ends show (n,)."""
+    """Whether a cell's bounds of second derivatives are not finite or far above the changes between ends (n,)."""
     at_low, at_high = curve.span(low, high)
     width = high - low
     bends = rows[6:8]
@@ -415,6 +417,6 @@ def _loose(curve: Curve, low: Array, high: Array, rows: Array) -> NDArray[np.boo
 
 
 def cyclic_gap(a: float, b: float, period: float) -> float:
-    """Distance of two parameters the shorter way round a period."""
+    """Distance of two parameters a and b the shorter way round a period, in the unit of the parameter."""
     gap = abs(a - b) % period
     return min(gap, period - gap)

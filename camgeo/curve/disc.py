@@ -5,7 +5,8 @@ A face is a support function: its distance p from the shaft over the direction t
     straight, normal tilted by beta     t = theta + beta               p = Rb + S cos beta
     oscillating, face f nearer the cam  t = theta + s (psi - pi/2)     p = C sin psi - f
 
-and the contact is ``E(t)(p + i q)``, q = p'/t' (`camgeo.curve.face`).
+with the displacement S, the base radius Rb, the pivot at the distance C, psi = rest + S and s = 1 trailing, -1 leading.
+The contact is ``E(t)(p + i q)``, E(t) = exp(i t), q = p'/t' (`camgeo.curve.face`).
 """
 
 from __future__ import annotations
@@ -33,30 +34,30 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Face(ABC):
-    """A face with its motion."""
+    """A face with its motion: S, mm on a stem, rad on an arm."""
 
     motion: Displacement
 
     @abstractmethod
     def contact(self, tau: Series, side: Side = 1) -> Series:
-        """Place of contact on the face, mm along it, at jets of the shaft angle."""
+        """Place of contact along the face, mm, at jets of the shaft angle."""
 
     @abstractmethod
     def slope(self, tau: Series, side: Side = 1) -> Series:
         """Tangent of the pressure angle at jets of the shaft angle."""
 
     def pressure_angle(self, theta: Array) -> Array:
-        """Pressure angle at shaft angles (n,), rad."""
+        """Pressure angle, rad (n,), at shaft angles `theta` (n,), rad."""
         angle: Array = np.arctan(self.slope(Jet.variable(theta, 1)).c[0])
         return angle
 
     def place(self, theta: Array) -> Array:
-        """Place of contact at shaft angles (n,), mm from the stem's axis or from the arm's pivot."""
+        """Place of contact (n,), mm along the face from the stem's axis or the pivot's foot, at angles (n,), rad."""
         return np.asarray(self.contact(Jet.variable(theta, 1)).c[0])
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles at which a derivative of the motion may jump, rising."""
+        """Shaft angles (m,), rising, at which a derivative of the motion may jump."""
         return self.motion.breaks
 
     @property
@@ -69,8 +70,8 @@ class _Face(ABC):
 class StraightFace(_Face):
     """A face on a stem, `base` mm from the shaft at S = 0, its normal turned ahead of travel by `tilt` (rad).
 
-    `offset` is the eccentricity of the stem: it moves the place of contact on the face, not the cam. The stem stands
-    `turned` ahead of the shaft angle, rad.
+    `offset`, mm, is the eccentricity of the stem: it moves the place of contact on the face, not the cam. The stem
+    stands `turned` ahead of the shaft angle, rad. Raises IntentError for a tilt of 90 degrees or more.
     """
 
     base: float
@@ -94,9 +95,9 @@ class StraightFace(_Face):
         return self.motion.on(tau, side) * math.cos(self.tilt) + self.base, tau + (self.tilt + self.turned)
 
     def pitch(self, tau: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Distance from the shaft, mm, and direction of the normal, rad, at shaft angles (n,).
+        """Distance from the shaft, mm, and direction of the normal, rad, with derivatives: (order + 1, n) each.
 
-        Each comes with its derivatives, (order + 1, n).
+        They are at shaft angles `tau` (n,), rad.
         """
         p = self.motion.derivatives(tau, order, side) * math.cos(self.tilt)
         p[0] += self.base
@@ -106,17 +107,17 @@ class StraightFace(_Face):
 
     @property
     def level(self) -> float:
-        """Place at which the face crosses the stem's axis at S = 0, mm along that from the foot of the shaft."""
+        """Place at which the face crosses the stem's axis at S = 0, mm along the axis from the foot of the shaft."""
         return (self.base - self.offset * math.sin(self.tilt)) / math.cos(self.tilt)
 
     def contact(self, tau: Series, side: Side = 1) -> Series:
-        """Place of contact, mm from the stem's axis along the face, above 0 ahead of it."""
+        """Place of contact along the face, mm from the stem's axis, above 0 ahead of the axis."""
         s, sine, cosine = self.motion.on(tau, side), math.sin(self.tilt), math.cos(self.tilt)
         v = s.derivative()
         return v * cosine + (cut(s, v.order) + self.level) * sine - self.offset * cosine
 
     def slope(self, tau: Series, side: Side = 1) -> Series:
-        """Tangent of the pressure angle, which is the tilt."""
+        """Tangent of the pressure angle, which is the tilt, as a constant series."""
         return self.motion.on(tau, side) * 0.0 + math.tan(self.tilt)
 
 
@@ -124,9 +125,9 @@ class StraightFace(_Face):
 class SwingingFace(_Face):
     """A face on an arm about a pivot at distance C, `face` mm nearer the cam than its parallel through the pivot.
 
-    psi = rest + S is its angle to the line from pivot to shaft; `side` is +1 trailing, -1 leading. IntentError where
-    the face would reach the line, or the contact the pivot (psi = 90 degrees), or the face swing as fast as the cam
-    turns: k = 1 + s psi' must stay above 0.
+    psi = rest + S, rad, is its angle to the line from pivot to shaft; `side` s is 1 trailing, -1 leading. Raises
+    IntentError where the face would reach the line, or the contact the pivot (psi = 90 degrees), or the face swing as
+    fast as the cam turns: 1 + s psi' must stay above 0.
     """
 
     pivot: float
@@ -136,7 +137,7 @@ class SwingingFace(_Face):
 
     @staticmethod
     def on(motion: Displacement, base: float, pivot: float, face: float, side: int) -> SwingingFace:
-        """Face that stands `base` mm from the shaft at S = 0, psi acute; raises IntentError without one."""
+        """Face that stands `base` mm from the shaft at S = 0, psi acute; raises IntentError where none can follow."""
         return SwingingFace(motion, pivot, face, rest_of(base, pivot, face), side)
 
     def __post_init__(self) -> None:
@@ -176,26 +177,30 @@ class SwingingFace(_Face):
         return elementary.sin(psi) * self.pivot - self.face, tau + (psi - 0.5 * math.pi) * sense
 
     def pitch(self, tau: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Distance from the shaft, mm, and direction of the normal, rad, at shaft angles (n,).
+        """Distance from the shaft, mm, and direction of the normal, rad, with derivatives: (order + 1, n) each.
 
-        Each comes with its derivatives, (order + 1, n).
+        They are at shaft angles `tau` (n,), rad.
         """
         p, t = self.polar(Jet.variable(tau, order), side)
         return p.derivatives(), t.derivatives()
 
     def contact(self, tau: Series, side: Side = 1) -> Series:
-        """Place of contact, mm from the pivot's foot along the face."""
+        """Place of contact along the face, mm from the foot of the pivot."""
         psi = self.motion.on(tau, side) + self.rest
         rate = psi.derivative() * float(self.side) + 1.0
         return elementary.cos(cut(psi, rate.order)) * self.pivot / rate
 
     def slope(self, tau: Series, side: Side = 1) -> Series:
-        """Tangent of the pressure angle: the face's offset over the place of contact."""
+        """Tangent of the pressure angle: `face` over the place of contact."""
         return self.face / self.contact(tau, side)
 
 
 def rest_of(base: float, pivot: float, face: float) -> float:
-    """Angle, rad, between a face `base` mm from the shaft and the line from pivot to shaft; IntentError without one."""
+    """Angle, 0 to pi/2 rad, between a face `base` mm from the shaft and the line from pivot to shaft.
+
+    `pivot` is the pivot's distance and `face` how much nearer the shaft the face is than its parallel through the
+    pivot, mm. Raises IntentError where base and face together do not lie between 0 and the pivot's distance.
+    """
     if not 0.0 < base + face < pivot:
         raise IntentError(
             f"base radius and face offset together, {base + face:.6g} mm, must lie between 0 and the pivot's "

@@ -24,7 +24,7 @@ class Facing(Source, Protocol):
         ...
 
     def pitch(self, tau: Array, order: int, side: Side = 1, /) -> tuple[Array, Array]:
-        """Distance r, mm, and direction of the normal, rad, at parameters (n,), with derivatives, (order + 1, n)."""
+        """Distance r, mm, and direction of the normal, rad, with derivatives, (order + 1, n), at parameters (n,)."""
         ...
 
 
@@ -33,17 +33,17 @@ FacingT = TypeVar("FacingT", bound=Facing)
 
 @dataclass(frozen=True)
 class FaceShape(MotionShape[FacingT]):
-    """Envelope of a face: r is the support function of the curve.
+    """Envelope of a face: its distance r is the support function of the curve, over the parameter of the law.
 
-    The parameter is the law's; the normal turns as ``t`` does, the point is ``E(t)(r + i r'/t')``, and
+    With t the direction of the normal, E(t) = exp(i t), the point is ``E(t)(r + i r'/t')``, ``omega = t'`` and
     ``sigma = (r + d2r/dt2) t'``.
     """
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
-        """Frame at parameters t (n,) of the law."""
+        """Frame at parameters t (n,) of the law; at a break the limit from above (side 1) or from below (side -1)."""
         r, normal = self.law.pitch(t, 3, side)
         turn, turn1, turn2 = normal[1:]
-        # `rates_of` by hand
+        # sigma = r t' + (r'/t')', with its first derivative
         slope = r[1] / turn
         slope1 = (r[2] - slope * turn1) / turn
         slope2 = (r[3] - slope * turn2 - 2.0 * slope1 * turn1) / turn
@@ -54,11 +54,11 @@ class FaceShape(MotionShape[FacingT]):
         )
 
     def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
-        """Support function and direction of the normal at jets of the parameter."""
+        """Support function, mm, and direction of the normal, rad, at jets of the parameter."""
         return self.law.polar(tau, side)
 
     def rates_of(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
-        """Speed and turn from the support function and the normal's angle: ``r t' + (r'/t')'``."""
+        """Speed ``r t' + (r'/t')'`` and turn t' from the support function r and the normal's direction t."""
         r, normal = figures
         turn = normal.derivative()
         bend = (r.derivative() / turn).derivative()

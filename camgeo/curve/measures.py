@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 
 NODES, WEIGHTS = gauss(12)
 FIRST = 8  # parts of a stretch, at first
-EXACT = 1e-13  # of the whole: where halving a part changes less than its share of this, the part is done
+EXACT = 1e-13  # of the whole integral: a part that halving changes by less is done
 HALVINGS = 30
-ROUNDING = 1e-14  # of an integral: what its sum may be off
-STEP = 0.05  # rad of polar angle at most between two places among which others are sought
-PLACES = 2048  # of each run
-CLOSE = 1e-15  # of such a step
-NOISE = 0.05  # of what a distance is proved to: by less nothing surpasses it but rounding
+ROUNDING = 1e-14  # of an integral: error of its sum
+STEP = 0.05  # rad: greatest step in polar angle between knots, among which parameters are sought
+PLACES = 2048  # knots of each run, at first
+CLOSE = 1e-15  # of a step between knots: precision of a parameter
+NOISE = 0.05  # of the tolerance of a proof: a place must be better by more than this, which is rounding
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,9 @@ class Measures:
 
 @dataclass(frozen=True)
 class Moments:
-    """Moments of a plane area about the shaft: area, mm^2; of its x and of its y, mm^3; of its radius squared, mm^4.
+    """Integrals over a plane area: of 1, mm^2; of x and of y from the shaft, mm^3; of the radius squared, mm^4.
 
-    `error` bounds the error of each, in the same units.
+    `error` bounds the error of each, in their order and units.
     """
 
     area: float
@@ -64,7 +64,7 @@ class Moments:
 
 
 def measures(curve: Curve) -> Measures:
-    """Perimeter and area: integrals of sigma and of h sigma/2 (Green), to about twelve digits."""
+    """Perimeter and area within a curve: integrals of sigma and of h sigma/2 (Green), to about twelve digits."""
 
     def rates(frame: Frame) -> Array:
         return np.stack([frame.speed, 0.5 * frame.speed * np.sum(frame.point * frame.normal, axis=1)])
@@ -76,8 +76,9 @@ def measures(curve: Curve) -> Measures:
 def moments(curve: Curve, inset: float = 0.0) -> Moments:
     """Moments of the area within a curve, or within its parallel `inset` mm inside.
 
-    A homogeneous function f of degree d has the integral of h sigma f/(d + 2) round the curve (divergence of f times
-    the place), h the distance of the tangent from the shaft. The parallel has the speed sigma - inset omega.
+    The integral of a homogeneous function f of degree d over the area is that of h sigma f/(d + 2) round the curve (by
+    the divergence of f times the place), h the distance of the tangent from the shaft. The parallel has the speed sigma
+    - inset omega.
     """
 
     def rates(frame: Frame) -> Array:
@@ -95,6 +96,7 @@ def moments(curve: Curve, inset: float = 0.0) -> Moments:
 
 def moments_of_chain(chain: Arcs) -> Moments:
     """Moments of the area within a closed chain of lines and arcs, counter-clockwise; exact to rounding."""
+    # h f/(d + 2) along arcs of no more than about a radian each
     parts, _ = chain.cut(np.maximum(np.ceil(np.abs(chain.curvature) * chain.length), 1.0).astype(np.intp))
     total = np.zeros(4)
     for node, weight in zip(NODES, WEIGHTS, strict=True):
@@ -107,7 +109,7 @@ def moments_of_chain(chain: Arcs) -> Moments:
 
 
 def _moment_rates(point: Array, swept: Array) -> Array:
-    """Contributions (4, n) of points (n, 2) with h ds (n,) to area, moments of x and y, and of the radius squared."""
+    """Contributions (4, n) of points (n, 2) with `swept` h ds (n,) to integrals of 1, x, y and radius squared."""
     x, y = point.T
     added: Array = swept * np.stack([np.full_like(x, 0.5), x / 3.0, y / 3.0, 0.25 * (x * x + y * y)])
     return added
@@ -122,6 +124,7 @@ def _integrals(curve: Curve, rates: Callable[[Frame], Array]) -> tuple[Array, Ar
     whole = _over(curve, rates, low, high)
     scale = np.abs(whole).sum(axis=1)
     total, changed = np.zeros(len(whole)), np.zeros(len(whole))
+    # a part is done where its halves together agree with the whole
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         first, second = _over(curve, rates, low, middle), _over(curve, rates, middle, high)
@@ -134,7 +137,7 @@ def _integrals(curve: Curve, rates: Callable[[Frame], Array]) -> tuple[Array, Ar
         low, high = np.concatenate([low[~done], middle[~done]]), np.concatenate([middle[~done], high[~done]])
         whole = np.concatenate([first[:, ~done], second[:, ~done]], axis=1)
     else:
-        total += whole.sum(axis=1)  # parts too narrow to count
+        total += whole.sum(axis=1)  # parts that are still open, too narrow to count
         changed += np.abs(whole).sum(axis=1)
     return total, changed
 
@@ -149,7 +152,7 @@ def _over(curve: Curve, rates: Callable[[Frame], Array], low: Array, high: Array
 
 
 def touched(contour: Curve, parameter: Array) -> Mask:
-    """Whether the contour has a point, perhaps a sharp corner, at each parameter (n,); not where it is trimmed away."""
+    """Whether the contour has a point, perhaps a sharp corner, at each parameter (n,): nothing is trimmed away there."""
     if contour.closed or is_sharp(contour):
         return np.ones(parameter.shape, dtype=bool)
     period = contour.shape.period
@@ -162,19 +165,20 @@ def touched(contour: Curve, parameter: Array) -> Mask:
 
 
 def farthest(curve: Curve) -> Extreme:
-    """Greatest distance of a contour from the shaft, mm, and its parameter."""
+    """Greatest distance of a contour from the shaft, mm, its parameter, and the excess that is not excluded, mm."""
     return _root(_greatest(curve, lambda frame: np.sum(frame.point**2, axis=1), _radial), 1.0)
 
 
 def nearest(curve: Curve) -> Extreme:
-    """Least distance of a contour from the shaft, mm, and its parameter."""
+    """Least distance of a contour from the shaft, mm, its parameter, and how much less it may be, mm."""
     return _root(_greatest(curve, lambda frame: -np.sum(frame.point**2, axis=1), _radial), -1.0)
 
 
 def least_support(curve: Curve) -> Extreme:
-    """Least distance of the shaft from a tangent of a contour, mm, and its parameter; below 0 on the outer side.
+    """Least distance of the shaft from a tangent of a contour, mm, its parameter, and how much less it may be, mm.
 
-    Where it is above 0 each ray from the shaft meets the contour once.
+    It is below 0 where the shaft lies on a tangent's outer side. Where it is above 0 each ray from the shaft meets the
+    contour once.
     """
     extreme = _greatest(curve, lambda frame: -np.sum(frame.point * frame.normal, axis=1), _turning)
     return Extreme(-extreme.value, extreme.at, extreme.excess)
@@ -210,8 +214,8 @@ def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bou
         tolerance = max(tolerance, SHARPNESS * float(np.abs(values).max()))
         if values.flat[top] > best + NOISE * tolerance:  # on a circle the first place, not where rounding is greatest
             best, place = float(values.flat[top]), float(np.concatenate([low, high])[top])
-        # |g''| <= sigma' + omega' r + omega^2 |g|, so g leaves its end values by w^2/8 of that; the figure, its own by
-        # w/2 of the greatest |g| times the pace, unless both keep their signs
+        # |g''| <= |sigma'| + |omega'| r + omega^2 |g|, so g exceeds its ends by w^2/8 of that sum at the most; the
+        # figure exceeds its ends by w/2 of the greatest |g| times the pace, by nothing where both keep their signs
         bounds, width = cells.over(low, high), high - low
         turn = np.maximum(np.abs(bounds.turn_low), np.abs(bounds.turn_high))
         bend = 0.125 * width**2
@@ -235,11 +239,11 @@ def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bou
 
 
 class StarError(CurveError):
-    """A contour that is no function of its polar angle about the shaft."""
+    """A contour that is not proved to be a function of the polar angle about the shaft."""
 
 
 def polar_radius(curve: Curve, angles: Array) -> Array:
-    """Distance of a contour from the shaft (n,), mm, at polar angles (n,), rad, about the shaft.
+    """Distance of a contour from the shaft, mm (n,), at polar angles (n,), rad, about the shaft.
 
     Raises StarError unless each ray from the shaft is proved to cross the contour once.
     """
@@ -259,7 +263,7 @@ def polar_parameters(curve: Curve, angles: Array) -> Array:
     knots, polar = _polar_knots(curve)
     rays = np.mod(angles - polar[0], 2.0 * np.pi) + polar[0]
     cell = np.clip(np.searchsorted(polar, rays, side="right") - 1, 0, len(polar) - 2)
-    skipped = knots[cell + 1] <= knots[cell]  # the seam between two runs, of one polar angle
+    skipped = knots[cell + 1] <= knots[cell]  # the seam between two runs, at one polar angle
     cell = np.where(skipped, cell - 1, cell)
     low, high = knots[cell], knots[cell + 1]
     cosine, sine = np.cos(rays), np.sin(rays)
@@ -272,7 +276,7 @@ def polar_parameters(curve: Curve, angles: Array) -> Array:
     ends = beside(low), beside(high)
     exact = [np.abs(end) <= 0.0 for end in ends]
     open_ = ~(exact[0] | exact[1]) & (ends[0] < 0.0) & (ends[1] > 0.0)
-    # rounding alone puts a ray beside both ends: the nearer one is it
+    # a ray that passes both ends on one side does so by rounding alone: the nearer end is taken
     parameters: Array = np.where(np.abs(ends[0]) <= np.abs(ends[1]), low, high)
     if open_.any():
         cosine, sine = cosine[open_], sine[open_]

@@ -3,10 +3,11 @@
 With f over the curve's parameter, T and N the tangent and the outward normal, sigma and omega speed and turn, it is
 
 - along its normals ``c + f N``, with the derivative ``(sigma + f omega) T + f' N``: its speed is the length of that,
-  and its tangent turns as T does less the angle by which it leaves T. Where sigma jumps, that angle does: so this is
+  and its tangent turns as T does, less the angle by which it leaves T. That angle jumps where sigma does: so this is
   for pitch curves, of which omega alone may jump;
 - by its support function ``c + f N + (f'/omega) T``, with the derivative ``(sigma + f omega + (f'/omega)') T``: its
-  tangent is T, whatever sigma does. So this is for what a flat face touches, where omega is above 0 and may not jump.
+  tangent is T, even where sigma jumps. So this is for contours under a flat face, where omega is above 0 and may not
+  jump.
 
 Both are f farther outside, to first order of f.
 """
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
     from kin.numeric.jet import Series
 
-NEAR = 1e-9  # rad: of a knot and a parameter that are one
+NEAR = 1e-9  # rad: a parameter so near a knot counts as the knot
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,10 @@ class PeriodicPolynomials:
         return equal_steps(self.pieces.shape[1])
 
     def on(self, tau: Series, side: Side = 1) -> Series:
-        """The function as a jet or ball jet of the parameter, whose points or intervals lie in a span each."""
+        """The function, mm, at jets or ball jets of the parameter, each point or interval of which lies in one span.
+
+        At a knot it is the limit from above (side 1) or from below (side -1).
+        """
         count = self.pieces.shape[1]
         width = TURN / count
         middle = tau.c[0] if isinstance(tau, Jet) else tau.mid[0]
@@ -70,12 +74,12 @@ class Moved(ABC):
 
     @property
     def period(self) -> float:
-        """Period of the parameter."""
+        """Period of the parameter, rad."""
         return self.base.period
 
     @cached_property
     def breaks(self) -> Array:
-        """Breaks of the base, and knots that are none of these."""
+        """Breaks of the base and knots of the distance (m,), rad, rising; a knot at a break is left out."""
         breaks, knots = np.asarray(self.base.breaks, dtype=np.float64), self.by.knots
         if len(breaks):
             apart = np.abs(np.mod(knots[:, None] - breaks + np.pi, TURN) - np.pi).min(axis=1)
@@ -89,17 +93,17 @@ class Moved(ABC):
 
     @property
     def steady(self) -> Array:
-        """Speed and turn on stretches where both are constant, (m, 2): nan, as there are none."""
+        """Constant speed and turn of each stretch, (m, 2): nan, as neither is constant."""
         return np.full((len(self.breaks), 2), np.nan)
 
     @property
     def radii(self) -> Array:
-        """Radii of stretches that are circular arcs, (m,): nan, as there are none."""
+        """Radius of each stretch that is a circular arc, (m,): nan, as no stretch is."""
         return np.full(len(self.breaks), np.nan)
 
     @abstractmethod
     def sample(self, t: Array, side: Side = 1) -> Frame:
-        """Frame at parameters t (n,)."""
+        """Frame at parameters t (n,), rad; at a break the limit from above (side 1) or from below (side -1)."""
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
@@ -111,17 +115,17 @@ class Moved(ABC):
         return bounds_of(self._figures, low, high, self._rates)
 
     def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Speed and turn as series, of an order fewer than the base's."""
+        """Speed, mm, and turn, rad, as series at jets or ball jets `tau`, of up to an order fewer than the base's."""
         return self._rates(self._figures(tau, side))
 
     def _figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
-        """Speed and turn of the base, and the distance."""
+        """Speed and turn of the base, and the distance, as series."""
         speed, turn = self.base.rates(tau, side)
         return speed, turn, self.by.on(tau, side)
 
     @abstractmethod
     def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
-        """Speed and turn from those of the base and the distance."""
+        """Speed and turn from the figures: the base's speed and turn, and the distance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +143,7 @@ class AlongNormals(Moved):
         return Frame(point, tangent / speed[0][:, None], speed[0], turn[0], speed[1], turn[1])
 
     def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+        # with x = sigma + f omega the speed is hypot(x, f'), the turn omega - (f'' x - f' x')/(x^2 + f'^2)
         speed, turn, off = figures
         out = off.derivative()
         order = min(speed.order, turn.order, out.order)
@@ -151,7 +156,7 @@ class AlongNormals(Moved):
 
 @dataclass(frozen=True, eq=False)
 class BySupport(Moved):
-    """Curve whose support function is `by` greater than that of `base`: it has the same normals."""
+    """Curve whose support function is greater by `by`, mm, than that of `base`: it has the same normals."""
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
@@ -162,6 +167,7 @@ class BySupport(Moved):
         return Frame(point, frame.tangent, speed[0], turn[0], speed[1], turn[1])
 
     def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+        # the speed is sigma + f omega + (f'/omega)', the turn omega
         speed, turn, off = figures
         out = off.derivative()
         order = min(turn.order, out.order)

@@ -1,13 +1,14 @@
 """Pitch curves of disc cams: one moving frame for every roller, knife edge and curved shoe.
 
 The cam stands still and the follower runs round it by the shaft angle theta. The roller's centre travels in the
-direction tau, at the distance b from the shaft along it; a is its velocity less the eccentricity of the travel line,
+direction tau, at the distance b from the shaft along it, mm; a is its velocity less the eccentricity of the travel
+line, mm,
 
     N = E(tau) (b - i a)/sigma,  T = i N,  sigma = hypot(a, b),  omega = tau' + (b' a - a' b)/sigma^2,
 
 E(t) = exp(i t), N the outward normal. tan alpha = a/b is the pressure angle, above 0 where the cam drives a rise.
-Nothing is divided but by sigma, which is above 0 as long as b is. An oscillating arm is a translating follower of
-momentary eccentricity s (C cos psi - L).
+All divisors are sigma, which is above 0 as long as b is. An oscillating arm of length L about a pivot at the distance
+C, s = 1 trailing and -1 leading, is a translating follower of momentary eccentricity s (C cos psi - L).
 """
 
 from __future__ import annotations
@@ -36,12 +37,15 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Mask
 
 TURN = 2.0 * math.pi
-MOST_KEPT = 8  # bounds over many intervals
+MOST_KEPT = 8  # sets of intervals whose bounds are kept
 
 
 @dataclass(frozen=True, eq=False)
 class Displacement:
-    """Displacement S over the whole turn, mm or rad: a periodic motion, `repeats` times a turn."""
+    """Displacement S over the whole turn, mm or rad: the periodic motion `over`, `repeats` times a turn.
+
+    `range` is the least and the greatest S.
+    """
 
     over: Piecewise
     repeats: int
@@ -60,7 +64,7 @@ class Displacement:
 
     @cached_property
     def breaks(self) -> Array:
-        """Angles in [0, 2 pi) at which a derivative of S may jump, rising."""
+        """Angles (m,) in [0, 2 pi), rising, at which a derivative of S may jump."""
         parts = np.arange(self.repeats) * (TURN / self.repeats)
         return np.sort((self.over.breaks[None, :] + parts[:, None]).ravel())
 
@@ -106,7 +110,7 @@ class Displacement:
         return mask
 
     def on(self, tau: Series, side: Side = 1) -> Series:
-        """S, mm or rad, at jets or ball jets of the shaft angle; `side` decides at breaks."""
+        """S, mm or rad, at jets of the shaft angle; at breaks the limit from above (side 1) or below (-1)."""
         return self.over.on(tau, side)
 
     def derivatives(self, theta: Array, order: int, side: Side = 1) -> Array:
@@ -134,7 +138,7 @@ class Translating:
 
     @staticmethod
     def on(prime: float, offset: float = 0.0) -> Translating:
-        """Guide with a prime circle, mm; raises IntentError unless the stem's line meets the circle."""
+        """Guide with a prime circle of radius `prime` and an offset, mm; raises IntentError unless they meet."""
         if not (math.isfinite(prime) and abs(offset) < prime):
             raise IntentError(
                 f"the offset, {offset:.6g} mm, must be below the prime circle's radius, {prime:.6g} mm",
@@ -149,11 +153,11 @@ class Translating:
 
     @property
     def datum(self) -> float:
-        """Position on the line at S = 0, mm."""
+        """Position on the line at S = 0, mm from the foot of the shaft."""
         return self.foot
 
     def demand(self, least: float, greatest: float) -> None:  # noqa: ARG002
-        """Raise IntentError where the centre would pass the shaft."""
+        """Raise IntentError where the centre would come down to the shaft at the least displacement, mm."""
         if not self.foot + least > 0.0:
             raise IntentError(
                 f"the roller's centre would come down to the shaft: {self.foot + least:.6g} mm along its line",
@@ -161,7 +165,7 @@ class Translating:
             )
 
     def place(self, theta: Array, s: Array) -> tuple[Array, Array]:
-        """Centre as complex numbers (n,), mm, and direction of travel (n,), rad, at S (n,)."""
+        """Centre as complex numbers, mm (n,), and direction of travel, rad (n,), at shaft angles and S (n,)."""
         travel = theta + self.turned if self.turned else theta
         return np.exp(1j * travel) * (self.foot + s + 1j * self.offset), travel
 
@@ -193,16 +197,17 @@ class Translating:
     def with_shaft(self, along: Array | float, across: Array | float) -> Translating:
         """Guide on the same line with the shaft elsewhere.
 
-        At rest at S = 0 the frame's b is `along` and its a is -`across`, mm; the head of this module defines both.
+        At rest at S = 0 the frame's b is `along` and its a is -`across`, mm, as the head of this module defines both.
         """
         return Translating(cast("float", along), cast("float", across))
 
 
 @dataclass(frozen=True)
 class Oscillating:
-    """An arm of length L about a pivot at distance C: psi = rest + S is its angle to the line from pivot to shaft.
+    """An arm of a length about a pivot at a distance from the shaft, mm.
 
-    `side` is +1 for a trailing arm (the roller clockwise of the pivot as drawn), -1 for a leading one.
+    psi = rest + S, rad, is its angle to the line from pivot to shaft. `side` is 1 for a trailing arm (the roller
+    clockwise of the pivot as drawn), -1 for a leading one.
     """
 
     pivot: float
@@ -212,7 +217,7 @@ class Oscillating:
 
     @staticmethod
     def on(prime: float, pivot: float, length: float, side: int) -> Oscillating:
-        """Guide with a prime circle, mm; raises IntentError unless the arm reaches it."""
+        """Guide with a prime circle of radius `prime`, lengths in mm; raises IntentError unless the arm reaches it."""
         if not abs(pivot - length) < prime < pivot + length:
             raise IntentError(
                 f"an arm of {length:.6g} mm about a pivot at {pivot:.6g} mm does not reach a prime circle of "
@@ -231,11 +236,11 @@ class Oscillating:
 
     @property
     def datum(self) -> float:
-        """Position of the arm at S = 0, rad."""
+        """Angle of the arm to the line from pivot to shaft at S = 0, rad."""
         return self.rest
 
     def demand(self, least: float, greatest: float) -> None:
-        """Raise IntentError where the arm would point at the shaft or away from it."""
+        """Raise IntentError where the arm would point at the shaft or away from it between two displacements, rad."""
         low, high = self.rest + least, self.rest + greatest
         if not (low > 0.0 and high < math.pi):
             raise IntentError(
@@ -245,7 +250,7 @@ class Oscillating:
             )
 
     def place(self, theta: Array, s: Array) -> tuple[Array, Array]:
-        """Centre as complex numbers (n,), mm, and direction of travel (n,), rad, at S (n,)."""
+        """Centre as complex numbers, mm (n,), and direction of travel, rad (n,), at shaft angles and S (n,)."""
         psi = self.rest + s
         centre = np.exp(1j * theta) * (self.pivot - self.length * np.exp(1j * self.side * psi))
         return centre, theta + self.side * (psi - 0.5 * math.pi)
@@ -311,13 +316,13 @@ class FramedShape(MotionShape[SourceT]):
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
         """Point, mm, as complex numbers (n,), tau, rad (n,), and b, a, mm (3, n), tau' (2, n) with derivatives.
 
-        They are at parameters t (n,), the derivatives by them.
+        They are at parameters t (n,), and the derivatives are by the parameter.
         """
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
-        """Frame at parameters t (n,)."""
+        """Frame at parameters t (n,), rad; at a break the limit from above (side 1) or from below (side -1)."""
         centre, travel, b, a, rate = self.rows(t, side)
-        # `rates_of` by hand
+        # sigma and omega of the head of this module, with first derivatives
         speed = np.hypot(a[0], b[0])
         square = speed * speed
         along = a[0] * a[1] + b[0] * b[1]
@@ -336,7 +341,7 @@ class FramedShape(MotionShape[SourceT]):
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds of speed, turn and their derivatives over intervals [low, high] (n,).
 
-        They are kept for parallels of the curve, which need the same.
+        Bounds are kept for parallels of the curve, which are bounded over the same intervals.
         """
         key = low.tobytes(), high.tobytes()
         if key not in self._bounds:
@@ -350,7 +355,7 @@ class FramedShape(MotionShape[SourceT]):
         return {}
 
     def rates_of(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
-        """Speed and turn from the motion's figures, two orders fewer."""
+        """Speed, mm, and turn, rad, from the motion's figures, two orders fewer."""
         b, a, rate = self.frame(figures)
         a_slope = a.derivative()
         order = a_slope.order
@@ -370,33 +375,36 @@ class CentreShape(FramedShape[Displacement]):
         self.guide.demand(*self.law.range)
 
     def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
-        """S at jets of the shaft angle."""
+        """S, in a tuple of one, at jets of the shaft angle."""
         return (self.law.on(tau, side),)
 
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
-        """Terms b, mm, a, mm, and tau' of the moving frame as series from S, of its order, one less and one less."""
+        """Terms b, mm, a, mm, and tau' of the frame as series from the figure S: b of its order, others of one less."""
         return self.guide.frame(figures[0])
 
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
         """Point, mm, as complex numbers (n,), tau, rad (n,), and b, a, mm (3, n), tau' (2, n) with derivatives.
 
-        They are at shaft angles t (n,), the derivatives by them.
+        They are at shaft angles t (n,), rad, and the derivatives are by the shaft angle.
         """
         s = self.law.derivatives(t, 3, side)
         return (*self.guide.place(t, s[0]), *self.guide.rows(s))
 
     def slope(self, tau: Series, side: Side = 1) -> Series:
-        """Tangent of the pressure angle as a series: a/b of the head of this module."""
+        """Tangent of the pressure angle, a/b, as a series at jets of the shaft angle."""
         b, a, _ = self.guide.frame(self.law.on(tau, side))
         return a / cut(b, a.order)
 
     def spin(self, tau: Series, side: Side, radius: float, sense: float) -> Series:
-        """Turns of a roller per turn of the shaft: sigma/R - tau', in a ring (`sense` -1) -sigma/R - tau'."""
+        """Turns of a roller of a radius R, mm, per turn of the shaft, as a series at jets of the shaft angle.
+
+        They are sigma/R - tau', with `sense` -1, in a ring, -sigma/R - tau'.
+        """
         b, a, rate = self.guide.frame(self.law.on(tau, side))
         speed = elementary.sqrt(a**2 + cut(b, a.order) ** 2)
         return speed * (sense / radius) - rate
 
     def pressure_angle(self, theta: Array, side: Side = 1) -> Array:
-        """Pressure angle at shaft angles (n,), rad: above 0 where the cam drives a rise."""
+        """Pressure angle, rad (n,), at shaft angles (n,), rad: above 0 where the cam drives a rise."""
         angle: Array = np.arctan(self.slope(Jet.variable(theta, 1), side).c[0])
         return angle

@@ -28,12 +28,12 @@ class Parallel:
 
     @property
     def period(self) -> float:
-        """Period of the parameter."""
+        """Period of the parameter, in its own unit."""
         return self.base.period
 
     @property
     def breaks(self) -> Array:
-        """Breaks of the base curve."""
+        """Breaks of the base curve (m,), rising."""
         return self.base.breaks
 
     @property
@@ -53,7 +53,7 @@ class Parallel:
         return self.base.radii - self.distance
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
-        """Frame at parameters t (n,)."""
+        """Frame at parameters t (n,); at a break the limit from above (side 1) or from below (side -1)."""
         frame = self.base.sample(t, side)
         return Frame(
             frame.point - self.distance * frame.normal,
@@ -70,7 +70,7 @@ class Parallel:
         return speed - self.distance * turn, turn
 
     def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Speed and turn as series."""
+        """Speed, mm, and turn, rad, as series at jets or ball jets of the parameter."""
         speed, turn = self.base.rates(tau, side)
         return speed - turn * self.distance, turn
 

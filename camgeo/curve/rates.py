@@ -22,7 +22,10 @@ Series = TypeVar("Series", Jet, BallJet)
 
 
 class MotionJets(Protocol):
-    """Figures of a motion as jets of its parameter: phi and psi, or S alone; the side decides at breaks."""
+    """Figures of a motion as jets of its parameter: angles phi and psi, a displacement S alone, or others.
+
+    At a break they are the limits from above (side 1) or from below (side -1).
+    """
 
     def __call__(self, tau: Series, side: Side = 1, /) -> tuple[Series, ...]:
         """The figures as jets."""
@@ -30,14 +33,14 @@ class MotionJets(Protocol):
 
 
 class Rates(Protocol):
-    """Speed and turn of a shape from jets of those figures."""
+    """Speed and turn of a shape from jets of a motion's figures."""
 
     def __call__(self, figures: tuple[Series, ...], /) -> tuple[Series, Series]:
         """Speed and turn as jets."""
         ...
 
 
-ROUNDING = 1e-10  # relative: what the rounding of a few dozen operations is far below
+ROUNDING = 1e-10  # relative: far above the rounding of a few dozen operations
 ORDER = 5  # of the series that bounds come from
 NARROW = 0.01  # rad: intervals narrower to either side were halved, at a fold; there a higher order saves most of them
 FINE_ORDER = 9
@@ -48,7 +51,7 @@ class Source(Protocol):
 
     @property
     def breaks(self) -> Array:
-        """Parameters in [0, 2 pi) at which a derivative may jump, rising."""
+        """Parameters (m,) in [0, 2 pi), rising, at which a derivative may jump."""
         ...
 
     @property
@@ -73,7 +76,7 @@ class MotionShape(ABC, Generic[SourceT]):
 
     @abstractmethod
     def sample(self, t: Array, side: Side = 1) -> Frame:
-        """Frame at parameters t (n,)."""
+        """Frame at parameters t (n,), rad; at a break the limit from above (side 1) or from below (side -1)."""
 
     @abstractmethod
     def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
@@ -81,7 +84,7 @@ class MotionShape(ABC, Generic[SourceT]):
 
     @abstractmethod
     def rates_of(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
-        """Speed and turn from those figures, two orders fewer."""
+        """Speed, mm, and turn, rad, from the motion's figures, two orders fewer."""
 
     def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
         """Speed and turn as series, two orders fewer than `tau`."""
@@ -103,7 +106,7 @@ class MotionShape(ABC, Generic[SourceT]):
 
     @property
     def breaks(self) -> Array:
-        """Parameters at which a derivative of the motion may jump, rising."""
+        """Parameters (m,) in [0, 2 pi), rising, at which a derivative of the motion may jump."""
         return self.law.breaks
 
     @property
@@ -129,31 +132,31 @@ class MotionShape(ABC, Generic[SourceT]):
 
 
 def stretches(shape: Source | Shape) -> Array:
-    """Ends (m, 2) of the stretches between breaks; the whole turn where there is none."""
+    """Parameters (m, 2) of the ends of the stretches between breaks, rad; without a break the whole turn."""
     breaks = shape.breaks if len(shape.breaks) else np.zeros(1)
     return np.column_stack([breaks, np.append(breaks[1:], breaks[0] + 2.0 * np.pi)])
 
 
 def cut(series: Series, order: int) -> Series:
-    """The series cut to a lower order."""
+    """The series cut to a lower order, with order + 1 rows."""
     if isinstance(series, Jet):
         return Jet(series.c[: order + 1])
     return BallJet(series.mid[: order + 1], series.rad[: order + 1])
 
 
 def bounds_of(figures: MotionJets, low: Array, high: Array, rates: Rates) -> Bounds:
-    """Proved bounds over intervals (n,) from a motion's figures, and from speed and turn as functions of them.
+    """Proved bounds over intervals from `low` to `high` (n,) of speed and turn, which `rates` makes of `figures`.
 
-    Interval arithmetic alone loses the dependence of its operands. So each derivative, of the law as of speed and turn,
-    is taken at the middle of the interval, plus half the width times the bound of the next derivative; the arithmetic
-    gives the last one alone. Balls of no width at the middle bound the rounding.
+    Interval arithmetic alone loses the dependence of its operands. So each derivative of the figures and of speed and
+    turn is taken at the middle of the interval, plus half the width times the bound of the next derivative; interval
+    arithmetic bounds only the last derivative. Balls of no width at the middle bound the rounding.
     """
     middle = low + 0.5 * (high - low)
     reach = np.maximum(high - middle, middle - low)
     order = ORDER if reach.max(initial=0.0) > NARROW else FINE_ORDER
-    # One call for both: intervals first, then their middles.
-    both = BallJet.variable(np.concatenate([low, middle]), np.concatenate([high, middle]), order)
-    sharp = tuple(_sharpen_balls(ball, reach) for ball in figures(both))
+    # one call for the intervals, then their middles
+    parameter = BallJet.variable(np.concatenate([low, middle]), np.concatenate([high, middle]), order)
+    sharp = tuple(_sharpen_balls(ball, reach) for ball in figures(parameter))
     speed, turn = (_sharpen(ball, reach) for ball in rates(sharp))
     speed_size, turn_size = np.abs(speed).max(axis=0), np.abs(turn).max(axis=0)
     return Bounds(
@@ -162,9 +165,9 @@ def bounds_of(figures: MotionJets, low: Array, high: Array, rates: Rates) -> Bou
 
 
 def _sharpen(ball: BallJet, reach: Array) -> tuple[Array, Array]:
-    """Lower and upper bounds (order + 1, n) of the derivatives over intervals, from those within reach (n,).
+    """Lower and upper bounds (order + 1, n) of derivatives over intervals with this reach from their middles (n,).
 
-    `ball` holds the balls over the n intervals, then those in their middles.
+    `ball` holds the balls over the n intervals, then the balls in their middles.
     """
     (low, least), (high, most) = (np.hsplit(rows, 2) for rows in ball.bounds())
     for k in range(len(low) - 2, -1, -1):
@@ -175,7 +178,7 @@ def _sharpen(ball: BallJet, reach: Array) -> tuple[Array, Array]:
 
 
 def _sharpen_balls(ball: BallJet, reach: Array) -> BallJet:
-    """The balls with those over intervals sharpened; the ones in their middles stay."""
+    """Copy of `ball` with sharpened balls over the intervals; the balls in their middles stay."""
     sharp = Ball.between(*_sharpen(ball, reach))
     factorial = factorials(ball.order)
     rad = sharp.rad / factorial * (1.0 + ROUNDING) + 1e-15 * np.abs(sharp.mid)

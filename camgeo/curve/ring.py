@@ -1,7 +1,7 @@
 """Chains of lines and arcs, the arithmetic of a bulge, and plane outlines: discs, boxes, bars.
 
-The bulge of a piece is the tangent of a quarter of the angle that it turns through, positive counter-clockwise, 0 of a
-line.
+The bulge of a piece is the tangent of a quarter of the angle that it turns through, positive counter-clockwise, 0 for a
+line. Coordinates and radii are in one unit of length, mm for parts.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-FLAT = 0.02  # rad: an arc is measured and flattened in steps of about this
+FLAT = 0.02  # rad: an arc is flattened in steps of this turn at the most
 
 
 MIRROR = np.array([1.0, -1.0])
@@ -27,12 +27,15 @@ Number = TypeVar("Number", float, "Array")
 
 
 def radius_of(length: Number, bulge: Number) -> Number:
-    """Radius of arcs, in the unit of `length`, from their chords' lengths and their bulges."""
+    """Radius of arcs, in the unit of `length`, from their chords' lengths and their bulges, none of them 0."""
     return length * (1.0 + bulge * bulge) / (4.0 * abs(bulge))
 
 
 def centre_of(start: Array, end: Array, bulge: float) -> Array:
-    """Centre (2,) of an arc; left of its chord where it turns left by less than half a turn."""
+    """Centre (2,) of an arc from `start` to `end` (2,) with a bulge, not 0.
+
+    It lies left of the chord where the arc turns left by less than half a turn.
+    """
     chord = end - start
     centre: Array = 0.5 * (start + end) + np.array([-chord[1], chord[0]]) * ((1.0 - bulge * bulge) / (4.0 * bulge))
     return centre
@@ -41,7 +44,7 @@ def centre_of(start: Array, end: Array, bulge: float) -> Array:
 def steps_along(start: Array, end: Array, bulge: float, count: int) -> Array:
     """Points (count, 2) of a piece in equal steps, the start first, the end left out.
 
-    They lie along chords from the start: nothing is lost where the centre is far away.
+    `bulge` is the piece's. Points are placed by chords from the start: no digits are lost where the centre is far away.
     """
     chord, sweep, share = end - start, 4.0 * math.atan(bulge), np.arange(count) / count
     part = sweep * share
@@ -53,33 +56,33 @@ def steps_along(start: Array, end: Array, bulge: float, count: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class ArcChain:
-    """Lines and arcs through points (n, 2) and back to the first; bulge (n,) of the piece that follows each."""
+    """Lines and arcs through points (n, 2) and back to the first; `bulges` (n,) of the piece after each point."""
 
     points: Array
     bulges: Array
 
     @property
     def chords(self) -> Array:
-        """Chord of each piece (n, 2), from its start to its end."""
+        """Chord vector of each piece (n, 2), from its start to its end."""
         chords: Array = np.roll(self.points, -1, axis=0) - self.points
         return chords
 
     @property
     def circle(self) -> tuple[tuple[float, float], float] | None:
-        """Centre and radius of a chain of two half circles; None for any other."""
+        """Centre (x, y) and radius of a chain of two counter-clockwise half circles; None for any other chain."""
         if len(self.points) != 2 or not bool((self.bulges == 1.0).all()):
             return None
         x, y = (0.5 * (self.points[0] + self.points[1])).tolist()
         return (x, y), 0.5 * math.hypot(*(self.points[1] - self.points[0]).tolist())
 
     def pieces(self) -> Iterator[tuple[Array, Array, float]]:
-        """Start and end (2,) of each piece, and its bulge."""
+        """Start (2,), end (2,) and bulge of each piece, in order."""
         return zip(self.points, np.roll(self.points, -1, axis=0), self.bulges.tolist(), strict=True)
 
 
 @dataclass(frozen=True, eq=False)
 class Ring(ArcChain):
-    """A chain that is drawn; one that is not closed has no last piece."""
+    """A chain that is drawn; where it is not `closed`, the piece from the last point to the first is left out."""
 
     closed: bool = True
 
@@ -98,7 +101,7 @@ class Ring(ArcChain):
         return replace(self, points=self.points * MIRROR, bulges=-self.bulges)
 
     def flattened(self) -> Array:
-        """Points (m, 2) along the ring, arcs in steps of `FLAT`; the first is repeated at the end if it is closed."""
+        """Points (m, 2) along the ring, arcs in steps of `FLAT`; a closed ring ends in its first point."""
         count = len(self.points) - (not self.closed)
         start, bulge = self.points[:count], self.bulges[:count]
         chord, sweep = self.chords[:count], 4.0 * np.arctan(bulge)
@@ -114,7 +117,7 @@ class Ring(ArcChain):
         return np.concatenate((points, self.points[:1] if self.closed else self.points[-1:]))
 
     def path(self, digits: int) -> str:
-        """The ring as the data of an SVG path, coordinates with so many decimals."""
+        """The ring as the data of an SVG path, its coordinates with `digits` decimals."""
         x, y = (_text(column, digits) for column in self.points.T)
         text = [f"M{x[0]} {y[0]}"]
         count = len(self.points)
@@ -139,12 +142,12 @@ def disc(x: float, y: float, radius: float) -> Ring:
 
 
 def box(x0: float, y0: float, x1: float, y1: float) -> Ring:
-    """A rectangle with corners (x0, y0) and (x1, y1)."""
+    """A rectangle with the opposite corners (x0, y0) and (x1, y1)."""
     return Ring.through([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
 
 
 def bar(a: tuple[float, float], b: tuple[float, float], width: float) -> Ring:
-    """A bar with round ends about two points; a disc where they coincide."""
+    """A bar of a width with round ends about two points (x, y); a disc where the points coincide."""
     (ax, ay), (bx, by) = a, b
     length = math.hypot(bx - ax, by - ay)
     if length < 1e-9 * width:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 class SupportShape:
     """The curve whose support function is a face's lift: ``c = p u + p' n``, ``sigma = p + p''``, ``omega = 1``.
 
-    The parameter is the direction of the outward normal, which is the shaft angle. SW's second half turn with the
-    sign of [d - L] put right is the same formula (docs/validation.md).
+    u is the outward normal, n the tangent. The parameter is the direction of the outward normal, which is the shaft
+    angle. SW's second half turn with the sign of [d - L] corrected is the same formula (docs/validation.md).
     """
 
     lift: Lift
@@ -34,7 +34,7 @@ class SupportShape:
 
     @property
     def breaks(self) -> Array:
-        """Parameters at which the radius of curvature or its derivatives jump, rising."""
+        """Parameters (m,), rising, at which the radius of curvature or its derivatives may jump."""
         return self.lift.breaks
 
     @property
@@ -57,14 +57,14 @@ class SupportShape:
         return self.lift.radius
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
-        """Frame at normal directions t (n,)."""
+        """Frame at normal directions t (n,), rad; at a break the limit from above (side 1) or from below (side -1)."""
         p = self.lift.derivatives(t, 3, side)
         cosine, sine = np.cos(t), np.sin(t)
         point = columns(p[0] * cosine - p[1] * sine, p[0] * sine + p[1] * cosine)
         return Frame(point, columns(-sine, cosine), p[0] + p[2], np.ones_like(t), p[1] + p[3], np.zeros_like(t))
 
     def place(self, t: Array) -> Array:
-        """Place of contact p' at shaft angles (n,), mm along the face from the line through the shaft."""
+        """Place of contact p' (n,), mm along the face from the line through the shaft, at shaft angles t (n,), rad."""
         slope: Array = self.lift.derivatives(t, 1)[1]
         return slope
 
@@ -82,7 +82,7 @@ class SupportShape:
         return speed, speed * 0.0 + 1.0
 
     def bounds(self, low: Array, high: Array) -> Bounds:
-        """Proved bounds of the radius of curvature over intervals (n,)."""
+        """Proved bounds over intervals [low, high] (n,): the speed is the radius of curvature, the turn 1."""
         mid, rad = self.lift.radius_enclosure(low, high, 2)
         ones, zeros = np.ones_like(low), np.zeros_like(low)
         size = np.abs(mid) + rad
@@ -90,9 +90,10 @@ class SupportShape:
 
 
 def with_corners(curve: Curve) -> Curve:
-    """A whole curve whose arcs of radius 0 are corners: an open run for each arc between them; else the curve itself.
+    """Copy of a whole curve with corners for its arcs of radius 0: an open run for each stretch between them.
 
-    All stretches beside a corner are arcs, as of a Reuleaux polygon.
+    It is the curve itself where no stretch, or every stretch, has radius 0. All stretches between corners are arcs, as
+    in a Reuleaux polygon.
     """
     stretches = curve.runs[0].stretches
     arcs = [stretch for stretch in stretches.tolist() if curve.radius(stretch) != 0.0]
@@ -102,5 +103,5 @@ def with_corners(curve: Curve) -> Curve:
 
 
 def is_sharp(contour: Curve) -> bool:
-    """Whether the corners of a contour are all the arcs of radius 0 of its shape, so that none is trimmed."""
+    """Whether a contour has corners at all arcs of radius 0 of its shape and at no other place: it is not trimmed."""
     return not contour.closed and contour == with_corners(Curve.whole(contour.shape))

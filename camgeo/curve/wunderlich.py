@@ -29,19 +29,19 @@ class PitchShape(FramedShape[Transmission]):
     """Path of a roller's centre round the standing cam.
 
     In the complex plane the centre is ``c = l (exp(i phi) + exp(i chi))``, ``chi = phi - x``, ``x = psi + alpha``: the
-    pivot and the arm, which is as long as the pivot is far. Its moving frame is that of a trailing arm at the angle
-    ``pi - x`` over any parameter,
+    sum of pivot and arm, which is as long as the pivot is far. A trailing arm at the angle ``pi - x`` has the same
+    moving frame, over any parameter,
 
         b = l phi' sin x,    a = l (phi' (1 + cos x) - psi'),    tau' = phi' - psi'.
     """
 
     @property
     def radii(self) -> Array:
-        """Radii, mm (m,), of stretches that are circular arcs: dwells, and arcs of a law made from an arc; else nan."""
+        """Signed radii, mm (m,), of stretches that are arcs: dwells, and the arc that a law is made from; else nan."""
         return self.law.pitch_arcs[:, 2]
 
     def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
-        """The angles phi and psi at jets of the parameter."""
+        """The angles phi and psi, rad, at jets of the parameter."""
         return self.law.jets(tau, side)
 
     def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
@@ -55,9 +55,10 @@ class PitchShape(FramedShape[Transmission]):
     def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
         """Point, mm, as complex numbers (n,), tau, rad (n,), and b, a, mm (3, n), tau' (2, n) with derivatives.
 
-        They are at parameters t (n,) of the law, the derivatives by them.
+        They are at parameters t (n,) of the law, and the derivatives are by the parameter.
         """
         phi, psi = self.law.at(t, 3, side)
+        # f, f1, f2 are derivatives of phi, s, s1, s2 of psi
         x = psi[0] + self.law.alpha
         (f, f1, f2), (s, s1, s2) = phi[1:], psi[1:]
         sine, cosine = np.sin(x), np.cos(x)
@@ -77,4 +78,4 @@ class PitchShape(FramedShape[Transmission]):
 
 @dataclass(frozen=True)
 class FlatPairShape(FaceShape[Transmission]):
-    """Curve with an isoptic circle: r as the support function (W section 5)."""
+    """Profile of a flat pair's cam, a curve with an isoptic circle: r is its support function (W section 5)."""

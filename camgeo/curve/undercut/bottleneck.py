@@ -4,13 +4,13 @@ The disc that touches the curve from inside at x and passes through y has the ra
 
     R(x, y) = |x - y|^2 / (2 (x - y).N(x)),    N the outward normal;
 
-the least of it over all pairs is the inner reach of the curve (Federer, Curvature measures, 1959, 4.18): the least
-radius of curvature, or half of the narrowest double normal, whichever is less. Three facts make the search certain:
+the least R of all pairs is the inner reach of the curve (Federer, Curvature measures, 1959, 4.18): the least radius of
+curvature, or half of the narrowest double normal, if less. Three facts make the search certain:
 
-- while the tangent stays within a right angle of that at x, an arc of curvature at most 1/R does not enter the disc
-  of radius R that touches it at x (the slope ``sin theta`` of the arc as a graph over the tangent is at most s/R); on
-  a convex arc this holds up to a half turn (Blaschke's rolling theorem), and a concave one leaves the tangent for the
-  outer side. Such pairs are near and need no search (`camgeo.curve.undercut.tangents` gives the directions);
+- while the tangent stays within a right angle of the tangent at x, an arc of curvature at most 1/R does not enter the
+  disc of radius R that touches it at x (the slope ``sin theta`` of the arc as a graph over the tangent is at most s/R);
+  on a convex arc this holds up to a half turn (Blaschke's rolling theorem), and a concave one leaves the tangent for
+  the outer side. Such pairs are near and need no search (`camgeo.curve.undercut.tangents` gives the directions);
 - the others are kept in boxes, pairs of intervals, with proved lower bounds of R from the bounds of speed and turn;
 - where |x - y|^2 is proved convex over a box, in arc length, its least value is at the double normal itself.
 """
@@ -36,13 +36,13 @@ if TYPE_CHECKING:
 
     _Least = tuple[float, tuple[float, float] | None]  # least R seen, mm, and the parameters at which
 
-NECK_SHARPNESS = 1e-9  # relative: no neck is narrower than the narrowest one found by more than this
-LINKS = 96  # about as many intervals make the first boxes
-LINKS_PER_PART = 8  # and at least so many of each part that the curve repeats
-LEVELS = 60
+NECK_SHARPNESS = 1e-9  # relative: no neck is narrower than the narrowest neck found by more than this
+LINKS = 96  # intervals, about, whose pairs are the first boxes
+LINKS_PER_PART = 8  # intervals, at least, of each part that the curve repeats
+LEVELS = 60  # halvings of undecided boxes
 MOST_BOXES = 40_000
-NEWTON = 30  # steps towards a double normal; what they leave off it is measured
-HALVINGS = 50  # of the radius for which what was left open is free, and as many to tell it sharply
+NEWTON = 30  # steps towards a double normal, the error of which is measured
+HALVINGS = 50  # of a radius until undecided boxes are free, and as many to find the greatest such radius
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,10 @@ class Neck:
 
 
 class OpenNeckError(CurveError):
-    """An undecided neck at parameters `pair`: every disc of radius `least`, mm, rolls all round, none above `most`.
+    """An undecided neck at parameters `pair`; a disc of radius `least`, mm, is proved to roll all round.
 
-    `seen` says whether a pair of points was found that no larger disc than `most` passes; otherwise `most` is the
-    radius to be decided.
+    With `seen` a pair of points was found that no disc larger than `most`, mm, passes; else `most` is the radius to be
+    decided.
     """
 
     def __init__(self, least: float, most: float, pair: tuple[float, float], seen: bool) -> None:
@@ -71,11 +71,11 @@ class OpenNeckError(CurveError):
 
 
 def narrowest_necks(pitch: Pitch, below: float) -> tuple[Neck, ...]:
-    """Narrowest necks of a pitch curve, alike within `NECK_SHARPNESS`, if they are narrower than 2 `below` mm.
+    """Narrowest necks of a pitch curve, equal within `NECK_SHARPNESS`, if they are narrower than 2 `below` mm.
 
-    `below` must not exceed the curve's least radius of curvature. With nothing found it is proved that R(x, y) is at
-    least `below` for all pairs of points (within `NECK_SHARPNESS`; up to rounding of the samples). Raises OpenNeckError
-    where the proof does not end, as for two concentric arcs that leave exactly a roller's diameter between them.
+    `below` must not exceed the curve's least radius of curvature. An empty result proves that R(x, y) is at least
+    `below` for all pairs of points (within `NECK_SHARPNESS`; up to rounding of the samples). Raises OpenNeckError where
+    the proof does not end, as for two concentric arcs that leave exactly a roller's diameter between them.
     """
     if bool((pitch.curve.cells.rows[2] >= 0.0).all()):
         return ()  # a convex curve: every pair is near
@@ -93,14 +93,17 @@ def narrowest_necks(pitch: Pitch, below: float) -> tuple[Neck, ...]:
 
 
 def neck_from(pitch: Pitch, first: float, second: float) -> Neck | None:
-    """Double normal across the inside that Newton's method reaches from two parameters; None where it reaches none."""
+    """Double normal across the inside that Newton's method reaches from two parameters, or None."""
     ends = _double_normals(pitch, np.array([[first, second]]))
     neck, inside, _ = _chord(pitch, ends)
     return Neck(float(ends[0, 0]), float(ends[0, 1]), float(neck[0])) if inside[0] else None
 
 
 def rolling_radius(pitch: Pitch, t: Array, s: Array) -> Array:
-    """R(x(t), y(s)) for all pairs, (n, m): infinite where y lies on the outer side of the tangent at x."""
+    """Radius R of the disc that touches at t (n,) and passes through the point at s (m,), mm (n, m).
+
+    It is infinite where that point lies on the outer side of the tangent at t.
+    """
     x, y = pitch.curve.sample(t), pitch.curve.sample(s)
     d = x.point[:, None] - y.point[None]
     across = np.einsum("nmi,ni->nm", d, x.normal)
@@ -120,6 +123,7 @@ def _links(curve: Curve) -> tuple[Array, Array]:
     length = cells.rows[1] * width
     turning = np.maximum(np.abs(cells.rows[2]), np.abs(cells.rows[3])) * width
     count = max(LINKS, LINKS_PER_PART * curve.shape.repeats)
+    # intervals of equal weight: half by length, half by turning
     weight = 0.5 * count * (length / length.sum() + turning / turning.sum())
     parts = np.maximum(1, np.ceil(weight)).astype(np.intp)
     share = np.concatenate([np.arange(n) / n for n in parts.tolist()])
@@ -133,7 +137,7 @@ def _links(curve: Curve) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class _Search:
-    """Pairs of a pitch curve, up to the turns that lead it into itself: the first point lies in its first part."""
+    """Search over the pairs of a pitch curve's points; the first point lies in the first of the equal parts."""
 
     pitch: Pitch
     turning: TangentDirections
@@ -143,7 +147,7 @@ class _Search:
         return _Search(pitch, TangentDirections.of(pitch.curve))
 
     def boxes(self) -> Boxes:
-        """Boxes that hold every pair, or its image by a turn."""
+        """Boxes that hold every pair, or its image by a turn that leads the curve into itself."""
         low, high = _links(self.pitch.curve)
         period = self.pitch.curve.shape.period
         own = np.flatnonzero(low < low[0] + (period / self.pitch.curve.shape.repeats) * (1.0 - SHIFT))
@@ -171,7 +175,7 @@ class _Search:
         return Boxes(boxes.low[~near], boxes.high[~near])
 
     def sift(self, boxes: Boxes, least: _Least, necks: list[Neck]) -> tuple[Boxes, _Least]:
-        """Boxes, divided, in which R may still fall below the least seen, and the least seen after these."""
+        """Halved boxes in which R may still fall below the least found, and that least R; `necks` gets new ones."""
         boxes = self.far(boxes)
         if boxes.low.shape[0] == 0:
             return boxes, least
@@ -181,13 +185,13 @@ class _Search:
         if radius[worst] < least[0]:
             least = float(radius[worst]), _pair(pairs.centre[worst])
         free = pairs.free(least[0] * (1.0 - NECK_SHARPNESS))
-        # in a bowl the distance has one minimum at most; the neck itself is wanted also where it is free by a hair
+        # in a bowl the distance has one minimum at most; the neck is wanted even where its box is just free
         bowls = np.flatnonzero((pairs.bowl > 0.0) & (pairs.chord < 2.0 * least[0] * (1.0 + NECK_SHARPNESS)))
         if bowls.size:
             ends = _double_normals(self.pitch, pairs.centre[bowls])
             half, inside, slant = _chord(self.pitch, ends)
             reached = ((ends >= boxes.low[bowls]) & (ends <= boxes.high[bowls])).all(axis=1) & inside
-            # |x - y| falls by no more than its share slant^2 / 2 bowl from there: Newton's method has come close enough
+            # the least |x - y| is less by a share of slant^2 / 2 bowl at most: Newton's method has come close enough
             reached &= slant * slant <= 2.0 * NECK_SHARPNESS * pairs.bowl[bowls]
             free[bowls[reached]] = True
             necks += [
@@ -199,15 +203,16 @@ class _Search:
         return _halve(boxes, pairs.centre, pairs.doubt.T, ~free), least
 
     def undecided(self, boxes: Boxes, least: _Least) -> OpenNeckError:
-        """Error for undecided boxes: the radius that is proved to pass, and the least that was seen."""
+        """Error for undecided boxes: the radius that is proved to pass, and the least R found."""
         most, seen = least
         boxes = self.far(boxes)
-        if boxes.low.shape[0] == 0:  # the least was seen, and no neck found that has it
+        if boxes.low.shape[0] == 0:  # a pair has the least R, but no neck was found there
             pair = seen or (0.0, 0.0)
             return OpenNeckError(most * (1.0 - NECK_SHARPNESS), most, pair, seen is not None)
         pairs = Pairs.of(self.pitch, boxes)
         low, high = 0.0, most
         where = pairs.centre[int(np.argmin(pairs.radius.min(axis=0)))]
+        # the greatest radius at which all boxes are free: halving down to one, then between it and the next above
         for step in range(2 * HALVINGS):
             aim = 0.5 * (low + high) if low or step > HALVINGS else 0.5 * high
             free = pairs.free(aim)
@@ -225,7 +230,7 @@ def _pair(pair: Array) -> tuple[float, float]:
 
 
 def _halve(boxes: Boxes, centre: Array, doubt: Array, doubtful: NDArray[np.bool_]) -> Boxes:
-    """Halve the doubtful boxes, along both intervals unless one leaves much less in doubt."""
+    """Halve the doubtful boxes along both intervals, or along one where the other adds half its doubt at most."""
     low, high, centre, doubt = boxes.low[doubtful], boxes.high[doubtful], centre[doubtful], doubt[doubtful]
     for side in (0, 1):
         cut = doubt[:, side] > 0.5 * doubt[:, 1 - side]
@@ -238,10 +243,11 @@ def _halve(boxes: Boxes, centre: Array, doubt: Array, doubtful: NDArray[np.bool_
 
 
 def _double_normals(pitch: Pitch, ends: Array) -> Array:
-    """Parameters (n, 2) that Newton's method comes to from (n, 2), for chords normal to the curve at both ends.
+    """Parameters (n, 2) that Newton's method comes to from `ends` (n, 2), for chords normal to the curve at both ends.
 
-    `_chord` says whether they are: without a double normal nearby the method ends anywhere.
+    Without a double normal nearby it ends anywhere, which `_chord` shows.
     """
+    # roots of f = d.T at x and g = d.T at y; ft, fs, gt, gs are their derivatives by the parameters of x and y
     ends = ends.copy()
     count = ends.shape[0]
     for _ in range(NEWTON):

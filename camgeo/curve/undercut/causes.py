@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 
 class UndercutError(CamgeoError, ValueError):
-    """No single contour is left by trimming; `parameter` is that of the cause, None if all round.
+    """Undercut that leaves no single contour, or whose extent cannot be found.
 
-    `free_at`, mm, is the value that would be free of undercut: the largest roller radius, or for a flat face by how
-    much the base radius must grow; None where it is not worked out.
+    `parameter` is a place of its cause, None where none is known. `free_at`, mm, is the value that would be free of
+    undercut: the largest roller radius, or for a flat face by how much the base radius must grow; None where it is not
+    worked out.
     """
 
     def __init__(self, message: str, parameter: float | None = None, free_at: float | None = None) -> None:
@@ -28,7 +29,7 @@ class UndercutError(CamgeoError, ValueError):
         self.parameter, self.free_at = parameter, free_at
 
     def mirrored(self) -> UndercutError:
-        """The error for the curve run through the other way."""
+        """The error for the curve run through the other way, whose parameter is negated."""
         return UndercutError(str(self), None if self.parameter is None else -self.parameter, self.free_at)
 
 
@@ -50,12 +51,12 @@ class Causes:
 
 
 def in_ring(curve: Curve) -> bool:
-    """Whether a contour is the opening of a ring: the metal stands outside the pitch curve of its roller."""
+    """Whether a contour is the opening of a ring: a parallel outside the pitch curve of its roller."""
     return isinstance(curve.shape, Parallel) and curve.shape.distance < 0.0
 
 
 def follower_radius(curve: Curve) -> float:
-    """Radius of the roller whose contour this is, mm: 0 of a knife edge, infinite of a flat face.
+    """Radius of the roller whose contour this is, mm: 0 for a knife edge, infinite for a flat face.
 
     Raises ValueError for an outer parallel.
     """
@@ -69,10 +70,10 @@ def follower_radius(curve: Curve) -> float:
 
 
 def causes(curve: Curve) -> Causes:
-    """Reversals, and the narrowest necks that a roller does not pass, as proved by `reversals` and `narrowest_necks`.
+    """Reversals of a contour, and the narrowest necks that its roller does not pass, each proved to be complete.
 
-    Raises ValueError for a curve that a flat face cannot work, as its tangent turns back; CurveError where it is open
-    whether there is any undercut.
+    Raises ValueError for an outer parallel and for a concave curve under a flat face, which cannot touch it; CurveError
+    where undercut can be neither proved nor excluded.
     """
     radius = follower_radius(curve)
     reversed_stretches = reversals(curve)
@@ -88,12 +89,13 @@ def causes(curve: Curve) -> Causes:
     from camgeo.curve.undercut.bottleneck import OpenNeckError, narrowest_necks, neck_from
     from camgeo.curve.undercut.pairs import Pitch
 
+    # bent stretches are undercut already: necks count up to the pitch curve's least radius of curvature
     below = radius if not reversed_stretches else min(radius, radius + least_radius(curve)[0])
     pitch = Pitch.of(curve)
     try:
         return Causes(reversed_stretches, narrowest_necks(pitch, below))
     except OpenNeckError as error:
-        # a pair of points that the roller does not pass is undercut, whatever else there is
+        # a pair of points that the roller does not pass is undercut, even if other pairs are undecided
         neck = neck_from(pitch, *error.pair) if error.seen else None
         if not reversed_stretches and (neck is None or not neck.half < radius):
             raise

@@ -1,6 +1,6 @@
 """Pairs of points of a pitch curve: proved bounds of the disc that touches it at one and passes through the other.
 
-Over a box, a pair of parameter intervals, bounds are taken about its centre, from those of speed and turn.
+Over a box, a pair of parameter intervals, bounds are taken about its centre, from the bounds of speed and turn.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class Pitch:
 
 @dataclass(frozen=True)
 class Bends:
-    """Greatest speed and bounds of the curvature over intervals (n,), nan where there is none."""
+    """Greatest speed, mm, and bounds of the curvature, 1/mm, over intervals (n,); nan where none is known."""
 
     speed: Array
     low: Array
@@ -85,13 +85,22 @@ class Boxes:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Bounds for n pairs of boxes, parameter intervals of two points x and y, about their centres (n, 2).
+    """Bounds for n boxes, each two parameter intervals of points x and y, about their centres (n, 2); lengths in mm.
 
-    R is the radius of the circle that touches the curve at one point and passes through the other. Rows of (2, n)
-    arrays are for the one point and for the other. `radius` (2, n) is an upper bound of R at the centres, `reach` (2,
-    n) how far along the curve a box extends to either side, `doubt` (2, n) by how much that and the turning there move
-    the pair against each other, `chord` (n,) a lower bound of |x - y|, `bowl` (n,) the least eigenvalue of the Hessian
-    of |x - y|^2 / 2 in arc length.
+    R is the radius of the circle that touches the curve at one point and passes through the other. The rows of arrays
+    (2, n) are for R that touches at x and at y.
+
+    radius        upper bound of R at the centres (2, n)
+    reach         length along the curve of half a box (2, n)
+    doubt         by how much reach and turning move the points against each other (2, n)
+    chord         lower bound of |x - y| (n,)
+    bowl          least eigenvalue of the Hessian of |x - y|^2 / 2 in arc length (n,)
+    square        |x - y|^2 at the centres (n,)
+    along         components of the chord towards the point of contact along the tangent there (2, n)
+    along_change  by how much they may change over the box (2, n)
+    across        components of this chord along the outward normal (2, n)
+    bend_low      bounds of the curvature over the box, 1/mm (2, n); so is `bend_high`
+    slanted       bound of the component of one normal along the other tangent (n,)
     """
 
     centre: Array
@@ -113,9 +122,9 @@ class Pairs:
         """Compute the bounds for n boxes of pairs of a pitch curve."""
         count = boxes.low.shape[0]
         centre = 0.5 * (boxes.low + boxes.high)
-        both = pitch.curve.sample(centre.T.ravel())
-        x, y = both.split(count)
-        bends = pitch.bounds(boxes.low.T.ravel(), boxes.high.T.ravel(), both, centre.T.ravel())
+        frames = pitch.curve.sample(centre.T.ravel())
+        x, y = frames.split(count)
+        bends = pitch.bounds(boxes.low.T.ravel(), boxes.high.T.ravel(), frames, centre.T.ravel())
         bend_low, bend_high = bends.low.reshape(2, count), bends.high.reshape(2, count)
         reach = 0.5 * bends.speed.reshape(2, count) * (boxes.high - boxes.low).T
         d = x.point - y.point
@@ -139,6 +148,7 @@ class Pairs:
         )
         mixed = np.minimum(np.abs(np.sum(x.tangent * y.tangent, axis=1)) + turned.sum(axis=0), 1.0)
         bowl = 0.5 * (diagonal[0] + diagonal[1]) - np.hypot(0.5 * (diagonal[0] - diagonal[1]), mixed)
+        # |d|^2 from its Taylor series about the centre, from its minimum in a bowl, or |d| less the reach
         slope = np.sum(along**2, axis=0)
         least = square - 2.0 * np.sum(np.abs(along) * reach, axis=0) + np.minimum(bowl, 0.0) * np.sum(reach**2, axis=0)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -150,9 +160,9 @@ class Pairs:
         )
 
     def free(self, aim: float) -> NDArray[np.bool_]:
-        """Whether R is proved to be at least `aim` over each box (n,)."""
-        # G = |d|^2 - 2 v across is above 0 where R > v; its derivatives are 2 (1 - v k) along, and for the other point
-        # 2 (along' - v N.T')
+        """Whether R is proved to be at least `aim`, mm, over each box (n,)."""
+        # G = |d|^2 - 2 v across is above 0 where R > v = aim; its derivatives are 2 (1 - v k) along, and for the other
+        # point 2 (along' - v N.T')
         clear = np.ones(self.square.size, dtype=bool)
         for i in (0, 1):
             other = 1 - i

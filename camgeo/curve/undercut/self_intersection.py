@@ -22,17 +22,17 @@ if TYPE_CHECKING:
 
 SHORT = 0.02  # of the period: parameter lengths over which points' differences are integrated, not subtracted
 STEPS = 40
-MOST_PAIRS = 200_000  # looked at together
+MOST_PAIRS = 200_000  # pairs in memory together
 NODES = 12  # of the quadrature of one panel
-SHARPER = 0.05  # of the size: paths of less are given better by their integral than by their ends' points
-PANEL_SHARPNESS = 1e-10  # of a panel's path: halves that agree with it so far are right to the last digits
+SHARPER = 0.05  # of the size: a shorter path has a sharper chord from its integral than from its ends' points
+PANEL_SHARPNESS = 1e-10  # of a panel's path: halves that agree with the whole so far are right to the last digits
 PANEL_HALVINGS = 8  # at the most; crossings are checked by contact at every node (`camgeo.curve.undercut.trim`)
 
 
 def displacement(curve: Curve, start: Array, end: Array) -> Array:
     """Chord ``c(end) - c(start)`` (n, 2), mm, for start <= end (n,), exact to its own last digits where it is short.
 
-    For a path about as long as the curve's size it is the difference of the ends.
+    Along a longer path it is the difference of the ends.
     """
     ends = curve.sample(np.concatenate([start, end])).point
     difference: Array = ends[start.size :] - ends[: start.size]
@@ -47,9 +47,9 @@ def displacement(curve: Curve, start: Array, end: Array) -> Array:
 
 
 def _short_paths(curve: Curve, knots: Array) -> tuple[NDArray[np.intp], Array]:
-    """Indices (m,) of the short ones among stretches, which `knots` (n, k) divide at breaks, and their chords (m, 2).
+    """Indices (m,) of the short stretches among n, which `knots` (n, k) divide at breaks, and their chords (m, 2).
 
-    Panels are halved until both halves together agree with the whole; their own error is far below that.
+    Panels are halved until both halves together agree with the whole; their own error is far below the difference.
     """
     count = knots.shape[0]
     low, high = knots[:, :-1].ravel(), knots[:, 1:].ravel()
@@ -62,11 +62,11 @@ def _short_paths(curve: Curve, knots: Array) -> tuple[NDArray[np.intp], Array]:
     for level in range(PANEL_HALVINGS + 1):
         middle = 0.5 * (low + high)
         halves, speeds, turned = _quadrature(curve, np.concatenate([low, middle]), np.concatenate([middle, high]))
-        parts, both = halves.reshape(2, -1, 2), speeds.reshape(2, -1).sum(axis=0)
-        # what a parallel's speed loses in the difference that it is
+        parts, way = halves.reshape(2, -1, 2), speeds.reshape(2, -1).sum(axis=0)
+        # rounding of a parallel's speed, which is a difference
         noise = ROUNDING * curve.size * (high - low + turned.reshape(2, -1).sum(axis=0))
         off = np.abs(parts.sum(axis=0) - whole).max(axis=1, initial=0.0)
-        done = (off <= PANEL_SHARPNESS * both + noise) | (level == PANEL_HALVINGS)
+        done = (off <= PANEL_SHARPNESS * way + noise) | (level == PANEL_HALVINGS)
         np.add.at(path, owner[done], parts.sum(axis=0)[done])
         if done.all():
             break
@@ -77,12 +77,12 @@ def _short_paths(curve: Curve, knots: Array) -> tuple[NDArray[np.intp], Array]:
             np.concatenate([middle[undecided], high[undecided]]),
         )
         owner = np.tile(owner[undecided], 2)
-    which = np.flatnonzero(short)
-    return which, path[which]
+    indices = np.flatnonzero(short)
+    return indices, path[indices]
 
 
 def _quadrature(curve: Curve, low: Array, high: Array) -> tuple[Array, Array, Array]:
-    """Integrals over panels (n,) by one rule each: of the velocity (n, 2), of absolute speed and turn (n,)."""
+    """Integrals over panels (n,), by one rule each, of the velocity (n, 2) and of absolute speed and turn (n,)."""
     node, weight = gauss(NODES)
     half = 0.5 * (high - low)
     frame = curve.sample((0.5 * (low + high)[:, None] + half[:, None] * node).ravel())
@@ -93,7 +93,7 @@ def _quadrature(curve: Curve, low: Array, high: Array) -> tuple[Array, Array, Ar
 
 
 def _between(breaks: Array, start: Array, end: Array) -> Array:
-    """Start, breaks between and end of each stretch (n, m), as many times the end as others have more breaks."""
+    """Start, breaks between and end of each stretch (n, m); a stretch with fewer breaks repeats its end."""
     first, after = np.searchsorted(breaks, start, side="right"), np.searchsorted(breaks, end, side="left")
     own = first[:, None] + np.arange(int((after - first).max()))
     inside = np.append(breaks, np.inf)[np.minimum(own, breaks.size)]
@@ -101,7 +101,7 @@ def _between(breaks: Array, start: Array, end: Array) -> Array:
 
 
 def all_breaks(curve: Curve, low: float, high: float) -> Array:
-    """The shape's breaks, repeated by its period, strictly between two parameters, rising (m,)."""
+    """The shape's breaks, repeated by its period, strictly between `low` and `high`, rising (m,)."""
     breaks, period = np.asarray(curve.shape.breaks, dtype=np.float64), curve.shape.period
     if breaks.size == 0:
         return breaks
@@ -114,13 +114,14 @@ def all_breaks(curve: Curve, low: float, high: float) -> Array:
 def polygon_crossings(t: Array, points: Array, period: float, own: int) -> Array:
     """Parameters (m, 2) of crossings of the closed polygon with vertices `points` (n, 2) at parameters t (n,).
 
-    They are crossings of the first `own` edges with any edge, interpolated along each edge: a beginning for
-    `newton_crossings`. Cost grows as own n.
+    The first `own` edges are crossed with every edge, and parameters, which repeat by `period`, are interpolated along
+    each edge: a beginning for Newton's method. The time grows as own n.
     """
     count = t.size
     edge = np.roll(points, -1, axis=0) - points
     length = np.diff(np.append(t, t[0] + period))
     crossings = []
+    # each edge's ends lie on both sides of the other edge
     for rows in in_parts(own, count):
         side = _side(edge[rows, None], points[None] - points[rows, None])
         first_edge, second_edge = np.nonzero((side < 0.0) != (np.roll(side, -1, axis=1) < 0.0))
@@ -131,8 +132,8 @@ def polygon_crossings(t: Array, points: Array, period: float, own: int) -> Array
         start, end = (
             _side(edge[second_edge], points[k % count] - points[second_edge]) for k in (first_edge, first_edge + 1)
         )
-        both = (start < 0.0) != (end < 0.0)
-        crossings.append(np.stack([first_edge[both], second_edge[both]]))
+        crosses = (start < 0.0) != (end < 0.0)
+        crossings.append(np.stack([first_edge[crosses], second_edge[crosses]]))
     first, second = np.concatenate(crossings, axis=1) if crossings else np.empty((2, 0), dtype=np.intp)
 
     def share(cut: NDArray[np.intp], by: NDArray[np.intp]) -> Array:
@@ -161,7 +162,7 @@ def newton_crossings(curve: Curve, pairs: Array, size: float) -> Array:
     """Self-crossings (m, 2), t < s < t + period, that Newton's method reaches from pairs of parameters (n, 2).
 
     The shorter way round lies between t and s. A pair counts as a crossing where both points agree within rounding of
-    `size`, the curve runs forward at both, and its directions differ.
+    `size`, mm, and the curve runs forward at both.
     """
     period = curve.shape.period
     low, high = pairs.min(axis=1), pairs.max(axis=1)
@@ -170,6 +171,7 @@ def newton_crossings(curve: Curve, pairs: Array, size: float) -> Array:
     t, s = t[s > t], s[s > t]
     if t.size == 0:
         return np.empty((0, 2))
+    # steps of a fifth of the gap at most, so that t and s do not meet; each pair moves until its steps are rounding
     last = np.full(t.size, np.inf)
     moving = np.arange(t.size)
     for _ in range(STEPS):
@@ -182,6 +184,7 @@ def newton_crossings(curve: Curve, pairs: Array, size: float) -> Array:
         moving = moving[last[moving] > 2.0 * np.spacing(np.maximum(np.abs(t), np.abs(s)))[moving]]
         if moving.size == 0:
             break
+    # kept: forward at both, points equal to rounding, and at rest
     frame = curve.sample(np.concatenate([t, s]))
     forward = (frame.speed[: t.size] > 0.0) & (frame.speed[t.size :] > 0.0)
     close = np.abs(displacement(curve, t, s)).max(axis=1) <= ROUNDING * size
@@ -193,7 +196,7 @@ def newton_crossings(curve: Curve, pairs: Array, size: float) -> Array:
 def _newton_steps(curve: Curve, t: Array, s: Array) -> tuple[Array, Array]:
     """Newton steps (n,) of parameters t < s (n,) towards equal points; not finite where the tangents are parallel."""
     gap = displacement(curve, t, s)
-    frame, other = curve.sample(np.concatenate([t, s])).split(t.size)
-    turn = _side(frame.tangent, other.tangent)
+    first, second = curve.sample(np.concatenate([t, s])).split(t.size)
+    turn = _side(first.tangent, second.tangent)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return _side(gap, other.tangent) / (frame.speed * turn), _side(gap, frame.tangent) / (other.speed * turn)
+        return _side(gap, second.tangent) / (first.speed * turn), _side(gap, first.tangent) / (second.speed * turn)

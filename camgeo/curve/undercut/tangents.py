@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 STEP = 0.03  # rad: cells over which the tangent may turn by more are divided
 MOST_PARTS = 256  # of one cell
-ROUNDING = 1e-9  # rad: far above what the sum of all changes of direction may be off
+ROUNDING = 1e-9  # rad: far above the rounding of the sum of all changes of direction
 RIGHT, STRAIGHT = 0.5 * math.pi - ROUNDING, math.pi - ROUNDING
 
 
@@ -25,8 +25,8 @@ RIGHT, STRAIGHT = 0.5 * math.pi - ROUNDING, math.pi - ROUNDING
 class TangentDirections:
     """Directions of the tangent over two turns of a closed curve, for the stretches between `knots` (m + 1,).
 
-    `low` and `high`, (levels, m), bound the direction over 1, 2, 4, ... stretches from each on; `hollow` and `bulging`
-    (m + 1,) count the stretches before each knot that are not proved convex, not proved concave.
+    `low` and `high` (levels, m), rad, bound the direction over 1, 2, 4, ... stretches from each on; `hollow` and
+    `bulging` (m + 1,) count the stretches before each knot that are not proved convex, and not proved concave.
     """
 
     knots: Array
@@ -38,6 +38,7 @@ class TangentDirections:
     @staticmethod
     def of(curve: Curve) -> TangentDirections:
         """Table of a whole closed curve, from its cells' proved bounds of the turn."""
+        # cells divided so that the tangent turns by no more than about `STEP` over each part
         cells = curve.cells
         width = cells.high - cells.low
         steep = np.maximum(np.abs(cells.rows[2]), np.abs(cells.rows[3]))
@@ -67,8 +68,9 @@ class TangentDirections:
     def near(self, start: Array, end: Array) -> NDArray[np.bool_]:
         """Whether stretches from `start` to `end` (n,), start < end, turn by a right angle at most.
 
-        Half a turn will do where they are bent one way throughout.
+        Stretches that are convex or concave throughout may turn by half a turn.
         """
+        # the range over many stretches is that of two overlapping runs of 2^level stretches
         first = np.clip(np.searchsorted(self.knots, start, side="right") - 1, 0, self.low.shape[1] - 1)
         last = np.clip(np.searchsorted(self.knots, end, side="left"), first + 1, self.low.shape[1])
         level = np.frexp(last - first)[1] - 1

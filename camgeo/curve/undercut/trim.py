@@ -5,8 +5,8 @@ and a follower of curvature k (a roller of radius e: k = 1/e; a flat face: k = 0
 
     g(q, s) = k/2 |q - z|^2 - (q - z).N >= 0        for every s,
 
-the disc about z + N/k, or the half plane beyond the tangent. Along s, ``dg/ds = -(k sigma + omega) (q - z).T``. What
-stands is bounded by stretches of the contour and by corners in which the contour crosses itself.
+the disc about z + N/k, or the half plane beyond the tangent. Along s, ``dg/ds = -(k sigma + omega) (q - z).T``. The
+metal that stands is bounded by stretches of the contour and by corners in which the contour crosses itself.
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ if TYPE_CHECKING:
 
 NODES = 480  # of the polygon on which crossings are sought first
 MOST_TANGLED = 40  # stretches that run backwards whose crossings are sought all over: time grows with their square
-ROUNDS = 3  # of seeking them, each with twice the nodes
-NEAR_BY = 0.03  # of a reversal's length: the first node beside it; the following ones grow
-GROWTH = 1.35
+ROUNDS = 3  # of the search for crossings, each with twice the nodes
+NEAR_BY = 0.03  # of a reversal's length: distance of the first node beside it; following distances grow
+GROWTH = 1.35  # from node to node
 STARTS = (0.366, 0.05, 1.0)  # a swallowtail reaches (sqrt 3 - 1)/2 of its reversal beyond it, where sigma is a parabola
-ZOOMS = 4
+ZOOMS = 4  # about the greatest depth found
 
 
 @dataclass(frozen=True)
 class Corner:
-    """A corner of what stands: the contour is left at one parameter and taken up at another, both at `point` (2,)."""
+    """A corner of the contour that stands: it is left at one parameter and entered at another, both at `point` (2,)."""
 
     leave: float
     enter: float
@@ -81,8 +81,9 @@ class Remains:
 def trimmed(curve: Curve) -> Curve:
     """Contour that is left of a whole curve where it undercuts: several runs that meet in corners, round the shaft.
 
-    The curve itself if it does not undercut. Raises UndercutError where nothing is left, the metal falls into pieces,
-    the shaft is not inside, or the crossings cannot be separated.
+    It is the curve itself if it does not undercut. Raises UndercutError where nothing is left, the metal falls into
+    pieces, the shaft is not inside, or the crossings cannot be separated; CurveError where undercut can be neither
+    proved nor excluded; ValueError for a concave curve under a flat face.
     """
     if not in_ring(curve):
         return _trim(curve, 1)
@@ -116,12 +117,12 @@ def _trim(curve: Curve, sense: int) -> Curve:
 
 
 def remains(curve: Curve, reasons: Causes) -> Remains:
-    """The contour left of a curve that undercuts. Raises UndercutError where crossings cannot be separated.
+    """The contour left of a curve that undercuts, for its causes; raises UndercutError for inseparable crossings.
 
     Every corner is checked against all contact positions. Where the pitch curve is convex, and for a flat face, that
     settles the whole contour: kept stretches run forward and turn once round, so they bound the body of the half planes
     beyond them, and no face between two of them cuts into it. A hollow pitch curve is checked at the nodes as well,
-    a fine grid, without proof for what lies between; a missed cut shows when the file is judged.
+    a fine grid, without proof between them; a missed cut shows when the file is judged.
     """
     contact = _Contact.of(curve)
     plain = _swallowtails(curve, contact, reasons)
@@ -133,6 +134,7 @@ def remains(curve: Curve, reasons: Causes) -> Remains:
             f"{reverse} stretches of the contour run backwards into each other; up to {MOST_TANGLED} are separated"
         )
         raise UndercutError(message, reasons.reversals[0].start)
+    # crossings of a polygon and guesses are refined on the curve, until those that stand explain all that is lost
     for turn in range(ROUNDS):
         nodes = _nodes(curve, reasons, NODES << turn)
         frames = curve.sample(nodes)
@@ -152,7 +154,7 @@ def remains(curve: Curve, reasons: Causes) -> Remains:
 
 
 def _swallowtails(curve: Curve, contact: _Contact, reasons: Causes) -> Remains | None:
-    """The contour left where a crossing of its own cuts off each reversal, apart from all others; else None.
+    """The contour left where each reversal is cut off by a crossing of its own, apart from all others; else None.
 
     Without a hollow in the pitch curve that settles it: what is kept runs forward and turns once round in left corners,
     so it bounds a convex body. Many small swallowtails, equal but for rounding, are separated by this alone.
@@ -160,6 +162,7 @@ def _swallowtails(curve: Curve, contact: _Contact, reasons: Causes) -> Remains |
     convex = bool((curve.cells.rows[2] >= 0.0).all())
     if not convex or reasons.necks or not reasons.reversals or any(r.still for r in reasons.reversals):
         return None
+    # one crossing about each reversal, from guesses at its width
     period = curve.shape.period
     starts = np.array([r.start for r in reasons.reversals])
     ends = np.array([r.end for r in reasons.reversals])
@@ -173,6 +176,7 @@ def _swallowtails(curve: Curve, contact: _Contact, reasons: Causes) -> Remains |
             shift, i = (period, 0) if number == len(starts) else (0.0, number)
             if low - shift < starts[i] and ends[i] < high - shift and np.isnan(crossings[i, 0]):
                 crossings[i] = low - shift, high - shift
+    # none missing, none within another, and the contour turns left in each
     following = np.append(crossings[1:, 0], crossings[0, 0] + period)
     if np.isnan(crossings).any() or not (crossings[:, 1] < following).all():
         return None
@@ -222,25 +226,26 @@ class _Contact:
         return np.asarray(least < -self.tolerance)
 
     def standing(self, corners: list[Corner], nodes: Array, frames: Frame) -> list[Corner]:
-        """Corners that no contact position cuts away; every least value of g between nodes is found."""
+        """Corners that no contact position cuts away; the least g between nodes is found wherever it lies."""
         if not corners:
             return []
+        # g has a least value where (q - z).T falls through 0
         points = np.array([c.point for c in corners])
         apart = points[:, None] - frames.point[None]
         along = np.sum(apart * frames.tangent[None], axis=2)
         cut = np.asarray(self.clearance(apart, frames.normal[None]).min(axis=1) < -self.tolerance)
-        which, where = np.nonzero((along > 0.0) & (np.roll(along, -1, axis=1) < 0.0) & ~cut[:, None])
+        corner, where = np.nonzero((along > 0.0) & (np.roll(along, -1, axis=1) < 0.0) & ~cut[:, None])
         period = self.curve.shape.period
         after = np.append(nodes[1:], nodes[0] + period)
 
         def facing(t: Array) -> Array:
             frame = self.curve.sample(t)
-            return np.asarray(np.sum((points[which] - frame.point) * frame.tangent, axis=1))
+            return np.asarray(np.sum((points[corner] - frame.point) * frame.tangent, axis=1))
 
-        values = along[which, where], along[which, (where + 1) % nodes.size]
+        values = along[corner, where], along[corner, (where + 1) % nodes.size]
         frame = self.curve.sample(roots(facing, nodes[where], after[where], values, 1e-9))
-        low = self.clearance(points[which] - frame.point, frame.normal) < -self.tolerance
-        cut[which[low]] = True
+        low = self.clearance(points[corner] - frame.point, frame.normal) < -self.tolerance
+        cut[corner[low]] = True
         return [c for c, is_cut in zip(corners, cut.tolist(), strict=True) if not is_cut]
 
 
@@ -268,7 +273,7 @@ def _nodes(curve: Curve, reasons: Causes, count: int) -> Array:
 
 
 def _first_part(curve: Curve) -> float:
-    """Parameter just beyond the end of the first of the parts that the curve repeats."""
+    """Parameter just beyond the end of the first of the curve's equal parts."""
     part: float = curve.shape.period / curve.shape.repeats
     return curve.runs[0].low + part * (1.0 + SHIFT)
 
@@ -285,7 +290,7 @@ def _images(curve: Curve, corners: list[Corner]) -> list[Corner]:
 def _guesses(curve: Curve, reasons: Causes) -> Array:
     """Guessed crossings (m, 2), as if a reversal's speed were a parabola and a neck's sides circles.
 
-    Of crossings that a turn of the curve leads into each other at least one is given.
+    Of crossings that are images of each other in the curve's equal parts at least one is guessed.
     """
     last = _first_part(curve)
     guesses = [
@@ -314,7 +319,7 @@ def _corners_at(curve: Curve, pairs: Array) -> list[Corner]:
     period = curve.shape.period
     for i, (t, s) in enumerate(pairs.tolist()):
         leave, enter = (t, s) if left[i] else (s, t)
-        # for a swallowtail that is lost in rounding, guesses settle a little apart
+        # for a swallowtail that is lost in rounding, guesses converge a little apart
         near = 1e-2 * cyclic_gap(s, t, period)
         if not any(
             cyclic_gap(leave, c.leave, period) < near and cyclic_gap(enter, c.enter, period) < near for c in corners
@@ -324,7 +329,10 @@ def _corners_at(curve: Curve, pairs: Array) -> list[Corner]:
 
 
 def _lost_stretches(curve: Curve, corners: list[Corner]) -> list[tuple[int, int, float, float]] | None:
-    """Leaving and next entering corner, and their parameters, of each lost stretch; None if they do not alternate."""
+    """Indices of the leaving and the next entering corner, and their parameters, of each lost stretch.
+
+    None if leaving and entering do not alternate.
+    """
     low, period = curve.runs[0].low, curve.shape.period
     if not corners:
         return []
@@ -349,7 +357,7 @@ def _explained(
     own = int(np.searchsorted(nodes, _first_part(contact.curve)))
     cut = contact.cut(frames, own)
     if not stretches:
-        # a node where the contour runs backwards may be cut by less than rounding: such a one has left corners
+        # without corners all must be lost; a node where the contour runs backwards may be cut by less than rounding
         return bool((cut | (frames.speed[:own] < 0.0)).all())
     causes_at = [0.5 * (r.start + r.end) for r in reasons.reversals] + [n.first for n in reasons.necks]
     doubtful = np.concatenate([nodes[:own][cut], np.array(causes_at)])
@@ -435,7 +443,7 @@ def kept_runs(curve: Curve, remainder: Remains) -> tuple[SmoothRun, ...]:
 
 
 def _turns(curve: Curve) -> int:
-    """Number of turns of the chain of runs round the origin, counter-clockwise."""
+    """Number of turns of the chain of runs round the shaft, above 0 counter-clockwise."""
     points = []
     for run in curve.runs:
         count = max(8, math.ceil(NODES * (run.high - run.low) / curve.shape.period))

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from camgeo.curve.undercut.bottleneck import Neck
     from camgeo.curve.undercut.trim import LostStretch, Remains
 
-MOST_REPORTED = 200  # stretches that run backwards whose extent is found: a cam with more is no cam
-LOOKS = 240  # parameters at which a neck that exists is sought
+MOST_REPORTED = 200  # stretches that run backwards whose extent is found; a cam with more is refused
+LOOKS = 240  # parameters of a lost stretch at which its neck is sought
 
 
 @dataclass(frozen=True)
@@ -49,11 +49,10 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
     """All undercut of a whole curve, in order of the parameter; empty for a sound contour.
 
     A `Parallel` is a roller's contour inside its pitch curve, or outside it in a ring, which is examined in the reverse
-    sense; any other shape is that of a flat face. A stretch that is lost for both reasons is reported for each.
-    Raises CurveError where freedom from undercut can be neither proved nor refuted, UndercutError where the extent
-    cannot be found or more than `MOST_REPORTED` stretches run backwards.
-
-    The search for the extent is imported where it is needed: most contours are sound.
+    sense; a `CentreShape` is a knife edge's contour, any other shape a flat face's. A stretch that is lost for both
+    reasons is reported for each. Raises CurveError where freedom from undercut can be neither proved nor refuted,
+    UndercutError where the extent cannot be found or more than `MOST_REPORTED` stretches run backwards, and ValueError
+    for a concave curve under a flat face.
     """
     if in_ring(curve):
         return _of_ring(curve)
@@ -64,6 +63,7 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
     if reverse > MOST_REPORTED * curve.shape.repeats:
         message = f"{reverse} stretches of the contour run backwards; up to {MOST_REPORTED} are reported one by one"
         raise UndercutError(message, reasons.reversals[0].start, _free_at(curve, reasons))
+    # imported here, as most contours are sound
     from camgeo.curve.undercut.trim import remains
 
     try:
@@ -89,11 +89,15 @@ def _of_ring(curve: Curve) -> tuple[Undercut, ...]:
 
 
 def stretches(curve: Curve, reasons: Causes, remainder: Remains) -> tuple[Undercut, ...]:
-    """Stretches that undercut, in order of the parameter, by the causes and the contour that is left."""
+    """Stretches of a curve that undercut, in order of the parameter, from their causes and the contour that is left.
+
+    Raises UndercutError where no cause is found for a lost stretch, and CurveError where a least radius is not proved.
+    """
     cuts: list[Undercut] = []
     local: list[Undercut | None] = []
     repeats = curve.shape.repeats
     own = len(remainder.lost) // repeats if len(remainder.lost) % repeats == 0 else len(remainder.lost)
+    # each lost stretch has the reversals and necks that lie within it as its causes
     for i, lost in enumerate(remainder.lost):
         inside = [r for r in reasons.reversals if not r.still and _within(curve, lost, 0.5 * (r.start + r.end))]
         necks = [n for n in reasons.necks if _within(curve, lost, n.first) or _within(curve, lost, n.second)]
@@ -152,7 +156,7 @@ def _global(curve: Curve, lost: LostStretch, neck: Neck) -> Undercut:
 
 
 def _neck_of(curve: Curve, lost: LostStretch) -> Neck:
-    """Neck that costs a stretch nowhere bent too much: the least rolling radius on it.
+    """Neck that costs a stretch nowhere bent too much: the least rolling radius along the stretch.
 
     Raises UndercutError for a flat face, which has no necks, and where no neck narrower than the roller is found.
     """
