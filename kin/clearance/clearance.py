@@ -9,7 +9,7 @@ accuracy below the least D found; what is left is halved. The least of the bound
 every angle, however narrow the window in which two bodies meet: nothing rests on how the turn was sampled. Pairs of
 features that cannot be the nearest within an interval are left out in all parts of it.
 
-The bound is one for the motions and contours as stated, up to rounding (about 1e-9 mm) and 1e-5 mm where a contour has
+The bound holds for the motions and contours as stated, up to rounding (about 1e-9 mm) and 1e-5 mm where a contour has
 splines; how far a sampled motion may be from the true one is given beside it.
 """
 
@@ -40,18 +40,21 @@ if TYPE_CHECKING:
 __all__ = ["Clearance", "Mover", "Slab", "clearances"]
 
 CELLS = 64  # intervals of a turn to begin with
-FIRST = 4  # of them are looked at before the rest
+FIRST = 4  # of these intervals, the most promising, are looked at before the rest
 AT_ONCE = 256  # intervals that are worked on together
 FINEST = 4  # times that pieces are halved along with the intervals
-FEW = 16  # pairs in play for each interval, below which halves of their pieces cost less than they tell
+FEW = 16  # pairs in play for each interval, below which it pays to halve their pieces
 MOST = 60_000  # intervals that a pair of bodies may take
-SHARE = 1e-3  # of the clearance, to which it is found
-TOUCHING = 1e-9  # mm, by which heights may overlap by rounding
+SHARE = 1e-3  # accuracy as a part of the clearance
+TOUCHING = 1e-9  # mm: an overlap of heights by less is rounding
 
 
 @dataclass(frozen=True, eq=False)
 class Slab:
-    """A horizontal slab from z `low` to `high`: an outline with holes in it, in the axes of its body, mm."""
+    """A horizontal slab from z `low` to `high`: an outline with holes in it, in the axes of its body, mm.
+
+    Raises ValueError unless low < high.
+    """
 
     outer: Contour
     holes: tuple[Contour, ...]
@@ -70,7 +73,7 @@ class Slab:
 
 @dataclass(frozen=True, eq=False)
 class Mover:
-    """A body: its slabs, and its motion over one turn of the shaft (`kin.clearance.pose`)."""
+    """A body: its slabs, one at least, and its motion over one turn of the shaft (`kin.clearance.pose`)."""
 
     name: str
     slabs: tuple[Slab, ...]
@@ -83,22 +86,22 @@ class Mover:
 
     @property
     def slack(self) -> float:
-        """Greatest distance, mm, of a point of the body from where its motion puts it, as the motion's slack allows."""
+        """Greatest distance, mm, of a true point of the body from its stated place, as the motion's slack allows."""
         place, angle = self.motion.slack
         return place + angle * self.reach
 
 
 @dataclass(frozen=True)
 class Clearance:
-    """Least clearance of two bodies over one turn.
+    """Least clearance over one turn of the bodies named `a` and `b`.
 
-    least         least distance in plan found, mm; below 0 where they overlap, by as much as the deepest point of
-                  either lies in the other
-    at_deg        shaft angle there, [0, 360)
-    place         where, in the fixed axes, mm: midway between the nearest points, or the deepest point
-    proved        no angle has less than this
-    slack         how far the bodies may be from where their motions say, mm, both together; 0 unless sampled
-    evaluations   number of angles looked at
+    least         least distance in plan found, mm; where they overlap, minus the depth of the deepest point of
+                  either in the other
+    at_deg        shaft angle there, degrees in [0, 360)
+    place         (x, y) there in the fixed axes, mm: midway between the nearest points, or the deepest point
+    proved        lower bound, mm, of the distance at every angle
+    slack         sum of the distances, mm, by which the bodies may be off their stated motions; 0 unless sampled
+    evaluations   number of angles at which the distance was worked out
     """
 
     a: str
@@ -126,10 +129,11 @@ def clearances(
 ) -> list[Clearance]:
     """Clearance of each pair of bodies that have slabs at a common height, in the order of the movers.
 
-    `exempt` holds pairs of names that are left out. Slabs count as at one height where they overlap in z or lie less
-    than `axial`, mm, apart; with `axial` 0 slabs that only touch do not count. `proved` is below `least` by at most the
+    `exempt` holds pairs of names to leave out. Slabs count as at one height where they overlap in z or lie less than
+    `axial`, mm, apart; with `axial` 0 slabs that only touch do not count. `proved` is below `least` by at most the
     greatest of `accuracy`, mm, 0.1 % of the clearance, and 5 % of the depth of an overlap; by more only where a pair
-    takes over 60,000 angles. Raises ValueError for two movers of one name, and for an exempt pair of unknown names.
+    takes over 60,000 angles. Raises ValueError for two movers of one name, and for an exempt pair that is not two names
+    of movers.
     """
     names = [mover.name for mover in movers]
     if len(set(names)) < len(names):
@@ -139,11 +143,11 @@ def clearances(
         if len(pair) != 2 or not pair <= set(names):
             raise ValueError(f"unknown pair of bodies: {' and '.join(sorted(pair))}")
     verdicts = []
-    for nearer, other in combinations(movers, 2):
-        if {nearer.name, other.name} in left_out:
+    for home, body in combinations(movers, 2):
+        if {home.name, body.name} in left_out:
             continue
-        search = _Search(nearer, other, accuracy)
-        for first, second in product(nearer.slabs, other.slabs):
+        search = _Search(home, body, accuracy)
+        for first, second in product(home.slabs, body.slabs):
             if max(first.low, second.low) - min(first.high, second.high) < axial - TOUCHING:
                 search.run((first.region, second.region))
         if search.evaluations:
@@ -152,9 +156,10 @@ def clearances(
 
 
 class _Cells(NamedTuple):
-    """Intervals phi +- half (m,), lower bounds of D over them (m,), and the pairs that may be the nearest, if known.
+    """Intervals phi +- half (m,), rad, lower bounds of D there (m,), mm, and the pairs that may be the nearest.
 
-    `regions` are those that the pairs are of: the finer, the shorter the intervals.
+    `pairs` is None before the first look. Its features are those of `regions`, whose pieces have been halved `level`
+    times along with the intervals.
     """
 
     phi: Array
@@ -183,7 +188,7 @@ class _Cells(NamedTuple):
 
 
 class _Search:
-    """The least of D of two bodies: what has been found and proved so far, over one pair of slabs after another."""
+    """Search for the least D of two bodies over pairs of slabs: the least value so far, and the bound proved so far."""
 
     def __init__(self, home: Mover, other: Mover, accuracy: float) -> None:
         self.home, self.other, self.accuracy = home, other, accuracy
@@ -214,7 +219,7 @@ class _Search:
                 stack += self._look(cells)
 
     def _begin(self, regions: tuple[Region, Region]) -> list[_Cells]:
-        """Intervals to begin with, the most promising ones apart; a single angle if the bodies move as one."""
+        """Intervals to begin with, the most promising last; a single angle if the bodies move as one."""
         count = 1 if alike(self.home.motion, self.other.motion) else CELLS
         half = np.full(count, TURN / (2 * count) if count > 1 else 0.0)
         phi = (2 * np.arange(count) + 1) * half
@@ -238,7 +243,7 @@ class _Search:
         return open_
 
     def _look(self, cells: _Cells) -> list[_Cells]:
-        """Work out D at the middle of each interval; what is left, halved."""
+        """Work out D at the middle of each interval; the halves of the intervals that are left open."""
         meeting = self._meeting(cells)
         self.evaluations += len(cells.phi)
         if cells.pairs is None:
@@ -246,6 +251,7 @@ class _Search:
         pairs, half, fastest = cells.pairs, cells.half, meeting.fastest
         views = see(meeting, pairs, 0.25 * self.accuracy)
         self._take(cells.phi, views)
+        # a pair farther apart than |D| and the changes of both in the interval is out of play
         size = np.abs(views.value) + views.doubt
         reachable = views.gap <= (size + 2.0 * half * fastest)[pairs.cell]
         pairs, gap = pairs.take(reachable), views.gap[reachable]
@@ -261,7 +267,7 @@ class _Search:
         return [left.within(self._open(lower)).halved()]
 
     def _first_look(self, cells: _Cells, meeting: Encounter) -> list[_Cells]:
-        """Find D among all pairs of features; what the greatest speed of all leaves open, with the pairs in play."""
+        """Find D among all pairs of features; the intervals that the greatest speed leaves open, with their pairs."""
         nowhere = np.full(len(cells.phi), np.nan)
         views = see(meeting, meeting.near(nowhere, cells.half * 0.0), 0.25 * self.accuracy, whole=True)
         self._take(cells.phi, views)
@@ -297,6 +303,6 @@ class _Search:
 
 
 def _lowest(values: Array, count: int) -> Mask:
-    """Mark the lowest values (m,), `count` of them."""
+    """Mask (m,) of the `count` lowest of the values (m,)."""
     chosen: Mask = np.isin(np.arange(len(values)), np.argsort(values, kind="stable")[:count])
     return chosen

@@ -1,17 +1,18 @@
 """Two flat regions in relative motion: their distance at an angle, and how fast it can change over an interval.
 
-The distance D is that between the regions where they are apart. Where they overlap it is less than 0: D = -d when a
-point of one boundary (or one point kept well inside) lies as deep as d in the other region, and none deeper. D is
-continuous, and it is the least, over points b of the one, of the signed distance of b from the other.
+D is the distance between the regions where they are apart. Where they overlap it is negative: D = -d if the deepest
+point of one boundary (or of a point kept well inside) lies d deep in the other region. D is continuous, and it is the
+least, over such points b of either region, of the signed distance of b from the other.
 
 Rate of D. Where D is attained at b, and a is the point nearest to b on the other boundary, the line ab is a normal n
-there, and D changes at the rate n.v, v the velocity of b's body relative to a's at any point of that line: along it the
-velocities of a rigid body have one component. The line passes through the centre of the arc that a lies on. If b is no
-corner it is also a normal of the arc of b, and passes through that centre. Where several a are nearest at once, the
-derivative is an average of their rates, and the average of their normals is a normal at b no longer than one (Clarke's
-rule for a least of greatest values), so the same bounds hold. Each pair of features that may be the nearest within an
-interval gives a bound by the normals it has and the velocities at its centre or on it; the greatest of them bounds the
-rate of D. So a disc turning about its centre has rate 0, and rolling contact nearly so, though points pass at speed.
+there, and D changes at the rate n.v, v the velocity of b's body relative to a's at any point of that line: along a line
+all points of a rigid body have the same component of velocity. The line passes through the centre of the arc that a
+lies on. If b is no corner it is also a normal of the arc of b, and passes through that centre. Where several a are
+nearest at once, the derivative is an average of their rates, and the average of their normals is a normal at b no
+longer than one (Clarke's rule for a least of greatest values), so the same bounds hold. Each pair of features that may
+be the nearest within an interval gives a bound by the normals it has and the velocities at its centre or on it; the
+greatest of them bounds the rate of D. So a disc turning about its centre has rate 0, and rolling contact nearly so,
+though points pass at speed.
 
 A pair may be the nearest only if its distance at the middle exceeds |D| by no more than both can change meanwhile.
 """
@@ -44,10 +45,10 @@ DEPTH_SHARE = 0.02  # precision of a depth, as a part of it
 class Relative:
     """Motion of a body relative to another over m intervals, in the other's axes (`home`), as it is at the middle.
 
-    place (m, 2), angle (m,)  of the body at the middle
-    drift (m, 2), turn (m,)   velocity at the place of the home's origin, rad/rad of turning, both relative to the home
-    stray (m,), twist (m,)    how far those may be off anywhere in the interval, `drift` in the home's own axes
-    half (m,)                 half the interval
+    place (m, 2), angle (m,)  pose of the body at the middle, mm and rad
+    drift (m, 2), turn (m,)   velocity of the body at the home's origin, mm/rad, and rate of turning, rad/rad
+    stray (m,), twist (m,)    greatest errors of `drift` and `turn` anywhere in the interval, in the home's axes there
+    half (m,)                 half the interval, rad
     """
 
     place: Array
@@ -60,7 +61,7 @@ class Relative:
 
     @staticmethod
     def of(home: PoseCourse, body: PoseCourse, half: Array) -> Relative:
-        """Work out the motion of `body` as seen from `home`, over the intervals of both courses."""
+        """Work out the motion of `body` seen from `home`, over both courses' intervals of half width `half` (m,)."""
         back = -home.pose[:, 2]
         gap = body.pose[:, :2] - home.pose[:, :2]
         flow = body.rate[:, :2] - home.rate[:, :2]
@@ -68,7 +69,7 @@ class Relative:
         speed = np.hypot(flow[:, 0], flow[:, 1]) + loose
         away = np.hypot(gap[:, 0], gap[:, 1])
         spin, own = (np.abs(c.rate[:, 2]) + c.spread[:, 2] for c in (body, home))
-        # seen from the home, what is fixed in direction turns; and the gap between the origins changes
+        # seen from the home, a vector fixed in direction turns, and the gap between the origins changes
         change = speed + own * (away + speed * half)
         stray = loose + speed * own * half + body.spread[:, 2] * away + spin * change * half
         return Relative(
@@ -87,15 +88,15 @@ class Relative:
         return np.abs(self.turn) + self.twist
 
     def at(self, cell: Indices, point: Array) -> tuple[Array, Array]:
-        """Velocity (k, 2), mm/rad, of the body where the home's points (k, 2) are, and its greatest error (k,)."""
+        """Velocity (k, 2), mm/rad, of the body at points (k, 2) of the home in intervals `cell` (k,); error (k,)."""
         velocity = self.drift[cell] + self.turn[cell, None] * left(point)
         return velocity, self.stray[cell] + self.twist[cell] * np.hypot(point[:, 0], point[:, 1])
 
     def along(self, cell: Indices, point: Array) -> tuple[Array, Array]:
-        """Velocity (k, 2), mm/rad, of the body's points that are at `point` (k, 2) at the middle, and its error.
+        """Velocity (k, 2), mm/rad, of points of the body that are at `point` (k, 2) at the middle, and its error (k,).
 
-        The error (k,) is a bound over the whole interval. The points move with their velocity, which changes by the
-        turning times how far they get: hence the exponential.
+        `cell` (k,) are the intervals; the error is a bound over the whole of each. The points move on, and their
+        velocity changes by the turning times their way: hence the exponential (Gronwall).
         """
         velocity, off = self.at(cell, point)
         spin, half = self.spin[cell], self.half[cell]
@@ -104,7 +105,7 @@ class Relative:
 
 
 class Pairs(NamedTuple):
-    """Pairs of features (k,) that may be the nearest within an interval: interval, rising, and a feature of either."""
+    """Pairs of features that may be the nearest within an interval: indices (k,) of interval, rising, and features."""
 
     cell: Indices
     first: Indices
@@ -115,7 +116,7 @@ class Pairs(NamedTuple):
         return Pairs(self.cell[index], self.first[index], self.second[index])
 
     def finer(self, first: Region, second: Region) -> Pairs:
-        """Return the pairs of the features' halves, in the finer regions."""
+        """Return the pairs of the features' halves, in the finer regions of `first` and `second`."""
         cell, (i, j) = (
             self.cell,
             (
@@ -124,16 +125,16 @@ class Pairs(NamedTuple):
             ),
         )
         more_i, more_j = self.first < first.pieces, self.second < second.pieces
-        both = more_i & more_j
-        order = np.argsort(rows := np.concatenate([cell, cell[more_i], cell[more_j], cell[both]]), kind="stable")
+        halved = more_i & more_j
+        order = np.argsort(rows := np.concatenate([cell, cell[more_i], cell[more_j], cell[halved]]), kind="stable")
         return Pairs(
             rows[order],
-            np.concatenate([i, i[more_i] + 1, i[more_j], i[both] + 1])[order],
-            np.concatenate([j, j[more_i], j[more_j] + 1, j[both] + 1])[order],
+            np.concatenate([i, i[more_i] + 1, i[more_j], i[halved] + 1])[order],
+            np.concatenate([j, j[more_i], j[more_j] + 1, j[halved] + 1])[order],
         )
 
     def within(self, mask: Mask) -> Pairs:
-        """Return the pairs of the intervals kept (m,), which are numbered anew."""
+        """Return the pairs of the intervals for which the mask (m,) holds, which are numbered anew."""
         chosen = self.take(mask[self.cell])
         return chosen._replace(cell=(np.cumsum(mask) - 1)[chosen.cell])
 
@@ -159,7 +160,7 @@ class Encounter:
 
     @cached_property
     def discs_apart(self) -> Array:
-        """Lower bound of D at the middles (m,), mm: distance of the discs about both, below 0 if they overlap."""
+        """Lower bound of D at the middles (m,), mm: distance of the discs about both, negative if they overlap."""
         (centre, radius), (other, reach) = self.first.disc, self.second.disc
         gap = _placed(other[None], self.motion)[:, 0] - centre
         return np.hypot(gap[:, 0], gap[:, 1]) - radius - reach
@@ -186,7 +187,7 @@ class Encounter:
 
 
 def fastest(body: Region, motion: Relative) -> Array:
-    """Upper bound (m,) of the speed, mm/rad, of any point of the body: of its disc's centre, plus spin times radius."""
+    """Upper bound (m,) of any point's speed, mm/rad: that of the centre of the body's disc, plus spin times radius."""
     centre, radius = body.disc
     velocity, off = motion.along(np.arange(len(motion.half)), _placed(centre[None], motion)[:, 0])
     speed: Array = np.hypot(velocity[:, 0], velocity[:, 1]) + off + motion.spin * radius
@@ -216,9 +217,7 @@ class GapSamples(NamedTuple):
 
 
 def see(meeting: Encounter, pairs: Pairs, precision: float, *, whole: bool = False) -> GapSamples:
-    """Find D at the middle of each interval from the pairs that may be the nearest there.
-
-    Every interval has one or more.
+    """Find D at the middle of each interval from the pairs that may be the nearest there, one at least in each.
 
     The depth of an overlap is found to `precision`, mm, or to 2 % of it if that is more. `whole` looks for the deepest
     point among all features, not only those paired.
@@ -238,8 +237,8 @@ def see(meeting: Encounter, pairs: Pairs, precision: float, *, whole: bool = Fal
     nearest = pairs.take(close[best])
     place = 0.5 * (measured.first[best] + measured.second[best])
     # Of two regions whose boundaries do not meet, the nearest points tell whether one reaches into the other.
-    there = turned(measured.first[best] - motion.place, -motion.angle)
-    apart = (first.side(nearest.first, measured.second[best]) > 0.0) & (second.side(nearest.second, there) > 0.0)
+    in_second = turned(measured.first[best] - motion.place, -motion.angle)
+    apart = (first.side(nearest.first, measured.second[best]) > 0.0) & (second.side(nearest.second, in_second) > 0.0)
     overlap = np.flatnonzero((value == 0.0) | ~apart)
     doubt = np.zeros(len(value))
     if len(overlap):
@@ -249,7 +248,7 @@ def see(meeting: Encounter, pairs: Pairs, precision: float, *, whole: bool = Fal
 
 
 def _by_discs(meeting: Encounter, pairs: Pairs) -> tuple[Array, Array]:
-    """Bounds of the distance of each pair from above and below (k,) each, by the discs about both."""
+    """Upper and lower bounds of the distance of each pair, (k,) each, by the discs about both features."""
     motion, cell = meeting.motion, pairs.cell
     body = turned(meeting.second.middle[pairs.second], motion.angle[cell]) + motion.place[cell]
     apart = np.hypot(*(meeting.first.middle[pairs.first] - body).T)
@@ -264,7 +263,10 @@ def distances(meeting: Encounter, pairs: Pairs) -> Gaps:
 
 
 def _depths(meeting: Encounter, pairs: Pairs | None, cells: Indices, precision: float) -> tuple[Array, Array]:
-    """D (m,) of regions that overlap, and the deepest point (m, 2), among the features paired or all."""
+    """D (c,) in the intervals `cells` (c,), where the regions overlap, and the deepest point (c, 2).
+
+    It is sought among the features of the pairs, or among all where `pairs` is None.
+    """
     motion, back = meeting.motion, meeting.back
     value, place = np.full(len(cells), np.inf), np.zeros((len(cells), 2))
     row = np.full(len(motion.half), -1)
@@ -289,7 +291,10 @@ def _depths(meeting: Encounter, pairs: Pairs | None, cells: Indices, precision: 
 
 
 def _deepest(region: Region, arcs: Arcs, row: Indices, floor: Array, precision: float) -> tuple[Array, Array]:
-    """Least signed distance from the region, of the pieces of each row, and where; what is above `floor` is left."""
+    """Least signed distance from the region over the pieces of each row, and its point: (r,), (r, 2).
+
+    `row` are the rows of the pieces `arcs`. Pieces that cannot come below `floor` (r,) are not halved.
+    """
     value, place = np.full(len(floor), np.inf), np.zeros((len(floor), 2))
     limit = floor.copy()
     for _ in range(ROUNDS):
@@ -310,38 +315,39 @@ def _deepest(region: Region, arcs: Arcs, row: Indices, floor: Array, precision: 
 
 
 def rates(meeting: Encounter, pairs: Pairs, apart: Mask) -> tuple[Array, Array]:
-    """Two upper bounds (k,) for each pair over its interval, mm/rad: of |dD/dphi|, and of the pair's own rate.
+    """Two upper bounds (k,) for each pair over its interval, mm/rad: of |dD/dphi|, and of the rate of its own distance.
 
     The first holds at the angles at which this pair is the nearest or, of regions that overlap, has the deepest point.
-    `apart` (m,) marks the intervals in which D > 0 throughout; there the bound is sharper.
+    `apart` (m,) marks the intervals in which D > 0 throughout; there the first bound is sharper.
     """
     cell, i, j = pairs
-    first, other, motion, back = meeting.first, meeting.second, meeting.motion, meeting.back
+    first, second, motion, back = meeting.first, meeting.second, meeting.motion, meeting.back
     spin = motion.spin[cell]
-    body = turned(other.middle[j], motion.angle[cell]) + motion.place[cell]
+    body = turned(second.middle[j], motion.angle[cell]) + motion.place[cell]
     home = turned(first.middle[i], back.angle[cell]) + back.place[cell]
-    of_first, of_second = (first.normal[i], first.fan[i]), (other.normal[j], other.fan[j])
-    on_first, on_second = spin * first.reach[i], spin * other.reach[j]
+    of_first, of_second = (first.normal[i], first.fan[i]), (second.normal[j], second.fan[j])
+    on_first, on_second = spin * first.reach[i], spin * second.reach[j]
     passing, passed = motion.along(cell, body), back.along(cell, home)
-    # normals of the one or the other; the velocity at its centre, and at points of the one or the other
+    # |n.v| with the normals n of either feature, and v at its centre of curvature or at points of either feature
     through = np.minimum(
         _projected(*of_first, *motion.at(cell, first.centre[i])) + _swung(spin, first.off[i]),
-        _projected(*of_second, *back.at(cell, other.centre[j])) + _swung(spin, other.off[j]),
+        _projected(*of_second, *back.at(cell, second.centre[j])) + _swung(spin, second.off[j]),
     )
     at_second = (
-        np.minimum(_projected(*of_first, *passing), _projected(*of_second, *back.at(cell, other.middle[j]))) + on_second
+        np.minimum(_projected(*of_first, *passing), _projected(*of_second, *back.at(cell, second.middle[j])))
+        + on_second
     )
     at_first = (
         np.minimum(_projected(*of_second, *passed), _projected(*of_first, *motion.at(cell, first.middle[i]))) + on_first
     )
-    # of two that overlap the deepest point may be of either
-    both = np.where(apart[cell], np.minimum(at_first, at_second), np.maximum(at_first, at_second))
+    # of regions that overlap the deepest point may be of either feature
+    at_features = np.where(apart[cell], np.minimum(at_first, at_second), np.maximum(at_first, at_second))
     speed = np.minimum(*(np.hypot(*v.T) + off + on for (v, off), on in ((passing, on_second), (passed, on_first))))
-    return np.minimum(through, both), speed
+    return np.minimum(through, at_features), speed
 
 
 def _swung(spin: Array, off: Array) -> Array:
-    """Speed (k,) at a distance from a centre; infinite without a centre, also where nothing turns."""
+    """Speed (k,) at the distance `off` (k,) from a centre; infinite where `off` is, also without spin."""
     centred = np.isfinite(off)
     return np.where(centred, spin * np.where(centred, off, 0.0), np.inf)
 

@@ -1,7 +1,7 @@
 """Where a rigid body stands over one turn of the shaft, and between which bounds its velocity lies over an interval.
 
-A pose is x, y in mm and an angle in rad, of the body's own axes in the fixed ones. Rates are by the shaft angle. Every
-kind of motion here gives `over` an interval what it is at the middle and how far the rates stray from a middle value;
+A pose is x, y in mm and an angle in rad, of the body's own axes in the fixed ones. Rates are by the shaft angle. Over
+an interval every motion gives its pose at the middle, rates, and by how much the rates may differ from these at most;
 these are bounds, not samples: a search that rests on them is a proof for the motion as it is stated. A `Sampled` motion
 is a curve through samples, stated between them by interpolation alone; its `slack` estimates how far the true motion
 may be from it.
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["PlaneMotion", "PoseCourse", "Sampled", "Still", "Turning", "alike"]
 
 FEWEST = 8  # samples of a turn, below which an interpolation says nothing
-CLOSED = 1e-6  # mm and rad, by which the last sample may miss the first, whole turns apart
+CLOSED = 1e-6  # mm and rad, by which the last sample may differ from the first, but for whole turns
 
 
 class PoseCourse(NamedTuple):
@@ -43,13 +43,13 @@ class PlaneMotion(Protocol):
 
     @property
     def slack(self) -> tuple[float, float]:
-        """Greatest distance of the true body from the stated pose: (of its origin in mm, of its angle in rad)."""
+        """Greatest difference of true and stated pose, (of the origin, mm; angle, rad); if sampled an estimate."""
         ...
 
 
 @dataclass(frozen=True)
 class Still:
-    """A body standing still."""
+    """A body at rest, its origin at x, y and turned by `angle`."""
 
     x: float = 0.0
     y: float = 0.0
@@ -65,7 +65,10 @@ class Still:
 
 @dataclass(frozen=True)
 class Turning:
-    """A body turning steadily about its own origin, `rate` times as fast as the shaft, counter-clockwise positive."""
+    """A body turning steadily about its own origin at x, y, `rate` times as fast as the shaft.
+
+    A positive rate is counter-clockwise; `angle` is the body's angle at shaft angle 0.
+    """
 
     rate: float
     x: float = 0.0
@@ -90,9 +93,10 @@ class Sampled:
 
     Angles run on without jumps. Between samples x, y and angle are cubics with the slopes `rate` (n + 1, 3), the true
     rates by the shaft angle if they are known, else those of the quartics through five samples. For a smooth motion
-    the error falls with the fourth power of the step, with the second where an acceleration jumps. It is taken to be
-    what leaving a sample out would miss it by: sixteen times the error of a smooth motion, at a jump more than the
-    error too. Raises ValueError for fewer than 8 steps, a last pose that is not the first, or angles that jump.
+    the error falls with the fourth power of the step, with the second where an acceleration jumps. `slack` takes it as
+    the error at a sample that is left out: sixteen times the error of a smooth motion, and more than it at a jump.
+    Raises ValueError for fewer than 8 steps or a pose that is not finite, for rates of another shape, a last pose that
+    is not the first but for whole turns, or angles that jump by more than a right angle.
     """
 
     pose: Array
@@ -138,7 +142,7 @@ class Sampled:
 
     @cached_property
     def _bends(self) -> list[Array]:
-        """Greatest second derivatives over runs of 1, 2, 4, ... steps from each on, round and round (2 n, 3) each."""
+        """Greatest second derivatives over runs of 1, 2, 4, ... steps from each step on, twice round: (2 n, 3) each."""
         rise, slope = np.diff(self.pose, axis=0), self._slope
         first = 6.0 * rise - 4.0 * slope[:-1] - 2.0 * slope[1:]
         last = 2.0 * slope[:-1] + 4.0 * slope[1:] - 6.0 * rise
@@ -150,7 +154,10 @@ class Sampled:
         return levels
 
     def _bend(self, low: Array, high: Array) -> Array:
-        """Greatest second derivatives (m, 3) over stretches from low to high (m,), in steps."""
+        """Greatest second derivatives (m, 3), by rad^2, over stretches from `low` to `high` (m,), in steps.
+
+        Two runs of 2^k steps, the greatest that fit, cover a stretch.
+        """
         begin = np.floor(low - 1e-9).astype(np.intp)
         count = np.clip(np.floor(high + 1e-9).astype(np.intp) - begin + 1, 1, self.steps)
         level = np.floor(np.log2(count)).astype(np.intp)
@@ -181,7 +188,10 @@ class Sampled:
 
 
 def alike(first: PlaneMotion, other: PlaneMotion) -> bool:
-    """Whether two bodies never move relative to each other: both at rest, or with the same motion."""
+    """Whether two motions are plainly the same but for a fixed pose: both at rest, or of one kind and equal.
+
+    False also for equal motions that are not seen to be equal, as two copies of samples with given rates.
+    """
     if first is other or (isinstance(first, Still) and isinstance(other, Still)):
         return True
     if isinstance(first, Turning) and isinstance(other, Turning):

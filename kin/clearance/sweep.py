@@ -1,8 +1,8 @@
 """How far a moving flat body reaches over one turn of the shaft: a box, with a proved bound.
 
-The greatest reach f over the turn is found by halving intervals of the shaft angle: over half a width h it exceeds that
-at the middle by no more than h times the greatest speed of any point of the body. It is as close as asked, but where
-that takes more than 200,000 intervals: then it is too large by more.
+The greatest reach over the turn is found by halving intervals of the shaft angle: within half a width h it exceeds the
+reach at the middle by no more than h times the greatest speed of any point of the body. The bound is within the
+accuracy, except where that takes more than 200,000 intervals at once: then it is too large by more.
 """
 
 from __future__ import annotations
@@ -22,12 +22,15 @@ if TYPE_CHECKING:
     from kin.clearance.clearance import Mover
     from kin.numeric.arrays import Array
 
-CELLS = 64
-MOST = 200_000  # intervals left at once, beyond which the bound is as close as it has come
+CELLS = 64  # intervals of a turn to begin with
+MOST = 200_000  # intervals left at once, beyond which the search ends
 
 
 def swept_box(mover: Mover, accuracy: float = 0.05) -> Box:
-    """Box of all places that the body takes over a turn; it is no more than `accuracy` mm too large on any side."""
+    """Box of all places that the body takes over a turn of its stated motion, without the motion's slack.
+
+    It is too large by no more than `accuracy`, mm, on any side, unless that leaves over 200,000 intervals at once.
+    """
     sides = []
     for direction in np.arange(4) * (0.5 * math.pi):
 
@@ -44,7 +47,7 @@ def swept_box(mover: Mover, accuracy: float = 0.05) -> Box:
 
 
 def _greatest(mover: Mover, reach: Callable[[Array], Array], accuracy: float) -> float:
-    """Upper bound of a reach of the body over the turn, mm, by no more than the accuracy too large."""
+    """Upper bound, mm, of a reach (m,) of the body at angles phi (m,), over the turn: at most `accuracy` too large."""
     half = math.pi / CELLS
     phi: Array = np.linspace(half, 2.0 * math.pi - half, CELLS)
     greatest, bound = -math.inf, -math.inf

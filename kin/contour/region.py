@@ -123,7 +123,7 @@ class Region:
         return self.nearest(points)[1]
 
     def nearest(self, points: Array) -> tuple[Indices, Array]:
-        """Return the piece nearest to each of the points (m, 2) (m,) and the distance (m,), negative inside."""
+        """Return the index of the piece nearest to each point (m, 2), and the distance, negative inside: (m,) each."""
         piece, distance = nearest(self.chain, points)
         return piece, np.copysign(distance, self.side(piece, points))
 
