@@ -152,7 +152,7 @@ def _over(curve: Curve, rates: Callable[[Frame], Array], low: Array, high: Array
 
 
 def touched(contour: Curve, parameter: Array) -> Mask:
-    """Whether the contour has a point, perhaps a sharp corner, at each parameter (n,): nothing is trimmed away there."""
+    """Whether the contour has a point, perhaps a sharp corner, at each parameter (n,): it is not trimmed away there."""
     if contour.closed or is_sharp(contour):
         return np.ones(parameter.shape, dtype=bool)
     period = contour.shape.period
