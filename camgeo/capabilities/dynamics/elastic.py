@@ -1,7 +1,7 @@
 """Dynamics of a recipe's follower train: as intended, and with each file's cam; the report's section and its checks.
 
-Forces in N and figures in SI as the recipe gives them, lengths of the follower's motion in the recipe's unit, degrees
-where it swings.
+Forces are in N, about a pivot N m; velocities m/s or rad/s. Residual amplitudes are in the recipe's unit, degrees where
+the follower swings.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from kin.follower.drive import Excitation
     from kin.numeric.arrays import Array
 
-TURNS = 20  # that are followed from rest, unless one repeats the one before
-_DIGITS = 9  # of a dwell's ends in degrees, beyond which they are rounding
-MOST_FOR_FLOAT = 150  # stretches of a drive for which the speed at which float begins is searched
-MOST_PLACES = 4_500_000  # that all searches for float look at together, and all courses: each some two seconds
+TURNS = 20  # turns that are followed from rest, fewer where one repeats the turn before it
+_DIGITS = 9  # decimals of a dwell's ends in degrees; more are rounding
+MOST_FOR_FLOAT = 150  # stretches of a drive: with more, the speed at which float begins is not searched
+MOST_PLACES = 4_500_000  # places of all searches for float together, and of all courses: some two seconds each
 
 
 class _Purse:
@@ -53,7 +53,8 @@ class _Purse:
 class _Scene(NamedTuple):
     """Data that all runs of a recipe share.
 
-    `unit` converts metres or radians to the report's unit, whose name is `unit_name`.
+    `floats` and `courses` are the budgets of searches for float and of courses from rest; `rests` has begin and end of
+    each dwell, rad. `unit` converts metres or radians to the report's unit, whose name is `unit_name`.
     """
 
     recipe: Recipe
@@ -67,11 +68,12 @@ class _Scene(NamedTuple):
 
 
 def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> tuple[dict[str, Any], list[Check]]:
-    """Section `dynamics` of the report and its checks: as intended, and with each drawing and solid that was read.
+    """Section `dynamics` of the report and its checks: as intended, and with each file in which a contour was read.
 
-    Checks, for the intent and each file: `float`, that the contact force stays above 0 at the speed asked for, or with
-    backlash `least-backlash`, that some is left. Raises RecipeErrors where the train has no steady state, and
-    ValueError for a recipe that asks for no dynamics.
+    Under a linkage files have no run. Each run has one check: `float`, that the contact force stays at 0 or above at
+    the recipe's speed, or with backlash `least-backlash`, that some backlash is left. A file on which the follower
+    finds no contact has a failed check. Raises RecipeErrors where the train has no steady state, for backlash of a
+    single contact, and for a linkage that does not turn right round; ValueError for a recipe without an elastic train.
     """
     from kin.dynamics.drive import DriveError
     from kin.dynamics.train import DynamicsError
@@ -86,7 +88,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
     scene = _scene(recipe, train_keys, design, len(sources))
     entries: list[dict[str, Any]] = []
     checks: list[Check] = []
-    for file in sources:
+    for file in sources:  # faults of the train or of the intended motion are the recipe's, others fail a file's check
         try:
             entry, check = _run(scene, design, file)
         except DynamicsError as error:
@@ -114,9 +116,10 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
 
 
 def steady_force(recipe: Recipe, design: Design, dynamics: Dynamics, shaft: Array) -> tuple[Running, Array]:
-    """The intended train under a spring at its speed, and its contact force (n,) at shaft angles (n,), N or N m.
+    """The train under a spring at its speed, and its steady contact force (n,), N or N m, for the intended motion.
 
-    Raises RecipeErrors where it has no steady state.
+    `shaft` (n,) are shaft angles, rad. Raises RecipeErrors where the train has no steady state, for backlash of a
+    single contact, and for a linkage that does not turn right round; ValueError for a rigid train.
     """
     from kin.dynamics.drive import DriveError
     from kin.dynamics.train import DynamicsError, steady
@@ -131,6 +134,7 @@ def steady_force(recipe: Recipe, design: Design, dynamics: Dynamics, shaft: Arra
 
 
 def _scene(recipe: Recipe, dynamics: Dynamics, design: Design, runs: int) -> _Scene:
+    """Data shared by so many runs; RecipeErrors for backlash of one contact and a linkage that does not turn."""
     from kin.dynamics.train import Train
     from kin.law.contacts import METRE
 
@@ -157,14 +161,17 @@ def _scene(recipe: Recipe, dynamics: Dynamics, design: Design, runs: int) -> _Sc
 
 
 def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
-    """Excitation of the follower by one or two faces: as intended, or as the contour in a file gives it."""
+    """Excitation of the follower by its lower face, and with backlash the upper one: intended, or by a file's contour.
+
+    Raises ContactError where the follower finds no contact on the contour.
+    """
     from kin.dynamics.excitation import Faces, OfMechanism, intended_faces, measured_faces
 
     if design.driven is not None:
         return Faces(OfMechanism(design.driven.mechanism), None)
     follower = design.exact.gauge
     play = scene.dynamics.backlash
-    if play is not None:  # at the contact, which of a double follower lies about an arm's length from its pivot
+    if play is not None:  # the recipe gives it at the contact, mm; on an arm it is the turn that closes it, rad
         play = follower.moved_by(play)
     if file is None or file.contour is None:
         return intended_faces(follower, play)
@@ -194,7 +201,7 @@ def _drives(scene: _Scene, design: Design, file: FileResult | None) -> list[Driv
 
 
 def _lowest(motion: Excitation) -> float:
-    """Least position of a motion, m or rad, at the best of 65 places a stretch."""
+    """Least position of a motion, m or rad, among 65 places of each stretch."""
     import numpy as np
 
     from kin.dynamics.drive import drives
@@ -205,6 +212,7 @@ def _lowest(motion: Excitation) -> float:
 
 
 def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[dict[str, Any], Check]:
+    """Add steady state, course from rest and float speed of a train under a spring to its entry; and check `float`."""
     from kin.dynamics.train import steady
 
     train, rpm = scene.train, scene.dynamics.rpm
@@ -221,6 +229,7 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
 
 
 def _course(scene: _Scene, lower: Drive, upper: Drive | None) -> Course:
+    """Course of the train from rest, within its share of the budget."""
     from kin.dynamics.impacts import course
 
     followed = course(scene.train, (lower, upper), scene.dynamics.rpm, TURNS, most=scene.courses.share())
@@ -229,6 +238,10 @@ def _course(scene: _Scene, lower: Drive, upper: Drive | None) -> Course:
 
 
 def _with_backlash(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive) -> tuple[dict[str, Any], Check]:
+    """Add the course of a train with backlash to its entry; and check `least-backlash`, mm or degrees.
+
+    Raises DynamicsError where not one turn could be followed.
+    """
     from kin.dynamics.events import LOWER, UPPER
     from kin.dynamics.impacts import least_gap
     from kin.dynamics.train import DynamicsError
@@ -250,6 +263,7 @@ def _with_backlash(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Dr
 
 
 def _steady(scene: _Scene, steady: Steady) -> dict[str, Any]:
+    """Report entry of a steady state: extremes of the contact force, and residual vibration in each dwell."""
     force = steady.force
     return {
         "holds": steady.holds,
@@ -291,17 +305,17 @@ def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
         "least_at_deg": math.degrees(turns[low].least_at) + 360.0 * low,
     }
     fading = train.at(rpm).bound.fading
-    # of a free motion in contact: where contact is lost it says nothing of the course
+    # the free motion fades by `fading` per rad of shaft while contact holds; where it is lost that has no meaning
     if fading > 0.0 and not turns[-1].free:
         entry_of_start["turns_to_one_percent"] = math.log(100.0) / (2.0 * math.pi * fading)
     return entry_of_start
 
 
 def _impacts(followed: Course) -> dict[str, Any]:
-    """Impacts of the last turn that was followed: number, velocity, force, and degrees out of contact.
+    """Impacts in the last turn that was followed: number, velocity, force, and degrees out of contact.
 
-    `settled` says that all later turns are like it. If it is False, `of_turns` has the least and the greatest of the
-    later half of the turns: no two of them are alike, and rounding decides which is the last.
+    `settled` says whether all later turns repeat the last one. Where they do not, no two turns are alike and rounding
+    decides what the last one is; `of_turns` then has the least and greatest figures of the later half of the turns.
     """
     last: Turn = followed.turns[-1]
     impacts: dict[str, Any] = {
@@ -325,6 +339,7 @@ def _impacts(followed: Course) -> dict[str, Any]:
 
 
 def _float_speed(scene: _Scene, drive: Drive) -> dict[str, Any]:
+    """Report entries of the speed, rpm, at which float begins; None with the reason where it is not known."""
     from kin.dynamics.separation import float_speed
     from kin.dynamics.train import DynamicsError
 

@@ -1,4 +1,4 @@
-"""Figures of a follower train of many cams at once, for a sweep."""
+"""Estimates of a follower train's figures for many cams at once, for a sweep."""
 
 from __future__ import annotations
 
@@ -17,18 +17,19 @@ if TYPE_CHECKING:
     from camgeo.registry.capability import SampledCams
     from kin.numeric.arrays import Array
 
-PEAK_ERRORS = (1.3e-5, 5.5e-5, 6.3e-6)  # greatest on 1,000 random designs (`benchmarks/sweep.py screen`)
-ANGLE_ERROR = 3.7e-4  # the same, degrees
+# greatest errors on 1,000 random designs (`benchmarks/sweep.py screen`)
+PEAK_ERRORS = (1.3e-5, 5.5e-5, 6.3e-6)  # shares of velocity, acceleration and jerk
+ANGLE_ERROR = 3.7e-4  # degrees
 
 
 def _peak(order: int, cams: SampledCams) -> Array:
-    """Greatest magnitude of a time derivative of the motion at the recipe's speed, (m,), by cam; 0 without a speed."""
+    """Greatest magnitude of a time derivative, from order 1, at the recipe's speed, of each cam (m,); 0 without one."""
     rpm = cams.recipe.rpm
     return cams.peak(order, 0.0 if rpm is None else rpm * TURN / 60.0)
 
 
 def _jam_margin(cams: SampledCams) -> Array:
-    """Margin of the pressure angle below the one at which the stem jams in its guide, degrees, (m,); below 0 it jams.
+    """Angle at which the stem jams in its guide less the pressure angle, degrees (m,); below 0 the stem jams.
 
     Raises TypeError where no stem is led in a guide.
     """

@@ -35,10 +35,11 @@ FORCES = {
 
 @dataclass(frozen=True, eq=False)
 class Extremes:
-    """Least and greatest value of each force over the turn.
+    """Least and greatest value of each force over the turn, in this order.
 
-    `contacts` are normal forces, N, `torque` is the shaft's, N m, `along` the force F along the travel, N or N m.
-    `reactions`, N, are by the names of their columns, `pressure` is Hertz's of each contact, N/mm^2, empty if unknown.
+    `contacts` has the normal force of each contact, N, `torque` the shaft's, N m, `along` the force F along the travel,
+    N or N m. `reactions`, N, are by the names of their columns; `pressure` has Hertz's pressure of each contact,
+    N/mm^2, and is empty without material or width.
     """
 
     contacts: tuple[tuple[ExtremeAtAngle, ExtremeAtAngle], ...]
@@ -49,7 +50,10 @@ class Extremes:
 
 
 def extremes_of(running: Running) -> Extremes:
-    """Find the extremes of all forces over the turn, between samples too; raises RoughError for too abrupt a motion."""
+    """Find the extremes of all forces over the whole turn, for a stem that does not jam.
+
+    Raises RoughError for too abrupt a motion, RecipeErrors for a load without a finite value.
+    """
     count = len(running.turn.names)
 
     def values(t: Array) -> Array:
@@ -59,17 +63,22 @@ def extremes_of(running: Running) -> Extremes:
 
     extremes = running.turn.extremes(values)
     names = tuple(running.at(running.turn.places[:1]).reactions)
-    rest = extremes[count + 2 :]
+    beside = extremes[count + 2 :]  # reactions, then pressures
+    # with two contacts a least force below 0 is rounding
     contacts = tuple((ExtremeAtAngle(max(least.value, 0.0), least.at_deg), most) for least, most in extremes[:count])
-    if count == 1:  # a spring that does not hold it pulls
+    if count == 1:  # a negative force is what the spring lacks to hold the follower on the cam
         contacts = (extremes[0],)
     return Extremes(
-        contacts, extremes[count], extremes[count + 1], dict(zip(names, rest, strict=False)), tuple(rest[len(names) :])
+        contacts,
+        extremes[count],
+        extremes[count + 1],
+        dict(zip(names, beside, strict=False)),
+        tuple(beside[len(names) :]),
     )
 
 
 def float_check(running: Running, extremes: Extremes) -> Check | None:
-    """Check that the force along the travel keeps a single contact on the cam; None where two contacts hold it."""
+    """Check that F is at 0 or above, so that a single contact stays on the cam; None with several contacts."""
     if len(extremes.contacts) > 1:
         return None
     least, most = extremes.along
@@ -79,7 +88,11 @@ def float_check(running: Running, extremes: Extremes) -> Check | None:
 
 
 def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
-    """Section `forces` of the report: ranges of contact forces, torque, reactions and pressures, with angles."""
+    """Section `forces` of the report: ranges of contact forces, torque, reactions and pressures, with shaft angles.
+
+    Lengths are in the recipe's unit. Raises RecipeErrors for a load without a finite value, RoughError for too abrupt
+    a motion.
+    """
     names, turn = running.turn.names, running.turn
     section: dict[str, object] = {
         "rpm": running.train.rpm,
@@ -90,7 +103,7 @@ def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
     }
     if running.train.least_force is not None:
         section |= {"preload": running.preload, "preload_unit": turn.unit}
-    ends = {"guide_a": "near", "guide_b": "far"}
+    ends = {"guide_a": "near", "guide_b": "far"}  # a stem's guide; other reactions are a linkage's
     if guide := [
         {"end": ends[name], **_range(entry, "N")} for name, entry in extremes.reactions.items() if name in ends
     ]:
@@ -121,12 +134,17 @@ class Forces(NamedTuple):
 
 
 def rigid_forces(recipe: Recipe, design: Design) -> Forces | None:
-    """Find the forces of a rigid follower; None where there is none. Raises RecipeErrors for too abrupt a motion."""
+    """Find the forces of the follower, taken as rigid; the section says where a stem jams, and then has no forces.
+
+    None without dynamics, and for an elastic train without a material. Raises RecipeErrors for too abrupt a motion, a
+    load without a finite value, a contact that nothing holds on the cam, preloaded contacts that wedge the stem, and a
+    linkage that does not turn right round.
+    """
     running = running_of(recipe, design)
     if running is None:
         return None
     try:
-        if running.jam_deg is not None:  # which a check tells
+        if running.jam_deg is not None:  # the check `guide-jam` fails
             return Forces({"rpm": running.train.rpm, "jams_at_deg": running.jam_deg}, ())
         extremes = extremes_of(running)
     except RoughError as error:
@@ -136,9 +154,11 @@ def rigid_forces(recipe: Recipe, design: Design) -> Forces | None:
 
 
 def forces_table(running: Running, count: int, units: str = "mm") -> tuple[tuple[str, ...], Array]:
-    """Column names and rows (count + 1, c) at equal steps of a turn: shaft angle in degrees, N, N m, N/mm^2, rpm.
+    """Names of c columns and rows (count + 1, c) over a turn in `count` equal steps, its end included.
 
-    With the `units` inch behind them lbf, lbf in and psi.
+    Columns are the shaft angle in degrees, contact forces, torque, reactions, and, where known, pressures and speeds of
+    rollers: N, N m, N/mm^2, rpm. With the `units` inch the same in lbf, lbf in and psi follow. Forces are nan where the
+    stem jams. Raises RecipeErrors for a load without a finite value.
     """
     state = running.state(np.linspace(0.0, TURN, count + 1))
     names = [name.replace(" ", "_") for name in running.turn.names]
@@ -153,16 +173,18 @@ def forces_table(running: Running, count: int, units: str = "mm") -> tuple[tuple
             columns |= {f"{name}_{column}" if several else column: row for name, row in zip(names, rows, strict=True)}
     for column in tuple(columns):
         for ending, unit in (("_N", "N"), ("_Nm", "N m"), ("_N_mm2", "N/mm^2")):
-            if column.endswith(ending) and (other := pounds(units, unit)) is not None:
-                name, many = other
-                columns[f"{column.removesuffix(ending)}_{name.replace(' ', '_')}"] = many * columns[column]
+            if column.endswith(ending) and (imperial := pounds(units, unit)) is not None:
+                name, factor = imperial
+                columns[f"{column.removesuffix(ending)}_{name.replace(' ', '_')}"] = factor * columns[column]
     return tuple(columns), np.column_stack(list(columns.values()))
 
 
 def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
-    """Every figure of forces that the recipe has, by its name; empty without a train whose forces are known.
+    """Every figure of forces that the recipe has, by its name, with the contact that has it.
 
-    The figures have no value where the stem jams in its guide, or the motion is too abrupt to be followed.
+    Empty without dynamics, and for an elastic train without a material. All figures have no value where the stem jams
+    in its guide, or the motion is too abrupt. Raises RecipeErrors for a load without a finite value, a contact that
+    nothing holds on the cam, preloaded contacts that wedge the stem, and a linkage that does not turn right round.
     """
     running = running_of(recipe, design)
     if running is None:
@@ -176,6 +198,7 @@ def figures_of(recipe: Recipe, design: Design) -> dict[str, Measured]:
         return {name: Measured(None, unit, detail=ABRUPT) for name, unit in FORCES.items()}
     names = running.turn.names
 
+    # the worst contact of each figure; a guide's reaction and the torque count either way
     def worst(pairs: Sequence[tuple[ExtremeAtAngle, ExtremeAtAngle]], unit: str) -> Measured:
         value, name = max((extreme[1], name) for name, extreme in zip(names, pairs, strict=True))
         return Measured(value.value, unit, value.at_deg, surface=name if len(names) > 1 else "")

@@ -1,8 +1,8 @@
 """Forces of a cam in a square frame that drives a linkage: its four faces, the shaft, the joint and the slide.
 
-F is what the output is given the way it grows, N m or N, by what acts on it: its inertia, a spring and the load. Faces
-are numbered from the one of lift S the way their normals turn, a quarter turn apart, so that those of V are 1 and 3,
-those of H 4 and 2.
+F is the force, N, or moment, N m, that inertia, spring and load demand at the output, above 0 where the output grows.
+Face 1 is the face of lift S; the others follow a quarter turn apart in the sense in which the normals turn. V, across
+the frame, is the force on face 1 less that on face 3; H, along it, the force on face 4 less that on face 2.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from kin.numeric.monotone import MonotonePieces
 
 QUARTER = 0.5 * math.pi
-PAIRS = {"across": ("face 1", "face 3"), "along": ("face 4", "face 2")}  # the face that pushes where V or H is above 0
+PAIRS = {"across": ("face 1", "face 3"), "along": ("face 4", "face 2")}  # first the face that bears V or H above 0
 
 REACTIONS = {
     "across": "force across the frame",
@@ -42,7 +42,7 @@ REACTIONS = {
 
 @dataclass(frozen=True, eq=False)
 class FrameTurn(Turn):
-    """A linkage's output over the turn, by the relative angle between cam and frame."""
+    """A linkage's output over the turn; the parameter is the relative angle between cam and frame, rad."""
 
     mechanism: Mechanism
     corners: tuple[float, ...] = ()
@@ -64,7 +64,7 @@ class FrameTurn(Turn):
 
     @cached_property
     def places(self) -> Array:
-        """Relative angles between the breaks of the faces' lifts."""
+        """Relative angles, rad, rising over a whole turn: the breaks of the faces' lifts and both ends."""
         from kin.numeric.monotone import between
 
         return between(0.0, TURN, self.mechanism.breaks)
@@ -81,21 +81,21 @@ class FrameTurn(Turn):
 
 @dataclass(frozen=True, eq=False)
 class FrameRunning(Running):
-    """A linkage whose frame holds the cam, with play between the faces, however little."""
+    """Forces of a linkage whose square frame holds the cam, with play however little, or preloaded on its faces."""
 
     mechanism: Mechanism
 
     @cached_property
     def turn(self) -> FrameTurn:
-        """Motion of the frame over the turn."""
+        """Motion of the linkage's output over the turn."""
         return FrameTurn(self.mechanism, self.corners)
 
     def position(self, rows: Array) -> Array:
-        """Output y and two derivatives by the shaft angle, SI, (3, n)."""
+        """Output y, m or rad, and two derivatives by the shaft angle, (3, n), from `rows` in mm or rad."""
         return rows if self.turn.swings else PER_MM * rows
 
     def at(self, t: Array) -> State:
-        """State of motion and forces at relative angles (n,), rad."""
+        """State of motion and forces at relative angles t (n,), rad; RecipeErrors for a load without finite value."""
         motion = self.mechanism.at(t, 2)
         rows = motion.over_shaft(motion.output)
         y = self.position(rows)
@@ -107,7 +107,10 @@ class FrameRunning(Running):
         return State(force, y, normal, PER_MM * forces.torque, self._pressure(t, normal), reactions)
 
     def _given(self, motion: LinkageMotion, force: Array, speed: float) -> FrameForces:
-        """Forces of the cam on the frame for the load `force`, SI, and for the coupler's inertia at a speed, rad/s."""
+        """Forces of the cam on the frame, N and N mm, for `force` (n,), N or N m, at the output and a moving coupler.
+
+        The coupler's inertia is that at the shaft's `speed`, rad/s.
+        """
         from kin.linkage.statics import Coupler, frame_forces
 
         body = self.train.coupler
@@ -118,7 +121,10 @@ class FrameRunning(Running):
 
     @cached_property
     def pressed(self) -> Elastic | None:
-        """Preload of either pair of faces, N, and their stiffness, N/mm; None with play, and without a stiffness."""
+        """Preload of a pair of faces, N, and stiffness of its faces, N/mm, alike for both pairs.
+
+        None with play, and where the recipe gives no stiffness.
+        """
         from kin.dynamics.contact_forces import preloaded
 
         preload = self.design.exact.preload
@@ -128,19 +134,22 @@ class FrameRunning(Running):
         return preloaded((np.ones(1), np.ones(1)), preload.overlaps, (first, second))
 
     def _faces(self, pair: Array) -> Array:
-        """Forces on the two faces of a pair, (2, n), N, each at least 0.
+        """Forces on both faces of a pair, N (2, n), each at least 0, from their difference `pair`, N (n,).
 
-        Without preload the first face bears where `pair` is above 0, else the second.
+        Without preload the first face bears where the difference is above 0, else the second.
         """
         return np.maximum([pair, -pair], 0.0) if self.pressed is None else self.pressed.split(pair)
 
     def lost_rpm(self) -> list[LossSpeed]:
-        """Speed at which each preloaded face first loses contact somewhere in the turn; empty without preload."""
+        """Lowest speed at which each preloaded face loses contact somewhere in the turn, by the faces' names.
+
+        Empty without preload. Raises RecipeErrors for a load without a finite value.
+        """
         pressed = self.pressed
         if pressed is None:
             return []
 
-        def pull(t: Array, rank: int) -> Pull:
+        def pull(t: Array, rank: int) -> Pull:  # forces are linear in the demand and in the coupler's inertia
             motion = self.mechanism.at(t, 2)
             rows = motion.over_shaft(motion.output)
             moved = self._given(motion, self.inertia(rows, 1.0), 1.0).pairs[rank]
@@ -151,9 +160,9 @@ class FrameRunning(Running):
         return sorted(first + second)
 
     def _joints(self, motion: LinkageMotion, force: Array) -> dict[str, Array]:
-        """Force at joint D, N (n,), and on a slide its part across the slide's line.
+        """Force `joint` in joint D, N (n,); of an output that slides also `guide`, its part across the slide's line.
 
-        Empty with dyads, or with a slot.
+        `force` (2, n) is in fixed axes, the slide's line along x. Empty with dyads, or with a slot.
         """
         joint = self.mechanism.linkage.joints(motion.solved.linkage)["D"]
         if self.mechanism.dyads or joint.kind == "slot":
@@ -162,11 +171,12 @@ class FrameRunning(Running):
         return {"joint": np.hypot(*force), **slide}
 
     def _pressure(self, t: Array, normal: Array) -> Array | None:
+        """Hertz's pressure of each face, N/mm^2 (4, n), on a cam of curvature 1/(p + p''); None if unknown."""
         lifts = [self.mechanism.lift.derivatives(t + k * QUARTER, 2) for k in range(len(normal))]
         return self.hertz(normal, 1.0 / np.array([p[0] + p[2] for p in lifts]))
 
     def own_section(self) -> dict[str, object]:
-        """Report entry `pairs`: the shaft angles at which each pair changes the face that bears."""
+        """Report entry `pairs`: of each pair the shaft angles, degrees, at which another face begins to bear."""
         pieces = self.turn.pieces(lambda t: np.array([self.at(t).reactions[name] for name in PAIRS]))
         return {"pairs": [self._changes(name, piece) for name, piece in zip(PAIRS, pieces, strict=True)]}
 
@@ -177,7 +187,7 @@ class FrameRunning(Running):
 
 
 def frame_running(recipe: Recipe, design: Design, driven: DesignedLinkage, train: Dynamics) -> FrameRunning:
-    """Forces of a linkage that runs; raises RecipeErrors for one that does not turn right round."""
+    """Forces of a linkage at its speed; raises RecipeErrors for a linkage that does not turn right round."""
     mobile = driven.mechanism.mobility()
     if not mobile.turns:
         why, at = "a loop of the linkage cannot be closed", mobile.margin_at

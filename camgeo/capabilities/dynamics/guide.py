@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def guide_checks(recipe: Recipe, exact: ExactCam) -> list[Check]:
-    """Make the check that the stem does not jam in its guide; none without a guide."""
+    """Make the check that the stem does not jam in its guide, degrees, of a flat face mm; none without a guide."""
     train = recipe.of(Dynamics)
     if train is None or train.guide is None:
         return []
@@ -34,10 +34,10 @@ def guide_checks(recipe: Recipe, exact: ExactCam) -> list[Check]:
 
 
 def jam_angle(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float]:
-    """Pressure angle with which the stem is pushed on, the one at which it jams, degrees, and the shaft angle.
+    """Greatest pressure angle on the rise, the angle at which the stem jams, and the shaft angle; all in degrees.
 
-    The pressure angle is the greatest on the rise, its begin included: there the tangent is |e| over the foot of an
-    eccentric stem. Of two contacts the one counts that is nearer to jamming; the second stands beyond the shaft.
+    The rise includes its begin, where an eccentric stem has the tangent |e|/foot. Of two contacts that nearer to
+    jamming counts; the second stands beyond the shaft. Raises TypeError where no round follower is led on a stem.
     """
     first, angles = exact.follower.contacts[0], []
     surfaces = {surface.name: surface for surface in exact.surfaces}
@@ -45,7 +45,8 @@ def jam_angle(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float]:
         if (slope := surfaces[contact.surface].extremes("slope")) is not None:
             beyond = first.zero + contact.zero if contact.turned else 0.0
             steepest = max(slope[1].value + slope[1].slack, exact.follower.lean)
-            later = 0.0 if contact.surface else contact.turned  # on one surface the second is where the first was
+            # on a shared surface the second contact reaches the place of the first by an angle later
+            later = 0.0 if contact.surface else contact.turned
             at = degrees(math.fmod(slope[1].at + later, 2.0 * math.pi))
             angles.append((math.degrees(math.atan(steepest)), math.degrees(guide.jam(beyond)), at))
     if not angles:
@@ -54,11 +55,10 @@ def jam_angle(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float]:
 
 
 def _aside(exact: ExactCam, guide: StemGuide) -> tuple[float, float, float] | None:
-    """Jam of a flat face without tilt, judged by the distance from the stem's axis at which the face is pushed.
+    """Greatest distance of a pushing contact from the stem's axis, the distance at which it jams, and the shaft angle.
 
-    Greatest distance and the one at which the stem jams, mm, and the shaft angle, degrees; None for other touches. The
-    contact is S' ahead of the shaft: on the rise that is the greatest S', or 0 where the rise begins. One of the faces
-    of a yoke pushes wherever it moves.
+    mm and degrees, of a flat face without tilt; None for other touches. The contact is S' ahead of the shaft: on the
+    rise that is the greatest S', or 0 where the rise begins. One of the faces of a yoke pushes wherever it moves.
     """
     proved = [along[1] for surface in exact.surfaces if (along := surface.extremes("contact")) is not None]
     place = exact.surfaces[0].place

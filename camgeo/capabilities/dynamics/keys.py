@@ -1,4 +1,4 @@
-"""The follower train whose dynamics are found: its key, the faults of that and beside others, its value."""
+"""The follower train whose dynamics are found: its key in recipes, the faults of its values, and its value."""
 
 from __future__ import annotations
 
@@ -23,19 +23,25 @@ if TYPE_CHECKING:
 
 PER_MM = 1e-3  # m
 SAME = 1e-12  # share by which contacts may be wider than the metal through rounding
-MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
+MOST_DAMPING = 10.0  # times critical: kin.dynamics.train refuses more
 
 
 @dataclass(frozen=True)
 class StemGuide:
-    """The guide of a stem, mm: how far the contact stands out before it, its length B, and its friction mu."""
+    """The guide of a stem: its overhang A and length B, mm, and the coefficient of friction mu.
+
+    The overhang is the distance from the guide's near end to the roller's centre, or the flat face, at the lowest lift.
+    """
 
     overhang: float
     length: float
     friction: float
 
     def jam(self, beyond: float = 0.0) -> float:
-        """Pressure angle, rad, at which no force moves the stem: tan = B/(mu (2 A + B)), A more by `beyond`."""
+        """Pressure angle alpha, rad, from which on no force moves the stem: tan alpha = B/(mu (2 A + B)).
+
+        `beyond`, mm, is added to the overhang A.
+        """
         return math.atan2(self.length, self.friction * (2.0 * (self.overhang + beyond) + self.length))
 
     @property
@@ -46,7 +52,11 @@ class StemGuide:
 
 @dataclass(frozen=True)
 class CouplerBody:
-    """The square frame as a body: kg, its centre in the frame's axes from the frame's middle, mm, kg m^2 about it."""
+    """The square frame of a linkage as a body.
+
+    `mass` is in kg; `centre` is the centre of mass (x, y) in the frame's axes, from the frame's middle, mm; `inertia`
+    is the moment of inertia about that centre, kg m^2.
+    """
 
     mass: float
     centre: tuple[float, float] = (0.0, 0.0)
@@ -55,7 +65,10 @@ class CouplerBody:
 
 @dataclass(frozen=True)
 class Material:
-    """Young's modulus, N/mm^2, Poisson's ratio, and the pressure in contacts that a recipe says it bears, N/mm^2."""
+    """Young's modulus, N/mm^2, Poisson's ratio, and the contact pressure that the material bears, N/mm^2.
+
+    `limit` is None where the recipe states none.
+    """
 
     modulus: float
     poisson: float
@@ -64,10 +77,21 @@ class Material:
 
 @dataclass(frozen=True)
 class Dynamics:
-    """A follower train in SI, but for `backlash`, mm.
+    """A follower train: N, kg and m; of a follower that turns N m, kg m^2 and rad. Lengths named below are in mm.
 
-    Of `preload` and `backlash` one is None. `rpm` is the shaft's speed; `transient` says that the train is
-    followed from rest, with its impacts.
+    mass         driven by the contact
+    stiffness    of the contact or train, N/m; None for a rigid train
+    rpm          speed of the shaft, turns a minute
+    damping      N s/m
+    preload      force of the spring at the lowest position; None without one, or where `least_force` gives it
+    rate         of that spring, N/m
+    backlash     clearance at the contacts, mm, in place of a spring; None without
+    transient    whether the train is followed from rest, with its impacts
+    load         formula of the shaft angle t, or a table; above 0 towards the cam
+    least_force  least force along the travel from which the preload follows; None where that is given
+    width        of the contacts along the shaft, mm; None for the width of the metal
+    roller_material  of what touches the cam; None where it is the cam's `material`
+    spring       the coil spring from which preload and rate follow, if one is given
     """
 
     mass: float
@@ -90,9 +114,10 @@ class Dynamics:
 
 @dataclass(frozen=True)
 class Coil:
-    """A coil spring on the stem, mm and N/m: free, at the follower's lowest place, and with its coils on one another.
+    """A coil spring on the stem: its lengths, mm, and its rate, N/m.
 
-    `solid` is None where it is not given.
+    `free` is the length without a load, `seat` at the follower's lowest position, `solid` with the coils on one
+    another, None where it is not given.
     """
 
     free: float
@@ -102,7 +127,7 @@ class Coil:
 
     @property
     def preload(self) -> float:
-        """Force at the lowest place, N."""
+        """Force at the follower's lowest position, N."""
         return self.load(0.0)
 
     def load(self, lift: float) -> float:
@@ -110,7 +135,7 @@ class Coil:
         return PER_MM * self.rate * (self.free - self.seat + lift)
 
     def left(self, lift: float) -> float | None:
-        """Travel that is left, mm, before the coils bind, at a lift, mm; None without a solid length."""
+        """Travel left before the coils bind, mm, at a lift, mm; below 0 where they bind, None without `solid`."""
         return None if self.solid is None else self.seat - lift - self.solid
 
 
@@ -133,9 +158,10 @@ BOUNDS = {
 def contact_width(
     width: float | None, thickness: float | None, edge: float = 0.0, depth: float | None = None
 ) -> Width | None:
-    """Width of contacts, mm: the least of what is stated of it and of the metal, None where nothing is.
+    """The least width of the contacts, mm, and what bounds it; None without any bound.
 
-    `edge` is the chamfer along both edges of the part, 0 for none; `depth` that of a groove, None of what goes through.
+    Bounds are the stated `width`, the part's `thickness`, that less the chamfer `edge` on both edges (0 for none), and
+    the `depth` of a groove (None for a contour that goes through the part); all in mm.
     """
     bounds = {"width": width, "thickness": thickness, "groove": depth}
     if thickness is not None and edge:
@@ -173,7 +199,7 @@ OWN_MATERIAL = FieldTable(
 
 
 def _read_material(reader: Reader, field: Field, node: Node, path: str) -> Material | None:
-    """Read a material's name, or a mapping with its figures."""
+    """Read a material's name, or a mapping with its figures; None after a fault."""
     if isinstance(node, Mapping):
         values = reader.table(OWN_MATERIAL, node, path)
         return Material(values["E"], values["nu"], values.get("limit")) if {"E", "nu"} <= values.keys() else None
@@ -181,7 +207,7 @@ def _read_material(reader: Reader, field: Field, node: Node, path: str) -> Mater
 
 
 def _read_loads(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[float, float], ...] | None:
-    """Read two pairs of a length, mm, and a force, N, the greater at the shorter length."""
+    """Read two pairs of a length, mm, and a force, N, the greater at the shorter length; None after a fault."""
     parts = (length("", ""), Field("", Kind.NUMBER, "", at_least=0, at_most=_MOST, unit=Kind.FORCE))
     rows = []
     for i, item in enumerate(reader.items(field, node, path, _PAIR)):
@@ -204,7 +230,7 @@ def _read_loads(reader: Reader, field: Field, node: Node, path: str) -> tuple[tu
 
 
 _PAIR = 2
-_MOST = MOST**2  # of figures in SI: a bound against slips
+_MOST = MOST**2  # greatest figure in SI that is accepted: more is a slip of the unit
 _LOADS: OwnForm[Reader] = OwnForm(
     "two loads",
     "two lengths with their forces, such as [[40, 250 N], [32, 560 N]]",
@@ -348,7 +374,7 @@ def fields() -> tuple[Field, ...]:
 
 
 def check(values: Values, reader: Reader) -> None:
-    """Note the faults of a follower train, and what does not go with it."""
+    """Note the faults of a follower train and of keys that do not go with it; a coil spring gives preload and rate."""
     _take_spring(values.get("dynamics", {}), reader)
     _check_train(values.get("dynamics", {}), reader)
     _check_guide(values, reader)
@@ -358,7 +384,7 @@ def check(values: Values, reader: Reader) -> None:
 
 
 def _take_spring(train: Values, reader: Reader) -> None:
-    """Put a coil spring's force and rate in the place of preload and rate."""
+    """Set preload and rate of the train to those of its coil spring, or note the spring's faults."""
     spring = train.get("spring")
     if spring is None:
         return
@@ -371,7 +397,7 @@ def _take_spring(train: Values, reader: Reader) -> None:
         reader.fault_at("dynamics.rate", "cannot be combined with spring", None, "leave one of the two out")
         return
     free, rate = spring.get("free_length"), spring.get("rate")
-    if "loads" in spring:
+    if "loads" in spring:  # the straight line through two loads: its slope, and the length at which it is 0
         (long, low), (short, high) = sorted(spring["loads"], reverse=True)
         rate = (high - low) / (PER_MM * (long - short))
         free = long + low / (PER_MM * rate)
@@ -386,11 +412,11 @@ def _take_spring(train: Values, reader: Reader) -> None:
         reader.fault_at(f"{path}.solid_length", "its coils touch before it moves", None, f"give less than {length}")
     else:
         train.update(spring=coil, preload=coil.preload, rate=rate)
-        reader.marks["dynamics.preload"] = reader.marks[path]
+        reader.marks["dynamics.preload"] = reader.marks[path]  # figures and checks of a preload now apply
 
 
 def _check_train(train: Values, reader: Reader) -> None:
-    """Note the faults between the fields of a follower train."""
+    """Note fields of the train that exclude one another, and damping beyond MOST_DAMPING."""
     _check_spring(train, reader)
     _check_coupler(train, reader)
     if "backlash" in train and "rate" in train:
@@ -408,7 +434,7 @@ def _check_train(train: Values, reader: Reader) -> None:
 
 
 def _check_width(values: Values, reader: Reader) -> None:
-    """Note contacts that are wider than the metal."""
+    """Note a stated width of the contacts that exceeds the metal's."""
     width, part = values.get("dynamics", {}).get("width"), values.get("part", {})
     cam = values.get("cam", {})
     depth = cam["track"].get("groove", {}).get("depth") if is_groove(cam) else None
@@ -434,7 +460,7 @@ def _check_guide(values: Values, reader: Reader) -> None:
 
 
 def _check_coupler(train: Values, reader: Reader) -> None:
-    """Note a coupler where there is none."""
+    """Note a coupler without a linkage, and under a linkage whose frame slides on the rocker."""
     if "coupler" not in train:
         return
     if "linkage" not in reader.marks:
@@ -447,7 +473,7 @@ def _check_coupler(train: Values, reader: Reader) -> None:
 
 
 def _check_spring(train: Values, reader: Reader) -> None:
-    """Note what holds the follower on the cam twice or not at all, and what a rigid train, or another, cannot have."""
+    """Note a follower that is held on the cam twice or not at all, and keys that a rigid or elastic train lacks."""
     keys = [name for name in ("preload", "backlash") if f"dynamics.{name}" in reader.marks]
     if keys and "dynamics.least_force" in reader.marks:
         remedy = "give exactly one of preload, backlash or least_force"
@@ -478,7 +504,7 @@ def _check_spring(train: Values, reader: Reader) -> None:
 
 
 def _check_preloaded(values: Values, reader: Reader) -> None:
-    """Note what a train cannot have where both contacts are preloaded."""
+    """Note backlash, a spring and stiffness of a train where both contacts are preloaded."""
     train = values.get("dynamics", {})
     if values.get("cam", {}).get("preload") is None:
         return

@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
     from kin.read.tables import Quantity
 
-MOST_LOAD = MOST**2
-_MANY = 2000  # rows: of more those are left out that are on straight lines, but for half of their last digit
+MOST_LOAD = MOST**2  # N or N m: more is a slip of the unit
+_MANY = 2000  # rows: a longer table loses rows within half a last digit of the straight lines between the others
 _UNITS = ("N", "kN", "lbf", "Nm", "lbf in", "lbf ft")
 
 
 @dataclass(frozen=True)
 class LoadTable:
-    """A load, N or N m, over the turn: straight between rows, and from the last one on to the first, a turn later.
+    """A load over the turn, linear between rows, and from the last row to the first, a turn later.
 
-    `theta` rises, rad, over less than a turn.
+    `theta` are shaft angles, rad, rising over less than a turn; `load` is in N, or N m, above 0 towards the cam.
     """
 
     file: str
@@ -43,7 +43,7 @@ class LoadTable:
 
     @property
     def corners(self) -> Array:
-        """Shaft angles, rad from 0 on, at which it has a corner (n,)."""
+        """Shaft angles of the rows, where the slope changes, rad (n,), from 0 to below a turn, in the rows' order."""
         import numpy as np
 
         angles: Array = np.mod(self.theta, TURN)
@@ -66,7 +66,7 @@ LOADS = FieldTable(
 
 
 def _read(reader: Reader, field: Field, node: Node, path: str) -> str | LoadTable | None:
-    """Read a formula, a number with its unit, or a mapping with a table."""
+    """Read a formula, a number with its unit, or a mapping with a table; None after a fault."""
     if isinstance(node, Scalar) and split_unit(node.text)[1]:
         number = replace(field, form=None, at_least=-MOST_LOAD, at_most=MOST_LOAD)
         value: float | None = reader.readers[Kind.NUMBER](reader, number, node, path)
@@ -79,6 +79,7 @@ def _read(reader: Reader, field: Field, node: Node, path: str) -> str | LoadTabl
 
 
 def _table(reader: Reader, values: Values, path: str) -> LoadTable | None:
+    """Read the rows of a load's table; None after a fault."""
     from kin.law.programme import IntentError
     from kin.law.sources.table import periodic, straightened
 

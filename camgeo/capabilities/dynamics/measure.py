@@ -1,4 +1,4 @@
-"""What the figures of a follower train are, in mm, degrees and SI, with their places."""
+"""Values of the figures of a follower train, in mm, degrees and SI, with the shaft angles of their places."""
 
 from __future__ import annotations
 
@@ -25,7 +25,13 @@ ORDERS = {name: order for order, name in enumerate(AT_SPEED, 1)}
 
 
 def measure(recipe: Recipe, design: Design, names: Sequence[str], speeds: Mapping[str, float]) -> dict[str, Measured]:
-    """Measure figures of the exact cam and its follower; `speeds`, turns a minute, stand in for the train's own."""
+    """Measure the named figures of the exact cam and its follower train; figures that the recipe lacks are left out.
+
+    `speeds` has the speed, turns a minute, of figures in time whose limit states one; others are at the train's speed,
+    or at 0 without dynamics. If any figure of forces is named, all are measured. Raises RecipeErrors for a load without
+    a finite value, a contact that nothing holds on the cam, preloaded contacts that wedge the stem, and a linkage that
+    does not turn right round.
+    """
     train, figures = recipe.of(Dynamics), dict[str, Measured]()
     timed = [name for name in names if name in ORDERS]
     if timed and design.driven is None:
@@ -56,14 +62,18 @@ _OF_COIL: dict[str, Callable[[Coil, float], Measured]] = {
 
 
 def _in_time(figure: Measured, name: str, rpm: float) -> Measured:
-    """Convert a derivative by the shaft angle, rad, to one by time, s, for a shaft that turns evenly."""
+    """Convert a derivative by the shaft angle, rad, to a derivative by time, s, for a shaft that turns evenly."""
     unit = figure.unit.partition("/")[0] + FIGURES[name].per
     value = None if figure.value is None else figure.value * (rpm * TURN / 60.0) ** ORDERS[name]
     return Measured(value, unit, figure.at_deg, figure.detail)
 
 
 def of_runs(section: Mapping[str, Any], checks: Sequence[Check]) -> dict[str, dict[str | None, Measured]]:
-    """Measure each figure of the runs of an elastic train, by the file that drives it, None for the intended motion."""
+    """Figures of the runs of an elastic train, by name and by the file's name, None for the intended motion.
+
+    `section` is the report's section `dynamics`, `checks` are those of the runs. A force without a steady state, and a
+    backlash that could not be judged, have no value.
+    """
     names = [name for name, figure in FIGURES.items() if figure.of == "run" and name != LEAST_BACKLASH.name]
     figures = {name: {_file(run): _of_run(name, run, section) for run in section["runs"]} for name in names}
     left = {check.file: figure_of_check(check) for check in checks if check.name == LEAST_BACKLASH.name}

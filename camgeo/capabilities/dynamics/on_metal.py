@@ -1,11 +1,11 @@
 """Forces, pressures and float speeds of a follower train in the motion that a made part gives it.
 
-The figures of a rigid follower follow from position, velocity and acceleration, as for the intended motion, with the
-curvature of the made contour, and under preload with the gap that the metal leaves between the contacts. Their
-uncertainty comes from these quantities: by how much one standard deviation of each changes the figure.
+The figures of a rigid follower follow from position, velocity and acceleration of the made motion, and under preload
+from the gap that the metal leaves between the contacts. Their uncertainty is the root of the sum of squares of the
+changes that one standard deviation of each quantity makes, times COVERAGE.
 
-An elastic train is linear while contact holds: its steady force is the intended one plus its response to the error of
-the motion. The uncertainty is that of the sum of errors of which the response is made.
+An elastic train is linear while contact holds: its steady force is that of the intended motion plus its response to the
+error of the motion, which is a weighted sum of errors. The uncertainty is that of this sum.
 """
 
 from __future__ import annotations
@@ -38,10 +38,11 @@ LEAST_FORCE, FLOAT_SPEED, LEAST_PRELOAD = "least contact force", "float speed", 
 
 
 def figures_on_metal(recipe: Recipe, design: Design, motion: MadeMotion) -> MadeFigures:
-    """Figures of the made motion beside those intended at the same shaft angles, and remarks on what is not found.
+    """Greatest and least figures of the made motion, with those of the intended one, and remarks on what is left out.
 
-    Both are empty for a recipe without dynamics. Raises RecipeErrors for a load that has no value or no bound or is too
-    large, for a contact that nothing holds on the cam, and for an elastic train without a steady state.
+    Both are empty for a recipe without dynamics; figures are empty where the stem jams. Raises RecipeErrors for a load
+    that has no value or no bound or is too large, for a contact that nothing holds on the cam, for preloaded contacts
+    that wedge the stem, and for an elastic train without a steady state; RoughError for too abrupt a motion.
     """
     train = recipe.of(Dynamics)
     if train is None:
@@ -57,18 +58,20 @@ def figures_on_metal(recipe: Recipe, design: Design, motion: MadeMotion) -> Made
 
 
 def _rigid(recipe: Recipe, design: Design, train: Dynamics, motion: MadeMotion) -> list[MadeFigure]:
+    """Figures of the rigid follower; none where its stem jams."""
     running = follower_running(recipe, design, train)
-    return [] if running.jam_deg is not None else _figures(running, motion)  # a check tells of a stem that jams
+    return [] if running.jam_deg is not None else _figures(running, motion)  # a stem that jams fails a check
 
 
 def _elastic(recipe: Recipe, design: Design, train: Dynamics, motion: MadeMotion) -> list[MadeFigure]:
-    """Greatest and least contact force of the steady state at the recipe's speed."""
+    """Greatest and least contact force of the steady state at the recipe's speed, N or N m."""
     running, intended = steady_force(recipe, design, train, motion.shaft)
     count = len(motion.shaft)
+    # the response to periodic errors, harmonic by harmonic
     transfer = design.exact.gauge.si * running.transfer(count)
     made = intended + np.fft.irfft(transfer * np.fft.rfft(motion.errors[0]), count)
     row = np.roll(np.fft.irfft(transfer, count)[::-1], 1)  # weights of the errors in the force at the first angle
-    row -= row.mean()  # the offset is none
+    row -= row.mean()  # assembly sets the offset, which is no error
     unit = "N m" if design.follower.arrangement.unit == "deg" else "N"
     figures = []
     for name, pick in (("contact force, elastic", np.argmax), ("least contact force, elastic", np.argmin)):
@@ -83,20 +86,22 @@ def _elastic(recipe: Recipe, design: Design, train: Dynamics, motion: MadeMotion
 
 def _figures(running: FollowerRunning, motion: MadeMotion) -> list[MadeFigure]:
     """Greatest force and pressure of each contact; least force and float speed of a single one, preload of two."""
+    # position, velocity, acceleration and gap, intended and made
     gap, gap_sd = np.zeros((2, len(motion.shaft))) if motion.gap is None else motion.gap
     intended = np.vstack([running.turn.rows(motion.shaft), np.zeros_like(gap)])
     made = intended + np.vstack([motion.errors, gap])
-    first, rows = (_rows(running, motion.shaft, each) for each in (intended, made))
+    first, rows = (_rows(running, motion.shaft, motion_rows) for motion_rows in (intended, made))
+    # squares of the changes by one standard deviation of each of the four
     square = {name: np.zeros_like(row) for name, row in rows.items()}
     for order, sd in enumerate([*motion.sds, gap_sd]):
         more = made.copy()
         more[order] += sd
-        with np.errstate(invalid="ignore"):  # speeds that nothing takes it off at
+        with np.errstate(invalid="ignore"):  # float speeds may be infinite: inf - inf
             for name, row in _rows(running, motion.shaft, more).items():
                 square[name] += (row - rows[name]) ** 2
     figures = []
     for figure, row in rows.items():
-        if not np.isfinite(row).any():  # nothing takes the follower off at any speed
+        if not np.isfinite(row).any():  # the follower floats at no speed
             continue
         least = figure[0] in {LEAST_FORCE, FLOAT_SPEED, LEAST_PRELOAD}
         at = int(np.nanargmin(row) if least else np.nanargmax(row))
@@ -107,16 +112,16 @@ def _figures(running: FollowerRunning, motion: MadeMotion) -> list[MadeFigure]:
 
 
 def _rows(running: FollowerRunning, shaft: Array, rows: Array) -> dict[tuple[str, str], Array]:
-    """Forces and pressures (n,) at shaft angles (n,), rad, by name and unit.
+    """Forces, pressures, float speeds and preload (n,) at shaft angles (n,), rad, by name and unit.
 
-    `rows` (4, n) are position, velocity and acceleration of the follower, and the gap at its second contact.
+    `rows` (4, n) are position, velocity and acceleration of the follower, and the gap between its contacts; mm or rad.
     """
     state, names = running.in_motion(shaft, rows[:3], rows[3]), running.turn.names
     endings = [f", {name}" if len(names) > 1 else "" for name in names]
     by_name = {(f"contact force{ending}", "N"): row for ending, row in zip(endings, state.normal, strict=True)}
     if state.pressure is not None:
-        each = zip(endings, state.pressure, strict=True)
-        by_name |= {(f"pressure{ending}", "N/mm^2"): row for ending, row in each}
+        named = zip(endings, state.pressure, strict=True)
+        by_name |= {(f"pressure{ending}", "N/mm^2"): row for ending, row in named}
     if len(names) == 1:
         by_name[LEAST_FORCE, "N"] = state.normal[0]
         by_name[FLOAT_SPEED, "rpm"] = _float_speed(running, shaft, state.rows)
@@ -127,10 +132,10 @@ def _rows(running: FollowerRunning, shaft: Array, rows: Array) -> dict[tuple[str
 
 
 def _float_speed(running: FollowerRunning, shaft: Array, y: Array) -> Array:
-    """Speeds, turns a minute, from which inertia takes the follower off the cam, (n,).
+    """Speeds, turns a minute (n,), from which inertia lifts the follower off the cam at shaft angles `shaft` (n,), rad.
 
-    A speed is infinite where no speed takes it off, and nan where the acceleration is not known.
-    `y` are position and two derivatives, SI: what holds the follower there is m Omega^2 (-y'').
+    `y` (3, n) are position and two derivatives, SI. Contact is lost where m Omega^2 (-y'') exceeds the force of spring
+    and load. A speed is infinite where inertia presses the follower on, and nan where the acceleration is not known.
     """
     holds = running.rest(running.turn.parameter(shaft), y[0]) + running.preload
     pull = -running.train.mass * y[2]

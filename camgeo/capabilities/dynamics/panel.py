@@ -1,4 +1,4 @@
-"""A follower train on the page: forces of a rigid one, what an elastic one comes to."""
+"""A follower train on the page: forces of a rigid follower, response of an elastic train."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 def panel(report: dict[str, Any]) -> str:
-    """Return the sections of the page, empty where the report has none."""
+    """Return the HTML of both sections, forces and dynamics; empty where the report has neither."""
     return forces(report) + dynamics(report)
 
 
 def forces(report: dict[str, Any]) -> str:
-    """Return the HTML section on the extreme forces of a rigid follower at its speed; empty without them."""
+    """Return the HTML section on the extreme forces of a rigid follower; empty where the report has no forces."""
     section = report.get("forces")
     if section is None:
         return ""
@@ -27,6 +27,7 @@ def forces(report: dict[str, Any]) -> str:
     head = '<section aria-labelledby="forces-head"><h2 id="forces-head">Forces</h2>'
     if "jams_at_deg" in section:
         return f"{head}<p>{caption} The stem jams in its guide at {number(section['jams_at_deg'])}°.</p></section>"
+    # least and greatest value of each force, with its angle
     rows: list[Row] = []
     ranges = [(f"force at {entry['contact']}", entry) for entry in section["contacts"]]
     ranges += [("torque of the shaft", section["torque"])]
@@ -35,6 +36,7 @@ def forces(report: dict[str, Any]) -> str:
     for name, entry in ranges:
         for word, key in (("least", "min"), ("greatest", "max")):
             rows.append((f"{word} {name}", entry[key], entry["unit"], entry[f"{key}_at_deg"]))
+    # contacts: width, pressure, mean force of rollers, speeds at which they are lost
     if (width := section.get("width")) is not None:
         rows.append((f"width of the contacts: {width['bound_by']}", width["value"], width["unit"], None))
     rows += [
@@ -64,13 +66,13 @@ def forces(report: dict[str, Any]) -> str:
 
 
 def dynamics(report: dict[str, Any]) -> str:
-    """Return the HTML section on an elastic train: its response as intended and by each file; empty without a train."""
+    """Return the HTML section on an elastic train: a row for the intended motion and for each file; empty without."""
     section = report.get("dynamics")
     if section is None:
         return ""
     unit, rows = section["force_unit"], list[str]()
     shown = in_pounds(report["units"], None, unit)[1]
-    for run in section["runs"]:
+    for run in section["runs"]:  # entries that a run lacks become dashes
         steady, impacts = run.get("steady") or {}, run.get("impacts") or {}
         cells = [
             *(_force(steady, name, unit, report["units"]) for name in ("peak", "least")),

@@ -1,4 +1,4 @@
-"""What the page plots of a rigid follower train over a turn: load, forces, torque, pressure."""
+"""The page's plots of a rigid follower train over a turn: load, forces, torque, pressure."""
 
 from __future__ import annotations
 
@@ -19,9 +19,11 @@ if TYPE_CHECKING:
 
 
 def plots(recipe: Recipe, design: Design) -> list[Plot]:
-    """Return the plots of load, contact forces and torque over the turn; none where the train is not rigid or jams.
+    """Return the plots of load, forces, torque and contact pressure over the turn, in pounds for a recipe in inches.
 
-    They are in pounds for a recipe in inches.
+    Empty without dynamics, for an elastic train whose contacts have no material, and where the stem jams. Raises
+    RecipeErrors for a contact that nothing holds on the cam, a linkage that does not turn right round, a load without
+    a finite value, and two preloaded contacts that wedge the stem.
     """
     running = running_of(recipe, design)
     if running is None or running.jam_deg is not None:
@@ -35,7 +37,7 @@ def plots(recipe: Recipe, design: Design) -> list[Plot]:
         return Plot(title, unit, series, limits=lines, dwells=True, note=note, axis=axis, holds=(0.0,))
 
     def opposite(title: str, axis: str, si: str, rows: Array, sides: Mapping[str, Sequence[float]]) -> list[Plot]:
-        """Return one plot of one or two contacts, or of four contacts one plot for each pair of opposite ones."""
+        """Return one plot for one or two contacts, and two plots, each of two opposite faces, for four contacts."""
         named = list(zip(running.turn.names, rows, strict=True))
         step = max(1, len(named) // 2)
         groups = [dict(named[k::step]) for k in range(step)]
@@ -55,5 +57,5 @@ def plots(recipe: Recipe, design: Design) -> list[Plot]:
         pressed = opposite("Contact pressure", "pressure", "N/mm^2", state.pressure, {PRESSURE: (1.0,)})
         most, (factor, _) = running.most_pressure, shown_unit(recipe, "N/mm^2")
         borne = () if most is None else ((factor * most, f"material {short(factor * most)}"),)
-        drawn += [replace(each, limits=(*each.limits, *borne)) for each in pressed]
+        drawn += [replace(pressure, limits=(*pressure.limits, *borne)) for pressure in pressed]
     return drawn

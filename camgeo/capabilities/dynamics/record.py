@@ -65,7 +65,7 @@ def _exact(recipe: Recipe, exact: ExactCam, _contours: Sequence[tuple[Surface, C
 
 
 def _examine(recipe: Recipe, design: Design, files: Sequence[FileResult], clock: Clock) -> Results:
-    """Dynamics of an elastic train as intended and with each file that shows the cam, and forces of a rigid one."""
+    """Dynamics of an elastic train as intended and with the cam of each file, and forces of a rigid follower."""
     from camgeo.capabilities.dynamics.force_figures import rigid_forces
 
     train, sections = recipe.of(Dynamics), dict[str, Any]()
@@ -96,7 +96,7 @@ def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
 
 
 def _lost(recipe: Recipe, design: Design) -> Sequence[RuleRemark]:
-    """Remark on a preloaded contact that inertia and load lift off at the train's speed, which leaves play there."""
+    """Remark on the preloaded contact that is lost at the lowest speed, if that is at most the train's; else empty."""
     from camgeo.capabilities.dynamics.running_forces import running_of
     from camgeo.measures.remarks import RuleRemark
 

@@ -1,4 +1,4 @@
-"""What would let checks and limits of a follower train hold."""
+"""Advice by which checks and limits of a follower train would hold."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 
 def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """The preload at which contact holds as intended and with every file, in words.
+    """Words with the preload at which contact holds as intended and with every file.
 
-    Empty where contact holds, and for a train without preload. Against the spring's rate the train's stiffness passes
-    k/(k + k_p) of a preload on to the contact.
+    Empty where contact holds, and for a train without preload. In an elastic train the contact gets k/(k + k_p) of a
+    greater preload, with k the stiffness of the train and k_p the rate of the spring.
     """
     train, least = recipe.of(Dynamics), worst(check, report)
     if train is None or train.preload is None or not least < 0.0:
@@ -39,7 +39,10 @@ def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
 
 
 def of_limit(recipe: Recipe, figure: str, value: float, bound: float) -> str:
-    """Words for what would bring a figure to a bound, both in SI; empty for a bound of 0 or less, and if unknown."""
+    """Words for a change that brings a figure's `value` towards `bound`, both in the figure's unit.
+
+    Empty for a bound of 0 or less, for a figure without advice, and where the advice would not help.
+    """
     if bound <= 0.0:
         return ""
     if figure == BACKLASH_LEFT:
@@ -57,7 +60,7 @@ def of_limit(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     raised = value < bound
     forces = "more mass or load" if raised else "less mass or load"
     forces = f"a {'greater' if raised else 'smaller'} {spring}, {forces}" if spring else forces
-    if figure == PRESSURE:  # with the root of force over width
+    if figure == PRESSURE:  # Hertz's pressure grows with the root of force over width
         share = (value / bound) ** 2
         if raised:
             return f"contacts {downward(share)} times as wide (part.thickness, a chamfer), a smaller radius, {forces}"

@@ -1,8 +1,9 @@
 """Forces of a rigid train at a speed, and the interface by which they are obtained.
 
-In SI: N and m, about a pivot N m and rad. F is the force of the cam along the travel, above 0 where the first contact
-pushes, or in the direction in which the output of a linkage grows: m Omega^2 y'' + k (y - least y) + F0 + load, with y
-counted in that direction.
+In SI: N and m, about a pivot N m and rad. F is the force of the cam along the travel, above 0 in the direction in which
+the first contact pushes, or in which the output of a linkage grows. The position y is counted in that direction:
+F = m Omega^2 y'' + k (y - least y) + F0 + load, with m the mass, Omega the shaft's speed, k rate and F0 preload of the
+spring. The parameter t of a turn is the shaft angle; of a linkage the relative angle between cam and frame.
 """
 
 from __future__ import annotations
@@ -30,18 +31,21 @@ if TYPE_CHECKING:
     from kin.law.formula.formula import Formula
     from kin.numeric.arrays import Array
 
-STRETCHES, MOST_OPEN = 256, 64  # in which a load is enclosed, and of them looked at where it cannot be
-NARROW, LARGE = 1e-9, 1e6  # rad; of its usual size: what it has there is a pole
+STRETCHES, MOST_OPEN = 256, 64  # of a turn in which a load is enclosed; at most so many unsettled ones are halved
+NARROW, LARGE = 1e-9, 1e6  # a load that exceeds LARGE times its usual size within NARROW, rad, has a pole there
 
 
 class State(NamedTuple):
-    """At n places: F along the travel, position y and two derivatives (3, n), SI; normal forces (m, n), N.
+    """Motion and forces at n places of the turn, of m contacts.
 
-    torque      that the shaft gives, N m (n,), above 0 where it drives
-    pressure    Hertz's, of each contact, N/mm^2 (m, n); None where width, material or a radius is not known
+    force       F along the travel, N or N m (n,)
+    rows        position y, m or rad, and two derivatives by the shaft angle (3, n)
+    normal      normal force of each contact, N (m, n)
+    torque      of the shaft, N m (n,), above 0 where the shaft drives
+    pressure    Hertz's, of each contact, N/mm^2 (m, n); None where width or material is not known
     reactions   further forces, N (n,), by the names of their columns
-    lines       the contacts of a follower without a linkage
-    roller_rpm  of the roller about its pin as each contact turns it (m, n); None of other touches
+    lines       line of each contact's force; empty for a linkage
+    roller_rpm  turns a minute of the roller about its pin as each contact turns it (m, n); None without rollers
     """
 
     force: Array
@@ -57,7 +61,7 @@ class State(NamedTuple):
 class LossSpeed(NamedTuple):
     """Speed, turns a minute, from which a preloaded contact is lost, and the shaft angle there, degrees.
 
-    Both are None for a contact that is never lost.
+    The speed is 0 for a contact that is lost at rest. Both are None for a contact that is never lost.
     """
 
     contact: str
@@ -80,15 +84,15 @@ class Running(ABC):
 
     @abstractmethod
     def position(self, rows: Array) -> Array:
-        """Position y and two derivatives by the shaft angle, SI (3, n), from those of the turn."""
+        """Position y, m or rad, and two derivatives by the shaft angle (3, n), from the turn's `rows`, mm or rad."""
 
     @abstractmethod
     def at(self, t: Array) -> State:
-        """State of motion and forces at parameters of the turn (n,)."""
+        """State of motion and forces at parameters t of the turn (n,); RecipeErrors for a load without finite value."""
 
     @abstractmethod
     def own_section(self) -> dict[str, object]:
-        """Entries of the report's section in addition to the extremes, by name."""
+        """Entries of the report's section in addition to the extremes and the speeds of loss, by name."""
 
     @property
     def jam_deg(self) -> float | None:
@@ -96,15 +100,18 @@ class Running(ABC):
         return None
 
     def mean_force(self, index: int) -> tuple[float, float] | None:  # noqa: ARG002
-        """Mean force that the roller of a contact bears over its own turns, N, and its turns per turn of the shaft."""
+        """Mean force, N, on the roller of contact `index` over its own turns, and its turns per turn of the shaft.
+
+        None without a roller.
+        """
         return None
 
     def lost_rpm(self) -> list[LossSpeed]:
-        """Speed at which each preloaded contact is first lost somewhere in the turn; empty without preload."""
+        """Lowest speed at which each preloaded contact is lost somewhere in the turn; empty without preload."""
         return []
 
     def state(self, phi: Array) -> State:
-        """State of motion and forces at shaft angles (n,), rad."""
+        """State of motion and forces at shaft angles phi (n,), rad; RecipeErrors for a load without finite value."""
         return self.at(self.turn.parameter(phi))
 
     @property
@@ -114,7 +121,7 @@ class Running(ABC):
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Shaft angles, rad, at which a load given as a table changes its slope; empty for a formula."""
+        """Shaft angles, rad, at which a load from a table changes its slope; empty for a formula."""
         load = self.train.load
         return () if isinstance(load, str) else tuple(load.corners.tolist())
 
@@ -126,9 +133,9 @@ class Running(ABC):
 
     @cached_property
     def load(self) -> Callable[[Array], Array]:
-        """The load over shaft angles (n,), N or N m, above 0 against F.
+        """The load as a function of shaft angles (n,), rad: N or N m (n,), above 0 where it presses towards the cam.
 
-        Raises RecipeErrors for a formula that somewhere has no value or no bound, or is beyond MOST_LOAD.
+        Raises RecipeErrors for a formula that somewhere has no value or no bound, or exceeds MOST_LOAD in magnitude.
         """
         from kin.law.formula.formula import Formula, FormulaDomainError
 
@@ -151,9 +158,10 @@ class Running(ABC):
         return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
 
     def rest(self, t: Array, y: Array) -> Array:
-        """Force on the cam without inertia and preload, N or N m, at parameters of the turn and positions y (n,).
+        """Part of F without inertia and preload, N or N m (n,): k (y - least y) + load.
 
-        It is the load, and the spring's rate times the distance from the lowest position.
+        `t` (n,) are parameters of the turn, `y` (n,) positions there, m or rad. Raises RecipeErrors for a load without
+        a finite value.
         """
         load = self.load(self.turn.shaft(t))
         rest: Array = self.train.rate * (y - self.lowest) + load if self.train.rate else load
@@ -162,14 +170,18 @@ class Running(ABC):
     def inertia(self, rows: Array, speed: float) -> Array:
         """Part of F that accelerates the mass, m Omega^2 y'', N or N m (n,), at the speed Omega, rad/s.
 
-        It is above 0 where the follower accelerates in the direction in which y grows. `rows` (3, n) are the motion.
+        It is above 0 where the follower accelerates in the direction in which y grows. `rows` (3, n) are position and
+        derivatives of the turn, mm or rad.
         """
         force: Array = self.train.mass * speed**2 * self.position(rows)[2]
         return force
 
     @cached_property
     def preload(self) -> float:
-        """Force of the spring at the lowest position, N or N m: as stated, or the least that keeps `least_force`."""
+        """Force of the spring at the lowest position, N or N m: as stated, or the least that keeps `least_force`.
+
+        0 without a spring. Raises RecipeErrors for a load without a finite value.
+        """
         if self.train.least_force is None:
             return self.train.preload or 0.0
 
@@ -183,13 +195,13 @@ class Running(ABC):
 
     @property
     def most_pressure(self) -> float | None:
-        """Pressure that the weaker of both materials bears, N/mm^2, None where the recipe gives none."""
+        """The lower of the pressures that both materials bear, N/mm^2; None where the recipe states none."""
         bodies = (self.train.material, self.train.roller_material)
         return min((body.limit for body in bodies if body is not None and body.limit is not None), default=None)
 
     @cached_property
     def width(self) -> Width | None:
-        """Width of the contacts, and what bounds it; None where neither the recipe nor the metal has one."""
+        """Width of the contacts, mm, and what bounds it; None where neither the recipe nor the metal gives one."""
         part = self.recipe.part
         depth = min(
             (surface.depth for surface in self.design.exact.surfaces if surface.depth is not None), default=None
@@ -197,7 +209,12 @@ class Running(ABC):
         return contact_width(self.train.width, part.thickness, part.edge, depth)
 
     def hertz(self, normal: Array, curvature: Array) -> Array | None:
-        """Hertz's pressure of line contacts, N/mm^2 (m, n), by force, N, and curvature, 1/mm; None without material."""
+        """Greatest pressure of line contacts, N/mm^2 (m, n), by Hertz: p = sqrt(N kappa/(pi B C)).
+
+        `normal` (m, n) is the force N, N; `curvature` (m, n) is kappa, the sum of both bodies' curvatures, 1/mm, with
+        pressure 0 where it is below 0. B is the width and C the sum of (1 - nu^2)/E of both. None without material or
+        width.
+        """
         train = self.train
         if train.material is None or self.width is None:
             return None
@@ -208,9 +225,10 @@ class Running(ABC):
 
 
 class Pull(NamedTuple):
-    """Load of two preloaded contacts (n,): `inertia` is its part by the square of the speed, `rest` its other part.
+    """Load of two preloaded contacts at n places, in one unit; (n,) each.
 
-    `loses_first` and `loses_second` are the loads at which the first or the second contact is lost.
+    At the speed Omega, rad/s, it is Omega^2 times `inertia` plus `rest`. From `loses_second` on upwards the second
+    contact is lost, from `loses_first` on downwards the first.
     """
 
     inertia: Array
@@ -220,11 +238,11 @@ class Pull(NamedTuple):
 
 
 def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> list[LossSpeed]:
-    """For each of two preloaded contacts, by `names`, the speed from which inertia and load take it off.
+    """Speed from which each of two preloaded contacts is lost; `names` has their names, the first contact's first.
 
-    At the speed Omega, rad/s, the load is Omega^2 J + W, with J the `inertia` and W the `rest` of `pull`. A contact is
-    lost first where J is greatest against the load that is still missing, that is the one that takes it off less W.
-    The speed is 0 for a contact that is lost at rest, and None for one that is lost at no speed.
+    `pull` gives the load at parameters of the turn (n,). With J its `inertia`, W its `rest` and L the load at which a
+    contact is lost, that contact is lost from Omega^2 = (L - W)/J on; the least over the turn counts. Raises RoughError
+    where the motion changes too abruptly, RecipeErrors where `pull` does.
     """
 
     def shares(t: Array) -> Array:
@@ -235,7 +253,7 @@ def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> lis
     (_, first), (_, second), (upper, _), (lower, _) = turn.extremes(shares)
     losses = []
     for name, share, left in zip(names, (first, second), (lower, upper), strict=True):
-        if left.value <= 0.0:  # at rest already
+        if left.value <= 0.0:  # the contact is lost at rest
             losses.append(LossSpeed(name, 0.0, left.at_deg))
         elif share.value > 0.0:
             losses.append(LossSpeed(name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
@@ -245,9 +263,10 @@ def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> lis
 
 
 def unbounded(formula: Formula) -> float | None:
-    """A shaft angle, rad, near which a formula grows beyond all bounds, None where there is none.
+    """A shaft angle, rad, near which a formula grows beyond all bounds; None where it is bounded.
 
-    What intervals leave open is halved until it is as narrow as angles are told apart, and looked at there.
+    Stretches of the turn over which intervals give no finite enclosure are halved down to NARROW; there the formula is
+    evaluated on both sides. Raises FormulaDomainError where it has no value at a place that is evaluated.
     """
     low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
     high: Array = low + TURN / STRETCHES
@@ -268,9 +287,10 @@ def unbounded(formula: Formula) -> float | None:
 
 
 def place_beyond(formula: Formula, most: float) -> float | None:
-    """A shaft angle, rad, at which a formula is above `most` or below its negative; None where it is nowhere.
+    """A shaft angle, rad, at which the magnitude of a formula exceeds `most`; None where it nowhere does.
 
-    What intervals do not prove to be within it is halved until it is as narrow as angles are told apart.
+    Stretches over which intervals do not prove the magnitude to be within `most` are halved down to NARROW, at most
+    MOST_OPEN of them. Raises FormulaDomainError where the formula has no value at a place that is evaluated.
     """
     low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
     high: Array = low + TURN / STRETCHES

@@ -1,7 +1,7 @@
 """Forces of a follower that runs at a speed, rigid or with both contacts under preload: contacts, shaft, guide, roller.
 
-The shaft's torque is that of the normal forces' lines about it, by exact derivatives of the motion; without friction it
-is F y'.
+The shaft's torque is the moment of the normal forces about it, by exact derivatives of the motion; without friction it
+is F y'. Arrays (m, n) are by contact and place of the turn.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 LIFE = 10.0 / 3.0  # exponent of the rating life of needle and roller bearings (ISO 281)
-PANELS, NODES = 48, 8  # of Gauss's rule between any two places of the mean
+PANELS, NODES = 48, 8  # of Gauss's rule between two neighbouring places where the motion or the bearing contact changes
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,19 +65,23 @@ class FollowerRunning(Running):
         return 1.0 if self.turn.swings else PER_MM
 
     def position(self, rows: Array) -> Array:
-        """Position y and two derivatives, SI (3, n), counted the way in which the first contact pushes."""
+        """Position y, m or rad, and two derivatives by the shaft angle (3, n), above 0 as the first contact pushes.
+
+        `rows` (3, n) are position and derivatives of the turn, mm or rad.
+        """
         position: Array = self.senses[0] * self.unit * rows
         return position
 
     def at(self, t: Array) -> State:
-        """State of motion and forces at shaft angles (n,), rad."""
+        """State of motion and forces at shaft angles t (n,), rad; RecipeErrors for a load without finite value."""
         return self.in_motion(t, self.turn.rows(t))
 
     def in_motion(self, t: Array, rows: Array, gap: Array | None = None) -> State:
-        """State of motion and forces at shaft angles (n,), rad, for a given motion `rows` (3, n).
+        """State of motion and forces at shaft angles t (n,), rad, for a given motion.
 
-        `rows` are position, mm or rad, and two derivatives by the shaft angle. `gap` (n,), mm or rad, is by how much
-        the made metal leaves preloaded contacts wider apart than intended.
+        `rows` (3, n) are position, mm or rad, and two derivatives by the shaft angle. `gap` (n,), mm or rad along the
+        travel, is how much less than intended two preloaded contacts overlap with made metal. Normal forces are nan
+        where the stem jams. Raises RecipeErrors for a load without a finite value.
         """
         lines = self.turn.lines(rows)
         y = self.position(rows)
@@ -89,30 +93,30 @@ class FollowerRunning(Running):
         return State(force, y, normal, torque, pressure, self._guide_forces(y, normal, lines), lines, speeds)
 
     def _normal(self, force: Array, rows: Array, lines: Sequence[ContactLine], gap: Array | None = None) -> Array:
-        """Normal force of each contact, N (m, n). Not a number where a stem jams in its guide."""
+        """Normal force of each contact, N (m, n); nan where the stem jams in its guide."""
         scale = PER_MM if self.turn.swings else 1.0
-        levers = scale * np.array([line.lever for line in lines])
+        levers = scale * np.array([line.lever for line in lines])  # m about a pivot
         if self.held_by is not None:
             normal: Array = self._pressed(self.held_by, rows, lines, gap).split(force / scale) * scale / levers
             return normal
         if len(lines) > 1:
             force = np.array([np.maximum(force, 0.0), np.maximum(-force, 0.0)])
         if self.train.guide is not None:
-            levers = self._free(lines, self.position(rows))
+            levers = self._free(lines, self.position(rows))  # a stem has a guide, an arm none: no scale
             levers = np.where(levers > 0.0, levers, np.nan)
         return force / levers
 
     @property
     def held_by(self) -> Preload | None:
-        """Preload by interference; None without one, and where the recipe gives no stiffness of it."""
+        """Preload by interference; None without preload, and where the recipe gives no stiffness of the contacts."""
         preload = self.design.exact.preload
         return None if preload is None or preload.stiffness is None else preload
 
     def preload_force(self, rows: Array, gap: Array) -> Array | None:
         """Force of the preload along the travel (n,), N or N m; None without preload.
 
-        `rows` (3, n) are position, mm or rad, and two derivatives by the shaft angle. `gap` (n,), mm or rad, is by how
-        much the made metal leaves the contacts wider apart than intended.
+        `rows` (3, n) are position, mm or rad, and two derivatives by the shaft angle. `gap` (n,), mm or rad along the
+        travel, is how much less than intended the contacts overlap with made metal.
         """
         if self.held_by is None:
             return None
@@ -123,10 +127,7 @@ class FollowerRunning(Running):
     def _pressed(
         self, preload: Preload, rows: Array, lines: Sequence[ContactLine], gap: Array | None = None
     ) -> Elastic | Guided:
-        """Both contacts under preload, with the friction of the guide if there is one.
-
-        Units are N and mm, of a follower that swings N mm and rad.
-        """
+        """Both contacts under preload, with the friction of a guide: N and mm, about a pivot N mm and rad."""
         pair = elastic_contacts(self.turn, preload, rows)
         pair = pair if gap is None else pair.apart(gap)
         if self.train.guide is None:
@@ -137,7 +138,7 @@ class FollowerRunning(Running):
         return Guided(pair, ends, self.train.guide.friction * np.sign(y[1]))
 
     def _free(self, lines: Sequence[ContactLine], y: Array) -> Array:
-        """Lever of each contact less the friction in the guide, (m, n): generalised force by normal force."""
+        """Force along the travel per normal force of each contact, less the friction in the guide (m, n)."""
         friction = 0.0 if self.train.guide is None else self.train.guide.friction
         rubbing = np.abs(self._at_ends(lines, y)).sum(axis=1)
         pushes = np.array(self.senses)[:, None] * self.senses[0]
@@ -145,10 +146,11 @@ class FollowerRunning(Running):
         return lever
 
     def _at_ends(self, lines: Sequence[ContactLine], y: Array) -> Array:
-        """Forces across the stem on the guide's near and far end by a unit normal force of each contact, (m, 2, n).
+        """Forces across the stem on the guide's near and far end per unit normal force of each contact, (m, 2, n).
 
-        A force across the stem bears by its overhang, one along it by its distance from the stem's axis. A contact that
-        stands beyond the shaft has turned axes, which the cosine accounts for. All are 0 without a guide.
+        They hold the moment about the ends: of the force across the stem by its overhang, of the force along the stem
+        by its distance from the axis. The axes of a contact beyond the shaft are turned by half a turn, whose cosine
+        is -1. All are 0 without a guide.
         """
         guide, contacts = self.train.guide, self.design.follower.contacts
         if guide is None:
@@ -164,9 +166,10 @@ class FollowerRunning(Running):
 
     @cached_property
     def jam_deg(self) -> float | None:
-        """Shaft angle in degrees at which a contact alone jams the stem in its guide, None where none does.
+        """Shaft angle in degrees at which a single contact jams the stem in its guide; None where none does.
 
-        Raises RecipeErrors where neither does, and both under preload wedge it between them.
+        Raises RecipeErrors where no single contact does, but two preloaded contacts together wedge the stem, and
+        RoughError for too abrupt a motion.
         """
         if self.train.guide is None:
             return None
@@ -191,7 +194,7 @@ class FollowerRunning(Running):
         return None
 
     def _guide_forces(self, y: Array, normal: Array, lines: Sequence[ContactLine]) -> dict[str, Array]:
-        """Reactions of the guide at its near end and its far one, N (n,), across the stem; none without."""
+        """Reactions at the guide's near and far end, `guide_a` and `guide_b`, N (n,); empty without a guide."""
         if self.train.guide is None:
             return {}
         pushed = np.array(self.sides)[:, None] * normal
@@ -199,7 +202,11 @@ class FollowerRunning(Running):
         return {"guide_a": near, "guide_b": far}
 
     def _pressure(self, normal: Array, lines: Sequence[ContactLine]) -> Array | None:
-        """Hertz's pressure of each contact, N/mm^2, (m, n); None without material or width."""
+        """Hertz's pressure of each contact, N/mm^2 (m, n); None without material or width.
+
+        The contour's radius is that of the path of the touch's centre less the touch's radius. The running part may
+        have another radius, 0 for a flat face.
+        """
         curvatures = []
         follower = self.design.follower
         for line, side, contact in zip(lines, self.sides, follower.contacts, strict=True):
@@ -208,6 +215,7 @@ class FollowerRunning(Running):
         return self.hertz(normal, np.array(curvatures))
 
     def _roller_rpm(self, lines: Sequence[ContactLine]) -> Array | None:
+        """Speed of each contact's roller about its pin, turns a minute (m, n); None unless all contacts are rollers."""
         from kin.follower.contact_lines import roller_turns
 
         follower, sides = self.design.follower, self.sides
@@ -218,15 +226,21 @@ class FollowerRunning(Running):
 
     @cached_property
     def changes(self) -> Array:
-        """Shaft angles, rad, at which F changes its sign, and with clearance the contact that bears."""
+        """Shaft angles (k,), rad, at which F changes sign: with clearance the other contact begins to bear.
+
+        Raises RecipeErrors for a load without a finite value, RoughError for too abrupt a motion.
+        """
         (piece,) = self.turn.pieces(lambda phi: self.state(phi).force[None])
         return piece.crossings(0.0)
 
     def mean_force(self, index: int) -> tuple[float, float] | None:
-        """Equivalent force on the roller of a contact, N, and its turns per turn of the shaft; None without a roller.
+        """Equivalent force, N, on the roller of contact `index`, and its turns per turn of the shaft.
 
-        It is the mean over the roller's own turns with the exponent LIFE of bearing life.
+        The force is the mean over the roller's own turns with the exponent LIFE of bearing life. A roller between two
+        surfaces bears both forces, and turns as the greater force drives it. None without a roller. Raises RecipeErrors
+        for a load without a finite value.
         """
+        # Gauss's rule in panels that end where motion, load or bearing contact change
         places = np.unique(np.concatenate([self.turn.places, self.changes]))
         x, weight = np.polynomial.legendre.leggauss(NODES)
         edges = np.concatenate([np.linspace(a, b, PANELS + 1)[:-1] for a, b in pairwise(places)])
@@ -252,7 +266,10 @@ class FollowerRunning(Running):
         return len(contacts) > 1 and self.design.follower.arrangement.contacts == 1
 
     def own_section(self) -> dict[str, object]:
-        """Report entries of the contacts: shaft angles at which they change, and the mean force on each roller."""
+        """Report entries `rollers`, the mean force on each, and of two contacts `changes_at_deg`, where F changes sign.
+
+        Raises RecipeErrors for a load without a finite value.
+        """
         names = self.turn.names
         section: dict[str, object] = {}
         if len(names) > 1:
@@ -267,7 +284,10 @@ class FollowerRunning(Running):
         return section
 
     def lost_rpm(self) -> list[LossSpeed]:
-        """Speed at which each preloaded contact is first lost somewhere in the turn; empty without preload."""
+        """Lowest speed at which each preloaded contact is lost somewhere in the turn; empty without preload.
+
+        Raises RecipeErrors for a load without a finite value.
+        """
         preload = self.held_by
         if preload is None:
             return []
@@ -283,10 +303,11 @@ class FollowerRunning(Running):
 
 
 def running_of(recipe: Recipe, design: Design) -> Running | None:
-    """Forces of the running train; None without dynamics, and for an elastic train whose contacts have no material.
+    """Forces of the train, taken as rigid; None without dynamics, and for an elastic train without a material.
 
-    An elastic train whose contacts have a material also has the forces of a rigid follower under the same spring.
-    Raises RecipeErrors for a single contact that nothing holds on the cam, and for a linkage that does not turn.
+    An elastic train whose contacts have a material has the forces of a rigid follower under the same spring, for their
+    pressure. Raises RecipeErrors for a single contact that nothing holds on the cam, and for a linkage that does not
+    turn right round.
     """
     train = recipe.of(Dynamics)
     if train is None or (train.stiffness is not None and train.material is None):
@@ -297,7 +318,7 @@ def running_of(recipe: Recipe, design: Design) -> Running | None:
 
 
 def follower_running(recipe: Recipe, design: Design, train: Dynamics) -> FollowerRunning:
-    """Forces of a follower without a linkage; raises RecipeErrors for one contact that nothing holds on the cam."""
+    """Forces of a follower without a linkage; RecipeErrors for a single contact that nothing holds on the cam."""
     held = train.preload is not None or train.least_force is not None
     if not held and len(design.follower.contacts) == 1:
         why = f"a single {design.follower.name} is held on the cam by a spring"

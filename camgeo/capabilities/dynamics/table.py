@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 
 def _check(file: Values, values: Values, reader: Reader) -> None:
+    """Note a table of forces for a recipe without a rigid train."""
     train = values.get("dynamics", {})
     if not train or "stiffness" in train:
         remedy = "give dynamics without stiffness, or leave this out"
@@ -22,6 +23,7 @@ def _check(file: Values, values: Values, reader: Reader) -> None:
 
 
 def _columns(job: Job, request: FileRequest) -> Columns:
+    """Columns of the table, a row for each of the recipe's `verify.angles` steps of the turn, and the end."""
     from camgeo.capabilities.dynamics.force_figures import forces_table
     from camgeo.capabilities.dynamics.running_forces import running_of
 
@@ -31,5 +33,5 @@ def _columns(job: Job, request: FileRequest) -> Columns:
     return forces_table(running, job.recipe.verify.angles, job.recipe.in_units_of(request).units)
 
 
-# nan: a stem that jams has no force
+# forces are nan where the stem jams: such rows have gaps
 FORM = Form(name="forces", surfaces=2, discs=2, check=_check, make=table_maker("forces", _columns, gaps=True))
