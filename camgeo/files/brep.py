@@ -55,10 +55,11 @@ def need_kernel() -> None:
 
 
 def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
-    """Return the kernel's solid: within one outline, the first, with boss, openings, chamfers and cross holes.
+    """Return the kernel's solid within the first outline, with boss, openings, chamfers and cross holes.
 
-    Raises RegionError where a piece is too short for the kernel, an arc is sharper than the chamfer, a cross hole
-    divides the solid, or the kernel finds it unsound; TypeError for a chamfer along anything but arcs.
+    Further outlines are contours through it or, with a pocket, the two about the pocket. Raises RegionError where a
+    piece is too short for the kernel, an arc is sharper than the chamfer, a cross hole divides the solid, or the kernel
+    finds it unsound; TypeError for a polygon, and for a chamfer along anything but arcs.
     """
     stack = _Stack()
     top = solid.thickness
@@ -73,6 +74,7 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     in_boss_bottom: list[Shape] = []
     in_boss_top: list[Shape] = []
     in_island_top: list[Shape] = []  # in the upper face within a pocket
+    # a pocket: its floor lies between the walls of two contours, the island's face within the inner one
     if solid.floor is not None:
         ledge, rim = sorted(inner_outlines, key=lambda outline: outline.box()[2])
         (island_foot, island_head), (foot, head) = (stack.wall(outline, solid.floor, top) for outline in (ledge, rim))
@@ -83,6 +85,7 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
         foot, head = stack.wall(outline, 0.0, top)
         in_disc_bottom.append(foot.wire)
         in_disc_top.append(head.wire)
+    # an engraving has a floor; an opening goes through the disc, or through disc and boss where it lies within the boss
     for cut in solid.cuts:
         inside = any(cut is other for other in within)
         if not any(cut is other for other in through):
@@ -111,10 +114,10 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
 
 
 def stack_shape(stretches: Sequence[tuple[Outline, float, float]], bore: Outline | None) -> Shape:
-    """Return the kernel's solid of outlines one above the other, each from z to z, with a hole all through it; mm.
+    """Return the kernel's solid of prisms one above the other, with a hole through all of them where there is a bore.
 
-    Of two neighbours one has to lie within the other. Raises RegionError where a piece is too short for the kernel, or
-    the kernel finds the solid unsound.
+    `stretches` are (outline, z below, z above), mm, from below; of two neighbouring outlines one has to lie within the
+    other. Raises RegionError where a piece is too short for the kernel, or the kernel finds the solid unsound.
     """
     stack = _Stack()
     low, high = stretches[0][1], stretches[-1][2]
@@ -142,7 +145,10 @@ def raise_shape(shape: Shape, z: float) -> Shape:
 
 
 def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Wire, Wire]:
-    """Walls on the outermost outline; its lowest and its highest loop. Raises TypeError for the chamfer of a spline."""
+    """Add the walls on the outermost outline, chamfers included; returns its lowest and its highest loop.
+
+    Raises TypeError for the chamfer of a spline.
+    """
     if not solid.chamfer:
         return stack.wall(outline, 0.0, solid.thickness)
     if not isinstance(outline, ArcSpline):
@@ -159,7 +165,7 @@ def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Wire, Wire]
 
 
 class _Stack:
-    """Faces that share their edges."""
+    """Faces of a solid under construction, which share their edges."""
 
     def __init__(self) -> None:
         self.faces: list[Shape] = []
@@ -187,7 +193,7 @@ class _Stack:
         return Wire(maker.Wire(), edges, vertices)
 
     def wall(self, outline: Outline, low: float, high: float) -> tuple[Wire, Wire]:
-        """Faces that stand on an outline between two heights; the loops below and above."""
+        """Add the faces that stand on an outline between two heights; returns the loops below and above."""
         from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
         from OCP.gp import gp_Vec
 
@@ -199,7 +205,10 @@ class _Stack:
         return foot, Wire(_cast(prism.LastShape(), "wire"), edges, vertices)
 
     def slope(self, inner: tuple[Wire, ArcSpline, float], outer: tuple[Wire, ArcSpline, float]) -> None:
-        """Cones and planes at 45 degrees between an outline and its parallel inside, each with its loop and height."""
+        """Add cones and planes at 45 degrees between an outline and its parallel inside.
+
+        `inner` is (loop, outline, height) of the parallel, `outer` that of the outline.
+        """
         from OCP.BRep import BRep_Builder
         from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
         from OCP.ShapeFix import ShapeFix_Edge, ShapeFix_Face
@@ -224,7 +233,7 @@ class _Stack:
             self.faces.append(turned.Face())
 
     def lid(self, z: float, outer: Shape, inner: Sequence[Shape]) -> None:
-        """Horizontal face with holes in it."""
+        """Add a horizontal face within one wire and outside others, its holes."""
         from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
         from OCP.gp import gp_Dir, gp_Pln
 

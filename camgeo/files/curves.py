@@ -26,7 +26,7 @@ Shape = Any
 
 
 def misfit(outline: Outline) -> float:
-    """Farthest, mm, that an outline's wall may lie off it: by rounding, and where an arc is too flat for a cylinder.
+    """Greatest distance, mm, of an outline's wall from it: by rounding, and where an arc is too flat for a cylinder.
 
     A circle's centre and radius are rounded where its ends and bulge were not.
     """
@@ -40,7 +40,8 @@ def misfit(outline: Outline) -> float:
 def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, float]]]:
     """Curves of the CAD kernel for each piece of an outline at height z, mm, each with its start (x, y), mm.
 
-    A full circle is one curve. Raises TypeError for a polygon.
+    A full circle is one curve. Raises RegionError for a piece that is too short for the kernel, ValueError for a
+    periodic spline, TypeError for a polygon.
     """
     from OCP.gp import gp_Ax2, gp_Circ, gp_Dir
 
@@ -76,7 +77,7 @@ def _line(start: Array, end: Array, z: float) -> Shape:
 
 
 def _splines(outline: BSpline, z: float) -> list[tuple[Shape, tuple[float, float]]]:
-    """Curves of a spline, one for each polynomial: a quadrature of few points a face is good for no more than that.
+    """Curves of a spline, one for each polynomial: quadratures over a face have points enough for one polynomial alone.
 
     Each has its start (x, y), mm. Raises ValueError for a periodic spline, RegionError for a piece that is too short.
     """
@@ -114,7 +115,7 @@ def _demand_long(length: Array) -> None:
 def inset(outline: ArcSpline, distance: float) -> ArcSpline:
     """Parallel `distance` mm inside a smooth outline: of each arc an arc about the same centre.
 
-    Raises RegionError where pieces meet at an angle, or an arc is sharper than that.
+    Raises RegionError where pieces meet at an angle, or an arc has no greater radius than that.
     """
     length, radius, flat = measures(outline)
     half = 2.0 * np.arctan(np.where(flat, 0.0, outline.bulges))

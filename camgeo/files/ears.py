@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices, Mask
 
-FREE, UNKNOWN = -1, -2  # in place of a vertex that is in an ear's way
+FREE, UNKNOWN = -1, -2  # in place of the vertex that blocks an ear: none does, or it is not tested yet
 MOST_PAIRS = 1 << 20  # of ears and vertices that are looked at together: 100 MB
 
 
@@ -36,6 +36,7 @@ def clip_ears(points: Array, loops: Sequence[Indices]) -> Indices:
     blocker = np.full(len(way), UNKNOWN)
     remaining = changed = np.arange(len(way))
     cut: list[Indices] = []
+    # a round: test the ears whose neighbours or blockers have changed, then cut those that are free and no neighbours
     while remaining.size > 2:
         before, after = np.empty((2, len(way)), dtype=np.intp)
         before[remaining], after[remaining] = np.roll(remaining, 1), np.roll(remaining, -1)
@@ -63,7 +64,10 @@ def clip_ears(points: Array, loops: Sequence[Indices]) -> Indices:
 
 
 def alternate(ear: Mask, most: int) -> Mask:
-    """Every other of each run of ears round a way, `most` in all; where every vertex is one, a run starts anywhere."""
+    """Every second ear of each run of ears (n,) round a way, `most` in all.
+
+    Where every vertex is an ear, the run starts anywhere.
+    """
     start = int(np.argmin(ear))
     turned = np.roll(ear, -start)
     place = np.arange(ear.size)
@@ -81,6 +85,7 @@ def _blockers(way: Indices, place: Array, ears: Indices, others: Indices) -> Ind
     low, high = place[ears].min(axis=1), place[ears].max(axis=1)
     first, last = np.searchsorted(x, low[:, 0], "left"), np.searchsorted(x, high[:, 0], "right")
     ends = np.cumsum(last - first)
+    # vertices within the x range of each ear, as many ears at a time as memory bears, then those within its rim
     begin = 0
     while begin < len(ears):
         end = max(begin + 1, int(np.searchsorted(ends, ends[begin] + MOST_PAIRS)))
@@ -114,7 +119,7 @@ def _bridge_holes(points: Array, loops: Sequence[Indices]) -> Indices:
 
 
 def _visible(points: Array, way: Indices, start: int) -> int | None:
-    """Place on the way of the nearest vertex right of a point that a bridge from there reaches, None without."""
+    """Place on the way of the nearest vertex to the right that a bridge from point `start` reaches; None without."""
     begin, places = points[start], points[way]
     before, after = np.roll(places, 1, axis=0), np.roll(places, -1, axis=0)
     right = np.flatnonzero(places[:, 0] > begin[0])
@@ -135,7 +140,7 @@ def _side(a: Array, b: Array, c: Array) -> int:
 
 
 def _is_crossed(begin: Array, end: Array, a: Array, b: Array, among: Mask) -> bool:
-    """Whether a segment meets one of the segments from a to b (n, 2), those among them that count (n,)."""
+    """Whether a segment meets a segment from a to b (n, 2); of these only those in the mask `among` (n,) count."""
     low, high = np.minimum(begin, end), np.maximum(begin, end)
     near = among & (np.maximum(a, b) >= low).all(axis=1) & (np.minimum(a, b) <= high).all(axis=1)
     a, b = a[near], b[near]

@@ -10,7 +10,10 @@ class MissingExtraError(CamgeoError, ImportError):
 
 
 class RegionError(CamgeoError, ValueError):
-    """A region that has no triangles: its boundary touches or crosses itself, or a hole reaches its edge."""
+    """No sound solid can be made of outlines.
+
+    An outline touches or crosses itself or another, a piece is too short or too sharp, or a body does not close.
+    """
 
 
 def demand_package(name: str, reason: str) -> None:

@@ -39,7 +39,10 @@ class Mesh:
 
 @dataclass(frozen=True, eq=False)
 class Item:
-    """A named mesh and its place (4, 3): the images of the three axes and of the origin; None: the mesh's own axes."""
+    """A named mesh and its place (4, 3): the images of the three axes, and of the origin, mm.
+
+    None leaves the mesh in its own axes.
+    """
 
     name: str
     mesh: Mesh
@@ -50,9 +53,10 @@ class Item:
 class MeshFacts:
     """Counts of a solid's mesh, and its distances from the exact part.
 
-    `vertices` and `bore_vertices` count the corners of the two loops; `dropped` vertices of the contour fell together
-    with their neighbours when they were rounded, which leaves the drawn line as it is. `displacement` is the farthest
-    that rounding moved a vertex; `bound` is the contour's bound and `bore_bound` the openings', both with it, in mm.
+    `vertices` counts the corners of the contours, `bore_vertices` those of the second outline of a prism, 0 without
+    one; `dropped` counts the vertices of contours that rounding made one with their neighbours, which leaves the drawn
+    line as it is. `displacement` is the farthest, mm, that rounding moved a vertex. `bound` is the contours' bound,
+    `bore_bound` that of openings and other edges, None without any, both with the displacement.
     """
 
     triangles: int
@@ -65,7 +69,7 @@ class MeshFacts:
 
 
 def closed_mesh(points: Array, triangles: Triangles, precision: Precision) -> Mesh:
-    """Mesh of rounded points (v, 3), mm, without duplicates, checked to be closed.
+    """Mesh of points (v, 3), mm, rounded here and without duplicates, checked to be closed.
 
     Triangles with corners that rounding merges are left out: their neighbours then meet. Raises RegionError where the
     mesh is not closed or a triangle has no area.

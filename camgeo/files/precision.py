@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Outline
     from kin.numeric.arrays import Array
 
-# Least tolerance that is accepted, in worst displacements of a vertex. The quarter that is left to the fit makes the
-# sagitta over two edges (8 e) twice the displacement, which rounding cannot turn into a dent. So it is of numbers in
-# which a file is saved again: a tolerance that is finer is kept by the file itself alone.
+# Least tolerance that is accepted, in worst displacements of a vertex. A quarter of it, e, is left to the fit. The
+# sagitta over two edges is then 8 e, twice the displacement, which rounding cannot turn into a dent. For the numbers in
+# which a file is saved again the same holds; a finer tolerance is kept by the file alone.
 _LEAST = 1.25
 
 
@@ -33,9 +33,9 @@ class Precision:
     """Precision of the coordinates of a file.
 
     file, name   as messages have them: "an STL", "single precision"
-    nearest      the number that is written for each of any array
-    spacing      at most how far two neighbouring numbers of a size (mm) are apart
-    again        coarser numbers in which other programs save the file again; None for none
+    nearest      gives the numbers that are written for an array of numbers, in its shape
+    spacing      upper bound, mm, of the distance between neighbouring numbers up to a size, mm
+    again        precision of coarser numbers in which other programs save the file again; None for none
     """
 
     file: str
@@ -45,7 +45,7 @@ class Precision:
     again: Precision | None = None
 
     def in_units(self, mm: float) -> Precision:
-        """Precision in mm of a file whose unit is `mm` mm long and whose numbers have this precision."""
+        """Precision, of lengths in mm, of a file whose unit is `mm` mm long and whose numbers have this precision."""
         if mm == 1.0:
             return self
 
@@ -61,11 +61,11 @@ class Precision:
         return nearest, float(np.sqrt(np.sum((nearest - points) ** 2, axis=1)).max())
 
     def number(self, value: float) -> float:
-        """Number as written, mm."""
+        """Length in mm as written."""
         return float(self.nearest(np.array([value]))[0])
 
     def bound(self, size: float) -> float:
-        """Farthest in mm that a plane point with coordinates up to `size` mm moves."""
+        """Greatest distance, mm, that rounding moves a plane point with coordinates up to `size` mm."""
         return math.sqrt(0.5) * self.spacing(abs(size))
 
     def fit_tolerance(self, tolerance: float, size: float) -> float:

@@ -32,15 +32,15 @@ _WORDS = {"BORE": "the bore", "CUT": "the outline"}  # what outlines on layers a
 def extruded_mesh(
     outlines: Sequence[LayerOutline], *, thickness: float, tolerance: float, precision: Precision
 ) -> tuple[Mesh, MeshFacts]:
-    """Closed solid over the region within the first outline, which holds all others, and outside of these; in mm.
+    """Closed solid within the first outline and outside all others, which lie in it, and facts on it; lengths in mm.
 
-    A polygon is a contour as it is fitted. A circle becomes a polygon that straddles it; arcs of other outlines are
-    chords between points of them. All loops keep within `tolerance` of what is meant after their rounding to
-    `precision`. Every edge belongs to two triangles, which run along it opposite ways. O(n log n) for a contour that
-    runs once round the shaft with a bore alone.
+    A polygon is a fitted contour. A circle becomes a polygon that straddles it; arcs of other outlines become chords
+    between points of them. All loops, rounded to `precision`, are within `tolerance` of the exact outlines. Every edge
+    belongs to two triangles, which run along it in opposite directions. O(n log n) for a contour that runs once round
+    the shaft with a bore alone.
 
     Raises ToleranceError where the tolerance cannot be held, RegionError where an outline is not simple or reaches
-    another, ValueError for a thickness that is not positive.
+    another, ValueError for a thickness that is not positive, TypeError for a spline.
     """
     if not (math.isfinite(thickness) and thickness > 0.0):
         raise ValueError(f"thickness must be > 0, not {thickness!r}")
@@ -53,20 +53,23 @@ def extruded_mesh(
 def pocketed_mesh(
     outlines: Sequence[LayerOutline], *, depth: float, thickness: float, tolerance: float, precision: Precision
 ) -> tuple[Mesh, MeshFacts]:
-    """Closed solid within the first outline, with a pocket between its two contours; lengths in mm.
+    """Closed solid within the first outline, with a pocket between its two contours, and facts on it; lengths in mm.
 
-    The pocket has a depth from the top face. All other outlines are holes through the solid and lie within the inner
-    contour or beyond the outer one. Raises ToleranceError where the tolerance cannot be held in the precision,
-    RegionError where outlines cross.
+    The contours are the two polygons among the outlines; the pocket reaches from the top face to `depth`. All other
+    outlines are holes through the solid and lie within the inner contour or beyond the outer one. Raises ToleranceError
+    where the tolerance cannot be held in the precision, RegionError where outlines cross, ValueError for more or fewer
+    polygons than two, TypeError for a spline.
     """
     for name, height in (("the thickness", thickness), ("the floor", thickness - depth)):
         precision.within(name, abs(precision.number(height) - height), tolerance)
     loops, facts = _round_all(outlines, tolerance, precision)
+    # loops by their numbers: the two contours, and the holes within the inner or beyond the outer one
     flanks = [k for k, layered in enumerate(outlines) if isinstance(layered.outline, Polygon)]
     inner, outer = sorted(flanks, key=lambda k: float(np.hypot(*loops[k].T).max()))
     holes = [k for k in range(1, len(loops)) if k not in flanks]
     within = [k for k in holes if _encloses(loops[inner], loops[k][0])]
     beyond = [k for k in holes if k not in within]
+    # each loop has its points twice, at the lower and at the upper end of its wall; a contour's begins on the floor
     floor, top = precision.number(thickness - depth), precision.number(thickness)
     sizes = np.array([len(loop) for loop in loops])
     first = np.cumsum(sizes) - sizes
@@ -162,9 +165,9 @@ def _turned(loops: list[Array]) -> tuple[list[Array], Triangles]:
 def rounded_loop(
     hole: ArcSpline, tolerance: float, precision: Precision, noun: str = "a hole"
 ) -> tuple[Array, float, float]:
-    """Vertices (n, 2) of a hole's polygon as written, its greatest error and the greatest shift of a vertex, mm.
+    """Vertices (n, 2) of a hole's polygon as written, its greatest error, and the greatest shift of a vertex, mm.
 
-    Raises ToleranceError where that is more than the tolerance.
+    Raises ToleranceError where the error is more than the tolerance; `noun` names the hole in it.
     """
     polygon, off = loop_polygon(hole, precision.fit_tolerance(tolerance, float(np.abs(hole.box()).max())))
     inner, moved = precision.rounded(polygon)
@@ -173,9 +176,10 @@ def rounded_loop(
 
 
 def loop_polygon(outline: ArcSpline, tolerance: float) -> tuple[Array, float]:
-    """Vertices (n, 2) of a polygon within `tolerance` of a closed outline, and how far it is off, mm.
+    """Vertices (n, 2) of a polygon within `tolerance` of a closed outline, and its greatest distance from it, mm.
 
-    A full circle, two halves, is straddled; any other keeps its points, and its arcs are chords between points of them.
+    A full circle, two halves, is straddled; any other outline keeps its points, and its arcs become chords between
+    points of them.
     """
     if (circle := outline.circle) is not None:
         polygon, off = bore_polygon(2.0 * circle[1], tolerance)

@@ -28,12 +28,15 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import ArcSpline
     from kin.numeric.arrays import Array
 
-BEYOND = 1.0  # mm by which what cuts reaches out of what is cut
+BEYOND = 1.0  # mm by which a cutting prism reaches out of the body, so that no two faces lie on each other
 
 
 @dataclass(frozen=True)
 class Cut:
-    """A closed outline cut from z `low` to `high`, mm; `island`: it lies within the inner contour round a pocket."""
+    """A closed outline cut from z `low` to `high`, mm.
+
+    `island` is whether it lies within the inner contour about a pocket.
+    """
 
     outline: ArcSpline
     low: float
@@ -43,7 +46,7 @@ class Cut:
 
 @dataclass(frozen=True)
 class Drill:
-    """A radial hole of this diameter in direction `at`, its axis at z, from the shaft out to `reach`.
+    """A radial hole in direction `at`, rad, its axis at z, from the shaft out to `reach`; lengths in mm.
 
     `slope` is the sine of the least angle at which its sides meet the bore.
     """
@@ -59,8 +62,8 @@ class Drill:
 class Solid:
     """A disc from z = 0 to `thickness` with a round boss from `low` to `high` and what is cut out of both; mm.
 
-    `boss` is its diameter, None without one; `chamfer` that of both edges of the outline, 0 for none. `floor` is the
-    height of a pocket between two contours, None without one.
+    `boss` is the diameter, None without one; `chamfer` the height of the chamfer along both edges of the outline, 0 for
+    none. `floor` is the z of the floor of a pocket between two contours, None without one.
     """
 
     thickness: float
@@ -74,11 +77,11 @@ class Solid:
 
 
 def joined_mesh(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
-    """Closed, oriented mesh of the solid over a polygon, mm, and its facts.
+    """Closed, oriented mesh, mm, of the solid over a polygon, and facts on it.
 
-    With a chamfer the polygon is taken to be fitted finely enough that its parallel inside is within the tolerance too.
-    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where an outline is not
-    simple or the chamfer too wide for the contour.
+    With a chamfer the polygon has to be fitted so finely that its parallel inside is within the tolerance too. Raises
+    ToleranceError where the tolerance cannot be held in the precision, RegionError where an outline is not simple or
+    the chamfer too wide for the contour.
     """
     outer, moved, dropped = rounded_contour(polygon, precision)
     bound = polygon.bound.widened(moved)
@@ -96,9 +99,10 @@ def completed_mesh(
     tolerance: float,
     precision: Precision,
 ) -> tuple[Mesh, MeshFacts]:
-    """Closed, oriented mesh, mm, of a manifold3d disc joined with its boss, its openings cut out, and its facts.
+    """Closed, oriented mesh, mm, of a disc with its boss joined to it and its openings cut out, and facts on it.
 
-    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where a body is not sound.
+    `part` is the disc as a body of manifold3d, `facts` are those on the disc. Raises ToleranceError where the tolerance
+    cannot be held in the precision, RegionError where a body is not sound.
     """
     moved, bound = facts.displacement, facts.bound
     for height in (solid.thickness, solid.low, solid.high, solid.chamfer):
@@ -124,6 +128,7 @@ def completed_mesh(
         part -= manifold(*prism(loop, low, cut.high + BEYOND, precision))
     for drill in solid.drills:
         part -= manifold(*_drill(drill, fine, precision))
+    # slivers that had to be closed move walls of the contour and of openings alike
     mesh, merged = mesh_of_body(part, precision)
     bound, off, moved = bound.widened(merged), off + merged, moved + merged
     precision.within("the contour", bound.worst, tolerance)
@@ -148,10 +153,10 @@ def manifold(points: Array, triangles: Triangles) -> Any:  # noqa: ANN401 - mani
 
 
 def mesh_of_body(part: Any, precision: Precision) -> tuple[Mesh, float]:  # noqa: ANN401 - manifold3d has no types
-    """Mesh of a manifold3d body, and by how much its walls were moved to close it, mm: 0 but for slivers.
+    """Mesh of a manifold3d body, and the distance, mm, that its walls were moved to close it: 0 but for slivers.
 
-    Where walls cross at a slant, corners may lie so close that they are one once rounded, and what lay between them is
-    left open. Edges that short are then made points before. Raises RegionError where it does not close even so.
+    Where walls cross at a slant, corners may lie so close that rounding makes them one, which leaves a gap. Edges that
+    short are then made points before rounding. Raises RegionError where the mesh does not close even so.
     """
     points, triangles = _arrays(part)
     try:
@@ -170,7 +175,8 @@ def _arrays(part: Any) -> tuple[Array, Triangles]:  # noqa: ANN401 - manifold3d 
 def prism(loop: Array, low: float, high: float, precision: Precision) -> tuple[Array, Triangles]:
     """Points (2 n, 3) and triangles of the closed prism from z `low` to `high` over a counter-clockwise loop (n, 2).
 
-    The loop is rounded to `precision` already.
+    The loop has to be rounded to `precision`; the heights are rounded here. Raises RegionError for a loop that is not
+    simple.
     """
     return _stack([(loop, low), (loop, high)], disc(loop), precision)
 
@@ -185,7 +191,7 @@ def _disc(outer: Array, thickness: float, chamfer: float, precision: Precision) 
 
 
 def inset(loop: Array, distance: float) -> Array:
-    """Polygon whose edges lie `distance` inside those of a counter-clockwise loop (n, 2), vertex for vertex.
+    """Polygon (n, 2) whose edges lie `distance` inside those of a counter-clockwise loop (n, 2), vertex for vertex; mm.
 
     Raises RegionError where an edge would vanish.
     """

@@ -49,7 +49,7 @@ def ring(outer: Array, inner: Array) -> Triangles:
 
 
 def region(outer: Array, inners: Sequence[Array]) -> Triangles:
-    """Triangles, counter-clockwise, of a loop (n, 2) with several holes (m, 2) in it; all counter-clockwise.
+    """Triangles, counter-clockwise, of a loop (n, 2) with any number of holes (m, 2) in it; all counter-clockwise.
 
     Indices count through the loop and the holes in their order. A loop alone goes to `disc`, one hole to `ring`, more
     to `clip_region`. Raises RegionError where a loop is not simple or a hole reaches another.
@@ -73,7 +73,10 @@ def disc(outer: Array) -> Triangles:
 
 
 def star_shaped(loop: Array, centre: Array | None = None) -> bool:
-    """Whether a loop (n, 2) runs exactly once counter-clockwise round a centre (the origin), never turning back."""
+    """Whether a loop (n, 2) runs exactly once counter-clockwise round a centre, never turning back.
+
+    The centre is by default the origin.
+    """
     about = np.zeros(2) if centre is None else centre
     following = np.roll(loop, -1, axis=0)
     if not bool(np.all(sides(np.broadcast_to(about, loop.shape), loop, following) > 0)):
@@ -109,10 +112,10 @@ def _all_positive(points: Array, triangles: Triangles) -> bool:
 
 
 def _merge(outer: Array, inner: Array) -> Triangles:
-    """Join two loops about the origin: each edge to the vertex of the other loop that its middle looks at.
+    """Join two loops about the origin: each edge to the vertex of the other loop in the direction of its middle.
 
-    The edges of both are put in the order of the angle of their middles; going round in that order, an edge of one
-    loop is joined to the vertex then reached on the other.
+    The edges of both are put in the order of the angle of their middles; going round in that order, an edge of a loop
+    is joined to the vertex then reached on the other loop.
     """
     n, m = len(outer), len(inner)
     middles = [_angles(loop + np.roll(loop, -1, axis=0)) for loop in (outer, inner)]
@@ -149,7 +152,7 @@ def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], Indices]:
 
 
 def _ears(points: Array, ways: list[Indices]) -> Triangles:
-    """Triangles of the region left of loops: by manifold3d, flat ones among them; where that is not there by numpy."""
+    """Triangles of the region left of loops: by manifold3d, some of them flat; by numpy where that is not installed."""
     if len(points) == 3:
         return ways[0][[[2, 0, 1]]]
     try:
@@ -161,10 +164,10 @@ def _ears(points: Array, ways: list[Indices]) -> Triangles:
 
 
 def _without_flat(points: Array, triangles: Triangles) -> Triangles | None:
-    """Triangles that all run counter-clockwise, of triangles some of which are flat or turned over; None without.
+    """Triangles of the same region that all run counter-clockwise, where some are flat or turned over; None without.
 
-    A flat triangle's longest edge passes through its third corner. There it is cut, and with it the neighbour over
-    that edge: two triangles become two others. Where the neighbour is flat as well, others come first.
+    The longest edge of a flat triangle passes through its third corner. There it is cut, and with it the neighbour over
+    that edge: two triangles become two others. Where the neighbour is flat as well, other flat triangles come first.
     """
     flat = deque(np.flatnonzero(sides(*(points[corner] for corner in triangles.T)) <= 0).tolist())
     if not flat:
