@@ -33,9 +33,10 @@ def drawing_format(
 ) -> Format:
     """Record of a format of drawings.
 
-    `draw` writes one file: (job, request, path, outlines on layers, remarks); it returns the checks of what the file
-    has besides these. `more` are options of the format, which stand in the names of its files and in reports; `path` is
-    whether it shows the path of the cutter.
+    `draw`, (job, request, path, outlines on layers, remarks), writes one file and returns the checks of all else that
+    the file has. `more` are options of the format, which stand in the names of its files and in reports; `path` is
+    whether it shows the path of the cutter. `check`, (values of the file, values of the recipe, reader), notes faults
+    of the options; `foresee` refuses a file before anything is fitted.
     """
     named = tuple(item.name for item in more)
 

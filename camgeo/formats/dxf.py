@@ -110,14 +110,15 @@ def write_dxf(
 
     A polygon becomes one closed LWPOLYLINE, arcs one with bulges (in R12 a POLYLINE), a B-spline a SPLINE by its
     control points and knots, a circle a CIRCLE. All lengths are given in mm; the drawing's unit is `mm` mm long (1.0 or
-    25.4), stated in the header and, since R12 knows no such header, in a comment on top. `$EXTMIN` and `$EXTMAX` are
-    the exact extremes of all that is drawn. `name`, `about` and `remarks` go into comments. `annotate` draws further
+    25.4), stated in the header and, since R12 has no such header, in a comment on top. `$EXTMIN` and `$EXTMAX` are the
+    exact extremes of all that is drawn. `name`, `about` and `remarks` go into comments. `annotate` draws further
     contents on layers of its own and returns their extremes in drawing units.
 
     Nothing is drawn twice: shapes of the reference that coincide become one entity with all their names.
 
     Raises ValueError for another version or unit, for a spline in R12, for a contour that comes twice through a point,
-    and for a circle or a span without extent; OSError where the file cannot be written.
+    and for a circle or a span without extent; ModuleNotFoundError without ezdxf, OSError where the file cannot be
+    written.
     """
     if version not in VERSIONS:
         raise ValueError(f"DXF version must be one of {', '.join(VERSIONS)}, not {version!r}")
@@ -163,7 +164,7 @@ def _draw_layer(space: Modelspace, layered: LayerOutline, mm: float) -> Box:
 
 
 def _draw_reference(space: Modelspace, reference: Sequence[Reference], mm: float) -> list[Box]:
-    """Add what is drawn to look at, each shape with its names; returns the extremes of each in drawing units."""
+    """Add the reference geometry, each shape with its names; returns the extremes of each shape in drawing units."""
     boxes = []
     for item, names in _distinct(reference):
         if isinstance(item, ReferenceCircle):
@@ -181,7 +182,7 @@ def _draw_reference(space: Modelspace, reference: Sequence[Reference], mm: float
 
 
 def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: list[str]) -> None:
-    """Write a drawing as Drawing.saveas does, but with this header, in which ezdxf would put the time."""
+    """Write a drawing as `Drawing.saveas` of ezdxf does, but with this header: ezdxf would put the time into it."""
     from ezdxf.document import CREATED_BY_EZDXF, WRITTEN_BY_EZDXF
     from ezdxf.lldxf.tagwriter import TagWriter
 
@@ -201,7 +202,7 @@ def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: lis
 
 
 def _order_classes(drawing: Drawing) -> None:
-    """Put the classes of entities in use in one order: ezdxf takes them from a set of texts, which differs by run."""
+    """Put the classes of entities in use into one order: ezdxf takes them from a set, whose order differs by run."""
     from ezdxf.sections.classes import REQ_R2004, REQUIRED_CLASSES
 
     always = REQUIRED_CLASSES.get(drawing.dxfversion, REQ_R2004)
@@ -323,7 +324,7 @@ def _draw(
 
 
 def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[LayerOutline]]:
-    """The path of the cutter's centre where it is to be shown, and whether the cutter reaches everything."""
+    """Checks that the cutter reaches the whole contour, and the paths of its centre; empty where none is shown."""
     manufacture = job.recipe.manufacture
     if manufacture is None or not manufacture.layer or request.compensation is not None:
         return [], []

@@ -1,7 +1,7 @@
 """Meshes as binary glTF 2.0, to look at: one node a body, coloured, with its motion over one turn of the shaft.
 
 glTF is in metres with y upward, so a point (x, y, z) in mm stands there at (x, z, -y)/1000 in single precision, and an
-angle about z becomes one about its y. Normals are left out: a viewer then shades every triangle flat.
+angle about z becomes an angle about the y axis of glTF. Normals are left out: a viewer then shades every triangle flat.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array
 
-PERIOD = 4.0  # seconds
+PERIOD = 4.0  # seconds of a turn in a viewer
 _METRE = 1e-3  # of a mm
 _FLOAT, _INDEX = 5126, 5125  # single precision, unsigned whole numbers of 32 bits
 _POINTS, _TRIANGLES = 34962, 34963  # what a part of the buffer is for
@@ -53,7 +53,10 @@ class Actor:
 
 
 def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
-    """Write bodies and their motion over one turn; raises OSError where the file cannot be written."""
+    """Write bodies and their motion over one turn, as a scene named `title`.
+
+    Raises OSError where the file cannot be written.
+    """
     buffer = _Buffer()
     nodes: list[dict[str, Any]] = []
     meshes: list[dict[str, Any]] = []
@@ -65,6 +68,7 @@ def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
         meshes.append(_mesh(buffer, actor, k))
         materials.append(_material(actor))
         shift = _y_up(np.column_stack((actor.pose[:, :2], np.zeros(len(actor.pose)))))
+        # a turn by a about y is the quaternion (0, sin a/2, 0, cos a/2)
         half = 0.5 * actor.pose[:, 2]
         zero = np.zeros(len(half))
         turn = np.column_stack((zero, np.sin(half), zero, np.cos(half))).astype("<f4")
@@ -72,6 +76,7 @@ def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
         steps = len(actor.pose)
         if steps == 1:
             continue
+        # bodies with equally many steps share their times; a viewer interpolates place and turn between them
         if steps not in times:
             clock = np.linspace(0.0, PERIOD, steps).astype("<f4").reshape(-1, 1)
             times[steps] = buffer.append(clock, "SCALAR", None, bounds=True)
@@ -106,7 +111,10 @@ class _Buffer:
         self.accessors: list[dict[str, Any]] = []
 
     def append(self, values: NDArray[Any], shape: str, target: int | None, *, bounds: bool = False) -> int:
-        """Append an array (n, k) of 4-byte numbers; the number of its accessor."""
+        """Append an array (n, k) of 4-byte numbers; returns the number of its accessor.
+
+        `shape` is glTF's word for a row, `target` what the rows are for; with `bounds` the accessor has their extremes.
+        """
         view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes}
         if target is not None:
             view["target"] = target
@@ -176,7 +184,7 @@ def make_view(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit and write the cam, turning once, for viewers.
 
     Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
-    solid; SurroundingsError for a missing package, OSError where the file cannot be written.
+    solid; OSError where the file cannot be written. A missing package is refused before, by `foresee` of the format.
     """
     from camgeo.output.job import unjudged
     from camgeo.output.solid import cam_meshes

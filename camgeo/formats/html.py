@@ -29,7 +29,7 @@ OVERLAYS = {
 
 
 def _read_overlays(reader: Reader, field: Field, node: Node, path: str) -> tuple[str, ...]:
-    """Names of overlays that the cam's family has, each once; faults are noted."""
+    """Names of the overlays listed that the cam's family has, each once; the faults of others are noted."""
     linked = bool(reader.kinds["linkage"])
     available = [name for name, need in OVERLAYS.items() if not need or (need in reader.offers and not linked)]
     names: list[str] = []

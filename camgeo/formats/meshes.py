@@ -30,7 +30,7 @@ def mesh_format(
 ) -> Format:
     """Record of a format whose files hold one mesh each.
 
-    numbers  precision of the numbers of a file
+    numbers  gives the precision of the numbers of a file
     write    writes one mesh, whose points have that precision: (path, [mesh], title, mm of the unit, about)
     units    whether a file states its unit
     """
@@ -52,7 +52,7 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Fit, write, read back and judge the meshes of a file.
 
     Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
-    solid; SurroundingsError for a missing package, OSError where the file cannot be written.
+    solid; OSError where the file cannot be written. A missing package is refused by `foresee_mesh`.
     """
     from camgeo.output.solid import make_mesh as make
 

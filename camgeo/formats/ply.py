@@ -1,4 +1,4 @@
-"""Meshes as binary PLY in double precision, in mm unless another unit is asked for; the format states no unit."""
+"""Meshes as binary PLY in double precision, in mm unless a recipe gives another unit; the format states no unit."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
 
 
 def write_ply(path: Path, items: Sequence[Item], title: str, mm: float, _about: str) -> None:
-    """Write the only mesh of `items`, mm, with coordinates in a unit of `mm` mm.
+    """Write the only mesh of `items`, mm, with coordinates in a unit of `mm` mm and the title in a comment.
 
     Raises OSError where the file cannot be written, ValueError for several meshes.
     """
     (item,) = items
     mesh, numbers = item.mesh, _numbers()
-    points = mesh.points if mm == 1.0 else numbers.nearest(mesh.points / mm)  # which the quotient has missed
+    points = mesh.points if mm == 1.0 else numbers.nearest(mesh.points / mm)  # the quotient of a rounded number
     faces = np.empty(len(mesh.triangles), dtype=_FACE)
     faces["count"], faces["corners"] = 3, mesh.triangles
     comment = f"camgeo: in {'inches' if mm == INCH else 'mm'}, z upwards. {' '.join(title.split())}"

@@ -41,7 +41,7 @@ REAL = "%.16E"
 
 
 class StepBody(NamedTuple):
-    """A solid in its outlines, outermost first, mm; its own name, and the height at which it stands, mm."""
+    """A solid in its outlines, outermost first, mm, its own name, and the z of its lower face, mm."""
 
     outlines: Sequence[LayerOutline]
     solid: Solid
@@ -58,7 +58,7 @@ def write_step(
     name: str = "",
     about: str = "",
 ) -> Bound:
-    """Write solids in a unit, each a product of its own; the proved bound of the written contours, mm.
+    """Write solids in a unit, each a product of its own; returns the proved bound of the written contours, mm.
 
     Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError
     where a piece is too short for the kernel, an arc is sharper than the chamfer, a cross hole divides a solid, or the
@@ -88,9 +88,10 @@ def write_stack(
     name: str = "",
     about: str = "",
 ) -> float:
-    """Write outlines one above the other, each from z to z, mm; the greatest distance of the written walls, mm.
+    """Write one solid of prisms one above the other; returns the greatest distance of its walls from the outlines, mm.
 
-    Of two neighbours one has to lie within the other. Raises MissingExtraError without the kernel, RegionError where a
+    `stretches` are (outline, z below, z above), mm, from below; of two neighbouring outlines one has to lie within the
+    other. `bore` goes through all of them. Raises MissingExtraError without the kernel, RegionError where a
     piece is too short for the kernel or the kernel finds the solid unsound, OSError where the file cannot be written.
     """
     need_kernel()
@@ -99,7 +100,7 @@ def write_stack(
 
 
 def wall_error(outline: Outline, units: str) -> float:
-    """Greatest distance of written walls from an outline, mm: misfits of circles and rounding in another unit."""
+    """Greatest distance of written walls from an outline, mm: misfits of circles, and rounding in inches."""
     return misfit(outline) + (0.0 if units == "mm" else conversion_error(outline))
 
 
@@ -200,7 +201,7 @@ def _string(text: str) -> Any:  # noqa: ANN401 - the kernel has no types
 
 
 def make_step(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Fit, write, read back and judge one STEP file; without the kernel nothing is fitted.
+    """Fit, write, read back and judge one STEP file with all discs; without the kernel nothing is fitted.
 
     Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and outlines that make no sound
     solid; SurroundingsError without the kernel, OSError where the file cannot be written.

@@ -1,4 +1,4 @@
-"""Meshes as binary STL, in millimetres unless another unit is asked for."""
+"""Meshes as binary STL, in millimetres unless a recipe gives another unit."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RECORD = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribut
 
 
 def write_stl(path: Path, mesh: Mesh, *, mm: float = 1.0, about: str = "") -> None:
-    """Write a mesh, mm, whose points are in single precision already as numbers of a unit of `mm` mm.
+    """Write a mesh, mm, whose points are numbers in single precision of a unit of `mm` mm; `about` ends the header.
 
     Raises OSError where the file cannot be written.
     """

@@ -4,9 +4,9 @@ The groups have the names of a DXF's layers, and the numbers are those of a DXF:
 upwards by a transform. Reference geometry is left out, since many machines cut whatever a drawing shows.
 
 SVG gives an arc by its ends, radius and flags, from which near half a turn nothing can be stated exactly: an error e of
-the radius moves the arc by up to sqrt(2 r e). Every arc is cut into such of a quarter turn at most. There the half
-chord is the radius times the sine of up to 45 degrees, and rounding of the numbers moves the arc by no more than a few
-roundings of its size, some 1e-15 of it.
+the radius moves the arc by up to sqrt(2 r e). Every arc is cut into arcs of a quarter turn at most. Their half chord is
+the radius times the sine of up to 45 degrees, and rounding of the numbers moves the arc by no more than a few roundings
+of its size, some 1e-15 of it.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ def write_svg(
     a unit of the drawing is `mm` mm long (1.0 or 25.4), which the page's width and height and its viewBox state. `name`
     becomes the title; `about` and `remarks` the description.
 
-    Raises ValueError for a unit or a spline that SVG does not have, and for a circle without extent; OSError where
-    the file cannot be written.
+    Raises ValueError for another unit, a spline that is not cubic, and a circle without extent; KeyError for a layer
+    that is neither cut nor engraved, OSError where the file cannot be written.
     """
     if mm not in UNITS:
         raise ValueError(f"a drawing unit must be 1.0 or 25.4 mm, not {mm!r}")
@@ -95,7 +95,7 @@ def _box(layered: LayerOutline) -> Box:
 
 
 def _page(boxes: Sequence[Box], mm: float) -> tuple[str, str, str, str]:
-    """Left, top, width and height of the page in drawing units, y downwards, as the viewBox has it."""
+    """Texts of left, top, width and height of the page in drawing units, y downwards, as the viewBox has them."""
     margin = _MARGIN / mm
     x_low, y_low, x_high, y_high = zip(*boxes, strict=True)
     x_min, y_min, x_max, y_max = (value / mm for value in (min(x_low), min(y_low), max(x_high), max(y_high)))

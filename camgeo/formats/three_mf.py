@@ -1,7 +1,7 @@
 """Meshes as 3MF, the zip archive that slicers read; by the core specification 1.3 alone.
 
-An object a body, named; an item of the build a place. Coordinates are the shortest decimals that give back the doubles.
-The archive has no dates and a fixed order, so that the same meshes give the same bytes.
+Each body is a named object, and an item of the build gives its place. Coordinates are the shortest decimals that give
+back the doubles. The archive has no dates and a fixed order, so that the same meshes give the same bytes.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def write_3mf(path: Path, items: Sequence[Item], *, title: str, mm: float = 1.0,
 def _mesh(mesh: Mesh, mm: float) -> Iterable[str]:
     from camgeo.files.precision import DECIMALS
 
-    points = mesh.points if mm == 1.0 else DECIMALS.nearest(mesh.points / mm)  # which the quotient has missed
+    points = mesh.points if mm == 1.0 else DECIMALS.nearest(mesh.points / mm)  # the quotient of a rounded number
     yield "<vertices>"
     x, y, z = (map(number, column) for column in points.T.tolist())
     for a, b, c in zip(x, y, z, strict=True):

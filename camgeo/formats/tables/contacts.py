@@ -28,12 +28,13 @@ NOTHING = 1e-14  # of the cam's size: rounding about a coordinate that is 0
 def contact_table(
     recipe: Recipe, design: Design, motion: tuple[tuple[str, ...], Array]
 ) -> tuple[tuple[str, ...], Array]:
-    """Column names and rows (angles + 1, k): those of the motion table, then four of each contact.
+    """Column names and rows (angles + 1, k): the columns of the motion table, then four of each contact.
 
-    They are the radius of curvature of the metal, below 0 in a hollow and nan where it is straight, the pressure angle
-    in degrees, above 0 where the cam pushes the follower out, and the place of contact. nan where a trimmed cam is not
-    touched. At a break the radius is the one that follows, at the end of the turn the one that precedes. Raises
-    ValueError where a failed check prevents the contour.
+    `motion` has names and rows of the motion table, over equal steps of the shaft. The columns of a contact are the
+    radius of curvature of the metal, below 0 in a hollow and nan where it is straight, the pressure angle in degrees,
+    above 0 where the cam pushes the follower out, and x and y of the place of contact. All are nan where a trimmed cam
+    is not touched. At a break the radius is that after it, at the end of the turn that before it. Raises ValueError
+    where a failed check prevents the contour.
     """
     from camgeo.curve.measures import touched
 

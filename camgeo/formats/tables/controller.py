@@ -43,7 +43,7 @@ def _write(path: Path, columns: Sequence[str], rows: Array, head: Sequence[str])
 
 
 def fixed(value: float) -> str:
-    """Text of a number without an exponent, which the manual does not mention, to nine decimals."""
+    """Text of a number to nine decimals without an exponent, since the manual mentions none."""
     text = f"{value:.{PLACES}f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
@@ -51,18 +51,19 @@ def fixed(value: float) -> str:
 def write_curve_points(path: Path, _columns: Sequence[str], rows: Array, _head: Sequence[str]) -> None:
     """Write a curve point table of SEW-EURODRIVE's MOVI-C, in the layout of `kin.read.curve_points`.
 
-    The number of rows, then master and slave of each (n, 2); the layout has no heading and no remarks.
+    The file has the number of rows, then master and slave of each row of `rows` (n, 2), without heading and remarks.
+    Raises OSError where it cannot be written.
     """
     lines = [str(len(rows)), *(f"{fixed(master)};{fixed(slave)}" for master, slave in rows.tolist())]
     path.write_bytes("".join(f"{line}\n" for line in lines).encode("ascii"))
 
 
 class Controller(NamedTuple):
-    """A controller: how it interpolates between the rows of its table, and the layout of that.
+    """A controller: how it interpolates between the rows of its table, and the layout of the table.
 
-    `join` is the interpolation, `layout` the layout's name, `word` what the maker's document says of `join`. `finest`
-    is the least step between rows, degrees, as the controller takes no more rows. `number` writes a position or a rate,
-    `write` the table with the names of its columns and the lines of its head.
+    `join` is the interpolation, `layout` the layout's name, `word` where `join` is documented. `finest` is the least
+    step between rows, degrees, as the controller takes no more rows. `number` gives the text of a position or a rate;
+    `write` writes the table: (path, names of columns, rows, lines of the head).
     """
 
     join: Join
@@ -117,9 +118,10 @@ def check(file: Values, values: Values, reader: Reader) -> None:
 
 
 def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Write a table with the step that is given, or the widest that holds the tolerance; read it back and judge it.
+    """Write a table with the step of the request, or the widest that holds the tolerance; read it back and judge it.
 
-    Raises RecipeErrors where no step, or not the one given, holds the tolerance in a table of this controller.
+    Raises RecipeErrors where the step of the request, or any step of this controller, does not hold the tolerance;
+    OSError where the file cannot be written.
     """
     from camgeo.output.job import MadeFiles
     from camgeo.synthesis.intent import permitted
@@ -151,7 +153,10 @@ def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
 
 class _Rows:
-    """Rows of the motion for a controller: from its lowest place, in the unit of the file, rounded as written."""
+    """Rows of the motion for a controller, above its lowest place and rounded as in the file.
+
+    `unit` is the unit of positions in the file, `scale` that unit in mm or rad.
+    """
 
     def __init__(self, job: Job, request: FileRequest) -> None:
         recipe, exact = job.recipe.in_units_of(request), job.design.exact
@@ -187,7 +192,7 @@ class _Rows:
         return joined.off(self.position, self.breaks)[0]
 
     def error(self, count: int) -> float:
-        """Greatest distance of so many joined rows from the motion, mm or rad."""
+        """Greatest distance of `count` + 1 joined rows of a turn from the motion, mm or rad."""
         return self.off(self.joined(count))
 
     def table(self, joined: JoinedRows) -> tuple[tuple[str, ...], Array]:

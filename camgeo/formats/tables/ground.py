@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def ground_form(name: str, check: Callable[[Values, Values, Reader], None], *more: str) -> Form:
-    """Make the record of a table by which a lobe is ground, with `more` options.
+    """Record of the form `name`, a table by which a lobe is ground; `more` are options beside step and tolerance.
 
-    `check` notes what a recipe lacks for it.
+    `check`, (values of the file, values of the recipe, reader), notes what a recipe lacks for it.
     """
 
     def checked(file: Values, values: Values, reader: Reader) -> None:
@@ -40,8 +40,8 @@ def _check(file: Values, values: Values, reader: Reader) -> None:
 def make_ground(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Write a table, read it back and judge the metal that its wheel leaves.
 
-    Raises RecipeErrors for a wheel that is not given, a wheel or roller that the contour does not let in, a contour
-    with corners, and a step or tolerance that cannot be held; OSError where the file cannot be written.
+    Raises RecipeErrors for a wheel that is not given, a wheel or roller too large for a hollow of the contour, a
+    contour with corners, and a step or tolerance that cannot be held; OSError where the file cannot be written.
     """
     from camgeo.files.table import write_table
     from camgeo.fit.bound import Bound

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 def motion_columns(job: Job, request: FileRequest) -> Columns:
     """Column names and rows (angles + 1, k) over equal steps of the shaft.
 
-    Lengths are in the unit of the file, angles in degrees; derivatives are by rad of the shaft, but where a column says
-    otherwise.
+    Lengths are in the unit of the file, angles in degrees; derivatives are by rad of the shaft, unless the name of a
+    column has another unit.
     """
     recipe = job.recipe.in_units_of(request)
     if job.design.driven is not None:

@@ -1,7 +1,7 @@
 """A list of points that CAD systems import as a curve: x, y, z on each line, the first point again at the end.
 
-It is assumed that a CAD system draws the closed cubic spline over the lengths of their chords. That spline is read back
-from the file and judged as a contour. Without a step the points are as far apart as the tolerance allows.
+It is assumed that a CAD system draws the closed cubic spline whose parameter is the length of the chords. That spline
+is read back from the file and judged as a contour. Without a step the points are as far apart as the tolerance allows.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 SHARES = tuple(k / 10.0 for k in range(1, 10))  # of the way between two points, where the spline is looked at
 FEET = 2  # steps to the foot of such a place on the contour
 MARGIN = 0.95  # of the tolerance that an estimate may take: the judge has the last word
-CUBIC = np.array([[1, -3, 3, -1], [0, 3, -6, 3], [0, 0, 3, -3], [0, 0, 0, 1]], dtype=float)  # Bernstein's, by powers
+# coefficients of Bernstein's four cubics, a row each, by the powers 0 to 3
+CUBIC = np.array([[1, -3, 3, -1], [0, 3, -6, 3], [0, 0, 3, -3], [0, 0, 0, 1]], dtype=float)
 
 
 def check(file: Values, _: Values, reader: Reader) -> None:
@@ -44,13 +45,13 @@ def check(file: Values, _: Values, reader: Reader) -> None:
 
 
 class _Points(NamedTuple):
-    """The contour as points at equal steps of its parameter, mirrored as the recipe has it."""
+    """The contour as points at equal steps of its parameter; with `sense` -1 mirrored about the x axis."""
 
     contour: Curve
     sense: float
 
     def at(self, shares: Array) -> tuple[Array, Array, Array]:
-        """Points, unit normals, and derivatives of the points by the share, (n, 2) each, at shares of the way (n,)."""
+        """Points, unit normals, and derivatives of the points by the share, (n, 2) each, at shares (n,) of the turn."""
         (run,) = self.contour.runs
         width = run.high - run.low
         frame = self.contour.sample(run.low + width * shares)
@@ -65,7 +66,7 @@ class _Points(NamedTuple):
             places = (np.arange(count) + share) / count
             point, normal, rate = self.at(places)
             between = np.tensordot(control, weights, axes=(1, 0))
-            for _ in range(FEET):  # the point of equal share stands aside along the curve: what counts is across it
+            for _ in range(FEET):  # Newton's steps along the contour to the foot of each place of the spline
                 aside = np.sum((between - point) * rate, axis=1) / np.sum(rate * rate, axis=1)
                 places = places + np.clip(aside, -0.5 / count, 0.5 / count)
                 point, normal, rate = self.at(places)
@@ -74,9 +75,10 @@ class _Points(NamedTuple):
 
 
 def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Write the points by the step that is given, or the widest that holds the tolerance, and judge their spline.
+    """Write the points by the step of the request, or the widest that holds the tolerance, and judge their spline.
 
-    Raises RecipeErrors for a contour with corners, and where no number of points holds the tolerance.
+    Raises RecipeErrors for a contour with corners, and where the step, or any number of points, does not hold the
+    tolerance; OSError where the file cannot be written.
     """
     from camgeo.output.job import MadeFiles
     from camgeo.synthesis.intent import intended, permitted

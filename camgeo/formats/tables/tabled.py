@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
     Columns: TypeAlias = tuple[tuple[str, ...], Array]
 
-TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
+TICKS = 10_000  # in a degree: steps are whole numbers of them, so that angles have four decimals
 WHOLE = 1e-9  # rad by which steps may miss a turn
 
 
 def check_step(file: Values, reader: Reader) -> None:
-    """Note a step between rows that does not divide a turn."""
+    """Note in the reader a step between rows that does not divide a turn."""
     if "step" in file:
         count = round(TURN / file["step"])
         if abs(count * file["step"] - TURN) > WHOLE:
@@ -35,10 +35,11 @@ def check_step(file: Values, reader: Reader) -> None:
 
 
 def fewest_rows(error: Callable[[int], float], most: float, finest: float = FINEST) -> int | None:
-    """Number of rows of a turn, about the fewest, whose `error` is at most `most`, in its unit; None if none is enough.
+    """Number of steps of a turn, about the fewest, whose error is at most `most`; None where no number is enough.
 
-    Steps between rows divide a turn and are whole 1/10000 degrees, from COARSEST down to `finest` degrees. The search
-    takes finer steps to err less; where some err more, fewer rows might do.
+    `error` gives the error of a number of steps, in the unit of `most`. Steps divide a turn and are whole 1/10000
+    degrees, from COARSEST down to `finest` degrees. The search assumes that finer steps err less; where some err more,
+    fewer might be enough.
     """
     whole = 360 * TICKS
     ticks = [tick for tick in range(int(COARSEST * TICKS), round(finest * TICKS) - 1, -1) if whole % tick == 0]
@@ -56,7 +57,10 @@ def fewest_rows(error: Callable[[int], float], most: float, finest: float = FINE
 def table_maker(
     stage: str, columns: Callable[[Job, FileRequest], Columns], *, gaps: bool = False
 ) -> Callable[[Job, FileRequest, Path], MadeFiles]:
-    """Function that writes a table of these columns in a stage of the run; with `gaps` nan is an empty cell."""
+    """Function `make` of a form that writes a table of these columns, which nothing judges, in a stage of the run.
+
+    `columns` gives the names of columns and the rows; with `gaps` nan becomes an empty cell.
+    """
 
     def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
         from camgeo.output.job import unjudged
