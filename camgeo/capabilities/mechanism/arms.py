@@ -1,7 +1,7 @@
 """Arms: Wunderlich's with two rollers under the cam, and a rigid pair of flat faces round it; rollers on pins.
 
-The arm lies between base and cam, its rollers are in the plane of the cam above it: so its pivot may be under the cam,
-as in W Figure 5, and no bracket has to reach over it.
+An arm with rollers lies between base and cam, its rollers in the plane of the cam above it. So its pivot may be under
+the cam, as in W Figure 5, and no bracket has to reach over the cam. An arm's origin is its pivot.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SIDES = ((-1.0, "a"), (1.0, "b"))
 
 @dataclass(frozen=True)
 class ArmHeights:
-    """Heights, mm: of the carrier, from `low` to `high`, of the cam's disc, and of what touches the cam."""
+    """Heights z, mm: the carrier of a foot from `low` to `high`, the cam's disc, and the body that touches the cam."""
 
     low: float
     high: float
@@ -46,7 +46,7 @@ class ArmHeights:
 
     @staticmethod
     def over_base(drive: Drive) -> ArmHeights:
-        """Levels with the carrier over the base and the cam over both; with a groove the carrier is over the cam.
+        """Heights with the carrier over the base and the cam over both; with a groove the carrier is over the cam.
 
         Raises BodyError for a groove too shallow for a roller.
         """
@@ -66,10 +66,10 @@ class ArmHeights:
 
 @dataclass(frozen=True)
 class Foot:
-    """The part of a follower in the plane of the cam, above its carrier, in whose axes it is.
+    """The part of a follower in the plane of the cam, in the axes of the carrier to which it belongs.
 
-    `end` is where the carrier ends under it, `plates` are one with the carrier, `members` run on it; `touches` is the
-    name of the body that touches the cam.
+    The carrier ends at `end`, mm. `plates` are one piece with the carrier; `members` are roller and retainer on it;
+    `touches` is the name of the body that touches the cam.
     """
 
     end: Point
@@ -86,9 +86,11 @@ def roller_foot(
     *,
     names: tuple[str, str] = ("roller", "roller"),
 ) -> Foot:
-    """A roller of its nominal radius on its pin, mm; `carrier` is the name and the place of the body under the pin.
+    """A roller of its nominal `radius` on its pin at `centre`, mm, in the axes of the carrier.
 
-    `names` are those of the roller and of its retainer. In a groove the roller is under the carrier, without retainer.
+    `carrier` is the name and the place of the body that has the pin; `names` are the roller's name and the ending of
+    its retainer's. In a groove the roller is under the carrier, without retainer. Raises BodyError for a groove too
+    shallow for a roller.
     """
     s, z = drive.sizes, ArmHeights.over_base(drive)
     (group, place), (name, clip_name) = carrier, names
@@ -113,7 +115,7 @@ def double_roller(view: View[Oscillating, Roller], drive: Drive) -> Assembly:
 
 
 def overlap(away: float, drive: Drive) -> float:
-    """Overlap of the cam and the retainer of a pivot `away` mm from the shaft, mm; 0 or less where they are apart."""
+    """Overlap of the cam's circle and the retainer of a pivot `away` mm from the shaft, mm; 0 or less if apart."""
     s = drive.sizes
     return drive.reach - (away - max(0.5 * s.bar, s.boss) - s.space)
 
@@ -127,9 +129,11 @@ def arm_assembly(
     *,
     fits: Sequence[BodyFit] = (),
 ) -> Assembly:
-    """Bodies of an arm with its feet, about a pivot `away` mm from the shaft; the feet are in the arm's axes.
+    """All bodies of a mechanism with an arm: cam, shaft, base, arm with its feet, and retainers.
 
-    `fits` are those of the feet on the cam.
+    The arm moves with `place` about a pivot `away` mm from the shaft; feet are in the arm's axes. `fits` are the fits
+    of the feet on the cam, `remarks` sentences on what bodies do not show. Raises BodyError for a groove too shallow
+    for a roller.
     """
     s, z, pivot = drive.sizes, ArmHeights.over_base(drive), (away, 0.0)
     plates = [Plate(bar((0.0, 0.0), foot.end, s.bar), (eye(s),), z.low, z.high) for foot in feet]
@@ -150,7 +154,7 @@ def arm_assembly(
 
 
 def roller_fits(feet: Sequence[Foot], drive: Drive, *, clipped: bool = True) -> list[BodyFit]:
-    """Fits of rollers, where feet are rollers, and of retainers, where any are `clipped`."""
+    """Fits of rollers, if any of the feet has one, and of retainers, if the assembly has any (`clipped`)."""
     s = drive.sizes
     running = [BodyFit("rollers on their pins", s.clearance)] if any(foot.members for foot in feet) else []
     return [*running, BodyFit("retainers on pins", s.press, pressed=True)] if clipped else running
@@ -173,7 +177,7 @@ def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
         raise BodyError("mechanism.pin", message, remedy, near=away - reach, most=most)
     plates = [Plate(disc(hub), (eye(s),), low, high)]
     for (side, _), contacts in zip(SIDES, view.contact_points_fixed(TURN * np.arange(PLACES) / PLACES), strict=True):
-        lever = np.abs(contacts - away)  # of the contact about the pivot
+        lever = np.abs(contacts - away)  # distances of the contact from the pivot
         along = side * (half + 0.5 * math.pi)
         y0, y1 = sorted((-side * s.gap_each_side, -side * (s.gap_each_side + s.bar)))
         plates.append(
@@ -195,9 +199,10 @@ def pivoted_assembly(
     touching: frozenset[frozenset[str]] = frozenset(),
     remarks: tuple[str, ...] = (),
 ) -> Assembly:
-    """Bodies of a follower in the plane of the cam, about a pivot `away` mm from the shaft.
+    """All bodies of a mechanism whose follower is in the plane of the cam, about a pivot `away` mm from the shaft.
 
-    `heights` are those of the cam's disc, `fits` the follower's own, before all others.
+    `heights` are z of the lower and upper face of the cam's disc and the follower, mm; `fits` are the follower's fits
+    on the cam, `touching` pairs of names that touch by design, `remarks` sentences on what bodies do not show.
     """
     s, pivot, (low, high) = drive.sizes, (away, 0.0), heights
     pads = [bar((0.0, 0.0), pivot, max(2.0 * least_pad_radius(drive), drive.reach))]

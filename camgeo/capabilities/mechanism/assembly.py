@@ -1,6 +1,6 @@
 """The bodies of a printable mechanism: plates one on another, exact places over the shaft angle, and fits.
 
-All in mm and rad, z upward, drawn as for a shaft that turns clockwise; the files of others are mirrored last.
+All in mm and rad, z upward, for a shaft that turns clockwise; for the other sense the bodies are mirrored last.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 COLOUR = re.compile(r"#[0-9a-f]{6}")
-STEPS = 360  # of a turn, at which a file has the places of its bodies
+STEPS = 360  # of a turn, at which files state the places of bodies
 GROUND = "ground"
 
 
@@ -53,10 +53,10 @@ class PrintBody:
     name     safe in file names: lower-case words joined by hyphens, such as "roller-a"
     plates   stacked, touching or overlapping
     pose     (n + 1, 3): x, y and angle of its axes at equal steps of one shaft turn; (1, 3) of a body at rest
-    fixed    part of the ground
+    fixed    whether the body is at rest
     colour   "#rrggbb", for viewers
 
-    Raises ValueError for another name, colour or shape of the pose, and without plates.
+    Raises ValueError for another name, colour or shape of the pose, a pose that is not finite, and without plates.
     """
 
     name: str
@@ -100,11 +100,11 @@ class Member:
     colour: str = "#9aa5b1"
 
     def body(self, steps: int = STEPS) -> PrintBody:
-        """The printed body, with its places at so many equal steps of a turn."""
+        """The printed body, with its poses at `steps` equal steps of a turn; ValueError for faults of its name."""
         return PrintBody(self.name, self.plates, self.poses(steps), self.place is None, self.colour)
 
     def poses(self, steps: int = STEPS) -> Array:
-        """Places x, y and angle (steps + 1, 3) over a turn, mm and rad; (1, 3) of a body at rest."""
+        """Poses x, y and angle (steps + 1, 3) over a turn, mm and rad, the angle without leaps; (1, 3) at rest."""
         if self.place is None:
             return np.zeros((1, 3))
         poses = self.place(TURN * np.arange(steps + 1) / steps, 0)[:, 0].T.copy()
@@ -114,9 +114,10 @@ class Member:
 
 @dataclass(frozen=True)
 class BodyFit:
-    """The fit of two bodies: `clearance` between them, mm, or the interference of `pressed` ones.
+    """The fit of two bodies: the `clearance` between them, mm, or of `pressed` bodies their interference, above 0 too.
 
-    `excess` is that of the shaft's width over the opening in which it would have to turn to slip, mm; None elsewhere.
+    `excess` is by how much the shaft is wider than the opening in which it would turn if it slipped, mm; None for other
+    bodies, and for a shaft that is pressed in.
     """
 
     name: str
@@ -129,7 +130,7 @@ class BodyFit:
 class Assembly:
     """All bodies of a mechanism, the cam first, with their fits by construction.
 
-    `touching` are pairs of names that touch by design; `remarks` say what the bodies do not show.
+    `touching` are pairs of names of bodies that touch by design; `remarks` are sentences on what bodies do not show.
     """
 
     members: tuple[Member, ...]

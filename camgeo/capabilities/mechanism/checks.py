@@ -1,4 +1,4 @@
-"""The checks of printed bodies, of which each may be limited as a figure."""
+"""The checks of printed bodies; clearance and collision are figures too, which recipes may limit."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def _has_bodies(scene: CheckFacts) -> bool:
 
 
 def slimmer_sizes(recipe: Recipe) -> str:
-    """Remedy for bodies that meet: smaller sizes, of those that the recipe gives, or a smaller pin."""
+    """Remedy for bodies that meet: the sizes in plan that the recipe gives made smaller, or else a smaller pin."""
     fields = [f"{NAME}.{size}" for size in IN_PLAN if f"{NAME}.{size}" in recipe.marks] or [f"{NAME}.pin"]
     return f"a smaller {fields[0]}" if len(fields) == 1 else f"smaller {', '.join(fields[:-1])} and {fields[-1]}"
 
@@ -31,5 +31,5 @@ def _apart(_check: Entry, _report: Entry, recipe: Recipe) -> str:
 
 CLEARANCE = Declared("clearance", ("mm",), _has_bodies, strict_at=(0.0,), after=LAST_EXACT)
 COLLISION = Declared("collision", ("mm",), _has_bodies, field=NAME, remedy=_apart, after=LAST_EXACT)
-OUTLINE = Declared("outline", ("mm",), after=READABLE.name)  # of the other bodies, whose files are not foreseen
+OUTLINE = Declared("outline", ("mm",), after=READABLE.name)  # never expected: files of bodies beside the cam follow
 CHECKS = (CLEARANCE, COLLISION, OUTLINE)

@@ -1,9 +1,9 @@
 """Disc cams: a roller, a shoe or a flat face on a stem or an arm, and the frame of two opposite rollers.
 
 Stem, arm and frame lie between base and cam, with rollers and shoes in the plane of the cam above them; a flat face and
-its stem or arm lie in that plane. A roller in a groove, which opens upward, is below its carrier. The axes of a stem
-have x along its travel; those of an arm have x from the pivot to the roller's centre, and its travel is `side` times
-y.
+its arm lie in that plane. A groove opens upward, and the roller in it is below its carrier. A stem's axes have x along
+its travel. An arm's axes have x from the pivot to the roller's centre; the centre moves along y on a trailing arm,
+along -y on a leading one.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ SPRING = "gravity or a spring holds the follower on the cam: it touches it from 
 
 
 def foot_maker(view: View[Guide, Round]) -> FootMaker:
-    """Function that makes a roller or a shoe as a foot. Raises BodyError for a knife edge."""
+    """Function that makes a foot with the view's roller or shoe; raises BodyError for a knife edge."""
     match view.touch:
         case Roller(radius=radius):
             return lambda centre, _, carrier, drive: roller_foot(centre, radius, carrier, drive)
@@ -64,15 +64,20 @@ def foot_maker(view: View[Guide, Round]) -> FootMaker:
 
 
 def shoe_maker(radius: float, angle: Array) -> FootMaker:
-    """Function that makes a shoe: the arc that pressure angles (n,), rad, use, and more for a bar behind it."""
+    """Function that makes a foot with a shoe of a `radius`, mm.
+
+    The shoe has the arc that the pressure angles `angle` (n,), rad, use, with a margin, and at least a bar's width.
+    """
 
     def make(centre: Point, ahead: float, carrier: tuple[str, Place], drive: Drive) -> Foot:
         s, z = drive.sizes, ArmHeights.over_base(drive)
+        # ends of the arc, rad from the direction of travel, at most a half circle
         most = 0.5 * math.pi
         bar_half = math.asin(min(1.0, 0.5 * s.bar / radius))
         margin = s.space / radius
         high = min(max(float(angle.max()) + margin, bar_half), most)
         low = max(min(float(angle.min()) - margin, -bar_half), -most)
+        # the arc faces the shaft, at -x; a straight back closes the outline, a bar's width behind its ends
         x = -radius * np.cos([high, low])
         y = radius * np.sin([high, low])
         back = float(x.max()) + s.bar
@@ -86,7 +91,7 @@ def shoe_maker(radius: float, angle: Array) -> FootMaker:
 
 
 def on_stem(view: View[Translating, Round], drive: Drive) -> Assembly:
-    """Bodies of a roller or a shoe on a stem. Raises BodyError for a knife edge."""
+    """Bodies of a roller or a shoe on a stem; raises BodyError for a knife edge, and too shallow a groove."""
     s, z, line = drive.sizes, ArmHeights.over_base(drive), view.guide.offset
     place = stem_place(view.design.motion, view.datum, line)
     x = view.datum + view.travel(SHAFT)[0]
@@ -110,24 +115,27 @@ def on_stem(view: View[Translating, Round], drive: Drive) -> Assembly:
 
 
 def _contact_remarks(view: View[Guide, Round]) -> tuple[str, ...]:
-    """Remark on what keeps the follower on the cam, as no body shows it."""
+    """Remark on the spring, or the groove, that keeps follower and roller in place, as no body shows it."""
     return (SPRING,) if len(view.contacts) == 1 else (NO_RETAINER,)
 
 
 def _groove_fits(view: View[Guide, Round]) -> list[BodyFit]:
-    """Fit of a roller between two flanks, whose radii differ by its clearance; none without a groove."""
+    """Fit of a roller in a groove: the touches of both flanks differ in radius by its clearance; empty without."""
     first, *others = view.contacts
     return [BodyFit("roller in the groove", other.touch.radius - first.touch.radius) for other in others]
 
 
 def _greatest_x(*feet: Foot) -> float:
-    """Greatest x of feet in their carrier's axes, mm."""
+    """Greatest x of feet and of the bodies on them, mm, in their carrier's axes."""
     plates = [plate for foot in feet for plate in (*foot.plates, *(p for m in foot.members for p in m.plates))]
     return max(float(plate.outline.box()[2]) for plate in plates)
 
 
 def on_arm(view: View[Oscillating, Round], drive: Drive) -> Assembly:
-    """Bodies of a roller or a shoe on an arm. Raises BodyError where the cam reaches over the pivot."""
+    """Bodies of a roller or a shoe on an arm.
+
+    Raises BodyError for a knife edge, too shallow a groove, and where the cam reaches over the pivot.
+    """
     make_foot, lever = foot_maker(view), view.guide
     _require_clear_pivot(lever.pivot, drive)
     place = arm_place(view.design.motion, lever.pivot, view.datum, lever.side)
@@ -146,16 +154,16 @@ def _require_clear_pivot(pivot: float, drive: Drive) -> None:
 
 
 def roller_frame(view: View[Translating, Roller], drive: Drive) -> Assembly:
-    """Bodies of two opposite rollers in one frame.
+    """Bodies of two opposite rollers in one frame with a stem at either end.
 
-    Raises BodyError where the slot round the shaft leaves no wall before their pins.
+    Raises BodyError where the frame's slot round the shaft leaves no wall before the rollers' pins.
     """
     s, z, shaft = drive.sizes, ArmHeights.over_base(drive), drive.shaft
     foot, radius = view.datum, view.touch.radius
     apart = foot + view.contacts[1].datum
     place = stem_place(view.design.motion, foot)
     x = foot + view.travel(SHAFT)[0]
-    least, most = float(x.min()), float(x.max())
+    least, most = float(x.min()), float(x.max())  # distances of the first roller's centre from the shaft
     # the base's boss is in the slot, and so is a hub below the disc
     boss = max(shaft.journal + s.gap_each_side + s.wall, drive.disk.hub if drive.disk.bottom < 0.0 else 0.0)
     half = boss + s.space
@@ -169,6 +177,7 @@ def roller_frame(view: View[Translating, Roller], drive: Drive) -> Assembly:
         roller_foot(end, radius, ("frame", place), drive, names=(f"roller-{name}", name))
         for end, name in zip(ends, ("a", "b"), strict=True)
     ]
+    # guides stand clear of the cam and of the frame at either end of its travel
     width = max(2.0 * (half + s.wall), s.bar)
     margin = max(_greatest_x(feet[0]), 0.5 * width)
     first = max(most + margin, drive.reach) + s.space
@@ -198,7 +207,7 @@ def roller_frame(view: View[Translating, Roller], drive: Drive) -> Assembly:
 def face_on_arm(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
     """Bodies of a flat face on an arm.
 
-    Raises BodyError where the cam reaches over the pivot, or the face passes beside the hub.
+    Raises BodyError where the cam reaches over the pivot, or the bar of the face would pass beside the pivot's hub.
     """
     s, disk, nearer, guide = drive.sizes, drive.disk, view.touch.nearer, view.guide
     _require_clear_pivot(guide.pivot, drive)

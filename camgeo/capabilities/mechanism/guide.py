@@ -38,10 +38,14 @@ def half_width(s: Sizes) -> float:
 def guide(
     name: str, start: float, low: float, high: float, s: Sizes, *, line: float = 0.0
 ) -> tuple[tuple[Plate, ...], Member]:
-    """Plates of a guide from x = `start`, and its cap, for a stem from z = `low` to `high`, middle at y = `line`."""
+    """Plates of a guide, and its cap with a `name`, for a stem from z = `low` to `high` about y = `line`; mm.
+
+    The guide reaches from x = `start` over `guide_length`.
+    """
     end, top = start + guide_length(s), high + s.gap
     inner, outer = 0.5 * s.bar + s.gap_each_side, half_width(s)
     plates, holes = [], []
+    # a foot under a stem that is raised, then the blocks on both sides, each with two pegs for the cap
     if low - s.gap - s.plate > 0.5 * s.gap:
         plates.append(Plate(box(start, line - outer, end, line + outer), (), s.plate, low - s.gap))
     for side in (-1.0, 1.0):
@@ -67,10 +71,11 @@ def guided_assembly(
     remarks: tuple[str, ...] = (),
     line: float = 0.0,
 ) -> Assembly:
-    """All bodies of a mechanism whose `moving` ones slide along x: with the base, guides, their caps and the shaft.
+    """All bodies of a mechanism with a stem: cam, shaft, base with guides, their caps, and the `moving` bodies.
 
-    `guides` are their names and the x at which they start; `stem` has the lower and upper z of the stem, whose middle
-    is at y = `line`; `fits` are those of the moving bodies.
+    `guides` has a name and the x at which it starts for each guide; `stem` has z of the stem's lower and upper face,
+    its middle is at y = `line`; `cam_low` is z of the disc's lower face; all in mm. `fits` are the fits of the moving
+    bodies, `touching` pairs of names that touch by design, `remarks` sentences on what bodies do not show.
     """
     s, disk = drive.sizes, drive.disk
     plates: list[Plate] = []
@@ -81,6 +86,7 @@ def guided_assembly(
         plates += blocks
         caps.append(cap)
         ends += [start, start + guide_length(s)]
+    # one rectangular base plate under the bearing of the shaft and all guides
     radius, wide = least_pad_radius(drive), half_width(s)
     half = max(wide, radius)
     low, high = min(line - wide, -radius), max(line + wide, radius)

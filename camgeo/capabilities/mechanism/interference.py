@@ -1,4 +1,4 @@
-"""Checks that no bodies of a mechanism meet over the whole turn, and of its clearances by construction."""
+"""Checks that no bodies of a mechanism meet over the whole turn, and that their fits have clearance."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from kin.clearance.clearance import Clearance
     from kin.clearance.pose import PlaneMotion
 
-STEPS = 720  # of a turn, at which the exact motion and its rates are taken
-POINTS = 24  # of each line and arc of a hole, from which its walls are measured
-AXIAL = 1e-6  # mm, by which rounding may make an axial gap less
+STEPS = 720  # of a turn, at which the exact motion and its rates are sampled
+POINTS = 24  # of each line and arc of a hole, from which walls are measured
+AXIAL = 1e-6  # mm, allowed for rounding of an axial gap
 COARSE = 0.25  # mm, within which the size of all bodies is reported
 ACCURACY = 0.05  # of the clearance, to which the least distance of two bodies is found
 
 
 def collision_checks(assembly: Assembly) -> list[Check]:
-    """The check of the least running clearance, and one of the distance of each pair of bodies at common heights, mm.
+    """The check of the least running clearance, and for each pair of bodies that might meet a check of its distance.
 
-    Bodies less than the axial gap apart in height count as at common heights. Those pressed together, and those that
-    touch by design, are left out: rollers and a single face are judged against the file of the cam itself.
+    Pairs whose heights are at least the axial gap apart cannot meet. Bodies pressed together, and bodies that touch by
+    design, are left out: rollers and a single face are judged against the file of the cam itself. Distances are in mm.
     """
     s, bodies = assembly.sizes, movers(assembly)
     pairs = clearances(bodies, exempt_pairs(assembly), axial=s.gap - AXIAL, accuracy=ACCURACY * s.clearance)
@@ -48,7 +48,8 @@ def collision_checks(assembly: Assembly) -> list[Check]:
 def clearance_check(assembly: Assembly, bodies: Sequence[Mover]) -> Check:
     """Check that the least running clearance, mm, is above 0.
 
-    Its detail has all fits, what drives the cam, the thinnest wall, and the size of the box that all bodies sweep.
+    Its detail states all fits, the excess by which the shaft drives the cam, the thinnest wall, and the size of the box
+    that all bodies sweep.
     """
     running = [fit for fit in assembly.fits if not fit.pressed]
     least = min(fit.clearance for fit in running)
@@ -66,27 +67,26 @@ def clearance_check(assembly: Assembly, bodies: Sequence[Mover]) -> Check:
 
 
 def thinnest_wall(assembly: Assembly) -> tuple[float, str]:
-    """Least thickness or wall of all bodies but the cam, mm, and the name of its body.
+    """Least thickness or wall of all bodies but the cam, mm, and the name of the body.
 
-    In place of a body the name is `links` or `retainers` for the thickness that all of these share.
-    Walls are measured between the edges of one plate, from points along its holes. The cam's are reported by its own
-    check.
+    The name is `links` or `retainers` for the thickness that all of these share. Walls are measured between two edges
+    of one plate, from points along the holes. The cam's walls have a check of their own.
     """
     s = assembly.sizes
     walls = [(s.link, "links"), (s.clip, "retainers")]
     for member in assembly.members[1:]:
         for plate in member.plates:
             edges = [_contour(plate.outline), *map(_contour, plate.holes)]
-            for edge, other in combinations(edges, 2):
-                walls.append((float(edge.distance(other.sample(POINTS)).min()), member.name))
+            for edge, hole in combinations(edges, 2):
+                walls.append((float(edge.distance(hole.sample(POINTS)).min()), member.name))
     return min(walls)
 
 
 def exempt_pairs(assembly: Assembly) -> Iterable[frozenset[str]]:
-    """Pairs of names that may touch: pressed together, or in contact by design."""
-    for member, other in combinations(assembly.members, 2):
-        pair = frozenset({member.name, other.name})
-        if member.group == other.group or pair in assembly.touching:
+    """Pairs of names of bodies that may touch: pressed together, or in contact by design."""
+    for first, second in combinations(assembly.members, 2):
+        pair = frozenset({first.name, second.name})
+        if first.group == second.group or pair in assembly.touching:
             yield pair
 
 
@@ -99,7 +99,7 @@ def swept_size(bodies: Sequence[Mover]) -> tuple[float, float, float]:
 
 
 def movers(assembly: Assembly) -> list[Mover]:
-    """Bodies with their motions; those that share a place share the motion."""
+    """Bodies with their motions, for `clearances`; bodies that share a place share the motion."""
     motions: dict[int, PlaneMotion] = {}
     bodies = []
     for member in assembly.members:
@@ -123,7 +123,7 @@ def _motion(place: Place | None) -> PlaneMotion:
 
 
 def slabs(plates: Sequence[Plate]) -> tuple[Slab, ...]:
-    """Plates as slabs."""
+    """Slabs with the outlines, holes and heights of plates, mm."""
     return tuple(Slab(_contour(p.outline), tuple(map(_contour, p.holes)), p.low, p.high) for p in plates)
 
 
@@ -134,7 +134,7 @@ def _contour(outline: ArcSpline | Polygon) -> Contour:
 
 
 def _pair_check(pair: Clearance) -> Check:
-    """Check that two bodies keep apart: their least proved distance, mm, above 0."""
+    """Check that two bodies keep apart: their least distance, mm, less what is not proved of it, above 0."""
     x, y = pair.place
     least = min(pair.least, pair.proved) - pair.slack
     if pair.holds:

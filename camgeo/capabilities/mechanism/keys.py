@@ -17,12 +17,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RequestedSizes:
-    """Sizes of the printable mechanism that a recipe gives, mm; None for those that follow from the cam.
+    """Sizes of the printable mechanism that a recipe gives, mm; None for a size that follows from the cam.
 
-    `clearance` is that of a hole on its pin, and of faces about the cam; `gap` the axial gap between bodies one above
-    another, `press` the interference of a pressed hole, `space` the gap in plan of bodies that never touch. `plate` is
-    the thickness of the base, `link` that of arms, rockers and rods, `bar` their width, `wall` that of frames and of
-    hubs about a hole, `clip` the thickness of retainers.
+    clearance  of a hole on its pin, in diameter, and of faces about the cam, both sides together
+    gap        axial gap between bodies one above another
+    press      interference of a pressed hole, in diameter
+    space      gap in plan between bodies that never touch
+    pin        diameter of the pins
+    bar        width of bars, stems and guides
+    plate      thickness of the base
+    link       thickness of arms, rockers and rods
+    wall       width of a frame's sides, and of the ring about a pin's hole
+    clip       thickness of retainers and caps
+    knob       width of the shaft's knob across flats
     """
 
     clearance: float = 0.2
@@ -61,17 +68,17 @@ def fields() -> tuple[Field, ...]:
 
 
 def build(values: Values) -> RequestedSizes:
-    """Sizes of a recipe without faults, mm; those by default without the key."""
+    """Sizes of a recipe without faults, mm; the defaults without the key."""
     return RequestedSizes(**values.get("mechanism", {}))
 
 
 def requested_sizes(recipe: Recipe) -> RequestedSizes:
-    """Sizes that a recipe gives, mm; those by default without the key."""
+    """Sizes that a recipe gives, mm; the defaults without the key."""
     return recipe.of(RequestedSizes) or RequestedSizes()
 
 
 def check(request: FileRequest, values: Values, reader: Reader, path: str) -> None:
-    """Add the faults of a file with `parts: all`, at its path, to the reader's errors."""
+    """Note, at the `path` of a file with `parts: all`, why its cam has no printable mechanism."""
     if request.compensation is not None:
         remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
         reader.fault_at(path, "compensation of a whole mechanism", None, remedy)

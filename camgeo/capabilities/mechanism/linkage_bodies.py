@@ -1,7 +1,8 @@
 """A cam in a square frame that is the coupler of a linkage: frame, rocker, block or slide, and the base with pivots.
 
 Bodies that cross in plan lie one above another: the cam in its frame, the rocker above it, then the links of dyads,
-each above the retainers below it. A slide runs under the frame, which then is as much higher.
+each above the retainers below it. A slide runs under the frame, which then is higher by a link and a gap. Loop 0 is the
+linkage's, loop k that of the k-th dyad, with joints P on the link that carries it, Q and a pivot G. Lengths in mm.
 """
 
 from __future__ import annotations
@@ -39,10 +40,11 @@ if TYPE_CHECKING:
 
 
 def linkage_assembly(mechanism: Mechanism, drive: Drive) -> Assembly:
-    """Bodies of a mechanism that turns. Raises BodyError where one of them does not fit."""
+    """All bodies of a linkage that turns right round; raises BodyError where a body does not fit."""
     s, disk = drive.sizes, drive.disk
     linkage = mechanism.linkage
     maker = MAKERS[type(linkage)]
+    # heights of the frame and the cam in it, over the base, a slide and a hub below the disc
     low = s.plate + s.gap + (s.link + s.gap if maker.under_frame else 0.0)
     low = max(low, s.plate + s.gap - disk.bottom)
     high = low + disk.thickness
@@ -53,6 +55,7 @@ def linkage_assembly(mechanism: Mechanism, drive: Drive) -> Assembly:
     carriers = maker.make(site, frame, linkage)
     for loop, dyad in enumerate(mechanism.dyads, 1):
         carriers += MAKERS[type(dyad)].make(site, loop, dyad, _mount(site, carriers, loop))
+    # the base: bearing of the shaft, a support of the frame, posts and rails
     support = max(least_pad_radius(drive), 0.5 * mechanism.breadth + s.wall)
     foot = bearing(drive, [disc(support), *site.pads], low + disk.bottom - s.gap)
     ground = base((*foot, *_support(support, drive, low - s.gap), *site.ground))
@@ -68,9 +71,9 @@ def linkage_assembly(mechanism: Mechanism, drive: Drive) -> Assembly:
 
 
 def _mount(site: BodyStack, carriers: tuple[Carrier, ...], loop: int) -> Mount:
-    """Point to which a dyad is attached, its carrier extended to it.
+    """Point to which the dyad of a loop, from 1, is attached, with a bar of its carrier that reaches there.
 
-    Raises BodyError where that is a block or a slide, or the bar to the point would cut a hole.
+    Raises BodyError where the carrier is a block or a slide, or the bar would cut a hole.
     """
     mechanism, path = site.links.mechanism, f"linkage.dyads[{loop - 1}]"
     name = mechanism.chain.carrier(loop - 1).name
@@ -98,10 +101,10 @@ def _support(radius: float, drive: Drive, high: float) -> list[Plate]:
 
 
 def _coupler(frame: Carrier, linkage: FourBar | SliderCrank, site: BodyStack) -> None:
-    """Add the bar from the frame to D, which becomes the origin of the link's axes.
+    """Add the bar from the frame to joint D, which becomes the origin of the link's axes.
 
-    It runs along the frame, or slants from the end of the frame's side where D is beyond that. Raises BodyError for a
-    coupler that ends within the frame's side.
+    The bar is parallel to the frame's sides, or slants from the end of a side where D is beyond it. Raises BodyError
+    for a coupler that ends within the frame's side.
     """
     s, half = site.s, 0.5 * site.links.mechanism.breadth
     start, end = half + s.gap_each_side + 0.5 * s.bar, half + linkage.coupler
@@ -124,7 +127,7 @@ def _four_bar(site: BodyStack, frame: Carrier, linkage: FourBar) -> tuple[Carrie
 
 
 def _rocker(site: BodyStack, linkage: FourBar | InvertedSliderCrank, low: float, high: float) -> Carrier:
-    """Add the rocker from its post B to D. Raises BodyError where it is too short."""
+    """Add the rocker from its post B to joint D, and return it; raises BodyError where it is too short for two pins."""
     s = site.s
     holes = ((0.0, 0.0), (linkage.rocker, 0.0))
     if linkage.rocker < s.bar:
@@ -156,7 +159,8 @@ def _slider_crank(site: BodyStack, frame: Carrier, linkage: SliderCrank) -> tupl
 def _inverted(site: BodyStack, frame: Carrier, linkage: InvertedSliderCrank) -> tuple[Carrier, ...]:
     """Add the slotted bar to the frame, and the block in it, which turns on the post B or carries a rocker's end.
 
-    The rocker is returned; the result is empty without one.
+    The result has the rocker, or is empty without one. Raises BodyError for too short a rocker, and a block that would
+    run into the frame.
     """
     s = site.s
     place = site.links.joint(0, "D")
@@ -179,11 +183,13 @@ def _inverted(site: BodyStack, frame: Carrier, linkage: InvertedSliderCrank) -> 
 
 
 def _slot(site: BodyStack, frame: Carrier, block_place: Place, offset: float) -> None:
-    """Add the slotted bar on the side of the frame where the block is, and a tie to a bar beyond the side's end.
+    """Add the slotted bar on the side of the frame where the block is, with ties to the frame.
 
-    Raises BodyError where the block would run into the frame.
+    `offset` is the distance of the slot's middle line from the frame's. Raises BodyError where the block would run into
+    the frame.
     """
     s, half = site.s, 0.5 * site.links.mechanism.breadth
+    # travel of the block along the frame's x axis, over a turn
     blocks, frames = site.sample(block_place), site.sample(frame.place)
     c, n = np.cos(frames[:, 2]), np.sin(frames[:, 2])
     x = (blocks[:, 0] - frames[:, 0]) * c + (blocks[:, 1] - frames[:, 1]) * n
@@ -194,6 +200,7 @@ def _slot(site: BodyStack, frame: Carrier, block_place: Place, offset: float) ->
         message = "the block would run into the frame, by {short}"
         remedy = "give a longer ground, or a smaller mechanism.bar"
         raise BodyError("linkage.ground", message, remedy, short=least - first)
+    # outlines for a block on the right; for one on the left they are turned by half a turn
     y, inner = side * offset, half + s.gap_each_side
     outer, slot = slotted_bar(first, last, y, s)
     ties = [box(inner, y - 0.5 * s.bar, outer.box()[0] + 0.5 * s.wall, y + 0.5 * s.bar)]
@@ -206,7 +213,7 @@ def _slot(site: BodyStack, frame: Carrier, block_place: Place, offset: float) ->
 
 
 def rod_and_rocker(site: BodyStack, loop: int, dyad: RRR, mount: Mount) -> tuple[Carrier]:
-    """Add the bar PQ and the rocker GQ above it, of the dyad `loop`, from 1; return the rocker."""
+    """Add the bar PQ from `mount` and the rocker GQ above it, of the dyad `loop`, from 1; the result has the rocker."""
     s = site.s
     rod = _rod(site, loop, dyad.links[0], mount)
     low, high = site.level()
@@ -221,7 +228,7 @@ def rod_and_rocker(site: BodyStack, loop: int, dyad: RRR, mount: Mount) -> tuple
 
 
 def rod_and_slide(site: BodyStack, loop: int, dyad: RRP, mount: Mount) -> tuple[()]:
-    """Add the bar PQ and the slide on the base, of the dyad `loop`, from 1; the result is empty."""
+    """Add the bar PQ from `mount` and the slide on the base, of the dyad `loop`, from 1; the result is empty."""
     rod = _rod(site, loop, dyad.link, mount, (dyad.link, 0.0))
     place = site.links.joint(loop, "Q")
     slide = Carrier(f"slide-{loop}", site.slide(rod.low, rod.high), place, 0.0, 0.0, BLOCK_COLOUR)
@@ -233,7 +240,7 @@ def rod_and_slide(site: BodyStack, loop: int, dyad: RRP, mount: Mount) -> tuple[
 
 
 def _rod(site: BodyStack, loop: int, length: float, mount: Mount, *holes: tuple[float, float]) -> Carrier:
-    """Add the bar PQ, `length` mm, with a hole at P and at other points of its axes; return it."""
+    """Add the bar PQ of a dyad from its mount, `length` mm, with a hole at P and at `holes`; return the bar."""
     s = site.s
     low, high = site.level()
     mount.add_pin(site, f"p{loop}", low, high)
@@ -244,15 +251,16 @@ def _rod(site: BodyStack, loop: int, length: float, mount: Mount, *holes: tuple[
 
 
 def slotted_rocker(site: BodyStack, loop: int, dyad: RPR, mount: Mount) -> tuple[Carrier]:
-    """Add the block on the pin P and the slotted rocker about G of the dyad `loop`, from 1; return the rocker.
+    """Add the block on a pin at `mount` and the slotted rocker about G, of the dyad `loop`, from 1.
 
-    Raises BodyError where the block comes too near to the pivot G.
+    The result has the rocker. Raises BodyError where the block comes too near to the pivot G.
     """
     s, place = site.s, site.links.output(loop)
     low, high = site.level()
     mount.add_pin(site, f"p{loop}", low, high)
     block_place = site.links.joint(loop, "P")
     site.add(Carrier(f"block-{loop}", [Plate(block(s), (eye(s),), low, high)], block_place, low, high, BLOCK_COLOUR))
+    # travel of the block along the rocker, over a turn
     blocks, angle = site.sample(block_place), site.sample(place)[:, 2]
     along = (blocks[:, 0] - dyad.ground[0]) * np.cos(angle) + (blocks[:, 1] - dyad.ground[1]) * np.sin(angle)
     first, last = float(along.min()), float(along.max())
@@ -271,7 +279,7 @@ def slotted_rocker(site: BodyStack, loop: int, dyad: RPR, mount: Mount) -> tuple
 
 
 class Maker(NamedTuple):
-    """Function that adds the bodies of a loop, and returns those to which dyads may be attached."""
+    """Function that adds the bodies of a loop, and returns the bodies to which dyads may be attached."""
 
     make: Callable[..., tuple[Carrier, ...]]
     under_frame: bool = False

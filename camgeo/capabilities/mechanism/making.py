@@ -34,10 +34,10 @@ if TYPE_CHECKING:
 
 
 def make_mechanism(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Write and judge every body; the checks of the mechanism itself are reported with its first file.
+    """Write and judge every body in a request's format; checks of clearance and collision are made once a run.
 
-    There is no file of a mechanism that does not turn. Raises RecipeErrors for bodies that cannot be made, or
-    not within the tolerance, SurroundingsError where a file cannot be written or read.
+    The result has no file for a mechanism that does not turn right round. Raises RecipeErrors for bodies that cannot be
+    made, or not within the tolerance, SurroundingsError where a file cannot be written or read.
     """
     driven = job.design.driven
     if driven is not None and not driven.turns:
@@ -57,7 +57,8 @@ def make_mechanism(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 def foresee_mechanism(job: Job, request: FileRequest) -> None:
     """Raise RecipeErrors for clearances that the file's tolerance may close, and a shaft that may slip in the cam.
 
-    Raises MissingExtraError without the package that joins bodies.
+    Clearances are those of the bodies, and of a roller in its groove. Raises MissingExtraError without the package that
+    joins bodies.
     """
     need_booleans()
     recipe, tolerance = job.recipe, job.tolerance(request)
@@ -65,15 +66,15 @@ def foresee_mechanism(job: Job, request: FileRequest) -> None:
     with _recipe_errors(recipe):
         require_clearance(clearance, job.tolerance_field(request), tolerance)
         require_drive(recipe.part, clearance, tolerance)
-        first, *others = job.design.follower.contacts
-        for other in others if job.body.pocket is not None else ():
-            play = other.touch.radius - first.touch.radius
+        first, *further = job.design.follower.contacts
+        for contact in further if job.body.pocket is not None else ():
+            play = contact.touch.radius - first.touch.radius
             require_clearance(play, job.tolerance_field(request), tolerance, "cam.track.groove.clearance")
 
 
 @contextmanager
 def _recipe_errors(recipe: Recipe) -> Iterator[None]:
-    """Turn a BodyError into RecipeErrors at the field that is its cause, with lengths in the recipe's unit."""
+    """Turn a BodyError into RecipeErrors at its field, with lengths in the recipe's unit."""
     try:
         yield
     except BodyError as error:
@@ -82,7 +83,7 @@ def _recipe_errors(recipe: Recipe) -> Iterator[None]:
 
 
 def _build(job: Job, request: FileRequest) -> Assembly:
-    """Bodies round the contours, as arcs within the file's tolerance."""
+    """All bodies, with the cam's contours as arcs within the file's tolerance; RecipeErrors where there are none."""
     with job.refusals(request), job.clock.stage("bodies"):
         fitted = [fit.within("arcs", job.tolerance(request)) for fit in job.fits]
         contours = [contour for contour in fitted if isinstance(contour, ArcSpline)]
@@ -94,15 +95,16 @@ def _build(job: Job, request: FileRequest) -> Assembly:
 
 
 def build_assembly(recipe: Recipe, design: Design, *contours: ArcSpline) -> Assembly:
-    """Bodies round a cam's contours, one contour for each surface, drawn for a shaft that turns clockwise.
+    """All bodies round a cam's contours, one contour for each surface, drawn for a shaft that turns clockwise.
 
-    Raises BodyError for a body that cannot be made, ValueError without a part.
+    Raises BodyError for a body that cannot be made, ValueError without a part, thickness or bore.
     """
     (disc,) = design.discs
     if disc.body is None:
         raise ValueError(f"{recipe.name}: there is no part to be made")
     part = recipe.part
     reach = max(map(_greatest_radius, contours)) if part.outer is None else 0.5 * part.outer
+    # sizes by the cam and its rollers, whose radius has a key of its own in each family
     arrangement, view = design.follower.arrangement, view_of(recipe, design)
     rolling = arrangement.touch is Roller
     field = "" if not rolling else "cam.follower.radius" if arrangement.contacts == 1 else "cam.roller_radius"

@@ -25,16 +25,17 @@ if TYPE_CHECKING:
     Outline: TypeAlias = ArcSpline | Polygon
 
 GAP = 5.0  # mm between bodies laid out for printing
-_STEP = 100.0  # a mm: places on the plate are whole steps
-_LARGER = 1.001  # times the area of another face, from which a face is larger
-_SHAPE = 1.4  # width of the filled plate over its depth, about
+_STEP = 100.0  # steps a mm, in whole numbers of which bodies are placed on the plate
+_LARGER = 1.001  # times the area of the lowest face: below this ratio a body is not turned over
+_SHAPE = 1.4  # about the width of the filled plate over its depth
 
 
 def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tuple[Mesh, float]:
-    """Closed mesh of a body's joined plates, in its own axes, and the greatest error of its walls, mm.
+    """Closed mesh of a body's joined plates, in the body's axes, and the greatest error of its walls, mm.
 
-    Raises ToleranceError where the tolerance cannot be held in the precision; RegionError, with the body's name, where
-    an outline is not simple, the plates are not connected, or the rounded mesh does not close.
+    Errors are at most `tolerance`, mm. Raises ToleranceError where that cannot be held with numbers of this precision;
+    RegionError, with the body's name, where an outline is not simple, the plates are not connected, or the rounded mesh
+    does not close.
     """
     try:
         return _join(body, tolerance, precision)
@@ -50,9 +51,11 @@ def _join(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh
     """
     joined: Any = None
     worst = 0.0
+    # heights are rounded to the precision too
     for plate in body.plates:
         for height in (plate.low, plate.high):
             precision.within(f"{body.name}: a height", abs(precision.number(height) - height), tolerance)
+    # each stack of equal outlines is one prism less its holes, cut a little beyond the faces that they reach
     for stack in _stacks([(plate.outline, plate.low, plate.high) for plate in body.plates]):
         plates = [body.plates[k] for k in stack]
         low, high = plates[0].low, plates[-1].high
@@ -76,9 +79,9 @@ def _join(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh
 
 
 def _stacks(walls: Sequence[tuple[Outline, float, float]]) -> list[list[int]]:
-    """Indices of walls (outline, lower z, upper z), upward, with equal outlines directly above each other in one list.
+    """Indices of walls (outline, lower z, upper z) in lists, upward; each has equal outlines directly above each other.
 
-    Such a list is made as one prism: walls of separate levels would round corners separately and leave slivers.
+    Each list is made as one prism: separate levels would round corners separately and leave slivers.
     """
     stacks: list[list[int]] = []
     for k in sorted(range(len(walls)), key=lambda k: walls[k][1]):
@@ -111,7 +114,7 @@ def _loop(outline: Outline, tolerance: float, precision: Precision) -> tuple[Arr
 
 
 def pose_matrix(pose: Array) -> Array:
-    """Matrix (4, 3) of a body at x, y and angle, mm and rad: the images of the axes, then of the origin."""
+    """Matrix (4, 3) of a body at a `pose` (3,), x, y and angle, mm and rad: images of the axes, then of the origin."""
     x, y, angle = pose.tolist()
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0], [x, y, 0.0]])
@@ -120,9 +123,11 @@ def pose_matrix(pose: Array) -> Array:
 def layout(meshes: Sequence[Mesh], gap: float = GAP) -> list[Array]:
     """Matrices (4, 3) that lay bodies on the plate z = 0 in rows, `gap` mm apart, at positive x and y, deepest first.
 
-    Each lies on the larger of its lowest and highest faces, turned over if that is the highest.
+    Each body lies on the larger of its lowest and highest faces, and is turned over for the highest. A matrix has the
+    images of the axes, then of the origin, mm.
     """
     ways = [print_pose(mesh) for mesh in meshes]
+    # boxes of the bodies as they lie, filled row by row up to a width
     boxes = []
     for mesh, (turn, _) in zip(meshes, ways, strict=True):
         turned = mesh.points @ turn
@@ -153,7 +158,7 @@ def print_pose(mesh: Mesh) -> tuple[Array, Array]:
 
 
 def mirror(body: PrintBody) -> PrintBody:
-    """The body and its motion mirrored in the x axis."""
+    """The body and its motion mirrored in the plane y = 0."""
     plates = tuple(
         replace(plate, outline=plate.outline.mirrored(), holes=tuple(hole.mirrored() for hole in plate.holes))
         for plate in body.plates

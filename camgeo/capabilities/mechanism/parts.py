@@ -32,10 +32,10 @@ CAM = "cam"
 
 
 class MeshedBody(NamedTuple):
-    """A body, its mesh in axes of its own, and the error of its walls.
+    """A body, its mesh, and the error of its walls.
 
-    The cam's mesh is that of its own files, with z = 0 in the lower face of the disc; `raised` is the z of that face in
-    the mechanism, mm, and `pieces` the number of edges of its contour.
+    The mesh is in the body's axes, but for the cam: there it is the mesh of the cam's own files, whose z = 0 is raised
+    to z = `raised`, mm, in the mechanism. `pieces` is the number of edges of the cam's contour, None for other bodies.
     """
 
     body: PrintBody
@@ -46,23 +46,23 @@ class MeshedBody(NamedTuple):
 
     @property
     def raised_mesh(self) -> Mesh:
-        """Mesh in the axes in which the body moves."""
+        """Mesh in the body's axes, in which it moves."""
         return replace(self.mesh, points=self.mesh.points + np.array([0.0, 0.0, self.raised]))
 
     @property
     def place(self) -> Array:
-        """Matrix (4, 3) of the mesh at shaft angle 0."""
+        """Matrix (4, 3) of the mesh at shaft angle 0: images of the axes, then of the origin, mm."""
         matrix = pose_matrix(self.body.pose[0])
         matrix[3, 2] = self.raised
         return matrix
 
 
 def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[PrintBody]) -> MadeFiles:
-    """Write and judge all bodies, drawn for a shaft that turns clockwise; one of them is named "cam".
+    """Write and judge all bodies, drawn for a shaft that turns clockwise; the cam is the body named "cam".
 
-    A format that has one file for each disc writes one for each body. A format of contours writes two files of all
-    bodies, laid out and assembled. A format for viewers writes one file in which they move. Raises RecipeErrors where
-    a mesh cannot be made within the tolerance, SurroundingsError where a file cannot be written or read.
+    A format with one file for each disc gets one file for each body, another format that is judged two files of all
+    bodies, laid out and assembled, and a format for viewers one file of bodies in motion. Raises RecipeErrors where a
+    mesh cannot be made within the tolerance, SurroundingsError where a file cannot be written or read.
     """
     record = request.format
     write = write_each if record.by_disc else write_together if record.contour else write_moving
@@ -75,7 +75,7 @@ def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[Prin
 
 
 def _mesh(job: Job, request: FileRequest, body: PrintBody) -> MeshedBody:
-    """Body with its closed mesh; raises RecipeErrors where no mesh can be made."""
+    """Body with its closed mesh; raises RecipeErrors where no mesh can be made within the tolerance."""
     if body.name == CAM:
         mesh, facts = cam_mesh(job, request)
         return MeshedBody(body, mesh, facts.bound, body.low - float(mesh.points[:, 2].min()), facts.vertices)
@@ -88,7 +88,10 @@ def _mesh(job: Job, request: FileRequest, body: PrintBody) -> MeshedBody:
 
 
 def write_each(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> MadeFiles:
-    """Write and judge a file for each body: the cam's at `path`, others as `<name>-<body>` beside it, lying flat."""
+    """Write and judge a file for each body: the cam's at `path`, others as `<name>-<body>` beside it, lying flat.
+
+    Raises OSError where a file cannot be written, ReadError where it cannot be read back.
+    """
     from kin.read.files import read_meshes
 
     mm, ending, write = job.recipe.in_units_of(request).mm, request.format.ending, _writer(request)
@@ -113,7 +116,10 @@ def write_each(job: Job, request: FileRequest, path: Path, parts: Sequence[Meshe
 
 
 def write_together(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> MadeFiles:
-    """Write and judge two files of all bodies: laid out for printing at `path`, assembled in `<name>-assembly`."""
+    """Write and judge two files of all bodies: laid out for printing at `path`, assembled in `<name>-assembly`.
+
+    Raises OSError where a file cannot be written, ReadError where it cannot be read back.
+    """
     from kin.read.files import read_meshes
 
     recipe, mm, write = job.recipe, job.recipe.in_units_of(request).mm, _writer(request)
@@ -139,7 +145,7 @@ def write_together(job: Job, request: FileRequest, path: Path, parts: Sequence[M
 
 
 def write_moving(job: Job, request: FileRequest, path: Path, parts: Sequence[MeshedBody]) -> MadeFiles:
-    """Write a file of all bodies in motion, for viewers."""
+    """Write a file of all bodies in motion, for viewers, which is not judged; OSError where it cannot be written."""
     from camgeo.formats.glb import Actor, write_glb
     from camgeo.output.job import unjudged
 
@@ -159,6 +165,7 @@ def _judge_cam(job: Job, request: FileRequest, path: Path, part: MeshedBody) -> 
 
 
 def _judge_body(job: Job, request: FileRequest, path: Path, part: MeshedBody, corners: Array) -> MadeFiles:
+    """Compare the triangles `corners` of a file, mm in the body's axes, with the body's plates."""
     from kin.judge.check import about
     from kin.judge.printed import judge_body
 

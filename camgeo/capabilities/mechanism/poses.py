@@ -1,4 +1,8 @@
-"""Exact places over the shaft angle: of bodies that turn, slide or swing, and of the links of a linkage."""
+"""Exact places over the shaft angle: of bodies that turn, slide or swing, and of the links of a linkage.
+
+A place is a function of shaft angles (n,), rad, and an order. It gives x, y and angle of a body's axes with derivatives
+by the shaft angle up to the order, (3, order + 1, n), mm and rad, for a shaft that turns clockwise.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +31,7 @@ class Turning:
     start: float = 0.0
 
     def __call__(self, phi: Array, order: int) -> Array:
-        """Place at shaft angles (n,): x, y and angle with derivatives up to an order, (3, order + 1, n)."""
+        """x, y and angle with derivatives up to `order`, (3, order + 1, n), at shaft angles phi (n,), rad."""
         rows = np.zeros((3, order + 1, len(phi)))
         rows[2, 0] = self.start - phi
         if order:
@@ -36,7 +40,7 @@ class Turning:
 
 
 def rocking_place(motion: Position, pivot: float) -> Place:
-    """Place of an arm about a pivot on the x axis, mm from the shaft, turned clockwise as the follower swings."""
+    """Place of an arm about a pivot at x = `pivot`, mm, that turns clockwise by the position of the motion, rad."""
 
     def place(phi: Array, order: int) -> Array:
         rows = np.zeros((3, order + 1, len(phi)))
@@ -48,7 +52,7 @@ def rocking_place(motion: Position, pivot: float) -> Place:
 
 
 def stem_place(motion: Position, start: float = 0.0, y: float = 0.0) -> Place:
-    """Place of a stem that moves along x on a line at y, mm: its origin is at x = `start` at position 0."""
+    """Place of a stem that moves along x on a line at `y`, mm; its origin is at x = `start` at position 0."""
 
     def place(phi: Array, order: int) -> Array:
         rows = np.zeros((3, order + 1, len(phi)))
@@ -61,9 +65,10 @@ def stem_place(motion: Position, start: float = 0.0, y: float = 0.0) -> Place:
 
 
 def arm_place(motion: Position, pivot: float, rest: float, side: int) -> Place:
-    """Place of an arm about a pivot on the x axis, mm from the shaft, its x axis towards the contact.
+    """Place of an arm about a pivot at x = `pivot`, mm, with its x axis towards the contact.
 
-    `rest` is its angle, rad, to the line from pivot to shaft at displacement 0; `side` is +1 trailing, -1 leading.
+    `rest` is the angle, rad, between the arm at position 0 and the line from pivot to shaft; `side` is 1 for a trailing
+    arm, -1 for a leading one.
     """
 
     def place(phi: Array, order: int) -> Array:
@@ -78,12 +83,12 @@ def arm_place(motion: Position, pivot: float, rest: float, side: int) -> Place:
 
 @dataclass(frozen=True, eq=False)
 class Links:
-    """Places of the links of a mechanism that turns; loop 0 is the linkage's, loop k that of the k-th dyad."""
+    """Places of the links of a mechanism that turns right round; loop 0 is the linkage's, loop k the k-th dyad's."""
 
     mechanism: Mechanism
 
     def place(self, pose: Callable[[Solved], Link]) -> Place:
-        """Give the place of a link's own axes."""
+        """Place of the axes of the link that `pose` picks from the solved positions; angle 0 for a point."""
         mechanism = self.mechanism
 
         def place(phi: Array, order: int) -> Array:
@@ -97,7 +102,7 @@ class Links:
         return place
 
     def frame(self) -> Place:
-        """Place of the square frame: its middle, and u(theta_3)."""
+        """Place of the square frame: origin in its middle, x along u(theta_3)."""
         return self.place(self.mechanism.chain.frame)
 
     def output(self, loop: int) -> Place:
@@ -105,9 +110,9 @@ class Links:
         return self.place(self.mechanism.chain.output(loop).pose)
 
     def rod(self, loop: int) -> Place:
-        """Place of a dyad's bar PQ: origin P, x towards Q."""
+        """Place of the bar PQ of the dyad of a loop, from 1: origin P, x towards Q."""
         return self.place(lambda solved: self.mechanism.chain.rod(solved, loop - 1))
 
     def joint(self, loop: int, name: str) -> Place:
-        """Place of a joint and of the block in it, x along the line on which that slides."""
+        """Place of the joint `name` of a loop, such as D, P or Q: x along the line on which its block slides."""
         return self.place(lambda solved: self.mechanism.chain.joints(solved, loop)[name].place)

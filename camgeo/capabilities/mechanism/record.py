@@ -39,7 +39,7 @@ def _is_mesh(record: Format) -> bool:
 
 
 def _tag(record: Format) -> str:
-    """Suffix of the first file: the cam's own where each body has one, else that of all bodies."""
+    """Ending of the name of a request's first file: the cam's file, or the file of all bodies."""
     if record.by_disc:
         return "cam"
     return "parts" if record.contour else "assembly"
@@ -64,6 +64,7 @@ def _checks() -> Sequence[Declared]:
 
 
 def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
+    """Words for a change that brings a figure of bodies to its bound, mm; empty for other figures."""
     if figure not in FIGURES:
         return ""
     if figure == COLLISION and value <= 0.0:
@@ -74,6 +75,7 @@ def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
 
 
 def _left_out(_: Recipe, requests: Sequence[FileRequest], design: Design) -> list[tuple[str, str]]:
+    """The capability with the reason why it makes no bodies; empty where it makes them."""
     from camgeo.capabilities.mechanism import LABEL
     from camgeo.capabilities.mechanism.checks import NAME
     from camgeo.checks.declared import STANDS

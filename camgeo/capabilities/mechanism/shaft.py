@@ -32,16 +32,16 @@ if TYPE_CHECKING:
 
 CAM = "cam"
 KNOB_SIDES = 8
-LEAST_EXCESS = 0.1  # mm by which a shaft is at least too wide to turn in the bore, with the files' errors
-PLACES = 180  # of a turn, at which bodies may pass under the knob
+LEAST_EXCESS = 0.1  # mm by which a shaft is at least too wide to turn in the bore, after the files' errors
+PLACES = 180  # of a turn, at which bodies that may pass under the knob are placed
 CAM_COLOUR, SHAFT_COLOUR, CLIP_COLOUR, GROUND_COLOUR = "#d08a3c", "#5b6b7f", "#33404f", "#a9b4c0"
 
 
 @dataclass(frozen=True, eq=False)
 class Disk:
-    """The cam as plates, its disc from z = 0 to `thickness`, its hubs of radius `hub` from `bottom` to `top`; mm.
+    """The cam as plates: its disc from z = 0 to `thickness`, with its hubs from `bottom` to `top`; mm.
 
-    `pocket` is the depth of its groove from the top face, None without one.
+    `hub` is the radius of the hubs, 0 without. `pocket` is the depth of a groove from the top face, None without.
     """
 
     plates: tuple[Plate, ...]
@@ -52,7 +52,7 @@ class Disk:
     pocket: float | None = None
 
     def raised(self, z: float) -> tuple[Plate, ...]:
-        """The plates with the lower face of the disc at z, mm."""
+        """The plates with the lower face of the disc at `z`, mm."""
         return tuple(Plate(p.outline, p.holes, p.low + z, p.high + z) for p in self.plates)
 
 
@@ -60,7 +60,8 @@ def cam_disk(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) ->
     """The cam as plates: disc and hubs with the openings that go right through them.
 
     A groove has two contours, the inner one first. A chamfer, a set screw and an engraved mark are left out. Raises
-    ValueError without thickness or bore, BodyError for a thin disc.
+    ValueError without thickness or bore, BodyError for too thin a disc, TypeError for a groove whose outer contour is
+    a polygon.
     """
     if part.thickness is None or part.bore is None:
         raise ValueError("a cam for a mechanism needs thickness and bore")
@@ -68,6 +69,7 @@ def cam_disk(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) ->
     through = tuple(opening for opening in body.openings if opening.depth is None)
     holes = tuple(opening.outline for opening in through)
     plates = [Plate(contours[0], holes, 0.0, part.thickness)]
+    # a groove: its floor, and above that the island within it and the metal round it
     if body.pocket is not None and body.rim is not None:
         blank, floor, (inner, outer) = body.rim.outline, part.thickness - body.pocket, contours
         island = tuple(opening.outline for opening in through if opening.island)
@@ -77,6 +79,7 @@ def cam_disk(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) ->
             Plate(inner, island, floor, part.thickness),
             Plate(blank, (_arcs(outer), *outside), floor, part.thickness),
         ]
+    # hubs below and above the disc, with the openings within them
     boss = part.boss
     if boss is None:
         return Disk(tuple(plates), part.thickness, 0.0, part.thickness, pocket=body.pocket)
@@ -90,7 +93,7 @@ def cam_disk(part: Part, body: Body, contours: Sequence[ArcSpline | Polygon]) ->
 
 
 def _arcs(outline: ArcSpline | Polygon) -> ArcSpline:
-    """The outline, which is made of arcs; raises TypeError for a polygon."""
+    """The outline as one of arcs; raises TypeError for a polygon."""
     if not isinstance(outline, ArcSpline):
         raise TypeError("an opening is made of arcs and lines")
     return outline
@@ -98,10 +101,10 @@ def _arcs(outline: ArcSpline | Polygon) -> ArcSpline:
 
 @dataclass(frozen=True, eq=False)
 class Shaft:
-    """Sections of a shaft: `drive` in the cam's bore, round `journal` (a radius) in the base.
+    """Sections of a shaft: the outline `drive` in the cam's bore, and a circle of radius `journal` in the base; mm.
 
-    `across` is the greatest radius of the drive, `excess` that of its width over the bore's, so that it cannot turn in
-    it. A shaft for a round bore alone is pressed into it, and `excess` is None.
+    `across` is the greatest radius of the drive. `excess` is by how much the drive is wider than the opening in which
+    it would turn if it slipped; None for a round bore, into which the shaft is pressed.
     """
 
     drive: ArcSpline
@@ -116,9 +119,9 @@ class Shaft:
 
 
 def shaft_in(part: Part, s: Sizes) -> Shaft:
-    """Shaft that fits the bore of a part: with its flat, key or sides, half the clearance smaller all round.
+    """Shaft that fits the bore of a part, with the bore's sides, key or flat, half the clearance smaller all round.
 
-    Raises BodyError where the bore is too narrow for a shaft.
+    For a round bore it is wider by the press. Raises BodyError where the bore is too narrow for a shaft.
     """
     bore = part.bore or 0.0
     radius = 0.5 * bore - s.gap_each_side
@@ -135,7 +138,7 @@ def shaft_in(part: Part, s: Sizes) -> Shaft:
     else:
         across = 0.5 * (bore + s.press)
         drive = disc(across)
-    if journal < 1.0:
+    if journal < 1.0:  # mm: a thinner journal breaks
         message, remedy = "leaves a journal of {thick} in the base", "give a bore of {such} or more"
         raise BodyError(
             "part.bore", message, remedy, thick=max(2.0 * journal, 0.0), such=max(4.0, bore + 2.0 * (1.0 - journal))
@@ -145,9 +148,10 @@ def shaft_in(part: Part, s: Sizes) -> Shaft:
 
 
 def require_drive(part: Part, clearance: float, off: float) -> None:
-    """Raise BodyError for a bore in which the shaft may slip round, as drawn by files within `off` mm.
+    """Raise BodyError for a bore in which the shaft may slip round, in files with errors up to `off`, mm.
 
-    Each of the four sides of bore and shaft may be off by that.
+    `clearance`, mm, is the running clearance; each of the four sides of bore and shaft may be off. A key on the shaft
+    that is too thin to be printed is refused too.
     """
     widths = _turning_widths(part, clearance)
     if widths is None:
@@ -163,6 +167,7 @@ def require_drive(part: Part, clearance: float, off: float) -> None:
     least = LEAST_EXCESS + 4.0 * off
     if wide - opening >= least:
         return
+    # the size of the part that would be wide enough, and the clearance that would be small enough
     bore = part.bore or 0.0
     if part.sides:
         corner = 1.0 / math.cos(math.pi / part.sides)
@@ -184,7 +189,10 @@ def require_drive(part: Part, clearance: float, off: float) -> None:
 
 
 def _turning_widths(part: Part, clearance: float) -> tuple[float, float] | None:
-    """Greatest width of the shaft, and that of the bore through which it would turn, mm; None for a pressed shaft."""
+    """Greatest width of the shaft, and the width of the opening in which it would turn, mm; None for a pressed shaft.
+
+    The shaft's width is measured across its corners, over its key, or along its flat.
+    """
     bore = part.bore or 0.0
     if part.sides:
         return (bore - clearance) / math.cos(math.pi / part.sides), bore
@@ -198,7 +206,7 @@ def _turning_widths(part: Part, clearance: float) -> tuple[float, float] | None:
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """Parts that every mechanism has: the cam and its greatest radius `reach`, mm, the shaft, and the sizes."""
+    """Data common to all mechanisms: the cam and its greatest radius `reach`, mm, the shaft, and the sizes."""
 
     disk: Disk
     reach: float
@@ -207,7 +215,10 @@ class Drive:
 
 
 def bearing(drive: Drive, pads: Sequence[ArcSpline], high: float) -> tuple[Plate, ...]:
-    """Plates of the base about the shaft: pads with the sink of the retainer, and a boss up to z = `high`, mm."""
+    """Plates of the base about the shaft: pads with the hole and the retainer's sink, and a boss up to z = `high`, mm.
+
+    The boss is left out where it would be lower than half the axial gap.
+    """
     shaft, s = drive.shaft, drive.sizes
     sink, hole = disc(_sink(drive)), disc(shaft.journal + s.gap_each_side)
     plates = [Plate(pad, (sink,), 0.0, s.sunk) for pad in pads]
@@ -228,7 +239,10 @@ def _sink(drive: Drive) -> float:
 
 
 def shaft_members(drive: Drive, z: float, place: Place, others: Sequence[Member]) -> tuple[Member, Member, Member]:
-    """Return cam, shaft and the shaft's retainer: the disc's lower face at z, the knob above what passes under it."""
+    """Cam, shaft and the shaft's retainer, in this order, which move with `place`.
+
+    The disc's lower face is at `z`, mm. The knob is above all bodies `others` that pass under it.
+    """
     disk, shaft, s = drive.disk, drive.shaft, drive.sizes
     foot, head = z + disk.bottom, z + disk.top + s.gap
     plates = [Plate(disc(shaft.journal), (), s.gap, foot), Plate(shaft.drive, (), foot, head)]
@@ -248,7 +262,7 @@ def shaft_members(drive: Drive, z: float, place: Place, others: Sequence[Member]
 
 
 def _passing(member: Member, low: float, within: float) -> list[float]:
-    """Upper faces, mm, of the plates of a member above z = `low` that come `within` mm of the shaft at some angle."""
+    """Upper faces z, mm, of a member's plates above z = `low` that come nearer than `within` mm to the shaft's axis."""
     poses = member.poses(PLACES)
     faces = []
     for plate in member.plates:
@@ -266,7 +280,7 @@ def _passing(member: Member, low: float, within: float) -> list[float]:
 
 
 def shaft_fits(drive: Drive) -> tuple[BodyFit, ...]:
-    """Fits of the shaft in base, cam and retainer."""
+    """Fits of the shaft in base, cam and retainer, in this order."""
     s, name = drive.sizes, "shaft in the cam's bore"
     pressed, running = BodyFit(name, s.press, pressed=True), BodyFit(name, s.clearance, excess=drive.shaft.excess)
     in_cam = pressed if drive.shaft.pressed else running
@@ -274,5 +288,5 @@ def shaft_fits(drive: Drive) -> tuple[BodyFit, ...]:
 
 
 def base(plates: Sequence[Plate]) -> Member:
-    """The base of these plates."""
+    """The base as one body of these plates."""
     return Member("base", tuple(plates), GROUND, colour=GROUND_COLOUR)

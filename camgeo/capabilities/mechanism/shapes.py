@@ -25,17 +25,17 @@ def _outline(ring: ring.Ring) -> ArcSpline:
 
 
 def disc(radius: float, x: float = 0.0, y: float = 0.0) -> ArcSpline:
-    """A circle of a radius about a point, mm, as arcs."""
+    """A circle of a radius about (x, y), mm, as arcs."""
     return _outline(ring.disc(x, y, radius))
 
 
 def box(x0: float, y0: float, x1: float, y1: float) -> ArcSpline:
-    """A rectangle between two corners, mm."""
+    """A rectangle from its lower left corner (x0, y0) to its upper right corner (x1, y1), mm."""
     return _outline(ring.box(x0, y0, x1, y1))
 
 
 def bar(a: Point, b: Point, width: float) -> ArcSpline:
-    """A bar of a width with round ends about two points, mm; a disc where they are one."""
+    """A bar of a width with round ends about the points a and b, mm; a disc where these are the same."""
     return _outline(ring.bar(a, b, width))
 
 
@@ -46,14 +46,14 @@ def transformed(outline: ArcSpline, x: float, y: float, angle: float) -> ArcSpli
 
 
 def eye(s: Sizes, x: float = 0.0, y: float = 0.0) -> ArcSpline:
-    """Outline of the hole that turns on a pin at a point, mm."""
+    """Outline of a hole, with running clearance, for a pin at (x, y), mm."""
     return disc(0.5 * s.hole, x, y)
 
 
 def bars(s: Sizes, ends: Sequence[tuple[Point, Point]], holes: Sequence[Point], low: float, high: float) -> list[Plate]:
-    """A plate for each bar between two points, with those of the holes for pins that lie in it.
+    """A plate from z = `low` to `high`, mm, for a bar between each pair of `ends`, with the pin holes that lie in it.
 
-    Raises ValueError where a bar would close a part of a hole.
+    `holes` are middles of holes. Raises ValueError where a bar would close a part of a hole.
     """
     plates = []
     for a, b in ends:
@@ -78,9 +78,10 @@ def _segment_distance(point: Point, a: Point, b: Point) -> float:
 
 
 def pin(s: Sizes, place: Point, foot: float, low: float, high: float, *, crowned: bool = True) -> tuple[Plate, ...]:
-    """Plates of a pin on z = `foot` for a body between `low` and `high`, which rests on a wider shoulder.
+    """Plates of a pin that stands at `place` on z = `foot`, for a body between z = `low` and `high`; mm.
 
-    A `crowned` one reaches through the retainer above the body, another ends with the body.
+    The body rests on a wider shoulder, if there is height for one. A `crowned` pin reaches through the retainer above
+    the body; other pins end with the body.
     """
     x, y = place
     shoulder = low - s.gap
@@ -95,9 +96,10 @@ def pin(s: Sizes, place: Point, foot: float, low: float, high: float, *, crowned
 def retainer(
     s: Sizes, place: Point, high: float, diameter: float | None = None, radius: float = 0.0
 ) -> tuple[Plate, ...]:
-    """The disc pressed on a pin, of the common diameter or its own, above a body that ends at z = `high`.
+    """The plate of a disc pressed on a pin at `place`, above a body that ends at z = `high`; mm.
 
-    It is as wide as a bar, so that it passes wherever the bar's end does; `radius` is the least for a wider body.
+    `diameter` is the pin's, that of all pins if None. The disc is as wide as a bar, so that it passes wherever the
+    bar's end does, and wider where the pin's wall or the least `radius` needs it.
     """
     x, y = place
     across = s.pin if diameter is None else diameter

@@ -1,4 +1,4 @@
-"""Sizes of a printable mechanism, mm: those that a recipe gives, and others that follow from the cam."""
+"""Sizes of a printable mechanism, mm: as a recipe gives them, or as they follow from the cam."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from camgeo.capabilities.mechanism.keys import RequestedSizes
 
-ROUNDING = 1.0 - 1e-9  # a least size as it is reported, rounded, is not too small
+ROUNDING = 1.0 - 1e-9  # so that a least size that was reported, rounded, is not refused
 STEP = 0.5  # mm: sizes that follow from the cam are multiples of it
-LEAST_PIN = 3.0  # mm: a thinner one breaks between its layers
-MOST_PIN = 12.0
+LEAST_PIN = 3.0  # mm: a thinner pin breaks between its layers
+MOST_PIN = 12.0  # mm: thick enough for any cam
 THIN = 0.8  # mm: two lines of a common nozzle, the least wall that stands by itself
-LINE = 0.4  # mm: one line of it, the least that any size of a body may be
-LEAST_CLEARANCE = 1e-3  # mm: no body is made finer
+LINE = 0.4  # mm: one line of a nozzle, the least thickness of any body
+LEAST_CLEARANCE = 1e-3  # mm: bodies are not made more finely
 
 
 class BodyError(CamgeoError, ValueError):
-    """A body cannot be made: by which `field` of the recipe, why, and with which remedy.
+    """A body that cannot be made, with the `field` of the recipe that is the cause, a message and a remedy.
 
-    Message and remedy have names of lengths, mm, in braces, which are reported in the recipe's unit.
+    Message and remedy have names of `lengths`, mm, in braces, which are reported in the recipe's unit.
     """
 
     def __init__(self, field: str, message: str, remedy: str, **lengths: float) -> None:
@@ -32,10 +32,10 @@ class BodyError(CamgeoError, ValueError):
         super().__init__(self.texts()[0])
 
     def texts(self, mm: float = 1.0, units: str = "mm") -> tuple[str, str]:
-        """Message and remedy, lengths in a unit of so many mm."""
+        """Message and remedy, with lengths in the unit `units` of `mm` mm."""
         message, remedy = self._texts
         lengths = {name: f"{length / mm:.4g} {units}" for name, length in self._lengths.items()}
-        bounds = dict(lengths)  # of a remedy, rounded to the side on which it helps
+        bounds = dict(lengths)  # a remedy's bound is rounded to the side on which it helps
         for name, length in self._lengths.items():
             most = name == "most" or f"at most {{{name}}}" in remedy
             bounds[name] = f"{(downward if most else upward)(length / mm, 4)} {units}"
@@ -44,7 +44,7 @@ class BodyError(CamgeoError, ValueError):
 
 @dataclass(frozen=True)
 class Sizes:
-    """The sizes that bodies share, mm, as `RequestedSizes` names them, none of them open."""
+    """The sizes that bodies share, mm, each as described for the same field of `RequestedSizes`."""
 
     clearance: float
     gap: float
@@ -60,7 +60,7 @@ class Sizes:
 
     @property
     def hole(self) -> float:
-        """Diameter of a hole that turns on a pin, mm."""
+        """Diameter of a hole that runs on a pin, mm."""
         return self.pin + self.clearance
 
     @property
@@ -82,11 +82,12 @@ class Sizes:
 def derive_sizes(
     request: RequestedSizes, reach: float, bore: float, roller: float | None = None, field: str = "cam.roller_radius"
 ) -> Sizes:
-    """All sizes; those that a recipe leaves open follow from the cam's greatest radius `reach`, its bore and roller.
+    """All sizes, mm; sizes that the recipe leaves open follow from the cam.
 
-    `field` is where the recipe gives the rollers' radius. Raises BodyError where sizes do not fit together.
+    `reach` is the cam's greatest radius, `bore` the bore's diameter, `roller` the rollers' radius, None without
+    rollers, and `field` the recipe's key of that. Raises BodyError for sizes that are too small or do not fit together.
     """
-    most = MOST_PIN if roller is None else roller  # its wall is then a quarter of its diameter
+    most = MOST_PIN if roller is None else roller  # the roller's wall is then a quarter of its diameter
     pin = request.pin or _round_up(min(max(0.11 * reach, LEAST_PIN), most))
     wall = request.wall or _round_up(max(2.0, 0.7 * pin))
     clip = request.clip or _round_up(max(2.0, 0.4 * pin))
@@ -114,10 +115,10 @@ def derive_sizes(
 
 
 def require_clearance(clearance: float, field: str, off: float, own: str = "mechanism.clearance") -> None:
-    """Raise BodyError for a clearance, mm, that is too fine, or that files within `off` mm may close.
+    """Raise BodyError for a clearance, mm, that is too fine, or that files with errors up to `off` mm may close.
 
-    `own` is the recipe's key of the clearance, `field` that of the files' tolerance.
-    Facets of a hole and of its pin may each be `off` nearer to the other, which is half the clearance away.
+    `own` is the recipe's key of the clearance, `field` the key of the files' tolerance. Facets of a hole and of its pin
+    may each be `off` nearer to the other body, which is half the clearance away.
     """
     if clearance < LEAST_CLEARANCE:
         message, remedy = "{clearance} is finer than bodies are made", "give at least {least}"
@@ -135,7 +136,7 @@ def _round_up(length: float) -> float:
 
 
 def _check_sizes(s: Sizes, bore: float) -> None:
-    """Raise BodyError for sizes that are too small by themselves, or beside others."""
+    """Raise BodyError for sizes that are too small by themselves or for one another; `bore` is a diameter, mm."""
     require_thickness("mechanism.pin", s.pin, THIN)
     for name, length in (("link", s.link), ("wall", s.wall), ("clip", s.clip)):
         require_thickness(f"mechanism.{name}", length)
@@ -154,7 +155,7 @@ def _check_sizes(s: Sizes, bore: float) -> None:
 
 
 def require_thickness(field: str, length: float, least: float = LINE) -> None:
-    """Raise BodyError for a length below `least`, mm, which is too thin to be printed."""
+    """Raise BodyError, at `field`, for a length below `least`, mm, which is too thin to be printed."""
     if length < least:
         message, remedy = "{length} is too thin to be printed", "give at least {least}"
         raise BodyError(field, message, remedy, length=length, least=least)

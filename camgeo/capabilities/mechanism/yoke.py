@@ -25,9 +25,9 @@ LOOSE = "gravity or a spring holds the follower on the cam: one flat face does n
 
 
 def yoke(view: View[Translating, Flat], drive: Drive) -> Assembly:
-    """Bodies of a yoke of two flat faces.
+    """Bodies of a yoke of two flat faces, with a stem at either end.
 
-    The yoke's own x is 0 in the nominal face 1; each face is half the clearance farther out.
+    The yoke's axes have x = 0 in the nominal face 1; each face is half the clearance farther out.
     """
     s, disk, breadth = drive.sizes, drive.disk, view.contacts[1].datum
     low = s.plate + s.gap - disk.bottom
@@ -56,9 +56,9 @@ def yoke(view: View[Translating, Flat], drive: Drive) -> Assembly:
 
 
 def face_on_stem(view: View[Translating, Flat], drive: Drive) -> Assembly:
-    """Bodies of a flat face on a stem, nominal and without clearance: gravity or a spring keeps it on the cam.
+    """Bodies of a flat face on a stem, without clearance: gravity or a spring keeps the face on the cam.
 
-    The face crosses the stem's middle in the origin; its normal is turned by its tilt.
+    The face crosses the stem's middle line in the origin of the follower's axes; its normal is turned by its tilt.
     """
     s, disk, tilt, line = drive.sizes, drive.disk, view.touch.tilt, view.guide.offset
     x = view.datum + view.travel(SHAFT)[0]
@@ -66,13 +66,14 @@ def face_on_stem(view: View[Translating, Flat], drive: Drive) -> Assembly:
     face = float(contact.min()) - margin, float(contact.max()) + margin
     if view.touch.width is not None:
         face = -0.5 * view.touch.width, 0.5 * view.touch.width
+    # the face as a plate of a wall's thickness, as long as the contact travels, and the guide clear of it
     low = s.plate + s.gap - disk.bottom
     high = low + disk.thickness
     half = 0.5 * s.bar
     plate = transformed(box(0.0, face[0], s.wall, face[1]), 0.0, 0.0, tilt)
     first = max(float(x.max()) + float(plate.box()[2]), drive.reach if tilt or line else 0.0) + s.space
     end = first + guide_length(s) + s.space - float(x.min())
-    # of a tilted one the stem begins within the plate, behind the face
+    # behind a tilted face the stem begins within the plate
     lean = half * abs(math.tan(tilt))
     begin = max(lean, s.wall / math.cos(tilt) - lean)
     plates = Plate(plate, (), low, high), Plate(box(begin, -half, end, half), (), low, high)
