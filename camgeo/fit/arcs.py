@@ -1,7 +1,7 @@
 """A curve as tangent-continuous arcs (docs/theory.md 3): joints free, or biarcs through points of the curve.
 
-Arcs with free joints are fewer (`camgeo.fit.free_arcs`); biarcs stand in where those are not found, and where a stretch
-is so short beside the tolerance that two arcs do. Nodes of biarcs take equal shares of the integral of
+Arcs with free joints are fewer (`camgeo.fit.free_arcs`); biarcs take their place where these are not found, and where a
+stretch is so short beside the tolerance that two arcs hold it. Nodes of biarcs take equal shares of the integral of
 ``(|kappa'| / (40.5 e))^(1/3) ds``, both arcs of a biarc about equally long. A stretch of constant curvature is one arc.
 """
 
@@ -30,22 +30,22 @@ if TYPE_CHECKING:
 CONSTANT = 40.5  # error of a biarc of arcs of length s: |kappa'| s^3 / 40.5
 RATIO = math.cbrt(CONSTANT / FREE)  # of arcs with free joints to arcs in biarcs
 MOST_FREE = 1.8  # times the arcs in biarcs, up to which arcs with free joints are tried
-LOOKS = 8  # places on an arc at which its error is seen while the nodes are being shared
-ROUNDS = 8  # of sharing the nodes anew before there are more of them,
+LOOKS = 8  # steps of an arc at which its error is sampled while nodes are being shared
+ROUNDS = 8  # of sharing the nodes anew before nodes are added,
 GROWTH = 0.005  # by this share of them at least
 DAMPED = 4.0  # power of the length by which nodes are shared anew; the error's own, 3, overshoots
 MOST_RATIO = 1.5  # of the tangents' lengths of a biarc
 APART = 2.0  # arcs at least between extrema of curvature that are separated
-WIDEST = 2.0  # radians that a biarc may turn through
-ROUND = 0.5  # arcs foreseen for a stretch, below which it may be a circular arc that is not known as one
-HALF_TURN = math.pi * (1.0 + 1e-9)  # that one arc may turn through; what turns further is several
-FLOOR = 4.0  # times the least tolerance of points and distances: below it arcs are shorter than rounding lets them be
-SLIP = 1e-5  # of the tolerance: how far along the curve the foot of a joint may be off
-USABLE = 0.995  # of the tolerance, that errors seen may use; the rest is left to the proof
+WIDEST = 2.0  # rad that a biarc may turn through
+ROUND = 0.5  # arcs foreseen: a stretch with fewer may be a circular arc that its shape does not show as such
+HALF_TURN = math.pi * (1.0 + 1e-9)  # that one arc may turn through; more is divided
+FLOOR = 4.0  # times the least tolerance of points and distances: below it rounding spoils arcs
+SLIP = 1e-5  # of the tolerance: error of a joint's foot along the curve
+USABLE = 0.995  # of the tolerance, that sampled errors may use; the rest is left to the proof
 
 
 def arc_density(frame: Frame) -> Array:
-    """Arcs for each unit of parameter at a tolerance of 1 mm: ``(|kappa'|/40.5)^(1/3) ds/dt``, without a division."""
+    """Arcs per unit of the parameter at a tolerance of 1 mm (k,): ``(|kappa'|/40.5)^(1/3) ds/dt``, without division."""
     slope = frame.turn_slope * frame.speed - frame.turn * frame.speed_slope
     density: Array = np.cbrt(np.abs(slope) / CONSTANT)
     return density
@@ -53,7 +53,7 @@ def arc_density(frame: Frame) -> Array:
 
 @dataclass(frozen=True)
 class _Biarcs:
-    """Both arcs of each biarc, in order: points where each begins (2n, 2), bulges and chain (2n,)."""
+    """Both arcs of n biarcs, in order: points where each arc begins (2n, 2), bulges and chain (2n,)."""
 
     points: Array
     bulges: Array
@@ -64,8 +64,8 @@ class _Biarcs:
 class _Stretch:
     """A stretch of the curve that is fitted by itself, arcs at its ends touching the curve.
 
-    `parts` lie between the extrema of curvature inside it; empty where the curve is a circular arc. `biarcs` is the
-    number of arcs in biarcs that the theory foresees. `whole` is the fit of a stretch that proves to be a circular arc.
+    `parts` lie between the extrema of curvature inside the stretch; empty where it is a circular arc. `biarcs` is the
+    number of arcs in biarcs that theory foresees. `whole` is the fit of a stretch that proves to be a circular arc.
     """
 
     low: float
@@ -80,9 +80,9 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
 
     Each stretch between breaks of the curve, and between extrema of its curvature where arcs enough lie between, takes
     arcs with free joints or biarcs, whichever are fewer. Biarcs are made where arcs with free joints were not found, or
-    came out more than biarcs are expected to be. Both touch the curve at the stretch's ends, and the bound of either is
-    proved by `chain_deviation`. Cost and number of arcs grow as tolerance^(-1/3). Raises ToleranceError where the
-    tolerance is below rounding, needs too many arcs, or is not reached.
+    are more than the expected biarcs. Both touch the curve at the stretch's ends, and the bound of both is proved. Time
+    and number of arcs grow as tolerance^(-1/3). Raises ToleranceError where the tolerance is below rounding, needs too
+    many arcs, or is not reached; CurveError where the curve runs backwards.
     """
     size = curve.size
     bent = any(curve.radius(stretch) is None for run in curve.runs for stretch in run.stretches)
@@ -104,10 +104,10 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
 
 
 def _between_extrema(curve: Curve, tolerance: float, limit: float) -> list[_Stretch]:
-    """Smooth stretches of the curve, divided where the curvature seems extreme and arcs enough lie between.
+    """Smooth stretches of the curve, divided where the curvature is extreme by samples and arcs enough lie between.
 
-    A stretch that turns out to be a circular arc is fitted at once, proved up to `limit`. Biarcs do not fit alike on
-    the two sides of an extremum, so one that may or may not cross it never comes to rest.
+    A stretch that proves to be a circular arc is fitted at once, up to `limit`, mm. The errors of biarcs differ on the
+    two sides of an extremum, so that the nodes of a biarc across it would not come to rest.
     """
     stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
     bent = [stretch for stretch in stretches if curve.radius(stretch) is None]
@@ -129,13 +129,14 @@ def _between_extrema(curve: Curve, tolerance: float, limit: float) -> list[_Stre
 
 
 def _split_at_extrema(density: Density, slope: Array, tolerance: float) -> list[_Stretch]:
-    """A smooth stretch divided at extrema of curvature; `slope` (m - 2,) is that of curvature on the inner grid."""
+    """A smooth stretch divided at extrema of curvature; `slope` (m - 2,) has the sign of the curvature's slope."""
     extrema = _sign_changes(density.t[1:-1], slope)
     edges = [float(density.t[0]), *extrema, float(density.t[-1])]
     share = np.interp(edges, density.t, density.sum) / math.cbrt(tolerance)
     divided: list[_Stretch] = []
     parts: list[MonotonePart] = []
     begin = 0
+    # parts between neighbouring extrema, collected until there are arcs enough on both sides of a division
     for i, (low, high) in enumerate(pairwise(edges)):
         within = (density.t > low) & (density.t < high)
         grid = np.concatenate([[low], density.t[within], [high]])
@@ -150,7 +151,7 @@ def _split_at_extrema(density: Density, slope: Array, tolerance: float) -> list[
 
 
 def _sign_changes(t: Array, value: Array) -> list[float]:
-    """Parameters at which values (n,) at `t` (n,) change sign, by interpolation; a zero belongs to what follows it."""
+    """Parameters at which values (n,) at `t` (n,) change sign, by interpolation; a zero has the sign before it."""
     sign = np.sign(value)
     known = np.maximum.accumulate(np.where(sign != 0.0, np.arange(sign.size), 0))
     sign = sign[known]
@@ -160,7 +161,7 @@ def _sign_changes(t: Array, value: Array) -> list[float]:
 
 
 def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float) -> list[FittedArcs | None]:
-    """Arcs with free joints of the stretches; None where some part has none, or far more are foreseen than biarcs."""
+    """Arcs with free joints of the stretches; None where a part has none, or far more are foreseen than biarcs."""
     tried = [s.whole is None and sum(part.count(aim) for part in s.parts) <= MOST_FREE * s.biarcs for s in stretches]
     parts = [part for s, is_tried in zip(stretches, tried, strict=True) if is_tried for part in s.parts]
     fits = iter(free_arcs.free_arcs(curve, parts, aim, limit))
@@ -173,12 +174,12 @@ def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float
 
 
 def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float) -> list[FittedArcs]:
-    """Circular arcs and biarcs of each stretch: errors seen up to `aim`, mm, proved up to `limit`, mm.
+    """Circular arcs and biarcs of each stretch: sampled errors up to `aim`, proved ones up to `limit`, mm.
 
-    Raises ToleranceError where rounding takes all of the limit, or it is not reached.
+    Raises ToleranceError where rounding takes all of the limit, or the limit is not reached.
     """
     slip = _slip(curve, aim)
-    # what rounding takes of the tolerance that was asked for
+    # rounding's part of the whole tolerance
     cover = 2.0 * (rounding(curve.size) + slip)
     limit -= 2.0 * slip
     if not limit > 0.0:
@@ -196,6 +197,7 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
             done[i] = _circular_arcs(curve, stretch, radius)
     nodes = _first_nodes(curve, {i: stretch for i, stretch in enumerate(stretches) if i not in done}, tolerance)
     settled = dict.fromkeys(nodes, 0)
+    # biarcs of all stretches that do not hold yet; each of them is given better nodes until all hold by samples
     for _ in range(TRIES):
         todo = [i for i in nodes if i not in done]
         if not todo:
@@ -223,7 +225,7 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
 
 
 def _first_nodes(curve: Curve, bent: dict[int, tuple[float, float]], tolerance: float) -> dict[int, Array]:
-    """Nodes of each stretch that is no circular arc, as many as the theory foresees."""
+    """Nodes of each stretch that is no circular arc, by its index, as many as theory foresees."""
     densities = Density.of(curve, np.array(list(bent.values())).reshape(-1, 2), arc_density)
     check_count(sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
     return {
@@ -244,7 +246,7 @@ def _biarc_errors(curve: Curve, chain: Chain, tolerance: float) -> tuple[Array, 
 
 
 def _proved_fit(biarcs: _Biarcs, deviation: Deviation, rows: slice, slip: float) -> FittedArcs:
-    """The arcs of some rows, their bounds widened by the slip of feet along the curve, mm."""
+    """The arcs of `rows`, their bounds widened by the slip of feet along the curve, mm."""
     # f is the curve's distance outside the arc: where it is positive the file lies inward
     inward = max(float(deviation.outside[rows].max()), 0.0) + 2.0 * slip
     outward = max(-float(deviation.inside[rows].min()), 0.0) + 2.0 * slip
@@ -252,7 +254,7 @@ def _proved_fit(biarcs: _Biarcs, deviation: Deviation, rows: slice, slip: float)
 
 
 def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[Array, int]:
-    """Nodes for the next try, and tries so far: shared anew, then more; halved where errors are unknown."""
+    """Nodes for the next try, and tries so far: shared anew, then more nodes; halved where errors are infinite."""
     if not np.isfinite(worst).all():
         return np.sort(np.append(nodes, 0.5 * (nodes[:-1] + nodes[1:])[~np.isfinite(worst)])), 0
     mean = float(np.mean(np.cbrt(worst))) ** 3
@@ -268,7 +270,8 @@ def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[A
 
 
 def _circular_arcs(curve: Curve, stretch: tuple[float, float], radius: float) -> FittedArcs:
-    """One arc for a stretch that is a circular arc, two for more than a half turn."""
+    """One arc for a stretch that is a circular arc of a signed radius, mm; two for more than a half turn."""
+    # the angle from the end tangents is ambiguous by whole turns
     steady = curve.steady(stretch)
     ends = curve.span(np.array([stretch[0]]), np.array([stretch[1]]))
     (cx, cy), (dx, dy) = ends[0].tangent[0], ends[1].tangent[0]
@@ -290,8 +293,8 @@ def _circular_arcs(curve: Curve, stretch: tuple[float, float], radius: float) ->
 def _unknown_circle(curve: Curve, density: Density, inner: Array, limit: float) -> FittedArcs | None:
     """Fewest arcs, of half a turn at most, for a stretch that proves to be a circular arc; else None.
 
-    The stretch is one if the arcs leave in the curve's direction, arrive in it to within rounding, and are proved to
-    hold. `inner` (m - 2, 2) are the curve's tangents on the inner grid.
+    It is a circular arc if the arcs leave in the curve's direction, arrive in it to within rounding, and are proved up
+    to `limit`, mm. `inner` (m - 2, 2) are the curve's tangents on the inner grid.
     """
     first, last = curve.span(density.t[:1], density.t[-1:])
     along = np.concatenate([first.tangent, inner, last.tangent])
@@ -315,15 +318,15 @@ def _unknown_circle(curve: Curve, density: Density, inner: Array, limit: float) 
 
 
 def _slip(curve: Curve, tolerance: float) -> float:
-    """Permitted slip of a joint's foot along the curve, mm; the bound is widened by it."""
+    """Permitted slip of a joint's foot along the curve, mm, by which bounds are widened."""
     return max(0.25 * rounding(curve.size), SLIP * tolerance)
 
 
 def _biarcs(curve: Curve, low: Array, high: Array, slip: float) -> _Biarcs:
     """Biarcs between the ends of each interval (n,), the feet of their joints known to within `slip` mm.
 
-    The tangents' lengths leave one freedom. They are equal unless curvature changes faster at one end: then the arcs'
-    lengths make their errors alike, ``|kappa'| s^3``.
+    The ratio of the tangents' lengths is free. It is 1 unless curvature changes faster at one end: then the arcs'
+    lengths s make their errors ``|kappa'| s^3`` alike.
     """
     a, b = curve.span(low, high)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -343,7 +346,7 @@ def _biarcs(curve: Curve, low: Array, high: Array, slip: float) -> _Biarcs:
     k1, bulge1 = -k1, -bulge1
     joint_tangent = -end_tangent
     middle, miss = foot(curve, low, high, joint, joint_tangent, enough=slip)
-    # a joint whose normal does not meet the curve at `middle` would leave part of the curve without its arc
+    # where the joint's normal does not meet the curve at `middle`, part of the curve would have no arc beside it
     lost = miss > 2.0 * slip
     k0 = np.where(lost, np.nan, k0)
     chain = Chain(
@@ -357,7 +360,7 @@ def _biarcs(curve: Curve, low: Array, high: Array, slip: float) -> _Biarcs:
 
 
 def _arc_from(start: Array, tangent: Array, end: Array) -> tuple[Array, Array, Array]:
-    """Curvature, bulge and tangent at the end of the arcs that leave `start` along `tangent` and reach `end`."""
+    """Curvature (n,), bulge (n,) and end tangent (n, 2) of arcs that leave `start` along `tangent` and reach `end`."""
     chord = end - start
     square = np.sum(chord * chord, axis=1)
     length = np.sqrt(square)
@@ -369,5 +372,5 @@ def _arc_from(start: Array, tangent: Array, end: Array) -> tuple[Array, Array, A
 
 
 def _interleave(a: Array, b: Array) -> Array:
-    """a0, b0, a1, b1, ... (2n, ...)."""
+    """Rows of a and b (n, ...) in turn: a0, b0, a1, b1, ... (2n, ...)."""
     return np.stack([a, b], axis=1).reshape(-1, *a.shape[1:])

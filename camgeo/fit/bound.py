@@ -11,7 +11,7 @@ Box = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class Bound:
-    """Proved greatest deviation from the exact curve in mm: outward of it and inward of it, both >= 0.
+    """Proved greatest deviation of a fit from the exact curve, mm: outward and inward of the curve, both >= 0.
 
     Raises ValueError for a negative or non-finite figure.
     """
@@ -26,11 +26,11 @@ class Bound:
 
     @property
     def worst(self) -> float:
-        """The larger of the two sides, in mm."""
+        """The larger deviation of the two sides, mm."""
         return max(self.outward, self.inward)
 
     def scaled(self, k: float) -> Bound:
-        """The bound in a drawing k times as large."""
+        """The bound in a drawing k times as large; raises ValueError for a k below 0."""
         return Bound(k * self.outward, k * self.inward)
 
     def widened(self, margin: float) -> Bound:
@@ -38,7 +38,7 @@ class Bound:
         return Bound(self.outward + margin, self.inward + margin)
 
     def wider(self, other: Bound) -> Bound:
-        """The greater of both bounds on each side, which holds for both contours."""
+        """The greater deviation of two bounds on each side: a bound for both contours."""
         return Bound(max(self.outward, other.outward), max(self.inward, other.inward))
 
 

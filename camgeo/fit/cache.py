@@ -19,6 +19,7 @@ class Fits:
     """The fits of one contour, made on first use.
 
     `unsure`, mm, is the contour's rounding error through a recipe's own formula, 0 if it is no more than usual.
+    `outlines` are the fits made so far, by form and tolerance.
     """
 
     contour: Curve
@@ -33,7 +34,10 @@ class Fits:
     @overload
     def within(self, form: str, tolerance: float) -> Outline: ...
     def within(self, form: str, tolerance: float) -> Outline:
-        """Polygon, arcs or spline within a tolerance, mm; raises ToleranceError where it cannot be held."""
+        """Fit by form, `polyline`, `arcs` or `spline`, within a tolerance, mm.
+
+        Raises ToleranceError where the tolerance cannot be held, and CurveError where the contour runs backwards.
+        """
         if (form, tolerance) not in self.outlines:
             with self.clock.stage(f"fit {form}"):
                 self.outlines[form, tolerance] = _fit(form, self.contour, tolerance, self.unsure)
@@ -41,16 +45,16 @@ class Fits:
 
 
 def formula_rounding(unsure: float, contour: Curve) -> float:
-    """Rounding error of the contour through a recipe's own formula, mm; 0 if it is no more than usual."""
+    """Rounding error `unsure` of the contour through a recipe's own formula, mm; 0 if it is no more than usual."""
     from camgeo.fit.nodes import rounding
 
     return unsure if unsure > rounding(contour.size) else 0.0
 
 
 def _fit(form: str, contour: Curve, tolerance: float, unsure: float) -> Outline:
-    """Outline within a tolerance, of which the formula's rounding takes one share and the judge's rounding another.
+    """Outline within a tolerance; the formula's rounding takes a share for the fit and as much for the judge.
 
-    Raises ToleranceError where the fit cannot hold it, or the formula's rounding takes more than a quarter of it.
+    Raises ToleranceError where the fit cannot hold the rest, or the rounding is more than a quarter of the tolerance.
     """
     if not unsure:
         return _exact_fit(form, contour, tolerance)

@@ -1,15 +1,15 @@
 """Least error of a cubic span: how closely a polynomial cubic follows a smooth curve, to leading order.
 
-A plane cubic has eight coefficients, two of which only say how fast it is run through: six numbers are free, and it
-meets a curve six times. Write the curve as ``y = f2 x^2 + f3 x^3 + ...`` over its tangent and the cubic as
+A plane cubic has eight coefficients, two of which only set its parameter: six numbers are free, and it meets a curve
+six times. Write the curve as ``y = f2 x^2 + f3 x^3 + ...`` over its tangent and the cubic as
 ``x = t + a t^2 + b t^3, y = f2 t^2 + (2 f2 a + f3) t^3``: it agrees to the third order whatever a and b are, to the
 fifth where they satisfy two equations, and then misses the curve by ``-c t^6`` (de Boor, Höllig and Sabin, High
 accuracy geometric Hermite interpolation, CAGD 4, 1987). Eliminating b leaves a cubic equation for a with one or three
-real roots; the one that misses least counts.
+real roots; the root with the least miss counts.
 
-Over a span of length h whose ends lie off the curve by half of what its middle does to the other side, with tangents
-parallel to the curve's, the miss is ``c (h/2)^6 (z (z - 1)^2 - 2/27)``, z = (2 s/h)^2: 2/27 to either side, c h^6/864.
-No spline with a continuous tangent does better (docs/theory.md 3).
+Over a span of length h whose ends lie off the curve so that its error is equal to both sides, with tangents parallel
+to the curve's, the miss is ``c (h/2)^6 (z (z - 1)^2 - 2/27)``, z = (2 s/h)^2: 2/27 to either side, c h^6/864. No spline
+with a continuous tangent has a smaller error (docs/theory.md 3).
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 ORDER = 6.0  # power of a span's length with which its error falls
-LEAST = 864.0  # a span of length h errs by c h^6/864 at least
-STEPS_PER_CELL = 4  # of the curve, at whose middles the density is taken
+LEAST = 864.0  # the least error of a span of length h is c h^6/864
+STEPS_PER_CELL = 4  # of the curve; the density is taken in their middles
 VANISHING = 1e-14  # relative: a leading coefficient below is rounding
-REAL = 1e-6  # relative: roots with less of an imaginary part are a double root, split by rounding
+REAL = 1e-6  # relative: roots with a smaller imaginary part are a double root, split by rounding
 
 
 @dataclass(frozen=True)
 class NearestCubic:
     """The cubics nearest to a curve at n places, all (n,).
 
-    `miss` is the coefficient c, positive where the cubic lies outside a convex curve, per mm^5; `lean` is the
-    coefficient a, per mm: how fast the cubic's own parameter gains on the arc length.
+    `miss` is the coefficient c, 1/mm^5, positive where the cubic lies outside a convex curve; `lean` is the coefficient
+    a, 1/mm: how fast the cubic's own parameter gains on the arc length.
     """
 
     miss: Array
@@ -46,20 +46,20 @@ class NearestCubic:
 
 
 def nearest_cubic(speed: Array, turn: Array) -> NearestCubic:
-    """Miss and lean of the cubics nearest to a curve at n places, by Taylor coefficients (5, n) of speed and turn.
+    """Miss and lean of the cubics nearest to a curve at n places, by Taylor coefficients (5, n) of speed, mm, and turn.
 
-    Not finite where the speed vanishes.
+    Where the speed vanishes the miss is nan and the lean 0.
     """
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         f = _heights(speed, turn)
-        # all lengths by the curve's own: the coefficients become numbers of about one
+        # lengths in units of the curve's own, so that coefficients are about 1
         k = np.arange(1.0, 6.0)[:, None]
         scale = np.maximum((np.abs(f) ** (1.0 / k)).max(axis=0), 1e-300)
         f = f / scale**k
         known = np.isfinite(f).all(axis=0)
         lean = _roots(np.where(known, f, 0.0))
         f2, f3, f4, f5, f6 = f[:, :, None]
-        # b by both equations, as either may be empty
+        # b by least squares of both equations, as either may be empty
         p, q = 2.0 * f2, 2.0 * f2 * lean + 3.0 * f3
         first = f2 * lean**2 + 3.0 * f3 * lean + f4
         second = 3.0 * f3 * lean**2 + 4.0 * f4 * lean + f5
@@ -71,7 +71,7 @@ def nearest_cubic(speed: Array, turn: Array) -> NearestCubic:
 
 
 def _heights(speed: Array, turn: Array) -> Array:
-    """Coefficients f2 to f6 (5, n) of the curve over its tangent, from the derivatives of its curvature by length."""
+    """Coefficients f2 to f6 (5, n) of the curve over its tangent, from its curvature k and derivatives by length."""
     slowness = Jet(speed) ** -1
     row = Jet(turn) * slowness
     k = [row.c[0]]
@@ -107,22 +107,25 @@ def _roots(f: Array) -> Array:
 
 @dataclass(frozen=True)
 class SpanDensity:
-    """Density of spans along stretches; `side` (1 outside, -1) to which the nearest cubic always misses, else 0."""
+    """Density of spans along each stretch.
+
+    `side` is the side to which the nearest cubic misses everywhere, 1 outside, -1 inside; 0 where the side changes.
+    """
 
     densities: list[Density]
     side: float
 
     @property
     def totals(self) -> Array:
-        """Least spans of each stretch (m,) times the sixth root of the tolerance, mm^(1/6)."""
+        """Least number of spans of each stretch (m,) at a tolerance of 1 mm, which grows as tolerance^(-1/6)."""
         return np.array([density.total for density in self.densities])
 
 
 def span_density(curve: Curve, stretches: Array) -> SpanDensity:
     """Integral of (|c|/864)^(1/6) ds over each stretch (m, 2), none of which spans a break.
 
-    c, per mm^5, is the coefficient of the nearest cubic's miss (see this module). Over the sixth root of a tolerance
-    the integral is the least number of spans, to leading order. Where the curve stands still the density is taken as 0.
+    c, 1/mm^5, is the coefficient of the nearest cubic's miss. The integral is the least number of spans at a tolerance
+    of 1 mm, to leading order. Where the curve stands still the density is taken as 0.
     """
     cells, edges = curve.cells, []
     for low, high in stretches:

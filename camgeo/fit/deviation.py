@@ -11,7 +11,7 @@ are added until that sagitta no longer matters.
 
 Between nodes beta and f are confined first. No place is farther than half a step from a node, so as long as |beta| <= B
 and |f| <= F the bound of beta' that follows keeps |beta| below its node's value plus half a step times that bound; if
-that is less than B, and likewise for F, neither can ever leave (continuity). With B below a right angle the curve's
+this sum is less than B, and likewise for F, neither can ever leave (continuity). With B below a right angle the curve's
 foot runs forward along the piece from where it starts to where it ends. So, where the first foot is the piece's own
 beginning and the last its end, every point of the curve has its foot on the piece and every point of the piece has a
 point of the curve over it: the range of f bounds both distances, from the curve to the piece and back.
@@ -36,17 +36,17 @@ SLACK = 0.004  # nodes are doubled until the proof exceeds what the nodes show b
 FIRST_NODES = 4
 FOOT_STEPS = 25
 FORWARD = 1.5  # radians, below a right angle: as long as beta stays below it the foot moves forward along the piece
-MOST_NODES = 512
-BLOCK = 16_384  # places at a time: what they need then stays in a processor's cache
-FEW = 1000  # pieces, up to which a proof is sharpened further where the tolerance hangs on it
+MOST_NODES = 512  # of a piece
+BLOCK = 16_384  # places at a time, whose arrays stay in a processor's cache
+FEW = 1000  # pieces, up to which a proof is sharpened further to decide whether the tolerance is held
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Lines and arcs along a curve: n pieces, each over the parameters [low, high].
+    """Lines and arcs along a curve: n pieces, each over the curve's parameters from `low` to `high` (n,).
 
-    `start` (n, 2) is a point of the piece's own circle or line, `tangent` (n, 2) its unit direction there, `curvature`
-    (n,) its signed curvature, 0 for a line.
+    `start` (n, 2), mm, is a point of the piece's own circle or line, `tangent` (n, 2) its unit direction there,
+    `curvature` (n,), 1/mm, its signed curvature, above 0 where it turns left, 0 for a line.
     """
 
     start: Array
@@ -60,7 +60,8 @@ class Chain:
 class Deviation:
     """Proved range of the curve's signed distance f from each piece (n,), mm, above 0 outside the piece.
 
-    `inside` <= f <= `outside` along the piece, so `inside` is below 0 where the curve runs inside it.
+    `inside` <= f <= `outside` along the piece, so `inside` is below 0 where the curve runs inside it. Where nothing is
+    proved they are infinite.
     """
 
     inside: Array
@@ -68,7 +69,7 @@ class Deviation:
 
     @property
     def worst(self) -> Array:
-        """Greatest proved distance of each piece from the curve, either side (n,)."""
+        """Greatest proved distance of each piece from the curve to either side, mm (n,)."""
         return np.maximum(self.outside, -self.inside)
 
 
@@ -77,9 +78,10 @@ def chain_deviation(
 ) -> Deviation:
     """Proved deviation of each piece of a chain; pieces must not span a break of the curve.
 
-    `tolerance` says how sharp the proof needs to be: the result exceeds the truth by at most `SLACK` of it wherever
-    `MOST_NODES` nodes a piece are enough. `decide` asks for more where that leaves open whether a piece, one of at most
-    `FEW`, holds the tolerance. Cost grows with the nodes used.
+    Bounds are sharpened until they exceed the samples by at most `SLACK` times the tolerance, mm, with `MOST_NODES`
+    nodes a piece at the most; a piece whose samples break the tolerance is not proved sharply. `nodes` is the number of
+    steps at first. In a chain of at most `FEW` pieces `decide` sharpens further where the tolerance is held by the
+    samples, but not yet by the bounds. The time grows with the nodes used.
     """
     count = chain.low.size
     inside, outside = np.empty(count), np.empty(count)
@@ -92,7 +94,7 @@ def chain_deviation(
         loose = np.maximum(high - node_high, node_low - low) > SLACK * tolerance
         if decide and count <= FEW:
             loose |= (np.maximum(high, -low) > tolerance) & (seen <= tolerance)
-        # A piece already known to break the tolerance needs no sharper proof of it.
+        # a piece whose samples break the tolerance needs no sharper bound
         hopeless = seen > 1.05 * tolerance
         todo = todo[loose & ~hopeless]
         nodes *= 2
@@ -104,7 +106,7 @@ def chain_deviation(
 def sampled_deviation(curve: Curve, chain: Chain, nodes: int) -> Array:
     """Greatest sampled distance of each piece from the curve at `nodes` equal steps (n,), mm: a lower bound.
 
-    Infinite where the curve runs backwards along the piece.
+    It is infinite where the curve runs backwards along the piece, or the steps are too wide for any proof.
     """
     low, high, seen_low, seen_high = _ranges(curve, chain, nodes)
     seen = np.maximum(seen_high, -seen_low)
@@ -112,9 +114,10 @@ def sampled_deviation(curve: Curve, chain: Chain, nodes: int) -> Array:
 
 
 def radial(start: Array, tangent: Array, curvature: Array, point: Array) -> tuple[Array, Array]:
-    """Signed distance of points outside a circle or line, and the unit radial direction there: (n,), (n, 2).
+    """Signed distance (n,), mm, of points (n, 2) outside circles or lines, and the unit radial direction there (n, 2).
 
-    Written so that no digit is lost when the radius is large beside the distance (k -> 0 is a line).
+    A circle or line passes `start` (n, 2) in the direction `tangent` (n, 2) with a signed `curvature` (n,), 1/mm. No
+    digit is lost where the radius is large beside the distance.
     """
     normal = np.stack([tangent[..., 1], -tangent[..., 0]], axis=-1)
     offset = point - start
@@ -126,7 +129,7 @@ def radial(start: Array, tangent: Array, curvature: Array, point: Array) -> tupl
 
 
 def _ranges(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array, Array]:
-    """Proved range of f, and its range at the nodes, for each piece (n,) with `nodes` equal steps."""
+    """Least and greatest f, mm, as proved and then at the nodes, for each piece (n,) with `nodes` equal steps."""
     rows = (chain.start, chain.tangent, chain.curvature, chain.low, chain.high)
     step = max(1, BLOCK // nodes)
     blocks = [slice(first, first + step) for first in range(0, chain.low.size, step)]
@@ -198,7 +201,7 @@ def _bends(samples: _Samples, bounds: Bounds, k: Array) -> tuple[Array, Array, M
     m_bend = bounds.turn_bend + np.abs(k) * bounds.speed_bend
     m_slope = bounds.turn_slope + np.abs(k) * bounds.speed_slope
     m = np.maximum(np.abs(ma), np.abs(mb)) + square * m_bend
-    # beta and f inside the step: assumed with a margin, then confirmed
+    # beta and f inside the step: limits are assumed with a margin, then confirmed
     size = np.abs(k)
     furthest = np.maximum(np.abs(fa), np.abs(fb))
     first = angle + 0.5 * step * m
@@ -233,11 +236,11 @@ def peak(fa: Array, fb: Array, step: Array, bend: Array) -> Array:
 
 
 def foot(curve: Curve, low: Array, high: Array, point: Array, across: Array, *, enough: float) -> tuple[Array, Array]:
-    """Parameters in [low, high] where the curve meets the lines through `point` (n, 2) square to `across` (n, 2).
+    """Parameters (n,) in [low, high] at which the curve meets lines through `point` (n, 2) square to `across` (n, 2).
 
-    Newton's method from the middle, each step kept inside what remains of its interval, until the distance along
-    `across` is at most `enough`; that distance (n,) is returned as well. Used for joints of arcs, where `across` is the
-    common tangent of the two arcs.
+    With them come the remaining distances (n,) along `across`, mm. Newton's method begins in the middle of an interval,
+    which each step narrows, and ends where that distance is at most `enough`, mm. For a joint of arcs `across` is the
+    common tangent of both arcs.
     """
     t = 0.5 * (low + high)
     frames = curve.sample(t)

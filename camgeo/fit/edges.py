@@ -19,15 +19,17 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 EVEN = 0.02  # relative change of curvature over an edge up to which one sample in the middle is enough
-LOOKS = (1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0)  # the other places
+LOOKS = (1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0)  # places of further samples on an edge
 
 
 @dataclass(frozen=True)
 class PlacedEdges:
     """Edges of one run between nodes (n + 1,), vertices (n + 1, 2) `away` (n + 1,) outside the curve on its normals.
 
-    `lean` (n, 2) is the speed of each end's vertex towards the edge's outer side as its node moves. Pieces, which no
-    break interrupts, run from `low` to `high` (m,) and belong to `edge` (m,).
+    `tangent` (n, 2) is an edge's unit direction; `behind` and `beyond` (n,) are how far the feet of its first and its
+    last node lie within the edge, mm, below 0 beyond its ends. `lean` (n, 2) is the speed of each end's vertex towards
+    the edge's outer side as its node moves, mm per unit of the parameter. Pieces, which no break interrupts, run from
+    `low` to `high` (m,) and belong to edge number `edge` (m,).
     """
 
     nodes: Array
@@ -44,7 +46,7 @@ class PlacedEdges:
 
 @dataclass(frozen=True)
 class Sagittas:
-    """Sampled sagitta of each edge over its vertices (n,), mm, and its derivatives by the edge's two nodes."""
+    """Sampled sagitta of each edge over its vertices (n,), mm, and its derivatives by its two nodes' parameters."""
 
     load: Array
     by_low: Array
@@ -55,8 +57,9 @@ class Sagittas:
 class ProvedEdges:
     """Edges with their proved deviation.
 
-    `heights` (n,) is the deviation of each edge to either side, mm. `overhang`, mm, bounds how far the feet of the
-    curve's points fall beyond the ends of their edge.
+    `outward` and `inward` are the greatest distances of vertices from their nodes, mm. `overhang`, mm, bounds how far
+    the feet of the curve's points lie beyond the ends of their edge. `heights` (n,) is the greater deviation of each
+    edge to either side, mm.
     """
 
     vertices: Array
@@ -68,11 +71,11 @@ class ProvedEdges:
 
     @property
     def extremes(self) -> tuple[float, float]:
-        """Proved greatest distances, outward and inward, mm, of the edges from the curve and of the curve from them.
+        """Proved greatest distances, outward and inward, mm, between edges and curve, from either to the other.
 
-        A point of the curve whose foot lies on its edge is as far from it as `deviation` says, and every point of an
-        edge between two feet has such a point over it. The rest of an edge lies between a foot and the vertex of the
-        same node, nearer to that node than one of the two. A foot beyond the edge's end is `overhang` from it.
+        `deviation` bounds the distance of a curve's point whose foot lies on its edge, and of an edge's point between
+        the feet of its nodes. The rest of an edge lies between a node's foot and its vertex, and is no farther from the
+        node than the farther of the two. A foot beyond the edge's end is up to `overhang` from the end.
         """
         outward = max(self.outward, math.hypot(-min(float(self.deviation.inside.min()), 0.0), self.overhang))
         inward = max(self.inward, math.hypot(max(float(self.deviation.outside.max()), 0.0), self.overhang))
@@ -80,7 +83,7 @@ class ProvedEdges:
 
 
 def node_frames(curve: Curve, run: SmoothRun, nodes: Array) -> Frame:
-    """Frames at the nodes (n + 1,) of a run; the last one of a closed run is the first again."""
+    """Frames at the nodes (n + 1,) of a run; the last frame of a closed run is the first frame again."""
     if not run.closed:
         return curve.sample(nodes, np.where(np.arange(nodes.size) < nodes.size - 1, 1, -1))
     frame = curve.sample(nodes[:-1])
@@ -92,7 +95,7 @@ def place_edges(frame: Frame, run: SmoothRun, nodes: Array, away: Array) -> Plac
 
     `away` is set to 0 where it points to the hollow side of the curve, and at both ends of an open run.
     """
-    # where a slight bend the other way was not worth two crossings, a vertex on the far side would only add to it
+    # in a slight hollow without edges across its inflections a vertex that stands off would add to the deviation
     away = np.where(away * frame.turn < 0.0, 0.0, away)
     away[-1] = away[0]
     if not run.closed:
@@ -104,7 +107,7 @@ def place_edges(frame: Frame, run: SmoothRun, nodes: Array, away: Array) -> Plac
     tangent = chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
     across = columns(tangent[:, 1], -tangent[:, 0])
     lean = columns(pace[:-1] * np.sum(heading[:-1] * across, axis=1), pace[1:] * np.sum(heading[1:] * across, axis=1))
-    # nodes of a closed run may begin later than it does and end as much later: pieces beyond its end are folded back
+    # nodes of a closed run may begin and end later than the run: pieces beyond its end are moved back by the period
     span = run.high - run.low
     breaks = np.array(run.breaks)
     cuts = breaks if nodes[-1] <= run.high else np.concatenate([breaks, [run.high], breaks + span])
@@ -123,14 +126,14 @@ def place_edges(frame: Frame, run: SmoothRun, nodes: Array, away: Array) -> Plac
 def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -> Sagittas:
     """Sampled height of the curve over each edge, plus `tolerance`, mm, with derivatives by the edge's two nodes.
 
-    Not a proof. `sides` (n + 1,) is 1 or -1 for the side on which a vertex stands off by `tolerance`. For an edge
-    across an inflection, whose ends stand on different sides, both sides count. Derivatives are those of the edge's own
-    height where the curve rises highest (envelope theorem).
+    They are not proved. `sides` (n + 1,) is 1 or -1 for the side on which a vertex stands off by `tolerance`. For an
+    edge across an inflection, whose ends stand on different sides, both sides count. The derivatives are those of the
+    edge's own height where the curve is highest over it (envelope theorem).
     """
     count = edges.nodes.size - 1
     width = edges.high - edges.low
     frame = curve.sample(edges.low + 0.5 * width)
-    # one sample will do where the curve is nearly a circle over the edge
+    # one sample is enough where the curve is nearly a circle over the edge
     with np.errstate(divide="ignore", invalid="ignore"):
         change = np.abs(frame.speed_slope / frame.speed) + np.abs(frame.turn_slope / frame.turn)
     uneven = np.flatnonzero(~(change * width < EVEN))
@@ -147,7 +150,7 @@ def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -
     offset = frame.point - edges.vertices[:-1][edge]
     height = sense * (offset[:, 0] * along[:, 1] - offset[:, 1] * along[:, 0])
     slope = sense * (frame.tangent[:, 0] * along[:, 1] - frame.tangent[:, 1] * along[:, 0])
-    # from each place to the top of the parabola there, if that is not beyond half way to the next place
+    # from each place to the top of the parabola there, but at most half way to the next place
     across = (sides[:-1] != sides[1:])[edge]
     bend = sense * frame.turn
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -158,6 +161,7 @@ def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -
     load = np.maximum(top, low) + tolerance
     share = np.sum(offset * along, axis=1) + frame.speed * move
     chord = np.hypot(*(edges.vertices[1:] - edges.vertices[:-1]).T)
+    # the highest sample of each edge, and its place along the edge
     order = np.lexsort((load, edge))
     last = np.searchsorted(edge[order], np.arange(count), side="right") - 1
     best = order[last]
@@ -167,9 +171,9 @@ def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -
 
 
 def prove_edges(curve: Curve, edges: PlacedEdges, tolerance: float) -> ProvedEdges:
-    """Edges with their proved deviation, whose bounds are sharpened until they are below `tolerance`, mm, or cannot be.
+    """Edges with their proved deviation; bounds are sharpened to decide whether an edge holds the `tolerance`, mm.
 
-    An edge across a break of the curve is judged on both sides of it.
+    An edge across a break of the curve is proved on both sides of the break.
     """
     chain = Chain(
         edges.vertices[:-1][edges.edge], edges.tangent[edges.edge], np.zeros(edges.low.size), edges.low, edges.high

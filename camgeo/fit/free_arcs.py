@@ -1,13 +1,13 @@
 """Tangent-continuous arcs whose joints lie where they serve best, not on the curve (docs/theory.md 3).
 
-Where curvature rises or falls steadily an arc of length L that fits best crosses the curve at both its ends, leaning by
-``kappa' L^2 / 12``, and in the middle. It strays by ``|kappa'| L^3 / 124.7`` to either side, so that the count is the
-integral of ``(|kappa'| / (124.7 e))^(1/3) ds``, 0.69 of that of biarcs.
+Where curvature rises or falls steadily the best arc of length L crosses the curve at both its ends, at an angle of
+``kappa' L^2 / 12``, and in the middle. It deviates by ``|kappa'| L^3 / 124.7`` to either side, so that the count within
+e is the integral of ``(|kappa'| / (124.7 e))^(1/3) ds``, 0.69 of the count of arcs in biarcs.
 
 A part of the curve between two extrema of its curvature, at which arcs touch the curve, takes n arcs: n - 1 joints of
-three unknowns each (where, how far off, at what angle); one condition for each arc, that it joins in tangent; and two
-extremes of the deviation for each arc but one for the first and the last, all as large as a level that is unknown too.
-That is as many equations as unknowns. They are solved by Newton's method, for all parts at once.
+three unknowns each (place along the curve, distance from it, angle); one condition for each arc, that it joins in
+tangent; and two extremes of the deviation for each arc but one for the first and the last, all as large as a level that
+is unknown too. That is as many equations as unknowns. They are solved by Newton's method, for all parts at once.
 """
 
 from __future__ import annotations
@@ -32,23 +32,23 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 LEVEL = 1.02  # times the level foreseen: a part so near to it has settled
-ALONG = 0.03  # of an arc's length that a joint has moved when its neighbours' deviations change by about the tolerance
-DOUBT = 0.3  # of what a deviation is extrapolated by, so far it is taken to be off
+ALONG = 0.03  # of an arc's length: a joint's move that changes its neighbours' deviations by about the tolerance
+DOUBT = 0.3  # of the extrapolated part of a deviation: taken as its error
 STEPS = 12  # of Newton's method
-MOST_MOVE = 0.25  # of an arc's length, by which a joint moves along the curve in one step
-INNER = 0.5 - math.sqrt(1.0 / 12.0)  # where along an arc it strays farthest, and as far from its other end
-OUTER = 2.0 / 3.0  # the same for a part's first arc
-RAISED = 4  # times that a part may take more arcs than foreseen,
-MOST_ARCS = 40_000  # unless that many were tried before
-MOST_RAISED = 1.5  # times as many, at once
+MOST_MOVE = 0.25  # of an arc's length: greatest move of a joint along the curve in one step
+INNER = 0.5 - math.sqrt(1.0 / 12.0)  # share of an arc at which its deviation is greatest, from either end
+OUTER = 2.0 / 3.0  # this share for a part's first arc
+RAISED = 4  # tries of a part, each with more arcs
+MOST_ARCS = 40_000  # tried in all, after which no part is tried again
+MOST_RAISED = 1.5  # times the arcs: most for the next try
 NOISE = 20.0  # units in the last place of the curve's size, by which rounding raises the level: arcs to spare for it
 JOINED = 8.0  # units in the last place of the curve's size, by which an arc may miss the tangent of its end
-CLOSING = 12  # steps that bring it there
+CLOSING = 12  # steps that bring arcs to this
 PROOF_LOOKS = 16  # steps of an arc at which its deviation is first proved
 
 
 class FittedArcs(NamedTuple):
-    """Proved arcs: starting points (n, 2), bulges (n,), greatest deviation outward and inward, mm."""
+    """Proved arcs: starting points (n, 2), bulges (n,), greatest deviation outward and inward of the curve, mm."""
 
     points: Array
     bulges: Array
@@ -57,17 +57,18 @@ class FittedArcs(NamedTuple):
 
     @staticmethod
     def join(parts: Iterable[FittedArcs]) -> FittedArcs:
-        """Arcs of consecutive parts as one chain."""
+        """Arcs of consecutive parts, at least one, as one chain."""
         points, bulges, outward, inward = zip(*parts, strict=True)
         return FittedArcs(np.concatenate(points), np.concatenate(bulges), max(outward), max(inward))
 
 
 @dataclass(frozen=True)
 class _Layout:
-    """Arcs of all parts in order: `part` (n,) of each, `left` (n,) its first joint; `ends` (m,) marks joints that stay.
+    """Arcs of all parts in order: `part` (n,) and `left` (n,) are the indices of an arc's part and first joint.
 
-    `right_end` (m,) marks those at which a part ends. `sign` (n, 2) tells on which side of an arc, 1 for outside, the
-    curve lies at its two extremes; 0 for the one that a part's first and last arc do not have.
+    `ends` (m,) marks the joints at which a part begins or ends, which stay, `right_end` (m,) those at which it ends.
+    `sign` (n, 2) is the side of an arc on which the curve lies at its two extremes, 1 outside, -1 inside; 0 for the
+    extreme that a part's first and last arc lack.
     """
 
     part: NDArray[np.intp]
@@ -78,7 +79,7 @@ class _Layout:
 
     @property
     def part_of_joint(self) -> NDArray[np.intp]:
-        """The part of each joint (m,)."""
+        """Index of the part of each joint (m,)."""
         return np.cumsum(self.right_end) - self.right_end
 
     @staticmethod
@@ -111,9 +112,10 @@ class _Joints:
 
 @dataclass(frozen=True)
 class _Arcs:
-    """Arcs between joints, and the curve's `frame` (m,) below these.
+    """Arcs between joints, and the curve's `frame` at the joints (m,).
 
-    Each has its chord (n, 2), the chord's length, and `miss`, mm, by which it does not end in its joint's tangent.
+    Each has its chord (n, 2), the chord's length (n,), mm, and `miss` (n,), mm: the chord's length times the sine of
+    half the angle between the arc's end and its joint's tangent.
     """
 
     frame: Frame
@@ -125,9 +127,9 @@ class _Arcs:
 
 @dataclass(frozen=True)
 class _Peaks:
-    """Extremes of each arc's deviation (n, 2): height, the extrapolated part of it, and how far ahead they lie.
+    """Extremes of each arc's deviation (n, 2): height, mm, its extrapolated part `doubt`, and move ahead in parameter.
 
-    `foot` (n, 2, 2) is the foot on the arc, from the arc's start.
+    `foot` (n, 2, 2) is the foot on the arc, from the arc's start, mm.
     """
 
     height: Array
@@ -137,10 +139,10 @@ class _Peaks:
 
 
 def free_arcs(curve: Curve, parts: Sequence[MonotonePart], aim: float, limit: float) -> list[FittedArcs | None]:
-    """Arcs with free joints along parts of a curve, their errors seen up to `aim` and proved up to `limit` mm.
+    """Arcs with free joints along each part of a curve, sampled errors up to `aim` and proved ones up to `limit`, mm.
 
-    Each part's arcs begin and end on the curve, in its direction. None stands for a part for which none were found.
-    Cost grows with the number of arcs, so large numbers are not tried repeatedly.
+    Each part's arcs begin and end on the curve, in its direction; None for a part without arcs that hold. The time
+    grows with the number of arcs, so large numbers are not tried repeatedly.
     """
     done: list[FittedArcs | None] = [None] * len(parts)
     unit = float(np.finfo(np.float64).eps) * curve.size
@@ -165,6 +167,7 @@ def free_arcs(curve: Curve, parts: Sequence[MonotonePart], aim: float, limit: fl
             deviation = chain_deviation(curve, Chain(*(row[holds] for row in rows)), limit, PROOF_LOOKS)
             inside[holds], outside[holds] = deviation.inside, deviation.outside
         bulges = _bulges(arcs)
+        # parts that hold are done; others take more arcs, as their level foresees
         for place, i in enumerate(todo):
             own = layout.part == place
             # where the curve lies outside an arc the file lies inward of the curve
@@ -181,10 +184,12 @@ def free_arcs(curve: Curve, parts: Sequence[MonotonePart], aim: float, limit: fl
 
 
 def _level_out(curve: Curve, layout: _Layout, t: Array, aim: float) -> tuple[_Joints, Frame, Array]:
-    """Joints of arcs whose deviations level out, the frames below them, and each part's greatest sampled deviation.
+    """Joints of arcs with level deviations, the curve's frames at them, and each part's greatest sampled deviation.
 
-    The arcs' misses count as deviation, and so does the extrapolated part. Parts that hold `aim` stay as they are.
+    The arcs' misses count as deviation, and so does a share of the extrapolated part. Parts that hold `aim` stay as
+    they are.
     """
+    # shares of each arc at which its extremes are expected
     left, right = layout.left, layout.left + 1
     side = np.where(layout.right_end, -1, 1)
     places = np.tile([INNER, 1.0 - INNER], (left.size, 1))
@@ -194,15 +199,17 @@ def _level_out(curve: Curve, layout: _Layout, t: Array, aim: float) -> tuple[_Jo
     begin = np.flatnonzero(np.diff(layout.part, prepend=-1))
     foreseen = np.zeros(begin.size)
     for step in range(STEPS + 1):
+        # arcs and their extremes, which are followed as they move
         span = (joints.t[right] - joints.t[left])[:, None]
         looks = (joints.t[left][:, None] + places * span).ravel()
-        both = curve.sample(np.append(joints.t, looks), np.append(side, np.ones(looks.size, dtype=np.intp)))
-        frame, peak_frames = both.split(side.size)
+        frames = curve.sample(np.append(joints.t, looks), np.append(side, np.ones(looks.size, dtype=np.intp)))
+        frame, peak_frames = frames.split(side.size)
         arcs = _arcs(layout, joints, frame)
         peaks = _peaks(layout, arcs, peak_frames)
         places = np.clip(places + np.clip(peaks.move / span, -0.1, 0.1), 0.02, 0.98)
         unsure = np.abs(arcs.miss) + DOUBT * np.abs(peaks.doubt).max(axis=1)
         level = np.maximum.reduceat(np.abs(peaks.height).max(axis=1) + unsure, begin)
+        # settled: within the aim, or as near as Newton's method foresees to a level that is not
         settled = (level <= aim) | ((level <= LEVEL * foreseen) & (foreseen > aim))
         if settled.all() or step == STEPS:
             break
@@ -213,7 +220,7 @@ def _level_out(curve: Curve, layout: _Layout, t: Array, aim: float) -> tuple[_Jo
 
 
 def _first_joints(curve: Curve, layout: _Layout, t: Array, side: NDArray[np.intp]) -> _Joints:
-    """Joints on the curve at `t` (m,), with the lean that the theory foresees."""
+    """Joints on the curve at `t` (m,), with the lean ``-kappa' L^2 / 12``, 0 at the ends of parts."""
     frame = curve.sample(t, side)
     chord = frame.point[layout.left + 1] - frame.point[layout.left]
     square = _lesser_at_joints(layout, np.sum(chord * chord, axis=1))
@@ -222,7 +229,7 @@ def _first_joints(curve: Curve, layout: _Layout, t: Array, side: NDArray[np.intp
 
 
 def _lesser_at_joints(layout: _Layout, value: Array) -> Array:
-    """The lesser of the two arcs' values (n,) at each joint (m,)."""
+    """The lesser value (n,) of the two arcs at each joint (m,)."""
     least = np.full(layout.ends.size, np.inf)
     least[layout.left] = value
     least[layout.left + 1] = np.minimum(least[layout.left + 1], value)
@@ -246,7 +253,7 @@ def _arcs(layout: _Layout, joints: _Joints, frame: Frame) -> _Arcs:
 
 
 def _peaks(layout: _Layout, arcs: _Arcs, frame: Frame) -> _Peaks:
-    """Extremes of the curve's distance outside the arcs, from a frame near each (2n)."""
+    """Extremes of the curve's distance outside the arcs, extrapolated from a frame near each (2n)."""
     chain = arcs.chain
     point = frame.point.reshape(-1, 2, 2)
     f, away = radial(chain.start[:, None], chain.tangent[:, None], chain.curvature[:, None], point)
@@ -265,9 +272,10 @@ def _peaks(layout: _Layout, arcs: _Arcs, frame: Frame) -> _Peaks:
 def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: float) -> tuple[Array, Array]:
     """A step of Newton's method: moves of each joint along the curve and off it, mm, and its turn, rad (m, 3).
 
-    With it comes the level foreseen for each part. An arc through its two joints and along the direction of the first
-    moves, seen from the curve, as their heights h0, h1 and the direction g0 do: by ``(1 - w) h0 + w h1 + (x - s w) g0``
-    at a foot ahead by x. A joint that moves along the curve is left behind by its lean, and turns as curvatures differ.
+    With it comes the level foreseen for each part, mm. An arc through its two joints and along the direction of the
+    first moves off the curve as the heights h0, h1 of its joints and the direction g0 change, by ``(1 - w) h0 + w h1 +
+    (x - s w) g0`` at a foot ahead by x, s the chord's length along the first direction. A move of a joint along the
+    curve changes its height by its lean, and its direction by the difference of the curvatures.
     """
     chain, left, right = arcs.chain, layout.left, layout.left + 1
     curvature = arcs.frame.curvature
@@ -302,7 +310,7 @@ def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: f
 
 
 def _move_joints(layout: _Layout, joints: _Joints, arcs: _Arcs, change: Array) -> _Joints:
-    """Joints moved by `change`; a part by a share of it if a joint would go too far, not at all if one is nan."""
+    """Joints moved by `change` (m, 3); a part's by a share if one would go too far, not at all if one is nan."""
     move = change[:, 0] / arcs.frame.speed
     reach = MOST_MOVE * _lesser_at_joints(layout, arcs.chain.high - arcs.chain.low)
     share = np.where(np.isfinite(change).all(axis=1), reach / np.maximum(np.abs(move), reach), 0.0)
@@ -315,8 +323,9 @@ def _move_joints(layout: _Layout, joints: _Joints, arcs: _Arcs, change: Array) -
 def _close(layout: _Layout, joints: _Joints, frame: Frame, enough: float) -> _Arcs:
     """Arcs that join in tangent to within `enough` mm, their joints where they were along the curve.
 
-    Of all changes of offsets and leans that do it the least is taken, leans weighed so that what one arc asks of a
-    joint is nothing to the next: for levers a, b of the arcs on its two sides ``lean^2 a b + off^2`` is to be least.
+    Of all changes of offsets and leans that close the arcs the least is taken. Leans are weighed so that an arc's
+    change of a joint leaves the next arc's miss as it is: for levers a, b of the arcs on both sides of the joint,
+    ``lean^2 a b + off^2`` is to be least.
     """
     left, right = layout.left, layout.left + 1
     free = np.where(layout.ends, 0.0, 1.0)

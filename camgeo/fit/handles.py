@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 PLACES = np.array([0.1, 0.26, 0.5, 0.74, 0.9])  # of a span: least squares there make its error equal to both sides
-MOST_LEAN = 0.6  # by which the handles of the first guess differ
-LOOKS = 16  # steps of a span at which its error is seen
+MOST_LEAN = 0.6  # share by which the handles of the first guess may differ from a circular arc's
+LOOKS = 16  # steps of a span at which its error is sampled
 ROUNDS = 4  # of sampling the curve at the feet of the places,
-NEAR = 0.01  # of a span's length: feet that moved no more are not looked at again
+NEAR = 0.01  # of a span's length: feet that moved by less are not sampled again
 HANDLE_STEPS = 4  # for each round
 ENOUGH = 0.003  # of a span's error: handles that would change it by less are settled
-STEP = 0.3  # of a handle's logarithm, that one such step may change
-SHORTEST, LONGEST = 0.1, 2.5  # handles, times a third of the chord: beyond, a span all but folds
+STEP = 0.3  # greatest change of a handle's logarithm in one step
+SHORTEST, LONGEST = 0.1, 2.5  # handles, times a third of the chord: beyond, a span nearly folds
 FIRST_DAMPING = 1e-5  # of the equations, times their trace
-LIGHTER, HEAVIER = 0.1, 30.0  # times, after a step that served and one that did not
-HUMP = 0.2  # what humps still weigh where they do not count
+LIGHTER, HEAVIER = 0.1, 30.0  # times the damping, after a step that lessens the error and one that does not
+HUMP = 0.2  # weight of the humps where the span keeps to a parallel
 
 
 def _weights(u: Array) -> tuple[Array, Array]:
@@ -51,8 +51,9 @@ def _interpolation() -> tuple[Array, Array]:
     """Places in a span at which its error is sampled, and the matrix that interpolates there from 0, `PLACES` and 1."""
     known = np.concatenate([[0.0], PLACES, [1.0]])
     u = np.linspace(0.0, 1.0, LOOKS + 1)[1:-1]
-    others = [np.delete(known, i) for i in range(known.size)]
-    rows = [np.prod((u[:, None] - other) / (own - other), axis=1) for own, other in zip(known, others, strict=True)]
+    # Lagrange's polynomials: 1 at their own place, 0 at the remaining ones
+    remaining = [np.delete(known, i) for i in range(known.size)]
+    rows = [np.prod((u[:, None] - zeros) / (own - zeros), axis=1) for own, zeros in zip(known, remaining, strict=True)]
     return u, np.array(rows)
 
 
@@ -62,7 +63,7 @@ SAMPLED_AT, INTERPOLATION = _interpolation()
 
 @dataclass(frozen=True)
 class Spans:
-    """Spans over parameters [low, high] (n,): end points and unit tangents, complex (n,)."""
+    """Spans over parameters [low, high] (n,): end points, mm, and unit tangents at both ends, complex (n,)."""
 
     low: Array
     high: Array
@@ -72,11 +73,11 @@ class Spans:
     arriving: Complex
 
     def take(self, rows: NDArray[np.intp]) -> Spans:
-        """The spans at some rows."""
+        """The spans at the indices `rows`."""
         return Spans(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
     def control(self, handles: Array) -> Array:
-        """Bezier points (n, 4, 2) with handles (n, 2)."""
+        """Bezier points (n, 4, 2), mm, with handles (n, 2), mm, the lengths at the start and at the end."""
         first, last = self.start + handles[:, 0] * self.leaving, self.end - handles[:, 1] * self.arriving
         points = np.stack([self.start, first, last, self.end], axis=1)
         control: Array = points.view(np.float64).reshape(-1, 4, 2)
@@ -84,30 +85,31 @@ class Spans:
 
 
 def cubic_spans(curve: Curve, low: Array, high: Array, out: float) -> tuple[Array, Array, Array]:
-    """Cubic spans (n, 4, 2) between points `out` mm outside the curve.
+    """Cubic spans (n, 4, 2) over parameters from `low` to `high` (n,), between points `out` mm outside the curve.
 
-    With them come the sampled distances, mm, of each from the curve and from the parallel through its ends (n,).
-    Handles are sought from two guesses, as their equations may have more than one solution; the closer span counts.
+    With them come the greatest sampled distances, mm (n,), of each from the curve and from the parallel through its
+    ends. Handles are sought from two guesses, as their equations may have more than one solution; the closer span is
+    taken.
     """
     a, b = curve.span(low, high)
     leaving, arriving = plane(a.tangent), plane(b.tangent)
     start, end = plane(a.point) - 1j * out * leaving, plane(b.point) - 1j * out * arriving
     chord = np.abs(end - start)
-    # handles of a circular arc with these ends, and how the nearest cubic's differ
+    # handles of a circular arc with these ends, and the lean by which the nearest cubic's handles differ
     third = chord * 2.0 / (3.0 * (1.0 + np.maximum(0.5 * np.abs(leaving + arriving), 1e-6)))
     speed, turn = curve.shape.series(0.5 * (low + high), 4)
     lean = np.clip(np.nan_to_num(nearest_cubic(speed, turn).lean) * chord, -MOST_LEAN, MOST_LEAN)
     leaning = np.column_stack([third * (1.0 - lean), third * (1.0 + lean)])
     spans = Spans(low, high, start, leaving, end, arriving)
-    both = np.tile(np.arange(low.size), 2)
+    twice = np.tile(np.arange(low.size), 2)
     guess = np.concatenate([leaning, np.column_stack([third, third])])
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        # at a cusp nothing is finite: the error comes out unknown, and the span is divided
-        handles, t, size = fit_handles(curve, spans.take(both), guess, out)
+        # at a cusp nothing is finite: the error is unknown, and the span is divided
+        handles, t, size = fit_handles(curve, spans.take(twice), guess, out)
         first = np.nan_to_num(size.reshape(2, -1), nan=np.inf)
         chosen = np.argmin(first, axis=0) * low.size + np.arange(low.size)
         gap = sampled_gap(curve, spans, handles[chosen], t[chosen])
-    # what is as short as that is no farther off, however little its directions mean
+    # a span is no farther off than it and its stretch of the curve are long, even where its directions are rounding
     most = 4.0 * (chord + np.maximum(a.speed, b.speed) * (high - low))
     strayed, beside = (np.abs(part).max(axis=1) for part in (gap, gap - out))
     return spans.control(handles[chosen]), np.fmin(strayed, abs(out) + most), np.fmin(beside, most)
@@ -117,7 +119,7 @@ def cubic_spans(curve: Curve, low: Array, high: Array, out: float) -> tuple[Arra
 class _Near:
     """Points of spans seen from the curve near their feet at t (n, m): ``offset + first h0 - second h1``, complex.
 
-    The real part is along the curve's tangent there, the imaginary part to its left.
+    h0 and h1 are the handles. The real part is along the curve's tangent, the imaginary part to its left, mm.
     """
 
     t: Array
@@ -149,7 +151,8 @@ class _Near:
     def gaps(self, handles: Array) -> tuple[Array, Array, Array, Array]:
         """Distance outside the curve with handles (n, 2), its gradient along and outward, and the feet's offset (n, m).
 
-        By the circle of curvature and the slope of the curvature; the error is of the fourth power of the offset.
+        They follow from the circle of curvature and the slope of the curvature; the error is of the fourth power of the
+        offset. Lengths are mm.
         """
         points = self.offset + handles[:, :1] * self.first - handles[:, 1:] * self.second
         x, y = points.real, -points.imag
@@ -161,12 +164,13 @@ class _Near:
 
 
 def fit_handles(curve: Curve, spans: Spans, handles: Array, out: float) -> tuple[Array, Array, Array]:
-    """Handles (n, 2) of the span nearest to the curve, in the mean of squares at `PLACES`.
+    """Handles (n, 2), mm, of the spans nearest to the curve by least squares at `PLACES`, from a guess `handles`.
 
-    With them come the feet of the places (n, m) and the squares' sum (n,). Where the ends lie `out` mm outside, the
-    span is to keep to the parallel there, and the humps to both sides of its middle, which go as far beyond the curve,
-    hardly count. Levenberg's and Marquardt's steps, of the handles' logarithms: near places where the nearest cubic
-    ceases to exist the equations have no solution. Any handles will do, the proof takes them as they are.
+    With them come the parameters of the places' feet (n, m) and the sum of squares (n,), mm^2. Where the ends lie `out`
+    mm outside the curve, a span is to keep to the parallel there, and the humps on both sides of its middle, which
+    reach as far beyond the curve, hardly count. Steps are those of Levenberg and Marquardt in the handles' logarithms:
+    near places where the nearest cubic ceases to exist the equations have no solution. Handles need not be the best, as
+    each span is proved.
     """
     width = spans.high - spans.low
     low, high = spans.low[:, None], spans.high[:, None]
@@ -184,7 +188,7 @@ def fit_handles(curve: Curve, spans: Spans, handles: Array, out: float) -> tuple
 
 
 def _improve_handles(near: _Near, handles: Array, third: Array, out: float) -> tuple[Array, Array]:
-    """Handles (n, 2) of least deviation by the expansion near the feet, and the sum of squares (n,)."""
+    """Handles (n, 2) of less deviation by the expansion near the feet, and the sum of squares (n,)."""
 
     def gaps_and_gain(handles: Array) -> tuple[Array, Complex]:
         gap, along, outward, _ = near.gaps(handles)
@@ -195,7 +199,7 @@ def _improve_handles(near: _Near, handles: Array, third: Array, out: float) -> t
             gap, gain = (gap - out) @ WITHOUT_HUMPS, gain @ WITHOUT_HUMPS
         return gap, gain
 
-    # the two columns of the gain are one complex number, so that half as many sums do
+    # the two columns of the gain, derivatives by the handles' logarithms, are one complex number: half as many sums
     gap, gain = gaps_and_gain(handles)
     size = (gap * gap).sum(axis=1)
     damping = np.full(len(handles), FIRST_DAMPING)
@@ -223,7 +227,7 @@ def _improve_handles(near: _Near, handles: Array, third: Array, out: float) -> t
 def sampled_gap(curve: Curve, spans: Spans, handles: Array, t: Array) -> Array:
     """Sampled distance of n cubic spans outside the curve, mm, at `LOOKS` - 1 places in each: (n, LOOKS - 1).
 
-    `t` (n, 5) are the curve's parameters at the feet of the spans' `PLACES`.
+    `handles` (n, 2) are in mm; `t` (n, 5) are the curve's parameters at the feet of the spans' `PLACES`.
     """
     known = np.column_stack([spans.low, t, spans.high])
     feet = np.clip(known @ INTERPOLATION, spans.low[:, None], spans.high[:, None])

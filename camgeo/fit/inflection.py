@@ -1,8 +1,8 @@
 """Inflections of a curve, and the one straight edge that runs across each.
 
 Near an inflection the curve is a cubic, and the line that fits a cubic best touches the limits at both ends and twice
-between (Chebyshev's polynomial of degree 3): it reaches ``k' a^3 = 24 e`` to each side, k' the slope of the curvature.
-That is ``sqrt(24)/6 = 0.8165`` shares of the density of a straddling polygon.
+between (Chebyshev's polynomial of degree 3): within a tolerance e it reaches a to each side, ``k' a^3 = 24 e``, k' the
+slope of the curvature. That is ``sqrt(24)/6 = 0.8165`` shares of the density of a straddling polygon.
 """
 
 from __future__ import annotations
@@ -24,22 +24,23 @@ if TYPE_CHECKING:
 
 REACH = math.sqrt(24.0) / 6.0
 _ROOT_STEPS = 4  # of Newton's method at least
-_MOST_ROOT_STEPS = 60
-_NEAR = 0.15  # of an edge's reach: how far a root may be off
-_CLEAR = 0.05  # of its reach: how near to the inflection an extreme is looked for
-_STEPS = 16
-_CUBIC = 3.0  # times the bend of a cubic: a first guess may be off by as much
-_PLACES = (0.25, 0.5, 0.75, 1.0)  # of a reach, where the bend is looked at
-_HALVINGS = 60
-_SETTLED = 1e-4  # of the tolerance
+_MOST_ROOT_STEPS = 60  # halvings reach rounding by then
+_NEAR = 0.15  # of an edge's reach: error of an inflection
+_CLEAR = 0.05  # of an edge's reach: least distance of an extreme from the inflection
+_STEPS = 16  # of Newton's method for an edge
+_CUBIC = 3.0  # times the bend of a cubic: most that a first guess may bend
+_PLACES = (0.25, 0.5, 0.75, 1.0)  # of a reach, at which the bend is sampled
+_HALVINGS = 60  # of a reach
+_SETTLED = 1e-4  # of the tolerance: error of an extreme's height
 _MOST_STEP = 0.3  # of an edge's reach, in one step
 
 
 def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) -> tuple[Array, float]:
-    """Parameters (n,) at which the sampled turn changes its sign, rising, and its sign (1 or -1) before the first.
+    """Parameters (n,), rising, at which the sampled turn changes its sign, and its sign (1 or -1) before the first.
 
-    They lie inside the stretches or at the breaks between them; a change where a closed run ends is not among them.
-    Their error is aimed to be below `_NEAR` of the reach of an edge across them within `tolerance`, mm.
+    `densities` give the grid, one for each stretch. Changes lie inside the stretches or at the breaks between them; a
+    change where a closed run ends is left out. Their error is to be below `_NEAR` of the reach of an edge across them
+    within `tolerance`, mm.
     """
     if float(curve.cells.rows[2].min()) >= 0.0:
         return np.zeros(0), 1.0
@@ -54,6 +55,7 @@ def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) ->
     at_break = t[ends[:-1]][change[ends[:-1]]]
     change[ends[:-1]] = False
     changes = np.flatnonzero(change)
+    # Newton's method, halving where it leaves the bracket
     low, high, sense = t[changes], t[changes + 1], np.where(positive[changes], 1.0, -1.0)
     root = 0.5 * (low + high)
     for step in range(_MOST_ROOT_STEPS if changes.size else 0):
@@ -65,26 +67,29 @@ def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) ->
         is_before = frame.turn * sense >= 0.0
         low, high = np.where(is_before, root, low), np.where(is_before, high, root)
         better = root - move
-        # a root that has settled stays where it is: it is an end of what bounds it then
+        # a root that has settled stays where it is, as an end of its bracket
         root = np.where((better >= low) & (better <= high), better, 0.5 * (low + high))
     roots: Array = np.sort(np.concatenate([at_break, root]))
     return roots, 1.0 if positive[0] else -1.0
 
 
 def reach(frame: Frame, tolerance: float) -> Array:
-    """Reach in parameter (n,) of edges within a tolerance to each side of inflections: ``k' a^3 = 24 e``."""
+    """Reach (n,), in the parameter, of edges to each side of inflections, by a cubic within a tolerance, mm.
+
+    `frame` is the curve's at the inflections; infinite where the turn has no slope.
+    """
     with np.errstate(divide="ignore"):
         far: Array = np.cbrt(24.0 * tolerance / (np.abs(frame.turn_slope) * frame.speed))
     return far
 
 
 def reaches(curve: Curve, bends: Array, run: SmoothRun, tolerance: float) -> tuple[Array, Array]:
-    """Reach, in parameter, of edges across inflections `bends` (n,) before them and after them: (n,) each.
+    """Reach, in the parameter, of edges across inflections `bends` (n,) before them and after them: (n,) each.
 
-    Either side counts by itself, as the slope of the curvature may jump at a break and be 0 on one side. A reach is
-    halved until the curve bends over it no more than `_CUBIC` times as much as its cubic may.
+    Either side is taken by itself, as the slope of the curvature may jump at a break and be 0 on one side. A reach is
+    halved until the curve bends over it no more than `_CUBIC` times as much as a cubic within the tolerance, mm.
     """
-    both = []
+    reach_of_sides = []
     for side in (-1, 1):
         far = reach(curve.sample(bends, side), tolerance)
         far = np.minimum(far, bends - run.low if side < 0 else run.high - bends)
@@ -95,23 +100,23 @@ def reaches(curve: Curve, bends: Array, run: SmoothRun, tolerance: float) -> tup
             if not over.any():
                 break
             far = np.where(over, 0.5 * far, far)
-        both.append(far)
-    return both[0], both[1]
+        reach_of_sides.append(far)
+    return reach_of_sides[0], reach_of_sides[1]
 
 
 @dataclass(frozen=True)
 class Crossings:
-    """Edges across inflections: parameters of their ends (n,), whose vertices stand off the curve by the tolerance."""
+    """Edges across inflections: parameters of their ends (n,), where vertices stand off the curve by the tolerance."""
 
     low: Array
     high: Array
 
 
 def crossings(curve: Curve, nodes: Array, low: Array, high: Array, tolerance: float) -> Crossings:
-    """Longest edges across inflections, `nodes` (n,), that keep within the tolerance, from a first guess `low`, `high`.
+    """Longest edges across inflections `nodes` (n,) within a tolerance, mm, from a first guess `low` and `high` (n,).
 
-    Newton's method for the two extremes between the ends to be as large as the ends' own distance; each extreme is
-    followed as its edge moves. An edge that does not settle is returned as its first guess.
+    Newton's method makes the two extremes between the ends as large as the ends' own distance; each extreme is followed
+    as its edge moves. An edge that does not settle is returned as its first guess.
     """
     count = nodes.size
     if not count:
@@ -157,7 +162,7 @@ def crossings(curve: Curve, nodes: Array, low: Array, high: Array, tolerance: fl
         low = low + np.where(usable, np.clip(step_low, -limit_low, limit_low), 0.0)
         high = high + np.where(usable, np.clip(step_high, -limit_high, limit_high), 0.0)
         moved = np.where(np.isfinite(move), move, 0.0)
-        # at the inflection itself there is no bend to follow an extreme by
+        # extremes keep clear of the inflection itself, where no bend leads them
         near = np.clip(near + moved[0], low, nodes - _CLEAR * (nodes - low))
         far = np.clip(far + moved[1], nodes + _CLEAR * (high - nodes), high)
     return Crossings(np.where(settled, low, first_low), np.where(settled, high, first_high))

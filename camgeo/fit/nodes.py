@@ -1,4 +1,4 @@
-"""Nodes of a fit: equal shares of the density that its theory gives, corrected by measured errors."""
+"""Nodes of a fit: equal shares of the density of pieces that theory gives, corrected by measured errors."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 STEPS_PER_CELL = 8  # of the grid on which a density is integrated
-MOST_PIECES = 1_000_000  # beyond this a contour is no hand-off; a tolerance that needs more is refused
-ROUNDING_STEPS = 64.0  # a tolerance below this many units in the last place of the size cannot be told from rounding
-TRIES = 40
+MOST_PIECES = 1_000_000  # a file with more is of no use; a tolerance that needs more is refused
+ROUNDING_STEPS = 64.0  # units in the last place of the size: a smaller tolerance is lost in rounding
+TRIES = 40  # of placing nodes
 
 
 class ToleranceError(CamgeoError, ValueError):
-    """A tolerance that cannot be held; `reached`, mm, is one that can."""
+    """A tolerance that cannot be held; `reached`, mm, is a tolerance that can, or the best deviation reached."""
 
     def __init__(self, message: str, reached: float) -> None:
         super().__init__(message)
@@ -32,15 +32,15 @@ class ToleranceError(CamgeoError, ValueError):
 
 
 def rounding(size: float) -> float:
-    """Cover (mm) for the rounding of points and distances on a contour that reaches `size` mm from the shaft."""
+    """Bound, mm, of the rounding of points and distances on a contour that reaches `size` mm from the shaft."""
     return 0.5 * ROUNDING_STEPS * float(np.finfo(np.float64).eps) * size
 
 
 def check_precision(size: float, tolerance: float, times: float = 1.0) -> None:
-    """Refuse a tolerance (mm) that double precision cannot hold on a contour that reaches `size` mm from the shaft.
+    """Refuse a tolerance, mm, that double precision cannot hold on a contour that reaches `size` mm from the shaft.
 
-    A form that needs more than points and distances needs so many `times` as much. Raises ToleranceError with the least
-    tolerance that is held.
+    A form of more than points and distances needs `times` the least tolerance of these. Raises ToleranceError, with the
+    least tolerance that is held, for a smaller one.
     """
     least = times * ROUNDING_STEPS * float(np.finfo(np.float64).eps) * size
     if not tolerance >= least:
@@ -52,10 +52,10 @@ def check_precision(size: float, tolerance: float, times: float = 1.0) -> None:
 
 
 def check_count(needed: float, form: str, tolerance: float, order: float, lost: float = 0.0) -> None:
-    """Refuse a fit that would need more than `MOST_PIECES` pieces, whose error falls as their number to -`order`.
+    """Refuse a fit of a form that needs more than `MOST_PIECES` pieces for a tolerance, mm.
 
-    `lost`, mm, is the share of the tolerance that rounding takes beforehand. Raises ToleranceError with the
-    tolerance that about so many pieces hold.
+    `needed` is their number; the error falls as its power -`order`. `lost`, mm, is the part of the tolerance that
+    rounding takes beforehand. Raises ToleranceError with the tolerance that about `MOST_PIECES` pieces hold.
     """
     if needed > MOST_PIECES:
         reached = (tolerance - lost) * (needed / MOST_PIECES) ** order + lost
@@ -68,7 +68,10 @@ def check_count(needed: float, form: str, tolerance: float, order: float, lost: 
 
 @dataclass(frozen=True)
 class Density:
-    """Running integral `sum` (m,) of a density at the parameters `t` (m,); `turning`, rad, is that of the tangent."""
+    """Running integral `sum` (m,) of a density at the parameters `t` (m,), both rising.
+
+    `turning`, rad, is about the sum of all turning of the tangent.
+    """
 
     t: Array
     sum: Array
@@ -78,11 +81,12 @@ class Density:
     def of(curve: Curve, stretches: Array, density: Callable[[Frame], Array]) -> list[Density]:
         """Integrals over stretches (m, 2), none of which spans a break, on a grid that follows the curve's cells.
 
-        `density(frame)` gives the density by the parameter at k places (k,). The result has one for each stretch, in
-        order. Raises CurveError where the curve runs backwards.
+        `density(frame)` gives the density per unit of the parameter at k places (k,). The list has one integral for
+        each stretch, in order. Raises CurveError where the curve runs backwards.
         """
         if not len(stretches):
             return []
+        # equal steps of each cell that a stretch covers, cut off at the stretch's ends
         cells = curve.cells
         first = np.searchsorted(cells.low, stretches[:, 0], side="right") - 1
         last = np.searchsorted(cells.high, stretches[:, 1], side="left")
@@ -94,14 +98,15 @@ class Density:
         ends = np.cumsum(last - first + 1) - 1
         inside = t[:, :-1].ravel()
         side = np.repeat([1, -1], [inside.size, ends.size])
-        both = curve.sample(np.concatenate([inside, t[ends, -1]]), side)
-        interior = both.split(inside.size)[0]
+        frames = curve.sample(np.concatenate([inside, t[ends, -1]]), side)
+        interior = frames.split(inside.size)[0]
         slowest = int(np.argmin(interior.speed))
         if float(interior.speed[slowest]) <= 0.0:
             place = float(inside[slowest])
             raise CurveError(f"the curve runs backwards near parameter {place:.9g}: it undercuts", place)
+        # trapezoidal rule; a cell ends in the value at which the next one begins, a stretch in its own limit
         value = np.empty_like(t)
-        values = density(both)
+        values = density(frames)
         value[:, :-1] = values[: inside.size].reshape(-1, STEPS_PER_CELL)
         value[:-1, -1] = value[1:, 0]
         value[ends, -1] = values[inside.size :]
@@ -117,7 +122,7 @@ class Density:
 
     @staticmethod
     def join(parts: Sequence[Density]) -> Density:
-        """Density over consecutive stretches, joined from that of each; at least one is needed."""
+        """Density over consecutive stretches, one at least, from the densities of each."""
         t = np.concatenate([parts[0].t, *(part.t[1:] for part in parts[1:])])
         base = np.cumsum([0.0, *(part.total for part in parts[:-1])])
         total = np.concatenate([parts[0].sum, *(p.sum[1:] + b for p, b in zip(parts[1:], base[1:], strict=True))])
@@ -125,7 +130,7 @@ class Density:
 
     @property
     def total(self) -> float:
-        """Integral of the density over all its parameters."""
+        """Integral of the density over all its parameters: the number of pieces at a tolerance of 1 mm."""
         return float(self.sum[-1])
 
     def parameters_at(self, share: Array) -> Array:
@@ -139,7 +144,7 @@ class Density:
         return nodes
 
     def share(self, t: float) -> float:
-        """Running integral `sum` at a parameter, interpolated."""
+        """Running integral `sum` at a parameter t, interpolated."""
         return float(np.interp(t, self.t, self.sum))
 
     def nodes(self, count: int) -> Array:
@@ -154,7 +159,7 @@ def reshare(nodes: Array, load: Array, order: float, count: int | None = None) -
 
     `load` (n,) is the error of each piece between nodes (n + 1,), which grows as the length to the power `order`;
     `count` is by default the number of pieces. Equidistribution after de Boor (Good approximation by splines with
-    variable knots II, 1974). Where a load is infinite, or all are 0, shares are even.
+    variable knots II, 1974). Where a load is infinite, or all are 0, pieces keep equal weights.
     """
     top = float(load.max(initial=0.0))
     weight = np.ones_like(load)

@@ -16,18 +16,19 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 CONSTANT = 124.7  # error of an arc of length s with free joints: |kappa'| s^3 / 124.7 (12 sqrt 108)
-END = 0.687  # length, in those of the others, of the arc that touches the curve at its part's end: 3 (1.5/124.7)^(1/3)
-ENDS = 2.0 * (1.0 - END)
-CROWDED = 2.0  # arcs to a step of the grid, from which it is too coarse to place them by
-STEP = 2.0  # arcs to a step of the finer one
-FINER = 4  # times as many steps next to an extremum, where the density has no slope
+END = 0.687  # of an inner arc's length: the arc that touches the curve at its part's end, 3 (1.5/124.7)^(1/3)
+ENDS = 2.0 * (1.0 - END)  # arcs that a part takes more than its integral
+CROWDED = 2.0  # arcs to a step of the grid: a grid with more is too coarse to place arcs by
+STEP = 2.0  # arcs to a step of a finer grid
+FINER = 4  # times as many steps next to an extremum, where the density falls to 0 as a cube root
 
 
 @dataclass(frozen=True)
 class MonotonePart:
-    """A part of a curve on which curvature rises or falls: `grid` (m,) and `share` (m,), the integral of arcs up to it.
+    """A part of a curve on which curvature rises (`rising` 1) or falls (-1).
 
-    `share` is of ``(|kappa'| / 124.7)^(1/3) ds``: arcs at a tolerance of 1 mm. `rising` is 1 or -1.
+    `share` (m,) is the integral of ``(|kappa'| / 124.7)^(1/3) ds`` up to the parameters `grid` (m,): the number of arcs
+    at a tolerance of 1 mm.
     """
 
     grid: Array
@@ -36,15 +37,15 @@ class MonotonePart:
 
     @property
     def total(self) -> float:
-        """Number of arcs of the part at a tolerance of 1 mm: the integral `share` at its end."""
+        """Number of arcs of the part at a tolerance of 1 mm, by the integral `share`."""
         return float(self.share[-1] - self.share[0])
 
     def count(self, tolerance: float) -> int:
-        """Number of arcs foreseen within a tolerance, mm."""
+        """Number of arcs that theory foresees within a tolerance, mm; two at least."""
         return max(2, math.ceil(self.total / math.cbrt(tolerance) + ENDS))
 
     def nodes(self, count: int) -> Array:
-        """Parameters of the joints of `count` arcs (count + 1,)."""
+        """Parameters (count + 1,) of the joints of `count` arcs, the part's ends included."""
         place = np.concatenate([[0.0], END + np.arange(count - 1), [count - ENDS]])
         nodes: Array = np.interp(self.share[0] + place * (self.total / place[-1]), self.share, self.grid)
         nodes[0], nodes[-1] = self.grid[0], self.grid[-1]
@@ -52,10 +53,10 @@ class MonotonePart:
 
 
 def refine(curve: Curve, parts: Sequence[MonotonePart], tolerance: float) -> list[MonotonePart]:
-    """Parts whose grid is as fine as the arcs on it, so that these begin within a fraction of an arc of their place.
+    """Parts with a grid as fine as their arcs within a tolerance, mm, so that these begin near their final places.
 
-    From a coarse grid thousands of arcs begin several arcs off, most where the density falls to nothing at an extremum
-    of curvature, as the cube root of the distance: more than Newton's method makes good.
+    From a coarse grid thousands of arcs begin several arcs off, most where the density falls to 0 at an extremum of
+    curvature, as the cube root of the distance: more than Newton's method corrects.
     """
     most = CROWDED * math.cbrt(tolerance)
     grids = {i: _grid(part, tolerance) for i, part in enumerate(parts) if float(np.diff(part.share).max()) > most}
@@ -80,7 +81,7 @@ def _grid(part: MonotonePart, tolerance: float) -> Array:
     first = np.repeat(np.cumsum(steps) - steps, steps)
     owner = np.repeat(np.arange(steps.size), steps)
     along = (np.arange(owner.size) - first) / steps[owner]
-    # equal steps of the cube root of the distance from the end: the density grows by equal steps there
+    # equal steps of the cube root of the distance from the end, with which the density grows there
     along[: steps[0]] **= 3
     along[along.size - steps[-1] :] = 1.0 - (1.0 - along[along.size - steps[-1] :]) ** 3
     width = np.diff(part.grid)

@@ -58,7 +58,7 @@ class Polygon:
         return Polygon(_turned_loop(self.vertices, angle), self.bound)
 
     def scaled(self, k: float) -> Polygon:
-        """The outline k times as large, k > 0, as for a change of unit."""
+        """The outline k times as large, as for a change of unit; raises ValueError unless k > 0."""
         return Polygon(self.vertices * _positive(k), self.bound.scaled(k))
 
     def box(self) -> Box:
@@ -68,7 +68,7 @@ class Polygon:
 
 @dataclass(frozen=True, eq=False)
 class ArcSpline(ArcChain):
-    """A closed chain of arcs and lines, two at least.
+    """A closed chain of arcs and lines, two at least: points (n, 2), bulges (n,) of the pieces that follow them.
 
     Raises ValueError where a shape is wrong, a number is not finite, or a piece has no length.
     """
@@ -87,7 +87,7 @@ class ArcSpline(ArcChain):
 
     @property
     def area(self) -> float:
-        """Enclosed area in mm^2: that of the chords' polygon and of the segments beyond it."""
+        """Enclosed area in mm^2: the chords' polygon, and the segments between arcs and chords."""
         chord = self.chords
         half = 2.0 * np.arctan(self.bulges)  # half the angle turned through
         segment = np.einsum("ij,ij->i", chord, chord) * _segment_ratio(half)
@@ -96,7 +96,7 @@ class ArcSpline(ArcChain):
     def mirrored(self) -> ArcSpline:
         """The mirror image in the x axis, again counter-clockwise, from the same first point.
 
-        Mirroring turns the sign of every bulge and so does running backwards: the bulges keep theirs.
+        Mirroring turns the sign of every bulge and so does running backwards: bulges keep their signs.
         """
         return ArcSpline(_mirrored_loop(self.points), self.bulges[::-1].copy(), self.bound)
 
@@ -105,11 +105,11 @@ class ArcSpline(ArcChain):
         return ArcSpline(_turned_loop(self.points, angle), self.bulges, self.bound)
 
     def scaled(self, k: float) -> ArcSpline:
-        """The chain k times as large, k > 0, as for a change of unit; bulges have no unit."""
+        """The chain k times as large, as for a change of unit, with the same bulges; raises ValueError unless k > 0."""
         return ArcSpline(self.points * _positive(k), self.bulges, self.bound.scaled(k))
 
     def box(self) -> Box:
-        """Exact extremes (x_min, y_min, x_max, y_max) of the arcs themselves.
+        """Exact extremes (x_min, y_min, x_max, y_max) of the arcs themselves, mm.
 
         An arc reaches beyond its ends along an axis direction d only if d lies within its normals. The excess is
         written with the sagitta, so that a nearly straight arc loses nothing to its distant centre.
@@ -142,11 +142,11 @@ class ArcSpline(ArcChain):
 
 @dataclass(frozen=True, eq=False)
 class BSpline:
-    """A closed, non-rational B-spline: control (m, 2), knots (m + degree + 1,), never falling, `spans` not empty.
+    """A closed, non-rational B-spline: control points (m, 2), knots (m + degree + 1,), never falling.
 
-    The curve runs over knots[degree] .. knots[m] and ends exactly where it starts: either clamped, its first and last
-    control points the same, or periodic, its last `degree` control points the first ones again. Raises ValueError for
-    anything else.
+    `spans` is the number of knot intervals that are not empty. The curve runs over knots[degree] .. knots[m] and ends
+    exactly where it starts: either clamped, its first and last control points the same, or periodic, its last `degree`
+    control points the first ones again. Raises ValueError for anything else.
     """
 
     degree: int
@@ -182,7 +182,7 @@ class BSpline:
 
     @property
     def periodic(self) -> bool:
-        """True where the last `degree` control points are the first ones again and the knots repeat with them."""
+        """True where the last `degree` control points equal the first ones and the knots repeat with the period."""
         p, knots = self.degree, self.knots
         m = len(self.control)
         if m < 2 * p or not np.array_equal(self.control[:p], self.control[-p:]):
@@ -214,11 +214,11 @@ class BSpline:
         return BSpline(self.degree, control, knots, self.spans, self.bound)
 
     def scaled(self, k: float) -> BSpline:
-        """The outline k times as large, k > 0, as for a change of unit."""
+        """The outline k times as large, as for a change of unit; raises ValueError unless k > 0."""
         return BSpline(self.degree, self.control * _positive(k), self.knots, self.spans, self.bound.scaled(k))
 
     def beziers(self) -> Array:
-        """Bezier control points of each span, (spans, degree + 1, 2).
+        """Bezier control points of each span, mm, (spans, degree + 1, 2).
 
         They are values of the span's polar form (blossom) at its two ends repeated, found by de Boor's triangle.
         """
@@ -239,7 +239,7 @@ class BSpline:
         return out
 
     def box(self) -> Box:
-        """Exact extremes (x_min, y_min, x_max, y_max) of the curve, not of its control polygon."""
+        """Exact extremes (x_min, y_min, x_max, y_max) of the curve, not of its control polygon, mm."""
         pieces = self.beziers()
         ends = pieces[:, (0, -1)].reshape(-1, 2)
         lowest, highest = ends.min(axis=0), ends.max(axis=0)
@@ -302,7 +302,7 @@ def _polygon_area(points: Array) -> float:
 
 
 def _segment_ratio(half: Array) -> Array:
-    """Area between an arc and its chord over the chord squared, with the arc's sign; `half` the angle to each side."""
+    """Area between arcs and chords over the chords squared (n,), with the arcs' signs; `half` is half their turn."""
     small = np.abs(half) < 0.02
     a = np.where(small, 1.0, half)
     s = half * half

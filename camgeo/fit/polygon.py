@@ -1,7 +1,7 @@
 """A curve as a polygon that straddles it: as much outside at the vertices as inside between them (docs/theory.md 3).
 
 Vertices stand off the curve by the tolerance, on its convex side. The curve is divided at its breaks, where a vertex
-stands, and at its inflections, which one edge crosses; in each part as few edges as will do are made equally high.
+stands, and at its inflections, which one edge crosses; in each part the fewest edges that hold are made equally high.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 USABLE = 0.9995  # of the tolerance; the rest covers the second order at the vertices
-BALANCED = 1e-3  # of the tolerance: how far the two sides may differ before the vertices are moved once more
+BALANCED = 1e-3  # of the tolerance: with a greater difference between the sides vertices are moved once more
 AIMS = (1.0, 0.998, 0.995, 0.99, 0.97, 0.9, 0.6, 0.3, 0.1)  # parts of the tolerance aimed at until it is proved
 TRIES = 24  # of placing nodes for one aim
-ROUNDS = 5  # of levelling the edges of a part before there are more of them
+ROUNDS = 5  # of levelling the edges of a part before it takes more edges
 SHORTENINGS = 3  # of edges across inflections after a proof, before less is aimed at
-SHORTENED = 1.05  # times, at least
+SHORTENED = 1.05  # least factor by which an edge that a proof rejects is made shorter
 FREE_TRIES = 4  # counts tried with edges across the breaks
-LEVELLINGS = 16  # steps for each
-FULL = 0.93  # of the tolerance used is enough; below it fewer edges are sought
-SLIGHT = 1.0  # shares: what bends the other way for less than this is not worth two crossings
-CROSSING = 0.9995  # of the tolerance: what an edge across an inflection aims at, the rest covers its proof
-GRID = 2.0  # times what the density says: an edge across an inflection that reaches farther is begun with by its cubic
+LEVELLINGS = 16  # steps for each count
+FULL = 0.93  # of the tolerance: where less is used, fewer edges across the breaks are sought
+SLIGHT = 1.0  # shares: a shorter stretch between two inflections is not worth two crossings
+CROSSING = 0.9995  # of the tolerance: aim of an edge across an inflection; the rest covers its proof
+GRID = 2.0  # times the reach by the density: an edge across an inflection that reaches farther begins with its cubic
 CROSSING_SHARE = 0.45  # of a part between two inflections that one crossing may take
-EXACT = 1.0 + 1e-9
-SEEN = 1.03  # how much samples of an edge across an inflection may overrate it
+EXACT = 1.0 + 1e-9  # times a limit, for rounding
+SEEN = 1.03  # times the limit, up to which the samples of an edge across an inflection may overrate it
 
 
 def polygon_density(frame: Frame) -> Array:
@@ -47,17 +47,20 @@ def polygon_density(frame: Frame) -> Array:
 
 
 def least_vertices(curve: Curve, tolerance: float) -> float:
-    """Leading-order count of a straddling polygon: integral of ``sqrt(|kappa|/(16 e)) ds`` (docs/theory.md 3)."""
+    """Leading-order count of a straddling polygon within a tolerance e, mm: integral of ``sqrt(|kappa|/(16 e)) ds``.
+
+    Raises CurveError where the curve runs backwards.
+    """
     total = sum(part.total for run in curve.runs for part in Density.of(curve, run.stretches, polygon_density))
     return total / math.sqrt(tolerance)
 
 
 @dataclass()
 class _Part:
-    """Nodes (n + 1,) between two fixed ones; `sense` is the side of the vertices (1 outside).
+    """A part of a run between fixed nodes: `nodes` (n + 1,) and the side `sense` of its vertices, 1 outside, -1 inside.
 
     `crossed` says whether an edge follows the part across an inflection; `least` is the fewest edges not yet known to
-    fail, `tried` counts the tries to level them.
+    fail, `tried` counts the tries to level the edges.
     """
 
     nodes: Array
@@ -75,9 +78,9 @@ class _Part:
 def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
     """Polygon within `tolerance` mm of a curve, vertices as far outside as the edges' middles are inside.
 
-    The bound is proved by `chain_deviation`. The number of vertices grows as tolerance^(-1/2) and stays within about
-    1 % of the leading-order least, one more for each break. Raises ToleranceError where the tolerance is below
-    rounding, needs too many vertices, or is not reached; CurveError where the curve runs backwards.
+    Its bound is proved. The number of vertices grows as tolerance^(-1/2) and stays within about 1 % of the
+    leading-order least, one more for each break. Raises ToleranceError where the tolerance is below rounding, needs too
+    many vertices, or is not reached; CurveError where the curve runs backwards.
     """
     size = curve.size
     check_precision(size, tolerance)
@@ -101,6 +104,7 @@ def _fit_run(curve: Curve, run: SmoothRun, tolerance: float, full: float) -> Pro
     check_count(needed, "straight edges", full, 2.0, lost=full - tolerance)
     bends, sense = inflections(curve, densities, tolerance)
     best = math.inf
+    # ever less of the tolerance is aimed at, until the proof holds
     for aim in AIMS:
         goal = aim * tolerance
         parts, height = _settle(curve, run, _parts(curve, run, densities, bends, sense=sense, tolerance=goal), goal)
@@ -119,7 +123,10 @@ def _fit_run(curve: Curve, run: SmoothRun, tolerance: float, full: float) -> Pro
 
 
 def _balance(curve: Curve, run: SmoothRun, parts: list[_Part], shift: float, tolerance: float) -> ProvedEdges:
-    """Proved edges; in a run without corners moved once more where one side is used more than the other."""
+    """Proved edges with vertices off by `shift`, mm.
+
+    In a closed run without inflections the vertices are moved once more where one side is used more than the other.
+    """
     nodes, sides = _chain(parts)
     frames = node_frames(curve, run, nodes)
     edges = prove_edges(curve, place_edges(frames, run, nodes, shift * sides), tolerance)
@@ -136,7 +143,11 @@ def _balance(curve: Curve, run: SmoothRun, parts: list[_Part], shift: float, tol
 def _parts(
     curve: Curve, run: SmoothRun, densities: list[Density], bends: Array, *, sense: float, tolerance: float
 ) -> list[_Part]:
-    """Parts between breaks and inflections, nodes in equal shares."""
+    """Parts between breaks and inflections `bends` (k,), with nodes in equal shares of the density.
+
+    `sense` is the sign of the turn before the first inflection.
+    """
+    # edges across inflections, first by the density, then by their cubics
     root = math.sqrt(tolerance)
     whole = Density.join(densities)
     bends, sense = _worthwhile_bends(bends, sense, whole, root, closed=run.closed)
@@ -159,6 +170,7 @@ def _parts(
         # two crossings that meet leave one edge between them
         gap = share[i + 1] - share[i]
         high[i], low[i + 1] = whole.parameters_at(root * (share[i] + gap * np.array([0.4, 0.6])))
+    # ends of parts: where one part ends, where the next begins, and -1 where its vertices change sides
     ends: list[tuple[float, float, float]] = [(run.low, run.low, 1.0)]
     ends += [(float(a), float(b), -1.0) for a, b in zip(low, high, strict=True)]
     for place in run.breaks:
@@ -173,6 +185,7 @@ def _parts(
         nodes[0], nodes[-1] = begin, end
         parts.append(_Part(nodes, sense, flip < 0.0))
         sense *= flip
+    # a closed polygon has three edges at least
     if run.closed and (missing := 3 - sum(part.count + part.crossed for part in parts)) > 0:
         first_part, count = parts[0], parts[0].count + missing
         nodes = np.linspace(first_part.nodes[0], first_part.nodes[-1], count + 1)
@@ -181,7 +194,10 @@ def _parts(
 
 
 def _worthwhile_bends(bends: Array, sense: float, whole: Density, root: float, *, closed: bool) -> tuple[Array, float]:
-    """Inflections, and the sense before the first, without the pairs that enclose less than `SLIGHT` shares."""
+    """Inflections without the pairs that enclose less than `SLIGHT` shares, and the sense before the first.
+
+    `root` is the square root of the tolerance.
+    """
     share = [whole.share(float(bend)) / root for bend in bends]
     remaining = [float(bend) for bend in bends]
     while len(remaining) > 1:
@@ -199,7 +215,7 @@ def _worthwhile_bends(bends: Array, sense: float, whole: Density, root: float, *
 
 
 def _chain(parts: list[_Part]) -> tuple[Array, Array]:
-    """All nodes in order, and for each the side of its vertex; an edge across an inflection joins two parts' nodes."""
+    """All nodes in order, and the side of each node's vertex; parts without a crossing between share a node."""
     nodes, sides = [parts[0].nodes], [np.full(parts[0].nodes.size, parts[0].sense)]
     for before, part in pairwise(parts):
         skip = 0 if before.crossed else 1
@@ -209,10 +225,14 @@ def _chain(parts: list[_Part]) -> tuple[Array, Array]:
 
 
 def _settle(curve: Curve, run: SmoothRun, parts: list[_Part], tolerance: float) -> tuple[list[_Part], float]:
-    """Parts with the fewest edges whose sagittas keep within twice the tolerance, and half the greatest sagitta, mm."""
+    """Parts with the fewest edges whose sagittas keep within twice the tolerance, mm, and the vertices' offset, mm.
+
+    The offset is half the greatest sagitta, or the tolerance where edges cross inflections.
+    """
     allowed = 2.0 * tolerance
     noise = 0.5 * rounding(curve.size)
     height = math.inf
+    # parts and crossings are improved until none changes
     for _ in range(TRIES):
         nodes, sides = _chain(parts)
         seen = sagittas(
@@ -236,9 +256,9 @@ def _settle(curve: Curve, run: SmoothRun, parts: list[_Part], tolerance: float) 
 
 
 def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bool:
-    """Give a part better nodes; False where it has the fewest edges and none is too high.
+    """Give a part better nodes; False where it has the fewest edges and no sagitta is above `allowed`, mm.
 
-    Loads have a rounding error of `noise`, mm, which levelling does not remove.
+    Sagittas have a rounding error of `noise`, mm, which levelling does not remove.
     """
     load = samples.load
     shares = float(np.sqrt(np.maximum(load, 0.0) / allowed).sum())
@@ -262,18 +282,21 @@ def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bo
 
 
 def _shorten_failing(parts: list[_Part], edges: ProvedEdges, tolerance: float) -> bool:
-    """Shorten edges across inflections that a proof found too high; whether there were any."""
+    """Shorten edges across inflections whose proved height is above the tolerance, mm; False where there are none."""
     last = list(accumulate((part.count + part.crossed for part in parts), initial=-1))[1:]
     shorter = False
     for (first, second), k in zip(pairwise(parts), last, strict=False):
         if first.crossed and tolerance < edges.heights[k] < math.inf:
-            # as much as its height and not less than `SHORTENED`: a crossing is no cubic throughout
+            # in proportion to its height, not to the height's cube root: the curve below is no cubic throughout
             shorter |= _shorten(first, second, max(float(edges.heights[k]) / tolerance, SHORTENED) ** 3)
     return shorter
 
 
 def _shorten(first: _Part, second: _Part, over: float) -> bool:
-    """Shorten the edge across an inflection, whose height is `over` times too much and grows as its length cubed."""
+    """Shorten the edge across an inflection between two parts, whose height is `over` times too much; always True.
+
+    The height grows as the cube of the length.
+    """
     low, high = first.nodes[-1], second.nodes[0]
     move = 0.5 * (1.0 - over ** (-1.0 / 3.0)) * (high - low)
     first.nodes, second.nodes = first.nodes.copy(), second.nodes.copy()
@@ -289,8 +312,8 @@ def level_loads(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Arr
     """
     if not bool((load > 0.0).all() and (by_low < 0.0).all() and (by_high > 0.0).all()):
         return reshare(nodes, load, 2.0)
-    # roots of the loads, which grow with the length:  root + by_low d + by_high d+ = level,  d = 0 at both ends;
-    # a recurrence, solved by its product and sum
+    # roots of the loads, about proportional to the length:  root + by_low d + by_high d+ = level,  d and d+ the moves
+    # of an edge's nodes, 0 at both ends; a recurrence, solved by its product and sum
     root = np.sqrt(load)
     by_low, by_high, load = 0.5 * by_low / root, 0.5 * by_high / root, root
     product = np.cumprod(-by_low / by_high)
@@ -301,6 +324,7 @@ def level_loads(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Arr
         return reshare(nodes, load, 2.0)
     move[-1] = 0.0
     width = np.diff(nodes)
+    # no edge is shortened by more than half
     squeeze = float(np.max(-np.diff(move) / width, initial=0.0))
     moved: Array = nodes + move * min(1.0, 0.5 / squeeze if squeeze > 0.0 else 1.0)
     return moved
@@ -309,9 +333,10 @@ def level_loads(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Arr
 def _across_breaks(
     curve: Curve, run: SmoothRun, densities: list[Density], parts: list[_Part], tolerance: float
 ) -> tuple[list[_Part], float] | None:
-    """Fewer edges, placed regardless of the breaks, where rounding up the stretches' counts wastes tolerance.
+    """Part with fewer edges, placed regardless of the breaks, and its vertices' offset, mm.
 
-    None where there are no fewer, or inflections divide the curve.
+    Rounding up the count of each stretch wastes tolerance. None where no fewer edges hold, or inflections divide the
+    curve.
     """
     if any(part.crossed for part in parts):
         return None
@@ -338,10 +363,10 @@ def _across_breaks(
 
 
 def _level(curve: Curve, run: SmoothRun, nodes: Array, sense: float, tolerance: float) -> tuple[Array, float] | None:
-    """Nodes at which no sagitta exceeds twice the tolerance, and half the greatest; None where none are found.
+    """Nodes at which no sagitta exceeds twice the tolerance, mm, and half the greatest, mm; None where none are found.
 
-    Newton's method on the edges' heights, which have corners where edges meet breaks: a step that does not make them
-    more alike is shortened.
+    Newton's method on the edges' heights, which have corners where edges meet breaks: a step that does not make the
+    heights more alike is shortened.
     """
     sides = np.full(nodes.size, sense)
     best, spread, move, pace = nodes, math.inf, np.zeros_like(nodes), 1.0

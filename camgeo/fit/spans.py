@@ -1,7 +1,7 @@
 """Deviation of cubic spans from the exact curve: proved, not sampled.
 
 A span covers a parameter interval of the curve. Let g be how far outside the curve it meets the normal at t, gamma the
-angle from the curve's tangent to its own, v its speed and k its curvature there. Then
+angle from the curve's tangent to the span's, v the span's speed and k its curvature there. Then
 
     v cos gamma = sigma + g omega,    g' = -v sin gamma,    gamma' = k v - omega,
 
@@ -11,7 +11,7 @@ the error falls as the fourth power of the step. Nodes are added where that stil
 
 First gamma and g are confined: no place is farther than half a step from a node, so as long as gamma stays within some
 bound and g within another, gamma' is bounded, and if gamma and g then keep within less than assumed, neither can ever
-leave (continuity). With those bounds m is bounded over the whole step, and with m gamma and g once more, more closely.
+leave (continuity). These bounds give a bound of m over the whole step, and that gives closer ones of gamma and g.
 As v stays above 0 the span's point runs forward from one node to the next: every normal of the curve between the two
 meets the span between the two, and every point of the span lies on such a normal. So the range of g bounds both
 distances, from the span to the curve and back.
@@ -38,26 +38,26 @@ if TYPE_CHECKING:
 
     Complex = NDArray[np.complex128]
 
-HOPELESS = 1.02  # times the tolerance: a span seen farther off needs no proof, and is more than a fit's limit off
-SLACK = 0.02  # of the tolerance: how far the proof may exceed what is seen before it is sharpened,
-OVER = 0.01  # and how far the tolerance, before that
+HOPELESS = 1.02  # times the tolerance: a span sampled farther off is beyond a fit's limit and needs no proof
+SLACK = 0.02  # of the tolerance: a proof that exceeds the samples by more is sharpened,
+OVER = 0.01  # and a proof that exceeds the tolerance by more
 FIRST_STEPS = 24  # of a span, between nodes
 MOST_STEPS = 1024
-MOST_FINER = 8  # times, at once
-NEWTON = 6  # steps, at most, that settle feet of normals to rounding
+MOST_FINER = 8  # times as many steps, at once
+NEWTON = 6  # steps, at most, that bring feet of normals to rounding
 SETTLED = 2.0 * float(np.finfo(np.float64).eps)  # of the distance from the origin
-SPARE = 1.25  # times the rate of turning expected: what is assumed of it
-CLOSER = 3  # times the bounds of angle and distance are drawn closer
+SPARE = 1.25  # times the expected rate of turning: the rate that is assumed, then confirmed
+CLOSER = 3  # times that the bounds of angle and distance are made closer
 
 
 def plane(points: Array) -> Complex:
-    """Points (..., 2) as complex numbers (...)."""
+    """Points or vectors (..., 2) as complex numbers x + iy (...)."""
     return np.ascontiguousarray(points).view(np.complex128)[..., 0]
 
 
 @dataclass(frozen=True)
 class Cubics:
-    """Cubics ``start + u (a + u (b + u c))``, u from 0 to 1: (n,) each."""
+    """Cubics ``start + u (a + u (b + u c))``, u from 0 to 1: complex coefficients (n,), mm."""
 
     start: Complex
     a: Complex
@@ -66,34 +66,35 @@ class Cubics:
 
     @staticmethod
     def of(control: Array) -> Cubics:
-        """Cubics of Bezier spans (n, 4, 2)."""
+        """Cubics of Bezier spans with control points (n, 4, 2)."""
         z = plane(control)
         leg = np.diff(z, axis=1)
         bend = np.diff(leg, axis=1)
         return Cubics(z[:, 0], 3.0 * leg[:, 0], 3.0 * bend[:, 0], bend[:, 1] - bend[:, 0])
 
     def column(self) -> Cubics:
-        """The cubics as columns (n, 1), for several places of each."""
+        """Copy with coefficients as columns (n, 1), for several places on each cubic."""
         return Cubics(self.start[:, None], self.a[:, None], self.b[:, None], self.c[:, None])
 
     def ahead(self, u: Array) -> Complex:
-        """Points at u less the start point, complex, in the shape of `u` and the cubics."""
+        """Points at u less the start point, complex, mm, in the common shape of `u` and the coefficients."""
         return u * (self.a + u * (self.b + u * self.c))
 
     def velocity(self, u: Array) -> Complex:
-        """First derivative by the parameter at u, complex."""
+        """First derivative by u, complex, mm, in the common shape of `u` and the coefficients."""
         return self.a + u * (2.0 * self.b + u * (3.0 * self.c))
 
     def acceleration(self, u: Array) -> Complex:
-        """Second derivative by the parameter at u, complex; the third is 6 c."""
+        """Second derivative by u, complex, mm, in the common shape of `u` and the coefficients; the third is 6 c."""
         return 2.0 * self.b + u * (6.0 * self.c)
 
 
 def spans_deviation(curve: Curve, control: Array, low: Array, high: Array, tolerance: float) -> tuple[Array, Array]:
-    """Proved greatest outward and inward distance (n,) of Bezier spans (n, 4, 2) from the curve over [low, high] (n,).
+    """Greatest outward and inward distance, mm (n,), of Bezier spans `control` (n, 4, 2) from the curve, proved.
 
-    Each span meets the normals at its two ends in its own ends, and no interval holds a break. Infinite where unproved;
-    spans farther off than the tolerance are not proved any closer than it takes to see that.
+    Each span meets the normals at `low` and `high` (n,) in its own ends, and no interval holds a break. Without a proof
+    the distances are bounded by the lengths of span and curve. For a span that samples show to be beyond the tolerance,
+    mm, the greater of both is the sampled distance: no bound, but beyond the tolerance too.
     """
     count = low.size
     out, into = np.full(count, np.inf), np.full(count, np.inf)
@@ -107,11 +108,11 @@ def spans_deviation(curve: Curve, control: Array, low: Array, high: Array, toler
         far = todo[hopeless]
         out[far], into[far] = np.minimum(out[far], seen[hopeless]), np.minimum(into[far], seen[hopeless])
         open_ = loose & ~hopeless
-        # what is proved beyond what is seen falls as the fourth power of the step
+        # the excess of the proof over the samples falls as the fourth power of the step
         beyond = np.minimum(proved[open_] - seen[open_], MOST_FINER**4 * SLACK * tolerance)
         steps *= 2 ** max(1, math.ceil(0.25 * math.log2(float(beyond.max(initial=0.0)) / (SLACK * tolerance) + 1e-9)))
         todo = todo[open_]
-    # whatever a short span does, it is no farther off than it and its stretch of curve are long
+    # a span is no farther off than it and its stretch of the curve are long
     reach = np.abs(plane(control[:, 0] - curve.sample(low).point)) + np.abs(np.diff(plane(control), axis=1)).sum(axis=1)
     reach += curve.cells.over(low, high).speed_high * (high - low)
     return np.minimum(out, reach), np.minimum(into, reach)
@@ -119,6 +120,7 @@ def spans_deviation(curve: Curve, control: Array, low: Array, high: Array, toler
 
 def _ranges(curve: Curve, spans: Cubics, low: Array, high: Array, steps: int) -> tuple[Array, Array, Array]:
     """Proved greatest outward and inward distance of each span, and the greatest at nodes: (n,) each, mm."""
+    # nodes of the curve, and by Newton's method the places u at which their normals meet the span
     count = low.size
     share = np.linspace(0.0, 1.0, steps + 1)
     t = low[:, None] + (high - low)[:, None] * share
@@ -138,6 +140,7 @@ def _ranges(curve: Curve, spans: Cubics, low: Array, high: Array, steps: int) ->
         pace = (cubic.velocity(u) * along).real
         u = np.clip(u - miss / np.where(pace > 0.0, pace, np.inf), 0.0, 1.0)
     u[:, 0], u[:, -1] = 0.0, 1.0
+    # at the nodes g and gamma; `slip` is how far a place lies beside its normal, by rounding
     beside = (offset + cubic.ahead(u)) * along
     g, left = -beside.imag, np.abs(beside.real)
     velocity, acceleration = cubic.velocity(u), cubic.acceleration(u)
@@ -172,7 +175,7 @@ class _Rates:
 
 
 def _curvature_bounds(cubic: Cubics, u: Array, pace: Array, wedge: Array) -> _Rates:
-    """Bounds between nodes at u (n, m), from those of what curvature is made of: (n, m - 1).
+    """Bounds between nodes at u (n, m), from bounds of the terms of the curvature: (n, m - 1).
 
     With p, a, j the derivatives of the cubic, N = p x a and w = p.a: k = N/|p|^3, k_s = N'/|p|^4 - 3 N w/|p|^6 and
     k_ss = N''/|p|^5 - (7 N' w + 3 N w')/|p|^7 + 18 N w^2/|p|^9.
@@ -201,7 +204,11 @@ def _curvature_bounds(cubic: Cubics, u: Array, pace: Array, wedge: Array) -> _Ra
 def _bend(
     step: Array, bounds: Bounds, rates: _Rates, *, g: Array, angle: Array, speed: Array, turn: Array, excess: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Bound of the change of g'' from -sigma m at the step's ends, and whether it is confirmed: (n, m)."""
+    """Bound of the change of g'' from -sigma m at the step's ends, and whether it is confirmed: (n, m).
+
+    `g`, `angle` gamma, `speed`, `turn` and `excess` m are values at the nodes (n, m + 1).
+    """
+    # greatest and least speed and turn over each step
     shape, square = step.shape, step**2 / 8.0
     speed_slope, speed_bend = bounds.speed_slope.reshape(shape), bounds.speed_bend.reshape(shape)
     turn_slope, turn_bend = bounds.turn_slope.reshape(shape), bounds.turn_bend.reshape(shape)
@@ -213,17 +220,18 @@ def _bend(
     off, lean, half = _greater(np.abs(g)), _greater(np.abs(angle)), 0.5 * step
 
     def within(rate: Array) -> tuple[Array, Array, Array]:
-        """Bounds of gamma and g where gamma' is at most `rate`, and of what k (v - sigma) is then."""
+        """Bounds of gamma, g and k (v - sigma) where gamma' is at most `rate`."""
         most_lean = lean + half * rate + 1e-15
         tangent, secant = np.tan(np.minimum(most_lean, TURN)), 1.0 / np.cos(np.minimum(most_lean, TURN))
         clearance = 1.0 - half * tangent * turns
         most_off = (off + half * tangent * speeds) / np.where(clearance > 0.0, clearance, np.nan)
         return most_lean, most_off, rates.curvature * (speeds * (secant - 1.0) + most_off * turns * secant)
 
+    # an assumed rate of turning, which the bounds that follow from it confirm
     rate = SPARE * (rates.curvature * (speeds + off * turns) + turns)
     most_lean, most_off, lag = within(rate)
     sane = (rates.curvature * speeds + lag + turns <= rate) & (most_lean < TURN) & (slowest > most_off * turns)
-    # how fast the span runs, and its second derivative of m, from the first bounds
+    # bounds of the span's speed and its slope, and of the second derivative of m
     secant, tangent = 1.0 / np.cos(np.minimum(most_lean, TURN)), np.tan(np.minimum(most_lean, TURN))
     pace = (speeds + most_off * turns) * secant
     pace_slope = (speed_slope + pace * tangent * turns + most_off * turn_slope) * secant + pace * tangent * rate
@@ -233,6 +241,7 @@ def _bend(
     for _ in range(CLOSER):
         rate = np.minimum(rate, most_excess + lag)
         most_lean, most_off, lag = within(rate)
+    # g'' + sigma m, and sigma m between its values at the ends
     tangent = np.tan(np.minimum(most_lean, TURN))
     small = pace_slope * tangent + most_off * turns * rate + speeds * lag
     excess_slope = np.abs(np.diff(excess)) / step + half * bend

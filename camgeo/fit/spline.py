@@ -1,11 +1,11 @@
 """A curve as a cubic B-spline with a continuous tangent, for CAD systems that want few, smooth pieces.
 
-Each span takes points and tangents from the curve; the lengths of its two handles are free and set so that it strays
-least. Then the error falls as the sixth power of the span's length, and 1.06 of the fewest spans do that any such
-spline needs (`camgeo.fit.cubic`), which whole numbers of spans and places where the nearest cubic ceases to exist
-raise to about 1.1. A curve that all cubics miss to one side, such as an ellipse or a Reuleaux polygon, has its joints
-on the other side, on a parallel curve that the spans' middles touch as well: that saves the 0.06. Knots are spaced so
-that the spline is C1 in its own parameter.
+Each span takes points and tangents from the curve; the lengths of its two handles are free and set for its least
+deviation. Then the error falls as the sixth power of the span's length, and the spans are 1.06 times the fewest that
+any such spline needs (`camgeo.fit.cubic`), which whole numbers of spans and places where the nearest cubic ceases to
+exist raise to about 1.1. A curve that all cubics miss to one side, such as an ellipse or a Reuleaux polygon, has its
+joints on the other side, on a parallel curve that the spans' middles touch as well: that saves the 0.06. Knots are
+spaced so that the spline is C1 in its own parameter.
 """
 
 from __future__ import annotations
@@ -29,33 +29,33 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 FLOOR = 4.0  # times the least tolerance of points and distances: below it a spline's handles are lost in rounding
-USABLE = 0.985  # of the limit, that errors seen may use; the rest is left to the proof
-OFFSET = 0.92  # of the aim, how far joints may lie off the curve: room for middles that do not quite touch
-NEAR_CENTRE = 0.25  # of the least radius of curvature, beyond which they lie on the curve instead
-ON_CURVE = 604.39  # a span of length h with its ends on the curve errs by c h^6/604.4 (docs/theory.md 3)
-GROWN = 4  # times there were more nodes, after which spans that fail are halved: sharing does not settle
-SETTLING = 2  # sharings after which few spans that fail are halved: so many
-HALVED = 0.02  # times the others, or what there would be more of them
-LESS = 0.95  # a greatest load that has not fallen to this
-PATIENCE = 3  # times in turn will not fall: more spans are needed
-MARGIN = 1.05  # times their load: spans that fail are made so much shorter where sharing among all has stalled
-SHARINGS = 10  # of the nodes before there are more of them,
-FULL = 0.97  # mean load above which sharing will not do
-GROWTH = 0.01  # by this share of them at least,
-FASTER = 1.6  # which itself grows by this factor each time
-TRIES = 40
-LAST_TRIES = 8  # are spent on halving spans that fail, wherever they are
-NOTHING = 4e-9  # of the size: a span so short is none to a reader of its file
-UNEVEN = 1e-7  # of a run's length of parameter, the least that a span of it has
+USABLE = 0.985  # of the limit, that sampled errors may use; the rest is left to the proof
+OFFSET = 0.92  # of the aim: offset of joints from the curve, less than 1 for middles that do not quite touch
+NEAR_CENTRE = 0.25  # of the least radius of curvature: joints that would lie farther off lie on the curve
+ON_CURVE = 604.39  # the error of a span of length h with its ends on the curve is c h^6/604.4 (docs/theory.md 3)
+GROWN = 4  # times that nodes were added, after which spans that fail are halved, as sharing does not settle
+SETTLING = 2  # sharings after which spans that fail are halved if they are few:
+HALVED = 0.02  # of all, or the share by which nodes would grow
+LESS = 0.95  # of the least of the greatest loads: a load above it has not fallen;
+PATIENCE = 3  # such loads in turn show that more spans are needed
+MARGIN = 1.05  # times the load of spans that fail, where sharing among all has stalled: they become shorter
+SHARINGS = 10  # of the nodes before nodes are added,
+FULL = 0.97  # of the tolerance: with a greater mean load sharing is of no use
+GROWTH = 0.01  # share of the nodes that is added at least,
+FASTER = 1.6  # times as many with each addition
+TRIES = 40  # of placing nodes
+LAST_TRIES = 8  # of these, in which all spans that fail are halved
+NOTHING = 4e-9  # of the size: readers of files reject a shorter span
+UNEVEN = 1e-7  # of a run's length of parameter: least length of a span
 DAMPED = 12.0  # power for the error where nodes were shared before, so that they come to rest
 
 
 def fit_spline(curve: Curve, tolerance: float) -> BSpline:
     """Cubic B-spline within `tolerance` mm of a curve; corners of a trimmed curve stay corners.
 
-    The bound is proved: against arcs that are themselves proved close to the curve, by the Bernstein coefficients of
-    each span's distance to them. Their number grows as tolerance^(-1/6). Raises ToleranceError where the tolerance
-    is below rounding, needs too many spans, or is not reached.
+    Its bound is proved, by each span's distance along the curve's normals. The number of spans grows as
+    tolerance^(-1/6). Raises ToleranceError where the tolerance is below rounding, needs too many spans, or is not
+    reached; CurveError where no finite bound of the curve's speed and turn is proved.
     """
     size = curve.size
     check_precision(size, tolerance, FLOOR)
@@ -63,8 +63,8 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
     limit = tolerance - 2.0 * rounding(size)
     spans = _fit_stretches(curve, stretches, USABLE * limit, limit)
     outward, inward = max(out for _, out, _ in spans), max(into for _, _, into in spans)
-    # a span that is shorter than rounding has no direction: what it joins meets in a corner that no one can tell; nor
-    # does a reader take one that is next to nothing, which is left out where the tolerance has room for it
+    # a span shorter than rounding has no direction, and readers reject one hardly longer: both are left out, the longer
+    # ones where the tolerance allows for the gap that is closed
     nothing = max(rounding(size), min(NOTHING * size, 0.5 * (limit - max(outward, inward))))
     groups, first, lost = [], 0, 0.0
     for run in curve.runs:
@@ -77,7 +77,7 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
         groups += [part for low, high in ends.reshape(-1, 2) for part in _split_uneven(beziers[low:high])]
         first += count
     spline = _assemble(groups, Bound(outward, inward))
-    # joints are no longer given but follow from the knots
+    # in the spline joints follow from the control points and knots, and are moved by rounding
     moved = math.sqrt(2.0) * float(np.abs(spline.beziers() - np.concatenate(groups)).max())
     return replace(spline, bound=spline.bound.widened(rounding(size) + moved + lost))
 
@@ -85,8 +85,8 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
 def _split_uneven(beziers: Array) -> list[Array]:
     """Runs of spans (n, 4, 2) in which no span's share of the parameter vanishes beside the others'.
 
-    Next to a cusp speeds differ so much from joint to joint that knots would coincide. There a run ends, in a threefold
-    knot: the curve stays as smooth as it is, its parameter does not.
+    Next to a cusp speeds differ so much from joint to joint that knots would coincide. There a run ends in a threefold
+    knot: the curve keeps its tangent, its parameter is not C1.
     """
     steps = _steps(beziers)
     if bool(np.isfinite(steps).all()) and steps.min() >= UNEVEN * steps.sum():
@@ -101,7 +101,7 @@ def _split_uneven(beziers: Array) -> list[Array]:
 
 
 def _steps(beziers: Array) -> Array:
-    """Lengths of parameter (n,) of spans in a run, at whose joints both sides run equally fast."""
+    """Lengths of parameter (n,) of spans in a run, for equal speeds on both sides of each joint."""
     leaving, arriving = (np.hypot(*(beziers[:, i + 1] - beziers[:, i]).T) for i in (0, 2))
     if len(beziers) == 1:
         return np.array([np.hypot(*np.diff(beziers[0], axis=0).T).sum()])
@@ -111,13 +111,13 @@ def _steps(beziers: Array) -> Array:
 
 
 def _assemble(groups: list[Array], bound: Bound) -> BSpline:
-    """One closed clamped B-spline from the Bezier spans of each run (n, 4, 2): C1 in a run, corners between runs."""
+    """One closed clamped B-spline from the Bezier spans of each run (n, 4, 2): C1 in a run, continuous between runs."""
     control, knots = [groups[0][0, :1]], [np.zeros(4)]
     end = 0.0
     steps = [_steps(beziers) for beziers in groups]
     least = UNEVEN * sum(float(lengths.sum()) for lengths in steps)
     for number, (beziers, step) in enumerate(zip(groups, steps, strict=True)):
-        # how fast a run goes is free: none so fast that its knots would coincide
+        # a run's speed is free: it is lowered where knots would coincide
         ends = end + np.cumsum(step * max(1.0, least / float(step.sum())))
         end = float(ends[-1])
         control.append(beziers[:, 1:3].reshape(-1, 2))
@@ -132,13 +132,14 @@ def _assemble(groups: list[Array], bound: Bound) -> BSpline:
 
 
 def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: float) -> list[tuple[Array, float, float]]:
-    """Bezier spans (n, 4, 2) over each smooth stretch, with their outward and inward bound.
+    """Bezier spans (n, 4, 2) over each smooth stretch, with their outward and inward bound, mm.
 
-    Errors are seen up to `tolerance` and proved up to `limit`, mm. Raises ToleranceError where that is not reached.
+    Sampled errors reach up to `tolerance`, proved ones up to `limit`, mm. Raises ToleranceError where that is not
+    reached.
     """
     along = span_density(curve, stretches)
     out = _joint_offset(curve, along.side, tolerance)
-    # deviation permitted from the joints' parallel, over that from the curve
+    # deviation permitted from the joints' parallel, over the deviation permitted from the curve
     allowance = 1.0 + abs(out) / tolerance
     counts = along.totals * (tolerance * (0.5 * allowance if out else ON_CURVE / LEAST)) ** (-1.0 / ORDER)
     check_count(float(counts.sum()), "spline spans", tolerance, ORDER)
@@ -146,6 +147,7 @@ def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: floa
     done: dict[int, tuple[Array, float, float]] = {}
     states = [_State()] * len(nodes)
     spans, best = _Spans.none(), math.inf
+    # fit and prove all stretches that do not hold yet, then give each of them better nodes
     for attempt in range(TRIES):
         todo = [i for i in range(len(nodes)) if i not in done]
         if not todo:
@@ -172,11 +174,11 @@ def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: floa
 
 
 def _joint_offset(curve: Curve, side: float, tolerance: float) -> float:
-    """Offset of joints outside the curve, mm: away from the `side` to which all spans stray; 0 without one."""
+    """Offset of joints outside the curve, mm: away from the `side`, 1 or -1, to which all spans deviate; 0 for 0."""
     if side == 0.0 or not curve.closed:
         return 0.0
     rows = curve.cells.rows
-    # speed over turn, the least there may be
+    # lower bound of speed over turn
     tightest = float(rows[0].min() / np.maximum(np.abs(rows[2]), np.abs(rows[3])).max())
     return -side * OFFSET * tolerance if OFFSET * tolerance < NEAR_CENTRE * tightest else 0.0
 
@@ -198,16 +200,19 @@ class _Spans:
 
     @staticmethod
     def none() -> _Spans:
-        """No spans at all."""
+        """Record of no spans."""
         return _Spans(np.zeros(0), np.zeros(0), np.zeros((0, 4, 2)), np.zeros(0), np.zeros(0), np.zeros(0))
 
     @property
     def worst(self) -> Array:
-        """Greatest proved distance of each from the curve (n,)."""
+        """Greatest proved distance of each from the curve, mm (n,), nan where no proof was tried."""
         return np.maximum(self.outward, self.inward)
 
     def between(self, curve: Curve, low: Array, high: Array, out: float, allowance: float) -> _Spans:
-        """Spans over other intervals (m,): kept where an interval is one of these, fitted anew elsewhere."""
+        """Spans over other intervals (m,): kept where an interval is among the present ones, fitted anew elsewhere.
+
+        Joints lie `out` mm outside the curve; loads are deviations from their parallel over `allowance`.
+        """
         place = np.minimum(np.searchsorted(self.low, low), max(0, self.low.size - 1))
         kept = np.zeros(low.size, dtype=bool)
         if self.low.size:
@@ -224,7 +229,7 @@ class _Spans:
         return _Spans(low, high, control, load, *proved)
 
     def prove(self, curve: Curve, rows: Array, tolerance: float) -> _Spans:
-        """The spans, with those of a mask (n,) proved that were not."""
+        """Copy in which the spans of the mask `rows` (n,) are proved, if they were not."""
         todo = np.flatnonzero(rows & np.isnan(self.outward))
         if not todo.size:
             return self
@@ -239,7 +244,7 @@ class _State:
     """History of a stretch's nodes since their number grew last; `grown` counts how often it grew.
 
     `shared` counts sharings; `least` is the least of the greatest loads, `stalled` how often in turn it did not fall.
-    `best` are, of all tries, the nodes that give fewest spans if those that fail are halved.
+    `best` are the fewest nodes of all tries, with the spans that fail halved.
     """
 
     shared: int = 0
@@ -250,9 +255,10 @@ class _State:
 
 
 def _denser(nodes: Array, load: Array, tolerance: float, state: _State, *, last: bool) -> tuple[Array, _State]:
-    """Nodes for the next try: shared anew while that helps, then more of them; halved where infinite, or few fail.
+    """Nodes for the next try, and their history: shared anew while that helps, then more nodes.
 
-    `load` (n,) is each span's error, scaled to the tolerance; `last` allows halving alone.
+    Spans are halved where their error is infinite, or few of them fail. `load` (n,) is each span's error, scaled to the
+    tolerance; `last` allows halving alone.
     """
     count = nodes.size - 1
     failing = ~(load <= tolerance)
@@ -266,19 +272,19 @@ def _denser(nodes: Array, load: Array, tolerance: float, state: _State, *, last:
         return halved, _State(grown=state.grown, best=best)
     moved, after = _reshare(nodes, load, tolerance, state)
     if moved.size > nodes.size and state.shared and (state.grown + 1 >= GROWN or best.size <= moved.size):
-        # places where the nearest cubic ceases to exist move about as nodes are shared: what came nearest is halved
+        # spans at places where the nearest cubic ceases to exist move about as nodes are shared: take the best nodes
         return best, _State(grown=state.grown + 1)
     return moved, replace(after, best=best)
 
 
 def _halve(nodes: Array, failing: NDArray[np.bool_]) -> Array:
-    """Nodes (n + 1,) with one more in the middle of each span of a mask (n,)."""
+    """Nodes (n + 1,) with one more in the middle of each span of the mask `failing` (n,)."""
     middle = 0.5 * (nodes[:-1] + nodes[1:])
     return np.sort(np.append(nodes, middle[failing]))
 
 
 def _reshare(nodes: Array, load: Array, tolerance: float, state: _State) -> tuple[Array, _State]:
-    """Nodes shared anew, as many or more, so that spans become alike."""
+    """Nodes shared anew, as many or more, so that spans' errors become alike, and their history."""
     mean = float(np.mean(load ** (1.0 / ORDER))) ** ORDER
     worst = float(load.max())
     stalled = 0 if worst < LESS * state.least else state.stalled + 1
