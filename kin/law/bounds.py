@@ -20,20 +20,20 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Mask
 
 
-_CELLS = 32  # a stretch is bounded in so many parts first
-_PARTS = 16  # and likewise for a cubic that is to stand for it
-_HALVINGS = 40
-_AT_ONCE = 3  # halvings of a cell that is known to need as many
-_MOST_CELLS = 20000  # open at a time; more than a few mean that the answer is no
+_CELLS = 32  # parts of a stretch that are bounded first
+_PARTS = 16  # parts of a stretch for which cubics stand first
+_HALVINGS = 40  # of a cell: 2^-40 of a part is near rounding
+_AT_ONCE = 3  # most halvings of a cell in one step
+_MOST_CELLS = 20000  # open at a time: with more the answer is taken to be no
 
 
 def undecided(
     function: Stretch, begin: float, end: float, limits: Mapping[int, tuple[float, float]]
 ) -> tuple[int, float] | None:
-    """Prove that each derivative k in `limits` stays between its two limits over [begin, end].
+    """Prove that each derivative k in `limits` stays strictly between its two limits over [begin, end].
 
-    Returns None, or the k and a place where that is false or will not be proved. A cell is bounded directly, and where
-    that is not enough by Taylor's formula about its middle, of which the error falls with the cube of the width.
+    Returns None where that is proved, else (k, place) where it is false or not proved. A cell is bounded directly, and
+    where that is not enough by Taylor's formula about its middle, whose error falls with the square of the width.
     """
     top = max(limits)
 
@@ -59,7 +59,7 @@ def undecided(
 
 
 def _within(low: Array, high: Array, limits: Mapping[int, tuple[float, float]]) -> tuple[Mask, Mask]:
-    """Where all derivatives keep the limits for certain, and where one breaks them for certain."""
+    """Masks (n,) of the cells where all derivatives certainly keep the limits, and where one certainly breaks them."""
     yes, no = np.ones(low.shape[1], dtype=bool), np.zeros(low.shape[1], dtype=bool)
     for k, (least, most) in limits.items():
         yes &= (low[k] > least) & (high[k] < most)
@@ -68,7 +68,7 @@ def _within(low: Array, high: Array, limits: Mapping[int, tuple[float, float]]) 
 
 
 def _about_middle(function: Stretch, lower: Array, upper: Array, low: Array, high: Array) -> tuple[Array, Array]:
-    """Sharpen bounds `low`, `high` (m + 2, n) of derivatives over cells to (m, n), from values at the middles."""
+    """Bounds (m, n), (m, n) of derivatives over cells, sharper than `low`, `high` (m + 2, n), by Taylor's formula."""
     middle = 0.5 * (lower + upper)
     half = np.maximum(upper - middle, middle - lower) * (1 + 1e-12)
     near_low, near_high = function(BallJet.variable(middle, middle, len(low) - 2)).bounds()
@@ -79,7 +79,7 @@ def _about_middle(function: Stretch, lower: Array, upper: Array, low: Array, hig
 
 
 def unbounded(function: Stretch, begin: float, end: float, order: int) -> float | None:
-    """Prove that derivatives 0..order are finite over [begin, end]; else give a place where that fails."""
+    """Prove that derivatives 0..order are finite over [begin, end]: None, or a parameter where that is not proved."""
 
     def settled(lower: Array, upper: Array) -> tuple[Mask, Mask]:
         finite = np.isfinite(function(BallJet.variable(lower, upper, order)).rad).all(axis=0)
@@ -89,7 +89,7 @@ def unbounded(function: Stretch, begin: float, end: float, order: int) -> float 
 
 
 def _halve(settled: Callable[[Array, Array], tuple[Mask, Mask]], begin: float, end: float) -> float | None:
-    """Halve cells until `settled` says yes of all (None), or no of one, or it will not end: the place of that."""
+    """Halve cells until `settled` says yes to all: None; else the middle of a cell where it says no or does not end."""
     ends = np.linspace(begin, end, _CELLS + 1)
     lower, upper = ends[:-1], ends[1:]
     for _ in range(_HALVINGS):
@@ -108,7 +108,10 @@ def _halve(settled: Callable[[Array, Array], tuple[Mask, Mask]], begin: float, e
 
 
 def highest(law: Piecewise, weights: Sequence[float], k: int) -> tuple[float, float]:
-    """Find where the k-th derivative, times a weight a stretch, is largest, and that value; by sampling, no proof."""
+    """Place and value of the greatest k-th derivative of a law, times the weight of its stretch; sampled, not proved.
+
+    Raises DomainError where a function of the law does not exist.
+    """
     best = (float(law.knots[0]), -math.inf)
     for weight, function, begin, end in zip(weights, law.functions, law.knots[:-1], law.knots[1:], strict=True):
         low, high = begin, end
@@ -123,11 +126,12 @@ def highest(law: Piecewise, weights: Sequence[float], k: int) -> tuple[float, fl
 
 
 def cubic_cells(law: Piecewise, breaks: Array, near: float) -> Array:
-    """Cut a turn into cells (m + 1,), between a law's breaks all round, that hold nothing narrow.
+    """Edges (m + 1,), rising from 0 to a turn, of cells between a law's breaks in which it is nearly a cubic.
 
-    The cubic of a cell's end values and slopes is proved to be `near` the law: of width h it strays by no more than
-    h^4/384 max|f''''|; where that is not bounded the law itself is enclosed as closely. So what is narrower than any
-    step of a search cannot be missed. Raises UnsettledError where too many cells are needed.
+    The cubic through a cell's end values and slopes is proved to be within `near`, in the law's unit, of the law: on
+    width h it is off by no more than h^4/384 max|f''''|. Where that is not bounded, the law itself is enclosed as
+    closely. So no feature of the law is too narrow for a search on the cells. `breaks` are angles, rad. Raises
+    UnsettledError where too many cells are needed.
     """
     ends = distinct(np.concatenate([[0.0], np.mod(breaks, TURN), [TURN]]))
     parts = np.linspace(ends[:-1], ends[1:], _PARTS + 1)
@@ -137,7 +141,7 @@ def cubic_cells(law: Piecewise, breaks: Array, near: float) -> Array:
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
             strays = (high - low) ** 4 / 384.0 * (np.abs(mid[4]) + rad[4])
             open_ = ~((strays <= near) | (rad[0] <= near))
-            # as the fourth power of the width: so many halvings will do, where they are few
+            # the error falls as the fourth power of the width, which gives the halvings needed
             halvings = np.where(strays < math.inf, np.clip(np.ceil(np.log2(strays / near) / 4.0), 1, _AT_ONCE), 1)
         settled.append(high[~open_])
         halvings = halvings[open_]

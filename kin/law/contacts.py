@@ -1,4 +1,4 @@
-"""What touches a cam, as data: guides, touches, contacts, arrangements; one record for who makes a cam and who judges.
+"""What touches a cam, as data: guides, touches, contacts, arrangements; one record for making a cam and judging it.
 
 Lengths are mm, angles radians. The frame runs round the standing cam by the shaft angle, and a guide stands in it: a
 line of travel along its x axis, or a pivot on that axis. A contact's own position on its guide grows away from the
@@ -25,7 +25,7 @@ LEADING: Side = -1
 
 @dataclass(frozen=True)
 class Translating:
-    """A line of travel that passes the shaft at `offset` e, mm, above 0 on the side from which the surface comes."""
+    """A line of travel that passes the shaft at `offset`, mm, positive on the side from which the surface comes."""
 
     offset: float = 0.0
     unit: ClassVar[Unit] = "mm"
@@ -34,7 +34,7 @@ class Translating:
 
 @dataclass(frozen=True)
 class Oscillating:
-    """An arm about a pivot at a distance from the shaft, mm; `length` to the touch's centre, None for a flat face.
+    """An arm about a pivot `pivot` mm from the shaft; `length`, mm, to the touch's centre, None for a flat face.
 
     `side` is TRAILING where the cam is touched clockwise of the pivot as drawn, LEADING where it is on the other side.
     """
@@ -47,7 +47,7 @@ class Oscillating:
 
     @property
     def arm(self) -> float:
-        """Length of the arm of a round touch, mm; raises ValueError for that of a flat face, which has none."""
+        """Length of the arm of a round touch, mm; raises ValueError for the arm of a flat face, which has none."""
         if self.length is None:
             raise ValueError("the arm of a round touch has a length")
         return self.length
@@ -82,10 +82,10 @@ class Shoe:
 
 @dataclass(frozen=True)
 class Flat:
-    """A flat face. On a line of travel its normal stands `tilt` ahead of that, rad, on an arm across the arm.
+    """A flat face, along an arm, or on a line of travel with its normal `tilt`, rad, ahead of the line.
 
-    `width`, mm, is centred on the stem's axis, None for a face as wide as it needs to be; a face on an arm stands
-    `nearer` the shaft, mm, than its parallel through the pivot.
+    `width`, mm, is centred on the stem's axis, None for a face as wide as it needs to be. A face on an arm is `nearer`,
+    mm, to the shaft than its parallel through the pivot.
     """
 
     tilt: float = 0.0
@@ -107,9 +107,10 @@ TouchT = TypeVar("TouchT", bound=Touch)
 class Contact(Generic[G_co, T_co]):
     """One touch of a follower, which at shaft angle phi is where its guide stands at phi + turned.
 
-    Its own position is datum - apart + sense * the follower's: a sense of 1 pushes the follower towards greater
-    positions, -1 towards lesser ones. `datum` is foot, rest or level; `apart` is how far two contacts that share their
-    guide stand from its middle. `surface` is the name of the surface that is touched, empty where the cam has one.
+    Its own position is datum - apart + sense * the follower's position: a sense of 1 pushes the follower towards
+    greater positions, -1 towards lesser ones. `datum` is foot, rest or level; `apart` is the distance of each of two
+    contacts on one guide from its middle; both in mm or rad. `surface` is the name of the surface that is touched,
+    empty where the cam has one.
     """
 
     guide: G_co
@@ -126,12 +127,12 @@ class Contact(Generic[G_co, T_co]):
         return self.datum - self.apart
 
     def position(self, own: Array) -> Array:
-        """Position of the follower, mm or rad, of the contact's own (n,): the inverse of `own`."""
+        """Position of the follower (n,), mm or rad, at the contact's own position (n,): the inverse of `own`."""
         position: Array = self.sense * (own - self.datum + self.apart)
         return position
 
     def own(self, position: Array) -> Array:
-        """Own position of the contact, mm or rad, of the follower's position (n,): zero + sense * position."""
+        """Own position of the contact (n,), mm or rad, at the follower's position (n,): zero + sense * position."""
         own: Array = self.zero + self.sense * position
         return own
 
@@ -146,14 +147,14 @@ class Contact(Generic[G_co, T_co]):
         return Contact(self.guide, KnifeEdge(), self.datum, self.sense, self.apart, self.turned)
 
     def raised(self, by: float) -> Contact[G_co, T_co]:
-        """Give the contact for a follower's position that counts from `by`, mm or rad, below its zero."""
+        """Give the contact for follower's positions that count from a zero lower by `by`, mm or rad."""
         return replace(self, datum=self.datum - self.sense * by)
 
 
 def eased_contact(contact: Contact[Guide, Touch], clearance: float) -> Contact[Guide, Touch]:
     """The contact of a gauge that stands off by `clearance`, mm, along its normal: metal grown by as much just fits it.
 
-    Raises ValueError where nothing would be left of a round touch.
+    Raises ValueError for a knife edge, and for a radius that is not above the clearance.
     """
     match contact.guide, contact.touch:
         case Oscillating(), Flat(nearer=nearer):
@@ -166,7 +167,10 @@ def eased_contact(contact: Contact[Guide, Touch], clearance: float) -> Contact[G
 
 
 def opposite(touch: TouchT, apart: float, datum: float = 0.0) -> tuple[Contact[Translating, TouchT], ...]:
-    """Two contacts of a frame on a line through the shaft, so far apart, mm, the second half a turn on."""
+    """Two contacts of a frame on a line through the shaft, `apart` mm from each other, the second half a turn on.
+
+    `datum`, mm, is that of the first; the second has apart - datum.
+    """
     guide = Translating()
     return Contact(guide, touch, datum), Contact(guide, touch, apart - datum, -1, turned=math.pi)
 
@@ -174,7 +178,10 @@ def opposite(touch: TouchT, apart: float, datum: float = 0.0) -> tuple[Contact[T
 def on_one_arm(
     pivot: float, length: float | None, touch: TouchT, datum: float, apart: float
 ) -> tuple[Contact[Oscillating, TouchT], ...]:
-    """Contact A, which trails the pivot and keeps the swing below, and B, which leads it and pushes it on."""
+    """Contact A, which trails the pivot and limits the swing, and B, which leads the pivot and pushes the swing on.
+
+    `pivot` and `length` are mm, None for faces; `datum` and `apart`, rad, are those of both contacts.
+    """
     return (
         Contact(Oscillating(pivot, TRAILING, length), touch, datum, -1, apart),
         Contact(Oscillating(pivot, LEADING, length), touch, datum, 1, apart),
@@ -185,8 +192,8 @@ def on_one_arm(
 class Arrangement:
     """A recipe's follower before anything is computed: class of guide, class of touch, greatest number of contacts.
 
-    `discs` is the number of discs that the contacts touch. Two contacts on one disc need a law that suits both; two on
-    two discs follow the law of one contact each.
+    `discs` is the number of discs that the contacts touch. Two contacts on one disc need a law that suits both; on two
+    discs each follows the law of one contact.
     """
 
     guide: type[Guide]
@@ -210,8 +217,8 @@ class Arrangement:
 
         swings          two contacts on one arm
         plate           two faces on a line of travel, as a linkage's frame has
-        guided          neither of those: a stem or an arm of its own
-        roller, face    a round touch; a flat one (not two on an arm)
+        guided          neither `swings` nor `plate`: a stem or an arm of its own
+        roller, face    a round touch; a flat touch (not two on an arm)
         rolling         a roller that the cam turns (not two on an arm)
         led             on a line of travel
         stem, arm       one round contact on a line of travel; one contact on an arm

@@ -25,7 +25,10 @@ _SLOPE_JOIN = 1e-9  # a jump in psi'(phi), likewise
 
 
 def demand_ratio(lam: int, mu: int, arm: float) -> None:
-    """Raise IntentError for a ratio that W's conditions exclude (W 2.2, section 3), or an arm not above 0."""
+    """Raise IntentError unless pi/alpha = lam/mu is above 1, in lowest terms and of odd mu, and the arm, mm, above 0.
+
+    W. Wunderlich, 1984 (W), 2.2 and section 3.
+    """
     if not (math.isfinite(arm) and arm > 0):
         raise IntentError(f"the arm must be above 0, not {arm:.6g} mm", "arm")
     if mu < 1 or lam <= mu:
@@ -40,9 +43,10 @@ def demand_ratio(lam: int, mu: int, arm: float) -> None:
 def checked(
     law: Transmission, knots: Sequence[float], functions: Sequence[Stretch], field: str, *, corners: bool = False
 ) -> Transmission:
-    """Return the law, given its stretches over delta, if psi exists and it is possible and joins; else IntentError.
+    """Return the law if psi exists, is possible and joins over its period; else raise IntentError at `field`.
 
-    With `corners` psi joins, and its slope need not.
+    `functions` are psi over the first delta, stretch i between knots i and i + 1, rad. With `corners` the slope of psi
+    need not join.
     """
     try:
         _demand_possible(law, knots, functions, field)
@@ -55,9 +59,9 @@ def checked(
 def _demand_possible(law: Transmission, knots: Sequence[float], functions: Sequence[Stretch], field: str) -> None:
     """Prove 0 < r < 2l and psi'(phi) < 1 over the whole period, or refuse with the angle and the figure.
 
-    With W 4.9 all of it shows in the stretches over delta. |psi| must stay below alpha and pi - alpha. psi'(phi) < 1 is
-    psi' < 1 by phi on the given stretch (w = 0; the image has -psi'/(1 - psi') there), and |psi'| < 2 by t on a polar
-    one (w = 1/2). It also makes phi rise with tau all round.
+    By W 4.9 the stretches over delta decide. |psi| must stay below alpha and pi - alpha. psi'(phi) < 1 is psi' < 1 by
+    phi on a given stretch (w = 0; its image has -psi'/(1 - psi')), and |psi'| < 2 by t on a polar one (w = 1/2). Then
+    phi rises with tau all round.
     """
     limit = min(law.alpha, math.pi - law.alpha)
     steep = (-2.0, 2.0) if law.lean[0] == 0.5 else (-math.inf, 1.0)
@@ -74,7 +78,7 @@ def _demand_possible(law: Transmission, knots: Sequence[float], functions: Seque
 
 
 def too_wide(law: Transmission, angle: float, swing: float, field: str) -> IntentError:
-    """Say that the swing (rad), reached at tau, leads out of 0 < r < 2l."""
+    """Make the error for a law whose swing, `swing` rad at the parameter tau `angle`, leads out of 0 < r < 2l."""
     limit = min(law.alpha, math.pi - law.alpha)
     end = "2l" if law.alpha < math.pi / 2 else "0"
     return IntentError(
@@ -90,7 +94,7 @@ def _shaft_deg(law: Transmission, tau: float) -> float:
 
 
 def steepest(law: Transmission) -> tuple[float, float]:
-    """Parameter tau at which psi'(phi) is greatest, and that slope: found, however short the stretch that has it."""
+    """Parameter tau at which psi'(phi) is greatest, and that slope; sampled on every stretch, not proved."""
     weights = [1 - w for w in law.lean]
     weight = max(weights)  # 1/2 on every polar stretch; 1 on a given law, 0 on its image
     at, most = highest(law.psi, weights, 1)
@@ -99,7 +103,7 @@ def steepest(law: Transmission) -> tuple[float, float]:
 
 
 def too_steep(law: Transmission, field: str) -> IntentError:
-    """Make the error for a law whose slope psi'(phi) reaches 1: its greatest value and the shaft angle there."""
+    """Make the error for a law whose slope psi'(phi) reaches 1, with its greatest value and the shaft angle there."""
     at, figure = steepest(law)
     degrees = _shaft_deg(law, at)
     return IntentError(
@@ -111,10 +115,10 @@ def too_steep(law: Transmission, field: str) -> IntentError:
 
 
 def _demand_joined(law: Transmission, field: str, *, corners: bool) -> None:
-    """Refuse a jump of psi, or without `corners` of its slope psi'(phi), between stretches."""
+    """Raise IntentError for a jump of psi, or without `corners` of its slope psi'(phi), between stretches."""
     knots = law.psi.knots[:-1]
-    both = law.at(np.tile(knots, 2), 1, np.repeat([1, -1], knots.size))
-    (phi, phi_left), (psi, psi_left) = (np.hsplit(rows, 2) for rows in both)
+    limits = law.at(np.tile(knots, 2), 1, np.repeat([1, -1], knots.size))
+    (phi, phi_left), (psi, psi_left) = (np.hsplit(rows, 2) for rows in limits)
     slope, slope_left = psi[1] / phi[1] + 0.0, psi_left[1] / phi_left[1] + 0.0  # no -0 in a message
     for i in range(len(knots)):
         at = math.degrees(phi[0, i]) % 360
@@ -131,9 +135,10 @@ def _demand_joined(law: Transmission, field: str, *, corners: bool) -> None:
 
 
 def demand_leaf(x: Array, distance: Array, arm: float, most: float) -> None:
-    """Raise IntentError unless |OQ| = `distance` (n,), mm, at places x (n,) of a leaf, 0 to 1, can be on `arm`, mm.
+    """Raise IntentError unless |OQ| = `distance` (n,), mm, at places x (n,) of a leaf, 0 to 1, suits the `arm`, mm.
 
-    It is 0 at both ends, nowhere negative, and below `most`, mm, where an arm is fully stretched or meets the shaft.
+    It must be 0 at both ends, nowhere negative, and below `most`, mm, where an arm is fully stretched or meets the
+    shaft.
     """
     field = "rosette.leaf"
     ends = np.flatnonzero(((x == 0) | (x == 1)) & (np.abs(distance) > JOIN * arm))

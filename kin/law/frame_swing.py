@@ -1,8 +1,9 @@
-"""The cam whose square frame, sliding on a rocker, swings by a law over the shaft angle (AS section 4, turned round).
+"""The cam whose square frame, sliding on a rocker, swings by a law over the shaft angle.
 
-The rocker turns by psi from its mean direction, theta_4 = psi + 90 degrees, or psi - 90 where it is crossed, in the
-sense of the shaft: the swing of an oscillating yoke. The frame turns with it, so the relative angle of cam and frame is
-theta = phi - (psi - psi_0), and the loop r1 cos theta_4 = r4 - Y, theta_3 + theta_4 = 90 degrees (AS 24-27) gives
+It inverts section 4 of Aygahoglu and Saka 2023 (AS). The rocker turns by psi from its mean direction, theta_4 = psi +
+90 degrees, or psi - 90 where it is crossed, in the sense of the shaft: the swing of an oscillating yoke. The frame
+turns with it, so the relative angle of cam and frame is theta = phi - (psi - psi_0), and the loop r1 cos theta_4 = r4 -
+Y, theta_3 + theta_4 = 90 degrees (AS 24-27) gives
 
     Y = r4 + k r1 sin psi,   S = Y + w/2,   k = 1 open, -1 crossed, r4 less the offset of the slide's line.
 
@@ -42,10 +43,10 @@ from kin.numeric.taylor import compose, compose_balls, factorials
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
-_SAME = 1e-9  # rad, within which a law fills its angle, as segments do
-_JOIN = 1e-9  # of velocities that meet
-_ULPS = 4.0  # by which an enclosure of a shaft angle begins
-_DOUBLINGS = 60
+_SAME = 1e-9  # rad: greatest error of the angle that a law covers, as of segments
+_JOIN = 1e-9  # relative difference of velocities that meet
+_ULPS = 4.0  # first step of the search for an enclosure of a shaft angle
+_DOUBLINGS = 60  # of that step: more than any stretch is long
 _TABLE = 256  # steps of tables that inverses begin from
 _LOOKS = 64  # shaft angles at which the size of a derivative is looked at
 
@@ -54,8 +55,8 @@ _LOOKS = 64  # shaft angles at which the size of a derivative is looked at
 class FrameSwing:
     """psi - psi_0 over the shaft angle, rad, for half a turn of the relative angle; `ground` r1 and `rocker` r4, mm.
 
-    `rocker` is less the offset of the slide's line and may have either sign; `side` is 1 open, -1 crossed. Made by
-    `frame_swing`, which refuses laws that cannot be.
+    The offset of the slide's line is taken off `rocker`, which may have either sign; `side` k is 1 open, -1 crossed.
+    `frame_swing` makes it and refuses impossible laws.
     """
 
     motion: Motion
@@ -75,11 +76,14 @@ class FrameSwing:
 
     @cached_property
     def start(self) -> float:
-        """psi_0, rad: sin psi_0 + sin(psi_0 + h) is the lean."""
+        """Swing psi_0, rad, at shaft angle 0: sin psi_0 + sin(psi_0 + h) is the lean."""
         return math.asin(0.5 * self.lean / math.cos(0.5 * self.rise)) - 0.5 * self.rise
 
     def output(self, phi: Array, order: int) -> Jet:
-        """Output theta_4, rad, as a jet of an order, over shaft angles phi (n,), any real numbers."""
+        """Output theta_4, rad, as a jet (order + 1, n) over shaft angles phi (n,), rad, any real numbers.
+
+        Raises DomainError where a formula of the motion does not exist.
+        """
         turns = np.floor(phi / TURN) * TURN
         phi, span = phi - turns, self.motion.total
         swing = np.empty((order + 1, len(phi)))
@@ -104,7 +108,7 @@ class FrameSwing:
         return _by(*self._image_over(Jet.variable(self._before_image(phi), order)))
 
     def _image_over(self, phi: Jet) -> tuple[Jet, Jet]:
-        """psi* of psi at shaft angles of the given law, and the shaft angles that it belongs to."""
+        """Image psi* of psi at shaft angles phi of the given law, and the shaft angles at which it is taken."""
         swing = self._swing(phi)
         image = self.image(swing)
         return image, phi + math.pi + image - swing
@@ -122,7 +126,7 @@ class FrameSwing:
 
     @cached_property
     def joints(self) -> tuple[DerivativeJump, ...]:
-        """Shaft angles of the law at which psi - psi_0 or its derivatives jump; at 0 it follows its own image."""
+        """Jumps of psi - psi_0 or its derivatives at shaft angles of the given law; at 0 the law follows its image."""
         looks = self.output(np.linspace(0.0, TURN, _LOOKS, endpoint=False), ORDERS).derivatives()
         before = Jet(self._later(np.array([TURN]), ORDERS)).derivatives()[:, 0]
         before[0] -= self.start
@@ -156,7 +160,7 @@ class _Lifted:
     end: float
 
     def __call__(self, t: Series, /) -> Series:
-        """Give the lift: the swing at the shaft angle that belongs to t, its series turned round."""
+        """Give the lift at the relative angle t: the series over the shaft angle, inverted."""
         if isinstance(t, BallJet):
             return BallJet.of(compose_balls(self._ball_rows(*t.rows[0].bounds(), t.order), t.rows))
         at = Jet.variable(self._shaft(t.c[0]), t.order)
@@ -180,13 +184,13 @@ class _Lifted:
         return Inverse(self._relative, np.linspace(self.begin, self.end, _TABLE + 1))
 
     def _relative(self, phi: Array) -> tuple[Array, Array]:
-        """Relative angle at shaft angles phi (n,), and its derivative, (n,) each; other processes take it as it is."""
+        """Relative angle at shaft angles phi (n,), and its derivative, (n,) each; a method can be pickled."""
         at = Jet.variable(phi, 1)
         relative = at - self.function(at)
         return relative.c[0], relative.c[1]
 
     def _shafts_beyond(self, lower: Array, upper: Array) -> tuple[Array, Array]:
-        """Shaft angles (n,) for certain not above those at relative angles `lower` (n,), nor below those at `upper`."""
+        """Shaft angles (n,) surely not above those of relative angles `lower` (n,), and not below those of `upper`."""
         theta, way = np.concatenate([lower, upper]), np.repeat([-1.0, 1.0], len(lower))
         phi, end = self._shaft(theta), np.where(way < 0.0, self.begin, self.end)
         step = _ULPS * np.spacing(np.maximum(np.abs(phi), 1.0))
@@ -210,7 +214,10 @@ def _by(f: Jet, parameter: Jet) -> Array:
 
 
 def span_of(text: str, scale: float) -> float:
-    """Shaft angle that a swing by a formula fills, `scale` times its value in rad at t rad: that value is t - pi."""
+    """Shaft angle t, rad, that a swing `scale` times a formula in t covers: where the swing, rad, is t - pi.
+
+    Raises FormulaError for a text that is no formula.
+    """
     formula, low, high = Formula(text), 0.0, TURN
     while low < (middle := 0.5 * (low + high)) < high:
         try:
@@ -222,10 +229,12 @@ def span_of(text: str, scale: float) -> float:
 
 
 def frame_swing(motion: Motion, ground: float, rocker: float, side: float, field: str = "swing") -> FrameSwing:
-    """Make the swing that a motion prescribes, in rad from 0, over the shaft angle of half a turn of the relative one.
+    """Make the swing that a motion prescribes, in rad from 0, over the shaft angle of half a relative turn.
 
-    Raises IntentError where the motion does not fill that angle, which is half a turn and its net rise; where the loop
-    does not close, or the shaft would have to turn back, for it or its image; and where velocities do not meet.
+    `ground` r1 and `rocker` r4, less the offset of the slide's line, are mm; `side` is 1 open, -1 crossed. Raises
+    IntentError where the motion does not cover that shaft angle, half a turn and its net rise; where it jumps; where
+    the loop does not close, or the shaft would have to turn back, for it or its image; where velocities at both ends do
+    not meet.
     """
     law = FrameSwing(motion.demand_joined(field, "rad"), ground, rocker, side)
     rise = math.degrees(law.rise)
@@ -251,17 +260,17 @@ def frame_swing(motion: Motion, ground: float, rocker: float, side: float, field
 
 
 def _too_far(law: FrameSwing) -> str:
-    """Say that a net rise cannot be, and what would let it be, as far as something would."""
+    """Words for a net rise that is too large, and for the changes that would allow it."""
     half, aside = 0.5 * law.rise, abs(law.rocker)
-    room = math.cos(half) ** 2 if abs(law.rise) < math.pi else 0.0
+    most_share = math.cos(half) ** 2 if abs(law.rise) < math.pi else 0.0
     most = math.degrees(2.0 * math.acos(math.sqrt(min(1.0, aside / law.ground))))
     remedies = [f"swing by less than {most:.9g}"] if most else []
-    if room:
-        longer, nearer = aside / room, law.ground * room
+    if most_share:
+        longer, nearer = aside / most_share, law.ground * most_share
         remedies.append(f"give a ground above {longer:.9g} mm or a rocker within {nearer:.9g} mm of the joint's offset")
     if not remedies:
         remedies = [f"swing by less than 180 with a ground above {aside:.9g} mm"]
-    amount = f"by {math.degrees(law.rise):.9g} degrees " if most or not room else ""
+    amount = f"by {math.degrees(law.rise):.9g} degrees " if most or not most_share else ""
     return f"the frame cannot swing {amount}on links of these lengths: {', or '.join(remedies)}"
 
 
@@ -278,9 +287,10 @@ def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: floa
         at = swing(t)
         return t + law.image(at) - at
 
+    # the loop closes where |psi| and |psi*| are below a quarter turn
     quarter = 0.5 * math.pi
-    for what, limits in ((swing, {0: (-quarter, quarter)}), (sine, {0: (-1.0, 1.0)})):
-        doubts = undecided(what, begin, end, limits)
+    for course, limits in ((swing, {0: (-quarter, quarter)}), (sine, {0: (-1.0, 1.0)})):
+        doubts = undecided(course, begin, end, limits)
         if doubts is not None:
             at = math.degrees(doubts[1])
             raise IntentError(
@@ -289,8 +299,9 @@ def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: floa
                 field,
                 at,
             )
-    for what, limits in ((swing, {1: (-math.inf, 1.0)}), (later, {1: (0.0, math.inf)})):
-        doubts = undecided(what, begin, end, limits)
+    # the shaft turns on where psi' < 1, and where the image's shaft angle rises with phi
+    for course, limits in ((swing, {1: (-math.inf, 1.0)}), (later, {1: (0.0, math.inf)})):
+        doubts = undecided(course, begin, end, limits)
         if doubts is None:
             continue
         phi = np.linspace(begin, end, 2049)
@@ -308,7 +319,7 @@ def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: floa
 
 
 def _demand_meeting(law: FrameSwing, field: str) -> None:
-    """Refuse velocities at both ends that are not each other's image."""
+    """Raise IntentError unless the velocities at both ends are each other's image."""
     (_, first), (_, last) = law.motion.at_start(1), law.motion.at_end(1)
     begin = law.start
     # over the relative angle the lift's slopes are opposite: k r1 cos psi psi'/(1 - psi')

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 
 _TURN = 2 * math.pi
-# p(t + 2 pi) against p(t), relative to the largest of p, p', p'': the parameter itself is rounded to an ulp of 4 pi.
+# Greatest difference of p(t + 2 pi) from p(t), relative to the largest of p, p', p'': t is rounded to an ulp of 4 pi.
 _PERIOD = 1e-9
 _SEAM_ORDER = 6  # derivatives that must agree at 0 and 2 pi, else 0 is a break
-_CLEAR = 1e-6  # rad: nearer to a switch p is not compared with itself a turn later
-_MOST_WAVES = 5000  # of p in a turn: what is proved and drawn of it is divided for each of them
-_ABOUT = 1.01  # the estimate may be off by so much
-_PLACES = 2048  # at which its waves are looked for
-_CALM = 1e-6  # of the largest p: slopes of the radius of curvature no steeper are no waves, they may be rounding
+_CLEAR = 1e-6  # rad: closer to a switch p is not compared with p a turn later
+_MOST_WAVES = 5000  # of p in a turn: proofs and drawings are divided for each of them
+_ABOUT = 1.01  # factor by which the estimate of the waves may be off
+_PLACES = 2048  # places of a turn at which waves are looked for
+_CALM = 1e-6  # of the largest p: flatter slopes of the radius of curvature are no waves, they may be rounding
 _WHOLE = "a whole exponent is smooth where what it is put on vanishes"
 _HINTS = (
     ("fractional power", _WHOLE),
@@ -36,11 +36,11 @@ _HINTS = (
 
 
 def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0), scale: float = 1.0) -> Lift:
-    """Make p = scale times a formula in t (AS eq. 7 and Figure 2), mm, about the shaft at `pivot`, mm.
+    """Make p = scale times a formula in t, rad, mm, about the shaft at `pivot`, mm (Aygahoglu and Saka 2023, eq. 7).
 
     Raises IntentError, each with angle and figure, where the formula has no value or p, p', p'' no bound; where it does
-    not close, p(t + 2 pi) = p(t); where it has too many waves to be worked out; and where abs, min, max or the like
-    make p or p' jump. Jumps of p'' become breaks.
+    not close, p(t + 2 pi) = p(t); where it has too many waves to be worked out; and where abs, min, max or another
+    switch makes p or p' jump. Jumps of p'' become breaks.
     """
     _demand_calm(formula)
     try:
@@ -62,10 +62,10 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
 
 
 def _runs_on(last: Expression, first: Expression) -> bool:
-    """Tell whether the turn's end runs on in its beginning, by the derivatives there.
+    """Whether the turn's end runs on smoothly in its beginning, by the derivatives there.
 
-    Expressions would not tell: abs(cos(t/2)) is another one at 2 pi and has no break at 0, abs(sin(t/2)) is the same
-    and has one.
+    Equal expressions are no sign of it: abs(cos(t/2)) has different ones at 0 and 2 pi and no break at 0, abs(sin(t/2))
+    has the same one and a break.
     """
     try:
         end, begin = last.jet(_TURN, _SEAM_ORDER).derivatives(), first.jet(0.0, _SEAM_ORDER).derivatives()
@@ -75,10 +75,10 @@ def _runs_on(last: Expression, first: Expression) -> bool:
 
 
 def _demand_calm(formula: Formula) -> None:
-    """Refuse p with more waves in a turn than are worked out, before any of them is."""
+    """Raise IntentError for p with more waves in a turn than are worked out, before any work is done on them."""
     try:
         waves = _waves(formula)
-    except FormulaDomainError:  # why it has no value or derivative, and where, is found and told next
+    except FormulaDomainError:  # the next checks name the place and the reason
         return
     if waves > _MOST_WAVES * _ABOUT:
         raise IntentError(f"p has about {waves:.3g} waves in a turn; no more than {_MOST_WAVES} are worked out", "p")
@@ -103,14 +103,14 @@ def _waves(formula: Formula) -> float:
 
 
 def _demand_period(formula: Formula, switches: Array, scale: float) -> None:
-    """Refuse p(t + 2 pi) other than p(t), on a grid that no symmetry of the turn repeats and clear of the switches."""
+    """Raise IntentError unless p(t + 2 pi) = p(t), on a grid that no symmetry repeats, clear of the switches."""
     t = np.mod(np.arange(1, 98) * (math.sqrt(5) - 1) * math.pi, _TURN)
     t = t[np.abs(t[:, None] - switches).min(axis=1) > _CLEAR]
-    here, after = np.hsplit(formula.jet(np.concatenate([t, t + _TURN]), 2).derivatives(), 2)
-    miss = after - here
+    before, after = np.hsplit(formula.jet(np.concatenate([t, t + _TURN]), 2).derivatives(), 2)
+    miss = after - before
     for row, what, unit in ((0, "p", "mm"), (1, "p'", "mm/rad"), (2, "p''", "mm/rad^2")):
         worst = int(np.argmax(np.abs(miss[row])))
-        if abs(miss[row, worst]) > _PERIOD * np.abs(here).max():
+        if abs(miss[row, worst]) > _PERIOD * np.abs(before).max():
             at = math.degrees(t[worst])
             miss_mm = scale * miss[row, worst]
             raise IntentError(

@@ -1,7 +1,7 @@
 """Rows of a cam table joined as a drive's controller joins them: by lines, or by polynomials of degree 5.
 
-Between two rows the difference from a motion is followed by polynomials of which nothing is sampled past
-(`kin.numeric.monotone`), so that its greatest value is no matter of luck.
+Between two rows the difference from a motion is followed by polynomials that leave nothing between samples
+(`kin.numeric.monotone`), so that no greater value is missed.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 Join = Literal["line", "quintic"]
-_SHARE = 1e-12  # of the greatest position, to which the difference is followed
+_SHARE = 1e-12  # accuracy of the difference, as a part of the range of positions
 
 
 @dataclass(frozen=True, eq=False)
 class JoinedRows:
-    """Rows of a master's angle (n,), rad, from 0 to a turn, and of a slave, (1 or 3, n): its position, mm or rad.
+    """Rows of a master's angle (n,), rad, from 0 to a turn, and of a slave (1 or 3, n): row 0 its position, mm or rad.
 
-    By a line the position alone is met; by a quintic its first and second derivative by rad of the master too, in rows
-    1 and 2 of the slave.
+    Lines meet the position alone. Quintics also meet the first and second derivatives by the master's angle, rows 1 and
+    2 of the slave.
     """
 
     master: Array
@@ -38,7 +38,7 @@ class JoinedRows:
 
     @property
     def coefficients(self) -> Array:
-        """Coefficients (2 or 6, n - 1) of each part's polynomial over 0 to 1, the constant first."""
+        """Coefficients (2 or 6, n - 1) of the polynomial of each part over 0 to 1, the constant first."""
         if self.join == "line":
             return np.stack([self.slave[0, :-1], np.diff(self.slave[0])])
         return coefficients(self.slave[:, :-1], self.slave[:, 1:], np.diff(self.master))
@@ -53,8 +53,8 @@ class JoinedRows:
     def off(self, position: Callable[[Array], Array], breaks: Iterable[float]) -> tuple[float, float]:
         """Greatest |motion - joined rows| over a turn, mm or rad, and the master's angle where it is, rad.
 
-        `position` gives the motion at angles (n,) from 0 to a turn; at `breaks` a derivative of it may jump. Raises
-        RoughError where it changes too abruptly to be followed.
+        `position` gives the motion (n,) at angles (n,) from 0 to a turn; at `breaks`, rad, a derivative of it may jump.
+        Raises RoughError where the motion changes too abruptly to be followed.
         """
         size = float(np.ptp(self.slave[0])) or 1.0
         places = between(0.0, TURN, [*self.master.tolist(), *breaks])

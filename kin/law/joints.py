@@ -14,37 +14,37 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
 
-ORDERS = 3  # displacement, velocity, acceleration and jerk are held together at the joints
+ORDERS = 3  # displacement, velocity, acceleration and jerk are compared at the joints
 _JOIN = 1e-9  # of the greatest value of a derivative: a jump below this is rounding
 _NAMES = ("S", "S'", "S''", "S'''")
 
 
 @dataclass(frozen=True)
 class DerivativeJump:
-    """An angle (rad) at which derivatives jump: for each that does its order, and the limits before and after."""
+    """An angle `at`, rad, at which derivatives jump; of each that jumps (order, limit before, limit after)."""
 
     at: float
     jumps: tuple[tuple[int, float, float], ...]
 
     def said(self, unit: str = "mm") -> str:
-        """Say what jumps, lowest derivative first, by how much, and where."""
+        """Words for the jumps, lowest derivative first: limits in `unit` and per rad, and the angle in degrees."""
         per = ("", "/rad", "/rad^2", "/rad^3")
         parts = [f"{_NAMES[k]} jumps from {a:.6g} to {b:.6g} {unit}{per[k]}" for k, a, b in self.jumps]
         return f"{' and '.join(parts)} at {math.degrees(self.at):.6g} degrees"
 
     def scaled(self, by: float) -> DerivativeJump:
-        """The joint with displacements times `by`: in another unit."""
+        """The jump with displacements multiplied by `by`, as for another unit."""
         return DerivativeJump(self.at, tuple((k, a * by, b * by) for k, a, b in self.jumps))
 
 
 def joints_of(meetings: Iterable[tuple[float, Array, Array]], size: Array) -> tuple[DerivativeJump, ...]:
-    """Give the joints among angles (rad) with the derivatives 0 to `ORDERS` before and after each, (ORDERS + 1,).
+    """Give the jumps among meetings, each an angle, rad, and the derivatives 0 to 3 before and after it, (4,) each.
 
-    `size` has the greatest value of each derivative.
+    `size` (4,) is the greatest absolute value of each derivative: a jump below 1e-9 of it is rounding.
     """
 
     def without_rounding(value: Array, k: int) -> float:
-        return float(value[k]) if abs(value[k]) > _JOIN * size[k] else 0.0  # what rounding leaves of a rest is 0
+        return float(value[k]) if abs(value[k]) > _JOIN * size[k] else 0.0  # a value that is rounding alone is 0
 
     joints = []
     for at, before, after in meetings:

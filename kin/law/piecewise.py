@@ -1,7 +1,8 @@
 """Piecewise functions: stretches written in jet arithmetic between knots, folded by a period, with a side at a knot.
 
 A stretch (`kin.law.segment`) is never evaluated beyond its own knots: a parameter within a few ulp of a knot is the
-knot, and belongs to the side asked for. So a jump of a derivative is given as its two limits and never smeared.
+knot, and belongs to the side that is given, 1 for the right and -1 for the left. So a jump of a derivative is given as
+its two limits and never smeared.
 """
 
 from __future__ import annotations
@@ -28,17 +29,17 @@ if TYPE_CHECKING:
 
 Side = int | Indices  # 1 or -1 for all, or for each parameter (n,)
 
-# Folding by the period, and the sums and products behind a knot, are each good to about an ulp; what lies closer to a
-# knot than this many ulps of the parameter is the knot.
+# Folding by the period, and the sums and products behind a knot, are each good to about an ulp; a parameter closer to a
+# knot than this many ulps is the knot.
 _SNAP_ULPS = 8.0
-# Stretches shorter than this, relative to the whole, would be lost in that.
+# Stretches shorter than this, relative to the whole, would be lost in that rounding.
 _LEAST_STRETCH = 1e-13
-_LOOKS = 1024  # parameters at which a formula's rounding is asked for
+_LOOKS = 1024  # parameters at which a formula's rounding is looked at
 
 
 @dataclass(frozen=True, eq=False)
 class _Group:
-    """Stretches that are one function moved in several ways: the way of each, rows of (offset, scale, start, 1/width).
+    """Stretches that are one function moved in several ways; a way is (offset, scale, start, 1/width).
 
     `ways` is (4, m) over all the stretches of a piecewise function; None where the function stands as it is.
     """
@@ -58,7 +59,7 @@ _AS_IS = (0.0, 1.0, 0.0, 1.0)
 
 @dataclass(frozen=True, eq=False)
 class _Alike:
-    """Stretches of one kind, each with its column of numbers (k, m) and moved its own way."""
+    """Stretches of one kind, each with its column of `numbers` (k, m) and its way in `ways` (4, m)."""
 
     first: Alike
     numbers: Array
@@ -85,7 +86,7 @@ def _moved(function: Stretch, ways: Array, t: Series) -> Series:
 
 
 def _ways(members: list[Stretch], places: list[int], count: int) -> Array:
-    """Collect the ways of stretches at `places` among `count`, (4, count)."""
+    """Ways (4, count) of the stretches `members`, in the columns `places`."""
     ways = np.empty((4, count))
     for place, member in zip(places, members, strict=True):
         ways[:, place] = _AS_IS
@@ -111,7 +112,8 @@ class _Round:
 class Places:
     """Places of points or intervals (n,) among the stretches of a piecewise function.
 
-    Each begins at `low` in the stretch `first` and ends at `high`, `steps` stretches further on; the ends are folded.
+    Each begins at `low` in the stretch `first` and ends at `high`, `steps` stretches further on, all (n,); `low` and
+    `high` are folded by the period.
     """
 
     first: Indices
@@ -120,13 +122,16 @@ class Places:
     steps: Indices
 
     def each(self, count: int) -> Iterator[tuple[int, Indices, Indices]]:
-        """List by rising steps those that reach so far, and the stretch there, out of `count` in a period."""
+        """Yield for steps 0, 1, ... the step, the indices of the places that reach so far, and their stretches there.
+
+        `count` is the number of stretches in a period.
+        """
         for step in range(int(self.steps.max(initial=0)) + 1):
             active = np.flatnonzero(self.steps >= step)
             yield step, active, (self.first[active] + step) % count
 
     def weigh(self, series: Series, numbers: Array) -> Series:
-        """Multiply by the number that belongs to each place, out of one for each stretch (m,)."""
+        """Multiply a series by the number of each place's stretch, out of `numbers` (m,); of several by their ball."""
         least, most = numbers[self.first], numbers[self.first]
         if isinstance(series, Jet) or not self.steps.any():
             return series * least
@@ -140,9 +145,9 @@ class Places:
 class Piecewise:
     """m functions on the stretches between m + 1 rising knots; `period` is None where the function just ends.
 
-    With a period, knots[-1] = knots[0] + period, the parameter is any real number, and `smooth_seam` says that
-    knots[0] is where the description begins and no break. Raises ValueError for knots that do not rise, a count of
-    functions that does not fit, or a period that the knots do not span.
+    With a period, knots[-1] = knots[0] + period, the parameter is any real number, and `smooth_seam` tells that
+    knots[0] is no break. Raises ValueError for knots that are not finite or do not rise, a count of functions that does
+    not fit, or a period that the knots do not span.
     """
 
     knots: Array
@@ -164,7 +169,7 @@ class Piecewise:
 
     @cached_property
     def breaks(self) -> Array:
-        """Parameters where the function changes, rising: in [0, period), or inside the ends without a period."""
+        """Knots (b,) that are breaks, rising: in [0, period), or without a period those inside the ends."""
         if self.period is None:
             return self.knots[1:-1]
         first = 1 if self.smooth_seam else 0
@@ -182,14 +187,15 @@ class Piecewise:
         return Piecewise(self.knots, functions, self.period, self.smooth_seam)
 
     def taken_from(self, whole: float) -> Piecewise:
-        """Give `whole` less the function; constant stretches stay constant."""
+        """Give the constant `whole` less the function; constant stretches stay constant."""
         functions = tuple(moved(f, offset=whole, scale=-1.0) for f in self.functions)
         return Piecewise(self.knots, functions, self.period, self.smooth_seam)
 
     def derivatives(self, t: float | Array, order: int, side: Side = 1) -> Array:
         """Give derivatives 0..order at t (n,) as (order + 1, n); at a knot the right-hand limit, or left (side -1).
 
-        Raises ValueError outside the knots where there is no period, DomainError where a function does not exist.
+        Raises ValueError outside the knots where there is no period and for a parameter that is not finite, DomainError
+        where a function does not exist.
         """
         return self.on(Jet.variable(t, order), side).derivatives()
 
@@ -197,23 +203,27 @@ class Piecewise:
         """Balls mid +- rad, each (order + 1, n), that hold every derivative 0..order over [lower, upper], each (n,).
 
         At an end of the interval only the limit from within counts; a knot inside counts with both. An interval no
-        longer than the rounding of a knot in it holds both limits.
+        longer than the rounding of a knot in it holds both limits. Raises ValueError outside the knots where there is
+        no period, and for an interval that ends before it begins.
         """
         rows = self.on(BallJet.variable(lower, upper, order)).bounds()
         enclosed = Ball.between(*rows)
         return enclosed.mid, enclosed.rad
 
     def jumps(self, order: int) -> tuple[Array, Array]:
-        """Break parameters (b,) and the jump of each derivative 0..order over them, right less left, (order + 1, b)."""
+        """Break parameters (b,) and the jumps of derivatives 0..order there, right less left limit, (order + 1, b).
+
+        Raises DomainError where a function does not exist at a break.
+        """
         at = self.breaks
         return at, self.derivatives(at, order, 1) - self.derivatives(at, order, -1)
 
     @cached_property
     def rounding(self) -> float:
-        """By how much value or slope may be off through the rounding of a recipe's own formula; 0 where there is none.
+        """Greatest error of value or slope through the rounding of a recipe's own formula; 0 without one or a period.
 
-        The radius of what proved arithmetic gives at single parameters, the greatest of `_LOOKS` over the period:
-        digits that a formula loses by cancelling are not found again by anyone who computes with it.
+        It is the greatest radius that proved arithmetic gives at 1024 parameters over the period and at the breaks:
+        digits that a formula loses by cancelling are lost to everyone who computes with it.
         """
         if self.period is None or not any(isinstance(_innermost(f), Expression) for f in self.functions):
             return 0.0
@@ -221,11 +231,15 @@ class Piecewise:
         return float(self.enclosure(t, t, 1)[1].max())
 
     def on(self, t: Series, side: Side = 1) -> Series:
-        """Apply the function to any jet or ball jet; `side` decides for jets whose value is a knot."""
+        """Apply the function to a jet or ball jet; `side` decides for jets whose value is a knot.
+
+        Raises ValueError outside the knots where there is no period, DomainError where the function does not exist at a
+        jet.
+        """
         return self.at(t, self.places(t, side))
 
     def at(self, t: Series, places: Places) -> Series:
-        """Apply the function to a jet or ball jet whose places are known."""
+        """Apply the function to a jet or ball jet with known places; DomainError where it does not exist at a jet."""
         if isinstance(t, Jet):
             c = t.c.copy()
             c[0] = places.low
@@ -233,7 +247,10 @@ class Piecewise:
         return self._on_intervals(t, places)
 
     def places(self, t: Series, side: Side = 1) -> Places:
-        """Tell in which stretches a jet's points lie, or which ones a ball jet's intervals meet."""
+        """Stretches in which a jet's points lie, or which a ball jet's intervals meet.
+
+        Raises ValueError for points outside the knots where there is no period.
+        """
         if isinstance(t, Jet):
             index, x = self.locate(t.c[0], side)
             return Places(index, x, x, np.zeros_like(index))
@@ -257,18 +274,22 @@ class Piecewise:
         return _SNAP_ULPS * ulps
 
     def locate(self, t: Array, side: Side = 1) -> tuple[Indices, Array]:
-        """For each t (n,): the index of its stretch on the side asked for, and t folded into that stretch."""
+        """Index (n,) of the stretch of each t (n,), at a knot that of `side`, and t folded into that stretch (n,).
+
+        Raises ValueError outside the knots where there is no period and for a parameter that is not finite.
+        """
         index, x, _ = self._place(np.asarray(t, dtype=float), side)
         return index, x
 
     def _place(self, t: Array, side: Side) -> tuple[Indices, Array, Array]:
-        """Stretch, folded parameter, and the whole periods taken off."""
+        """Stretch, folded parameter, and number of whole periods taken off, of each t (n,)."""
         knots, last = self.knots, len(self.functions) - 1
         if not np.isfinite(t).all():
             raise ValueError("a parameter is not finite")
         turns = np.zeros_like(t) if self.period is None else np.floor((t - knots[0]) / self.period)
         x = t if self.period is None else t - turns * self.period
         inside = np.minimum(np.maximum(np.searchsorted(knots, x, side="right") - 1, 0), last)
+        # the common case first: no parameter near a knot
         below, above = x - knots[inside], knots[inside + 1] - x
         least = np.minimum(below, above)
         if t.size and least.min() > self._snap(np.abs(t).max(keepdims=True))[0]:
@@ -276,6 +297,7 @@ class Piecewise:
         snap = self._snap(t)
         if self.period is None and (least < -snap).any():
             raise ValueError(f"a parameter lies outside {knots[0]} to {knots[-1]}")
+        # a parameter within rounding of a knot goes to the stretch on its side
         below, above = np.abs(below), np.abs(above)
         on_knot = np.minimum(below, above) <= snap
         if not on_knot.any():
@@ -283,7 +305,7 @@ class Piecewise:
         near = np.where(below < above, inside, inside + 1)
         right = np.asarray(side) > 0
         index = np.where(on_knot, near - 1 + right, inside)
-        if self.period is not None:  # the seam belongs to either end
+        if self.period is not None:  # at the seam the side may lead into the next or the last period
             wrap = np.floor_divide(index, last + 1)
             index = index - wrap * (last + 1)
             turns = turns + wrap
@@ -293,7 +315,10 @@ class Piecewise:
 
     @cached_property
     def _groups(self) -> tuple[Indices, tuple[_Group | _Alike | _Round, ...]]:
-        """For each stretch its group, and the groups: stretches of a kind, or one function moved in several ways."""
+        """Index (m,) of each stretch's group, and the groups, each of which is evaluated in one go.
+
+        A group is all first harmonics, the stretches of one kind, or one function moved in several ways.
+        """
         by_stretch: dict[Stretch | tuple[str, int], list[int]] = {}
         owner = np.zeros(len(self.functions), dtype=np.intp)
         parts, arcs = np.zeros((3, owner.size)), []
@@ -335,11 +360,11 @@ class Piecewise:
         return BallJet(mid, rad)
 
     def _within(self, index: Indices, begin: Array, end: Array, t: BallJet, here: Indices) -> BallJet:
-        """Take those intervals of t with their values replaced by [begin, end], each inside its stretch."""
+        """Intervals number `here` of t with their values replaced by [begin, end], each inside its stretch `index`."""
         # The fold t - turns * period is rounded; its ulp is covered, within the stretch.
-        room = np.where(np.abs(begin) > 0, np.spacing(np.maximum(np.abs(t.mid[0, here]), np.abs(begin))), 0.0)
+        slack = np.where(np.abs(begin) > 0, np.spacing(np.maximum(np.abs(t.mid[0, here]), np.abs(begin))), 0.0)
         interval = Ball.between(
-            np.maximum(begin - room, self.knots[index]), np.minimum(end + room, self.knots[index + 1])
+            np.maximum(begin - slack, self.knots[index]), np.minimum(end + slack, self.knots[index + 1])
         )
         mid, rad = t.mid[:, here], t.rad[:, here]
         mid[0], rad[0] = interval.mid, interval.rad
@@ -350,16 +375,16 @@ class Piecewise:
         owner, groups = self._groups
         if len(groups) == 1:
             return groups[0](t, index)
-        which, kind, rows = owner[index], type(t), _rows(t)
+        group_of, kind, rows = owner[index], type(t), _rows(t)
         out = [np.empty_like(row) for row in rows]
-        for number in np.flatnonzero(np.bincount(which)):
-            here = np.flatnonzero(which == number)
+        for number in np.flatnonzero(np.bincount(group_of)):
+            members = np.flatnonzero(group_of == number)
             try:
-                part = groups[number](kind(*(row[:, here] for row in rows)), index[here])
+                part = groups[number](kind(*(row[:, members] for row in rows)), index[members])
             except DomainError as error:
-                raise DomainError(error.operation, here[error.indices]) from None
+                raise DomainError(error.operation, members[error.indices]) from None
             for row, values in zip(out, _rows(part), strict=True):
-                row[:, here] = values
+                row[:, members] = values
         return kind(*out)
 
 
@@ -368,7 +393,7 @@ def _bare(function: Stretch) -> Stretch:
 
 
 def _innermost(function: object) -> object:
-    """The function that is moved, however often."""
+    """The function itself, freed from all movements around it."""
     within = getattr(function, "function", None)
     return function if within is None else _innermost(within)
 

@@ -25,16 +25,17 @@ if TYPE_CHECKING:
 
 
 _LOOKS = 257  # places of a stretch at which a formula's values are looked at
-_SAME = 1e-9  # of the greatest |D|: D(t + delta) other than -D(t) by less is rounding
-_CLEAR = 1e-6  # of delta: nearer to a switch D is not compared
+_SAME = 1e-9  # of the greatest |D|: a smaller difference of D(t + delta) from -D(t) is rounding
+_CLEAR = 1e-6  # of delta: closer to a switch D is not compared
 _SEAM_ORDER = 6  # derivatives that agree where one formula runs on over the period
 
 
 def from_delta_formula(lam: int, mu: int, arm: float, formula: Formula, scale: float = 1.0) -> Transmission:
-    """Make the law of D = `scale` times a formula in the polar angle t, mm^2 (W 5.10): psi = -asin(D/l^2).
+    """Make the law psi = -asin(D/l^2) of D = `scale` times a formula in the polar angle t, mm^2 (Wunderlich 5.10).
 
-    Any D will do with D(t + delta) = -D(t), |D| < l^2, and psi'(phi) < 1. Raises IntentError with place and figure
-    where the formula has no value, misses the symmetry, or makes no possible law.
+    lam/mu is the ratio pi/alpha, `arm` is l, mm, and delta = pi/lam. D may be any function with D(t + delta) = -D(t),
+    |D| < l^2, and psi'(phi) < 1. Raises IntentError with place and figure for an excluded ratio or arm, and where the
+    formula has no value, misses the symmetry, or makes no possible law.
     """
     demand_ratio(lam, mu, arm)
     field, delta, square = "delta.formula", math.pi / lam, arm * arm
@@ -46,10 +47,12 @@ def from_delta_formula(lam: int, mu: int, arm: float, formula: Formula, scale: f
 
 
 def from_curve(lam: int, mu: int, arm: float, formula: Formula, scale: float = 1.0) -> Transmission:
-    """Make the law of a pitch curve r = `scale` times a formula in t, mm, over t in [0, delta] (W section 3, 4.10).
+    """Make the law of a pitch curve r = `scale` times a formula in t, mm, over t in [0, delta] (Wunderlich 1984, 4.10).
 
-    The curve's image from delta on follows from the closing equation, as psi(t + delta) = -psi(t). Raises IntentError
-    where the two do not join in place and tangent, for r outside 0 to 2 l, and for a law that turns the cam back.
+    lam/mu is the ratio pi/alpha, `arm` is l, mm, and delta = pi/lam. The curve's image from delta on follows from the
+    closing equation, as psi(t + delta) = -psi(t). Raises IntentError for an excluded ratio or arm, where the formula
+    has no value, where curve and image do not join in place and tangent, for r outside 0 to 2 l, and for a law that
+    turns the cam back.
     """
     demand_ratio(lam, mu, arm)
     field, delta = "arc.formula", math.pi / lam
@@ -79,20 +82,20 @@ def _pieces(formula: Formula, end: float, field: str) -> tuple[list[float], tupl
 
 
 def _demand_odd(formula: Formula, places: Sequence[float], delta: float, field: str) -> None:
-    """Refuse D(t + delta) other than -D(t), on a grid that no symmetry repeats and clear of the switches."""
+    """Raise IntentError unless D(t + delta) = -D(t), on a grid that no symmetry repeats, clear of the switches."""
     t = np.mod(np.arange(1, 98) * (math.sqrt(5) - 1) * math.pi, delta)
     knots = np.array(places)
     for shift in (0.0, delta):
         t = t[np.abs(t[:, None] + shift - knots).min(axis=1) > _CLEAR * delta]
     try:
-        here, after = np.hsplit(formula.jet(np.concatenate([t, t + delta]), 0).c[0], 2)
+        before, after = np.hsplit(formula.jet(np.concatenate([t, t + delta]), 0).c[0], 2)
     except FormulaError as error:
         raise IntentError(error.message, field) from error
-    off = np.abs(here + after)
+    off = np.abs(before + after)
     worst = int(np.argmax(off))
-    if off[worst] > _SAME * np.abs(here).max():
+    if off[worst] > _SAME * np.abs(before).max():
         raise IntentError(
-            f"D(t + delta) must be -D(t), delta = {math.degrees(delta):.6g} degrees: D is {here[worst]:.9g} at t = "
+            f"D(t + delta) must be -D(t), delta = {math.degrees(delta):.6g} degrees: D is {before[worst]:.9g} at t = "
             f"{math.degrees(t[worst]):.6g} degrees and {after[worst]:.9g} at {math.degrees(t[worst] + delta):.6g}; "
             f"sines and cosines of {math.pi / delta:.0f}*t and of its odd multiples have it",
             field,
@@ -103,7 +106,10 @@ def _demand_odd(formula: Formula, places: Sequence[float], delta: float, field: 
 def _demand_within(
     places: Sequence[float], pieces: Sequence[Expression], limit: tuple[float, float, str, str, str], field: str
 ) -> None:
-    """Refuse values at or above a limit, as far as looks tell; what is between them is proved with the law."""
+    """Raise IntentError for sampled values at or above a limit; between the samples the limit is proved with the law.
+
+    `limit` holds the scale of the formula, the limit, the names of both, and their unit.
+    """
     scale, most, what, name, unit = limit
     for begin, end, piece in zip(places[:-1], places[1:], pieces, strict=True):
         t = np.linspace(begin, end, _LOOKS)
@@ -124,7 +130,7 @@ def _demand_within(
 def _polar(
     ratio: tuple[int, int, float], stretches: Sequence[FromExpression], places: Sequence[float], field: str
 ) -> Transmission:
-    """Make the law of a ratio and an arm, of stretches over t that reach from 0 to delta, or on to 2 delta."""
+    """Make the law of a ratio and an arm, (lam, mu, l), from stretches over t from 0 to delta or to 2 delta."""
     lam, mu, arm = ratio
     alpha, delta = math.pi * mu / lam, math.pi / lam
     whole = places[-1] > 1.5 * delta
@@ -145,7 +151,7 @@ def _runs_on(function: FromExpression, period: float) -> bool:
 
 
 def _at_rest(function: FromExpression, angle: float) -> Stretch:
-    """Return the stretch, or the rest that it is if the formula does not depend on t there."""
+    """Return the stretch, or a constant if the formula does not depend on t from `angle` on; psi near 0 becomes 0."""
     if function.formula.constant_value(angle) is None:
         return function
     psi = float(function(Jet.variable(angle, 0)).c[0, 0])

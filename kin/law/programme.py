@@ -33,7 +33,8 @@ _END_TOLERANCE = 1e-12  # of a polynomial law at u = 0 and 1
 class IntentError(CamgeoError, ValueError):
     """An intended motion that no cam can have, with the reason and the figure.
 
-    `field` is the path of what is at fault below the recipe's `cam`; `at_deg` the shaft angle, if there is one.
+    `field` is the path of the faulty field below the recipe's `cam`; `at_deg` the shaft angle, degrees, if there is
+    one.
     """
 
     def __init__(self, message: str, field: str, at_deg: float | None = None) -> None:
@@ -45,7 +46,7 @@ class IntentError(CamgeoError, ValueError):
 
 @dataclass(frozen=True)
 class Peaks:
-    """Largest velocity, acceleration and jerk of a law for unit stroke over unit interval, from rest to rest.
+    """Largest absolute velocity, acceleration and jerk of a law, for unit stroke over unit interval from rest to rest.
 
     `jerk` is infinite where the acceleration steps, at the ends too.
     """
@@ -59,8 +60,8 @@ class Peaks:
 class Law:
     """A normalised motion law s(u) on [0, 1] with its peaks.
 
-    A return runs the law backwards, s(1 - u). Of a symmetric law that is 1 - s(u), by which it falls; one that is not
-    symmetric, or may not be, is marked `reverses`.
+    A return runs the law backwards, s(1 - u), which for a symmetric law is 1 - s(u). A law that is not symmetric, or
+    may not be, is marked `reverses`.
     """
 
     name: str
@@ -69,7 +70,10 @@ class Law:
     reverses: bool = False
 
     def derivatives(self, u: float | Array, order: int, side: int = 1) -> Array:
-        """Law s and its derivatives by u, (order + 1, n), at u (n,) in [0, 1]; at a knot the limit from `side`."""
+        """Give s and its derivatives by u, (order + 1, n), at u (n,); at a knot the right limit, or left (side -1).
+
+        Raises ValueError for u outside [0, 1].
+        """
         return self.motion.derivatives(u, order, side)
 
 
@@ -87,7 +91,10 @@ class Polynomial:
 
 @dataclass(frozen=True)
 class AcceleratedPiece(Alike):
-    """Displacement under a given acceleration: s and s' at `start`, then peak sin(rate x), peak cos(rate x) or peak."""
+    """Displacement from `s` with velocity `v` at `start`, under an acceleration of one `shape`.
+
+    With x = u - start the acceleration is peak sin(rate x), peak cos(rate x) or, flat, peak.
+    """
 
     start: float
     s: float
@@ -103,7 +110,7 @@ class AcceleratedPiece(Alike):
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """Start, s, v, rate, and what the displacement from the straight run is a multiple of."""
+        """Numbers start, s, v, rate, and the factor of the displacement that the acceleration adds to s + v x."""
         return self.start, self.s, self.v, self.rate, self.peak / (self.rate**2 if self.rate else 2.0)
 
     def together(self, rows: Array) -> Stretch:
@@ -131,14 +138,14 @@ class _Accelerated:
         if self.shape == "flat":
             return (x * scale + v) * x + s
         angle = x * rate
-        rest = angle - sin(angle) if self.shape == "sin" else 1.0 - cos(angle)  # at rest at the start, to the last bit
-        path = rest * scale
+        wave = angle - sin(angle) if self.shape == "sin" else 1.0 - cos(angle)  # at rest at the start, to the last bit
+        path = wave * scale
         if v.any():
             path = path + x * v
         return path + s if s.any() else path
 
     def _at_points(self, u: Jet) -> Jet:
-        """Give each displacement where u is a straight function: the same digits, by less arithmetic."""
+        """Give each displacement where u is a linear series: the same digits, by less arithmetic."""
         start, s, v, rate, scale = self.rows
         with np.errstate(all="ignore"):
             x, slope, order = u.c[0] - start, u.c[1], u.order
@@ -168,9 +175,9 @@ class _Accelerated:
 
 
 def first_harmonic(stretch: AffineStretch) -> tuple[float, float, float] | None:
-    """Mean, and coefficients of cos t and sin t, where a stretch of a programme is nothing else; None where it is not.
+    """Mean and coefficients of cos t and sin t of a stretch that has no other terms; None for any other stretch.
 
-    That is the harmonic law over a half turn: the eccentric, of which the radius of curvature is constant.
+    Such a stretch is the harmonic law over a half turn: an eccentric, whose radius of curvature is constant.
     """
     run = stretch.function
     if not (isinstance(run, AcceleratedPiece) and run.shape == "cos" and run.start == run.s == run.v == 0.0):
@@ -189,9 +196,10 @@ def mirrored(function: Stretch) -> Stretch:
 def symmetric(
     knots: Sequence[float], runs: Sequence[tuple[float, float, Literal["sin", "cos", "flat"]]], centre: bool
 ) -> Piecewise:
-    """Build a law from the accelerations (peak, rate, shape) of its first half, each beginning as the last one ends.
+    """Build a symmetric law from the accelerations (peak, rate, shape) of its first half, run i between two knots.
 
-    `knots` begin at 0; with `centre` the last run is its own image and reaches over the middle.
+    Each run begins with the displacement and velocity at which the run before ends. `knots` begin at 0 and end at 1/2;
+    with `centre` the last run is its own image and ends as far beyond 1/2 as it begins before.
     """
     half: list[Stretch] = []
     s = v = 0.0
@@ -262,8 +270,8 @@ def _smooth(name: str, coefficients: Sequence[float], centre: float, peaks: Peak
 def polynomial_law(coefficients: Sequence[float], field: str = "motion") -> Law:
     """Make the law c0 + c1 u + c2 u**2 + ... from its coefficients.
 
-    It must lead from 0 to 1 within 1e-12, else IntentError with the figures; rest at the ends is not asked for. Its
-    peaks count steps from and to rest at the ends.
+    Raises IntentError, at `field`, for no coefficients, one that is not finite, or a law that does not lead from 0 to 1
+    within 1e-12. It need not rest at its ends: its peaks count the steps from and to rest there.
     """
     values = tuple(float(c) for c in coefficients)
     if not values or not np.isfinite(values).all():

@@ -2,14 +2,14 @@
 
 A closed star of n diagonals of one length w, n odd, encloses with the arcs about its points a body of constant breadth
 w. Over half a turn the cam turns about one point after the other, about the i-th by an angle b_i: two parallel faces
-touch the one and the arc about it. With s_i the direction of the diagonal before the i-th point,
+touch that point and the arc about it. With s_i the direction of the diagonal before the i-th point,
 
     s_(i+1) = s_i + b_i,    C_i = C_(i-1) + (-1)^i w u(s_i),    sum of b_i = pi,    sum of (-1)^i u(s_i) = 0.
 
 So n - 3 of the angles are free. The last two directions are unit vectors of a given difference D: the legs of an
 isosceles triangle on D, of which one order lets the directions rise. The body's area is that of the straight polygon
 and of n segments; its perimeter is pi w (Barbier 1860). The mean of its points over all directions, Steiner's point, is
-the mean of the corners weighted with their angles: the arcs' own share is w/pi times the closing sum, nothing.
+the mean of the corners weighted with their angles: the arcs' own share is w/pi times the closing sum, 0.
 """
 
 from __future__ import annotations
@@ -23,17 +23,18 @@ from kin.law.programme import IntentError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FREE = 3  # so many angles fewer than sides may be chosen
+FREE = 3  # number of angles that follow from the others
 LEAST = math.radians(0.1)  # of an angle: on a cam of 50 mm an arc of 0.09 mm
-_HALVINGS = 50
+_HALVINGS = 50  # of the way to the regular polygon
 _DIGITS = 3  # after the point, degrees, of angles that an error suggests
-_ROOM = 1e-9
+_ROOM = 1e-9  # least size of the difference D: below, its direction is rounding
 
 
 def closed_angles(sides: int, chosen: Sequence[float]) -> tuple[float, ...]:
-    """All angles of a star of odd `sides`, rad, in the order of its points, of which the first `sides` - 3 are given.
+    """All angles of a star of odd `sides`, rad, in the order of its points; `chosen` are the first `sides` - 3.
 
-    Raises IntentError where no star has them, with some that one has, towards those of the regular one.
+    Raises IntentError for another number of angles, and where no star has them; it then names angles of a star on the
+    way to the regular one.
     """
     if len(chosen) != sides - FREE:
         raise IntentError(
@@ -43,6 +44,7 @@ def closed_angles(sides: int, chosen: Sequence[float]) -> tuple[float, ...]:
     corrected = _last_three(chosen)
     if min(*chosen, *corrected, math.inf) >= LEAST:
         return (*chosen, *corrected)
+    # the error names angles as far from equal ones, towards the chosen, as a star allows
     equal = math.pi / sides
     low, high = 0.0, 1.0
     for _ in range(_HALVINGS):
@@ -64,7 +66,7 @@ def closed_angles(sides: int, chosen: Sequence[float]) -> tuple[float, ...]:
 
 
 def _last_three(chosen: Sequence[float]) -> tuple[float, float, float]:
-    """The three angles that close the star, rad; some are not above 0 where there is none."""
+    """The three angles that close the star, rad; some are not above 0 where no star has the chosen ones."""
     direction, total = 0.0, 1.0 + 0.0j
     for i, angle in enumerate(chosen, 1):
         direction += angle
@@ -79,9 +81,10 @@ def _last_three(chosen: Sequence[float]) -> tuple[float, float, float]:
 
 
 def corners(angles: Sequence[float]) -> list[complex]:
-    """Points of a closed star in their order, as x + i y, its diagonals of length 1, seen from its Steiner point.
+    """Points of a closed star in their order, as x + i y from its Steiner point, its diagonals of length 1.
 
-    `angles` (n,), rad, are those at the points; the directions over which the first one bears lie evenly about +x.
+    `angles` (n,), rad, are those at the points. The directions over which the first point is in contact lie evenly
+    about +x.
     """
     direction, place = -0.5 * angles[0], 0.0 + 0.0j
     places = [place]

@@ -1,4 +1,7 @@
-"""Psi over the polar angle t, by the routes of W's that prescribe the pitch curve, for `kin.law.transmission`."""
+"""Psi over the polar angle t, by the routes of Wunderlich 1984 (W) that prescribe the pitch curve.
+
+lam/mu is the ratio pi/alpha, l the arm, mm; `kin.law.transmission` makes laws of them.
+"""
 
 from __future__ import annotations
 
@@ -21,10 +24,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FromDelta:
-    """psi = -asin(D/l^2) (W 5.10, 4.4), of which the slope is -D'/sqrt((l^2 - D)(l^2 + D)).
+    """psi = -asin(D/l^2) (W 5.10, 4.4), whose slope is -D'/sqrt((l^2 - D)(l^2 + D)); `delta` is D, `square` l^2, mm^2.
 
     Near |D| = l^2 an arcsine keeps half the digits. For a series of cosines the two factors are formed without
-    cancellation, as rest + sum of 2 a sin^2(k t/2) and rest + sum of 2 a cos^2(k t/2), rest = l^2 - sum of a.
+    cancellation, as margin + sum of 2 a sin^2(k t/2) and margin + sum of 2 a cos^2(k t/2), margin = l^2 - sum of a.
     """
 
     delta: Harmonics
@@ -41,18 +44,18 @@ class FromDelta:
         value = self.delta(t)
         near, far = self.factors(t, value)
         if isinstance(t, Jet):
-            room = Jet((near * far).c[: max(t.order, 1)])
-            angle = -np.arctan2(value.c[0], np.sqrt(room.c[0]))
+            product = Jet((near * far).c[: max(t.order, 1)])
+            angle = -np.arctan2(value.c[0], np.sqrt(product.c[0]))
             if not t.order:
                 return Jet(angle[None])
-            return (-value.derivative() * room**-0.5).integral(angle)
+            return (-value.derivative() * product**-0.5).integral(angle)
         start = -interval.asin(value.rows[0] / self.square)
         if not t.order:
             return BallJet(start.mid[None], start.rad[None])
         return (-value.derivative() * near.lower() ** -0.5 * far.lower() ** -0.5).integral(start)
 
     def factors(self, t: Series, value: Series) -> tuple[Series, Series]:
-        """Give l^2 - D and l^2 + D; `value` is D."""
+        """Give l^2 - D and l^2 + D at the polar angle t; `value` is D there."""
         if any(b for _, _, b in self.delta.terms):
             return self.square - value, self.square + value
         sense = math.copysign(1.0, math.fsum(a for _, a, _ in self.delta.terms))
@@ -62,21 +65,21 @@ class FromDelta:
     def _factors(self, t: Series, value: Series, sense: float) -> tuple[Series, Series]:
         """Give l^2 - D and l^2 + D of cosines alone; of -D where `sense` is -1, which makes D positive at t = 0."""
         terms: list[tuple[int, float]] = [(k, sense * a) for k, a, _ in self.delta.terms]
-        rest = math.fsum([self.square, *(-a for _, a in terms)])
-        # all but the values are D's own derivatives
+        margin = math.fsum([self.square, *(-a for _, a in terms)])
+        # only the values need care: the derivatives are those of D
         if isinstance(t, Jet):
             rows = np.stack([-sense * value.c, sense * value.c])
             k, a = np.array(terms).T[:, :, None]
-            rows[0, 0] = rest + (2 * a * np.sin(t.c[0] * (k / 2)) ** 2).sum(axis=0)
-            rows[1, 0] = rest + (2 * a * np.cos(t.c[0] * (k / 2)) ** 2).sum(axis=0)
+            rows[0, 0] = margin + (2 * a * np.sin(t.c[0] * (k / 2)) ** 2).sum(axis=0)
+            rows[1, 0] = margin + (2 * a * np.cos(t.c[0] * (k / 2)) ** 2).sum(axis=0)
             return Jet(rows[0]), Jet(rows[1])
         k, a = np.array(terms).T
         n = t.mid.shape[1]
         half = Ball(np.tile(t.mid[0], k.size), np.tile(t.rad[0], k.size)) * np.repeat(k / 2, n)
         factors = []
         for sign, wave in zip((-sense, sense), interval.sin_cos(half), strict=True):
-            each = wave**2 * np.repeat(2 * a, n)
-            least = summed(BallJet(each.mid[None], each.rad[None]), n) + rest
+            parts = wave**2 * np.repeat(2 * a, n)
+            least = summed(BallJet(parts.mid[None], parts.rad[None]), n) + margin
             later = (value * sign).rows[1:]
             factors.append(BallJet(np.vstack([least.mid, later.mid]), np.vstack([least.rad, later.rad])))
         return factors[0], factors[1]
@@ -84,7 +87,7 @@ class FromDelta:
 
 @dataclass(frozen=True)
 class DeltaDistance:
-    """r = sqrt2 (a sqrt(l^2 + D) + b sqrt(l^2 - D)), a and b of alpha (W 5.10), without the detour over psi.
+    """r = a sqrt(l^2 + D) + b sqrt(l^2 - D), mm, a and b functions of alpha (W 5.10), without the detour over psi.
 
     Near |D| = l^2 psi leaps, and the rounding of an angle goes into r'' as many times over; for lambda/mu = 2/1 r is
     smooth there, as b = 0.
@@ -103,7 +106,7 @@ class DeltaDistance:
 
 
 def steepness(terms: Sequence[tuple[int, float, float]]) -> Harmonics:
-    """Give 4 D^2 + D'^2 as a Fourier series, from the terms (k, a, b) of D in rising k."""
+    """Give 4 D^2 + D'^2 as a Fourier series, from the terms (k, a, b) of D, a cos(k t) + b sin(k t), in rising k."""
     top = terms[-1][0]
     wave = np.zeros(2 * top + 1, dtype=complex)
     for k, a, b in terms:
@@ -117,10 +120,10 @@ def steepness(terms: Sequence[tuple[int, float, float]]) -> Harmonics:
 
 @dataclass(frozen=True)
 class FromArc:
-    """psi = 2 acos(r/2l) - alpha for the circular arc through (R, 0) and (R, delta), symmetric about its bisector.
+    """psi = 2 acos(r/2l) - alpha for the circular arc through (R, 0), (R, delta) polar, symmetric about its bisector.
 
     With x = t - delta/2 and the centre at `centre` on the bisector, r = centre cos x +- sqrt(radius^2 - centre^2 sin^2
-    x), or `power` over the other root where those two would cancel.
+    x), or `power` over the other root where the two terms would cancel. `arm` is l; lengths in mm, `power` in mm^2.
     """
 
     arm: float
@@ -142,8 +145,8 @@ class FromArc:
         root = sqrt(self.radius**2 - sin(x) ** 2 * self.centre**2)
         if self.convex and self.centre >= 0:
             return along + root
-        other = root - along if self.convex else along + root
-        return self.power / other
+        larger = root - along if self.convex else along + root
+        return self.power / larger
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 Series = TypeVar("Series", Jet, BallJet)
-_MANY = 4  # harmonics: of more the terms are enclosed together
+_MANY = 4  # harmonics: the terms of more are enclosed together
 
 
 class Stretch(Protocol):
@@ -31,7 +31,7 @@ class Stretch(Protocol):
 
 
 class Harmonic(ABC):
-    """A stretch mean + x cos t + y sin t. Stretches of this class are evaluated together."""
+    """A stretch mean + x cos t + y sin t; such stretches are evaluated together."""
 
     @property
     @abstractmethod
@@ -40,7 +40,7 @@ class Harmonic(ABC):
 
 
 class Alike(ABC):
-    """A stretch that a few numbers describe. Stretches of one kind are evaluated together."""
+    """A stretch that a few numbers describe; stretches of one kind are evaluated together."""
 
     @property
     @abstractmethod
@@ -87,7 +87,7 @@ class AffineStretch:
     def of(
         function: Stretch, *, offset: float = 0.0, scale: float = 1.0, start: float = 0.0, width: float = 1.0
     ) -> AffineStretch:
-        """Move a function; one that is already moved is moved once, not twice."""
+        """Give offset + scale f((t - start)/width); a function that is moved already gets one movement, not two."""
         if not isinstance(function, AffineStretch):
             return AffineStretch(function, offset, scale, start, width)
         return AffineStretch(
@@ -166,7 +166,10 @@ class Harmonics:
         return total
 
     def _at_points(self, t: Jet) -> Jet:
-        """Sum the series of t = t0 + t1 x: all terms at once, as d/dt turns (sin, cos) and multiplies by k."""
+        """Sum the series of t = t0 + t1 x: all terms at once, as d/dt turns (sin, cos) and multiplies by k.
+
+        `even` and `odd` (terms, n) are the terms and their first derivatives over k.
+        """
         k, a, b = np.array(self.terms)[:, :, None].transpose(1, 0, 2)
         sine, cosine = np.sin(k * t.c[0]), np.cos(k * t.c[0])
         even, odd = a * cosine + b * sine, b * cosine - a * sine
@@ -180,7 +183,7 @@ class Harmonics:
         return Jet(c)
 
     def _on_intervals(self, t: BallJet) -> BallJet:
-        """Sum the series over intervals (n,): all terms side by side, added up by halves."""
+        """Sum the series over intervals (n,): all terms side by side, added up in pairs."""
         k, a, b = np.array(self.terms)[:, :, None].transpose(1, 0, 2)
         order, n = t.mid.shape
         side = (order, len(k) * n)
@@ -191,7 +194,7 @@ class Harmonics:
 
 
 def summed(terms: BallJet, n: int) -> BallJet:
-    """Sum of terms side by side, each over the same n intervals: by halves."""
+    """Sum, over n intervals, of terms that stand side by side (order + 1, terms * n): added in pairs of halves."""
     while (count := terms.mid.shape[1] // n) > 1:
         half = count // 2 * n
         parts = slice(half), slice(half, 2 * half), slice(2 * half, None)

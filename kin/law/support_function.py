@@ -1,8 +1,10 @@
-"""A flat face's intended distance from the shaft over the shaft angle: the support function of the cam it asks for.
+"""A flat face's intended distance from the shaft over the shaft angle: the support function of its cam.
 
-theta is the direction of the face's outward normal in the cam frame (AS eqs. 1-6, W 1971), so a lift is a support
-function p(theta), mm over rad, of period 2 pi, and the curvature radius it asks for is rho = p + p''. Any lift here
-has p and p' continuous all round; p'' may jump, and does so at declared breaks only. Whether rho > 0 is not asked.
+theta is the direction of the face's outward normal in the cam frame (Aygahoglu and Saka 2023, AS, eqs. 1-6; Wunderlich
+1971), so a lift is a support function p(theta), mm over rad, of period 2 pi, and the radius of curvature is rho = p +
+p''. Any lift here has p and p' continuous all round; p'' may jump, at declared breaks only. rho need not be positive.
+SW is K.-L. Shu and L.-I. Wu, Synthesis of constant-breadth cam mechanisms, 2012. Every `pivot` is the shaft's (x, y),
+mm.
 """
 
 from __future__ import annotations
@@ -33,12 +35,12 @@ if TYPE_CHECKING:
 _TURN = 2 * math.pi
 # A jump in p or p' below this, relative to the largest of p, p', p'', is the rounding of a formula.
 _JOIN = 1e-11
-_SAME_CIRCLE = 16 * 2.0**-52
+_SAME_CIRCLE = 16 * 2.0**-52  # of the greatest number of a circle: rounding
 
 
 @dataclass(frozen=True)
 class Circle(Harmonic):
-    """p of a circular arc: radius + centre . u(t), the centre (x, y) seen from the shaft. Here rho is the radius."""
+    """p of a circular arc, mm: radius + x cos t + y sin t, the centre (x, y) seen from the shaft; rho is the radius."""
 
     radius: float
     x: float = 0.0
@@ -46,7 +48,7 @@ class Circle(Harmonic):
 
     @property
     def first_harmonic(self) -> tuple[float, float, float]:
-        """Coefficients of the support function r + x cos t + y sin t: radius and centre, mm."""
+        """Radius and centre x, y, mm."""
         return self.radius, self.x, self.y
 
     def __call__(self, t: Series, /) -> Series:
@@ -65,7 +67,7 @@ class Circle(Harmonic):
 
 @dataclass(frozen=True)
 class _Moved:
-    """p about another shaft: scale p - x cos t - y sin t (closed form of AS eq. 10), and an offset besides."""
+    """p about the shaft at (x, y): scale p - x cos t - y sin t + offset (closed form of AS eq. 10)."""
 
     function: Stretch
     scale: float
@@ -87,7 +89,7 @@ class _Moved:
 
 @dataclass(frozen=True, eq=False)
 class Lift:
-    """p(theta) in mm, period 2 pi. `datum` is what a report takes off: the base radius of a constant-breadth cam, or 0.
+    """p(theta) in mm, period 2 pi. Reports take `datum` off, mm: the base radius of a constant-breadth cam, or 0.
 
     Stretch i runs from breaks[i] to the next break, the last one over 2 pi; without breaks there is one stretch.
     `law.functions` are the stretches in the order of `law.knots`, which may begin below 0.
@@ -98,12 +100,12 @@ class Lift:
 
     @property
     def breaks(self) -> Array:
-        """Angles in [0, 2 pi) at which p'' or a higher derivative may jump, rising."""
+        """Angles (b,) in [0, 2 pi) at which p'' or a higher derivative may jump, rising."""
         return self.law.breaks
 
     @cached_property
     def radius(self) -> Array:
-        """For each stretch its radius of curvature if that is exactly constant, else nan; (max(1, breaks),)."""
+        """For each stretch its radius of curvature, mm, if exactly constant, else nan: (b,), (1,) without breaks."""
         ends = self.breaks if len(self.breaks) else self.law.knots[:1]
         index, _ = self.law.locate(ends, 1)
         functions = [self.law.functions[i] for i in index]
@@ -111,17 +113,20 @@ class Lift:
 
     @property
     def steady(self) -> NDArray[np.bool_]:
-        """For each stretch whether rho is exactly constant: a dwell, a Reuleaux arc, a circle."""
+        """Mask of the stretches, as `radius`, whose rho is exactly constant: a dwell, a Reuleaux arc, a circle."""
         return ~np.isnan(self.radius)
 
     def derivatives(self, theta: float | Array, order: int, side: Side = 1) -> Array:
-        """Give p and its derivatives at theta (n,), (order + 1, n); at a break the right-hand limit, or left (-1)."""
+        """Give p, mm, and its derivatives at theta (n,), (order + 1, n); at a break the right-hand limit, or left (-1).
+
+        Raises DomainError where a formula of the lift does not exist.
+        """
         return self.law.derivatives(theta, order, side)
 
     def radius_enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
-        """Enclose rho = p + p'' and its derivatives over [lower, upper]: mid, rad, (order + 1, n) each.
+        """Enclose rho = p + p'', mm, and its derivatives over [lower, upper] (n,): mid and rad, (order + 1, n) each.
 
-        The place of the shaft adds nothing to rho, and is left out before the balls could see it.
+        The place of the shaft adds nothing to rho; its terms are left out, as enclosures would not cancel them.
         """
         low, high = self._centred.on(BallJet.variable(lower, upper, order + 2)).bounds()
         p = Ball.between(low, high)
@@ -137,7 +142,7 @@ class Lift:
         return p + bend
 
     def moved(self, out: float, scale: float = 1.0) -> Lift:
-        """The lift by a contour that lies `out` mm farther outside and is then drawn `scale` times as large."""
+        """The lift of the cam's parallel contour `out` mm farther outside, then enlarged `scale` times."""
         law = self.law
         functions = tuple(_farther(f, out, scale) for f in law.functions)
         return Lift(Piecewise(law.knots, functions, law.period, law.smooth_seam), scale * self.datum)
@@ -149,7 +154,7 @@ class Lift:
 
     @cached_property
     def _centred(self) -> Piecewise:
-        """The lift less its first harmonic, as far as that is known."""
+        """The lift less its first harmonic, where that is held as numbers."""
         law = self.law
         return Piecewise(law.knots, tuple(_less_first(f) for f in law.functions), law.period, law.smooth_seam)
 
@@ -171,7 +176,7 @@ def _less_first(function: Stretch) -> Stretch:
 
 
 def _farther(function: Stretch, out: float, scale: float) -> Stretch:
-    """Give scale (p + out), as what it is."""
+    """Give scale (p + out), of the same kind of stretch where there is one."""
     if isinstance(function, Circle):
         return Circle(scale * (function.radius + out), scale * function.x, scale * function.y)
     if isinstance(function, Harmonics):
@@ -183,9 +188,10 @@ def _farther(function: Stretch, out: float, scale: float) -> Stretch:
 def joined(
     knots: Sequence[float], functions: Sequence[Stretch], field: str, *, datum: float = 0.0, smooth_seam: bool = False
 ) -> Lift:
-    """Join stretches round the turn, stretch i between knots i and i + 1 (rad): arcs of one circle become one.
+    """Join stretches round the turn, stretch i between knots i and i + 1, rad: neighbours on one circle become one.
 
-    Raises IntentError at `field` where p or p' jumps. `smooth_seam` says that the last runs on in the first.
+    `datum` is that of the lift, mm; `smooth_seam` tells that the last stretch runs on in the first. Raises IntentError
+    at `field` where p or p' jumps.
     """
     knots, functions = list(knots), list(functions)
     i = 1
@@ -210,12 +216,12 @@ def _one_circle(first: Stretch, second: Stretch) -> bool:
 
 
 def _demand_joined(law: Piecewise, field: str) -> None:
-    """Refuse a jump of p or p' at any knot, the seam included."""
+    """Raise IntentError for a jump of p or p' at any knot, the seam included."""
     knots = law.knots[np.argsort(np.mod(law.knots[:-1], _TURN))]
     side = np.repeat([1, -1], knots.size)
     right, left = np.hsplit(law.derivatives(np.tile(knots, 2), 2, side) + 0.0, 2)  # no -0 in a message
     jump = np.abs(right - left)
-    # with the shaft on the contour, at a cusp, nothing at the knots tells how large the cam is
+    # with the shaft on the contour, at a cusp, the values at the knots do not show the size of the cam
     elsewhere = law.derivatives(_TURN * (0.1 + np.arange(8) / 8.0), 1)
     allowed = _JOIN * max(np.abs(right).max(), np.abs(left).max(), np.abs(elsewhere).max())
     for row, what, unit, harm in (
@@ -231,7 +237,7 @@ def _demand_joined(law: Piecewise, field: str) -> None:
 
 
 def about(function: Stretch, pivot: tuple[float, float], scale: float = 1.0) -> Stretch:
-    """Give scale times a support function, about the shaft at `pivot`, mm."""
+    """Give scale times a support function, then taken about the shaft at `pivot`, mm."""
     x, y = pivot
     if isinstance(function, Circle):
         return Circle(function.radius * scale, function.x * scale - x, function.y * scale - y)
@@ -243,7 +249,7 @@ def lift_from_fourier(
 ) -> Lift:
     """Make p = mean + sum of cos[k] cos(k t) + sin[k] sin(k t), mm, about the shaft at `pivot`; all k at least 1.
 
-    Odd harmonics alone give constant breadth 2 mean (Resnikoff, arXiv 1504.06733). IntentError for k below 1.
+    Odd harmonics alone give constant breadth 2 mean (Resnikoff, arXiv 1504.06733). Raises IntentError for k below 1.
     """
     for name, series in (("cos", cos), ("sin", sin)):
         for k in series:
@@ -260,7 +266,8 @@ def lift_from_fourier(
 def lift_hypocycloid(cusps: int, size: float, breadth: float, pivot: tuple[float, float] = (0.0, 0.0)) -> Lift:
     """Make p = breadth/2 + size cos(cusps t): the curve parallel to a hypocycloid (Euler; AS section 1).
 
-    `size` is the radius of the hypocycloid's inscribed circle, mm. IntentError unless cusps is odd and at least 3.
+    `size` is the radius of the hypocycloid's inscribed circle, `breadth` the breadth, mm. Raises IntentError unless
+    cusps is odd and at least 3.
     """
     if cusps < 3 or cusps % 2 == 0:
         raise IntentError(f"constant breadth needs an odd number of cusps, 3 or more, not {cusps}", "hypocycloid.cusps")
@@ -275,14 +282,14 @@ def lift_reuleaux(
     pivot: tuple[float, float] = (0.0, 0.0),
     angles: Sequence[float] = (),
 ) -> Lift:
-    """Make the Reuleaux polygon of odd `sides`, its corners rounded by `rounding`, mm, or sharp at 0.
+    """Make the Reuleaux polygon of n = `sides`, odd, and breadth w, mm, its corners rounded by `rounding`, mm.
 
-    It is the curve at distance `rounding` outside the sharp one of breadth w - 2 rounding. Without `angles` that is the
-    regular one, whose corners lie on a circle of radius (w - 2 rounding)/(2 cos(pi/2n)) about the origin, the first one
-    on the +x axis. `angles`, rad, are those of the first n - 3 corners in the order in which the cam turns about them;
-    see `kin.law.reuleaux`, which finds the others. The origin is Steiner's point then, and the first corner bears
-    evenly about +x, which of a regular polygon comes to the same. rho is the rounding over each corner and w - rounding
-    opposite. IntentError for an even count, a rounding outside 0 to w/2, or angles of no polygon.
+    It is the curve at distance `rounding` outside the sharp polygon of breadth w - 2 rounding. Without `angles` that
+    polygon is regular, its corners on a circle of radius (w - 2 rounding)/(2 cos(pi/2n)) about the origin, the first on
+    the +x axis. `angles`, rad, are those of the first n - 3 corners in the order in which the cam turns about them; the
+    last three follow. The origin is Steiner's point then, and the first corner is in contact evenly about +x, as of a
+    regular polygon. rho is the rounding over each corner and w - rounding opposite. Raises IntentError for an even
+    count or one below 3, a rounding outside 0 to w/2, another number of angles, or angles of no polygon.
     """
     if sides < 3 or sides % 2 == 0:
         raise IntentError(f"a Reuleaux polygon has an odd number of sides, 3 or more, not {sides}", "reuleaux.sides")
@@ -315,15 +322,16 @@ def _polar(radius: float, angle: float) -> tuple[float, float]:
 
 
 def lift_constant_breadth(base_radius: float, programme: Motion, field: str = "motion") -> Lift:
-    """Make the constant-breadth cam of a motion S, given as `field`, over the half turn (SW eqs. 1-6).
+    """Make the constant-breadth cam of a motion S, mm, over the half turn (SW eqs. 1-6); `base_radius` is r_b, mm.
 
     p = r_b + S on [0, pi] and p(t + pi) = d - p(t), with breadth d = 2 r_b + h. Closing needs S(pi) = h whatever h is:
     h is the displacement at the end of the programme, not its maximum. So a programme that comes back to 0 has h = 0,
     breadth 2 r_b and S(t + pi) = -S(t): r_b is then the mean radius, and the lift falls as far below 0 in the second
     half turn as it rose in the first. One that ends below 0 is the same cam begun half a turn later.
 
-    The velocities must meet too, S'(pi) = -S'(0) and none jumping inside, or the contour tears: IntentError with the
-    jump. S'' may jump; such an angle is a break. ValueError unless the programme covers pi.
+    The velocities must meet too, S'(pi) = -S'(0) and none jumping inside, or the contour tears. S'' may jump; such an
+    angle is a break. Raises IntentError, at `field`, where they do not meet and for a breadth not above 0, IntentError
+    for a base radius not above 0, and ValueError unless the programme covers pi.
     """
     if programme.total != math.pi:
         raise ValueError(f"the programme covers {programme.total!r} rad, not the half turn")
@@ -352,7 +360,7 @@ def lift_constant_breadth(base_radius: float, programme: Motion, field: str = "m
 
 
 def _raised(function: Stretch, offset: float, sense: float, start: float) -> Stretch:
-    """Give offset + sense S(t - start); of a dwell the circle about the shaft, of a harmonic half turn an eccentric."""
+    """Give offset + sense S(t - start): a dwell as a circle about the shaft, a harmonic half turn as an eccentric."""
     if isinstance(function, Constant):
         return Circle(offset + sense * function.value)
     raised = AffineStretch.of(function, offset=offset, scale=sense, start=start)

@@ -1,6 +1,8 @@
 """Transmission laws by every route: from D, a programme, a first arc of the pitch curve, or a leaf of the rosette.
 
-Each builder gives a `Transmission` (`kin.law.transmission_law`) that a cam can have, or raises IntentError.
+Each builder gives a `Transmission` (`kin.law.transmission_law`) that a cam can have, or raises IntentError. lam/mu is
+the ratio pi/alpha, which must be above 1, in lowest terms and of odd mu; `arm` is l, mm; delta = pi/lam. W is W.
+Wunderlich, Single-disk cam mechanisms with oscillating double roller follower, 1984.
 """
 
 from __future__ import annotations
@@ -35,13 +37,18 @@ __all__ = [
 ]
 
 
-_ABOVE = 1 + 1e-9  # of a least radius: a figure told with nine digits is not below it
+_ABOVE = 1 + 1e-9  # times a least radius: its figure in nine digits is not below it
 
 
 def over_period(
     delta: float, knots: Sequence[float], functions: Sequence[Stretch], lean: tuple[float, float]
 ) -> tuple[Piecewise, tuple[float, ...]]:
-    """Complete psi over 2 delta, with w for each stretch, from delta; rests at psi = 0 run on over the joints."""
+    """Psi over its period 2 delta, from stretches over delta, and w for each stretch.
+
+    Stretch i lies between knots i and i + 1, rad; psi(t + delta) = -psi(t) gives the second half. `lean` holds w of the
+    given stretches and of their images. Constants at both ends of the given half, psi = 0, become one stretch over each
+    joint.
+    """
     begin = knots[0]
     images = [moved(f, scale=-1.0, start=delta) for f in functions]
     all_knots = [*knots[:-1], *(k + delta for k in knots)]
@@ -51,8 +58,8 @@ def over_period(
     count = len(functions)
     if isinstance(functions[0], Constant) and isinstance(functions[-1], Constant):
         if count == 1:
-            rest = Piecewise(np.array([begin, begin + 2 * delta]), (Constant(0.0),), 2 * delta, smooth_seam=True)
-            return rest, lean[:1]
+            standing = Piecewise(np.array([begin, begin + 2 * delta]), (Constant(0.0),), 2 * delta, smooth_seam=True)
+            return standing, lean[:1]
         del stretches[count], leans[count], all_knots[count]
         del stretches[-1], leans[-1], all_knots[-1]
         all_knots[0] = all_knots[-1] - 2 * delta
@@ -62,9 +69,9 @@ def over_period(
 def from_delta(lam: int, mu: int, arm: float, cos: Mapping[int, float], sin: Mapping[int, float]) -> Transmission:
     """Make the law of D = sum of cos[j] cos(j lam t) + sin[j] sin(j lam t), mm^2, j odd (W 5.10, 6.5).
 
-    Raises IntentError for a ratio that W's conditions exclude, an even j, |D| not below l^2 or so large that an arm
-    meets the shaft, and psi'(phi) not below 1. The last is proved as 4 D^2 + D'^2 < 4 l^4, with psi' = -D'/sqrt(l^4 -
-    D^2) and |psi'| < 2 by t: a Fourier series, sharp also where |D| comes close to l^2.
+    Raises IntentError for an excluded ratio or arm, a j that is even or below 1, |D| not below l^2 or so large that an
+    arm meets the shaft, and psi'(phi) not below 1. The last is proved as 4 D^2 + D'^2 < 4 l^4, with psi' = -D'/sqrt(l^4
+    - D^2) and |psi'| < 2 by t: a Fourier series, sharp also where |D| comes close to l^2.
     """
     demand_ratio(lam, mu, arm)
     for name, series in (("cos", cos), ("sin", sin)):
@@ -107,12 +114,12 @@ def from_law(
     corners: bool = False,
     field: str = "law",
 ) -> Transmission:
-    """Make the law that a programme prescribes over the first delta of shaft angle, from psi = 0 (W 4.9, 4.10).
+    """Make the law that a programme, rad, prescribes over the first delta of shaft angle, from psi = 0 (W 4.9, 4.10).
 
-    With `swing_of` "pair" the programme gives the swing of a flat pair, psi/2; `share` of it is taken. Raises
-    IntentError if the ratio is excluded, psi does not end at 0, its slopes do not join (psi' at delta must be
-    -psi'(0)/(1 - psi'(0))), an arm would meet the shaft, or psi'(phi) is not below 1; ValueError unless the programme
-    covers delta. With `corners` slopes need not join: no cam follows such a law, but it can be wanted.
+    With `swing_of` "pair" the programme gives the swing of a flat pair, psi/2; it is multiplied by `share`. Raises
+    IntentError if the ratio or the arm is excluded, psi does not end at 0, its slopes do not join (psi' at delta must
+    be -psi'(0)/(1 - psi'(0))), an arm would meet the shaft, or psi'(phi) is not below 1; ValueError unless the
+    programme covers delta. With `corners` slopes need not join: no cam follows such a law, but it can be approximated.
     """
     demand_ratio(lam, mu, arm)
     delta = math.pi / lam
@@ -139,19 +146,20 @@ def from_arc(
 ) -> Transmission:
     """Make the law of a pitch curve that begins with a circular arc over t in [0, delta] (W sections 3, 7a; Figure 5).
 
-    `arm` and `radius` are mm, lam/mu is the ratio pi/alpha. The arc joins two mean positions, psi = 0 and r = R =
-    2 l cos(alpha/2), bulging outwards (convex) or inwards. Being symmetric about its bisector it meets its image with a
-    common tangent. Raises IntentError for an excluded ratio, a radius too small for the chord, or for a cam with a
-    concave arc to be turned through, and a law that swings too far or turns the cam back.
+    The arc, of `radius`, mm, joins two mean positions, psi = 0 and r = R = 2 l cos(alpha/2), bulging outwards (convex)
+    or inwards. Being symmetric about its bisector it meets its image with a common tangent. Raises IntentError for an
+    excluded ratio or arm, a radius too small for the chord or, if concave, for psi'(phi) < 1, any concave radius with
+    mu = 1, and a law that swings too far or turns the cam back.
     """
     demand_ratio(lam, mu, arm)
     alpha, delta = math.pi * mu / lam, math.pi / lam
     mean = 2 * arm * math.cos(alpha / 2)
     chord, height = mean * math.sin(delta / 2), mean * math.cos(delta / 2)
     least = chord if side == "convex" else _least_concave(lam, mu, mean)
-    rest = 2 * arm - height
-    if side == "convex" and rest * _ABOVE < chord:  # with the middle of the arc 2 l from the shaft it is l for mu = 1
-        short = (chord**2 + rest**2) / (2 * rest)
+    # the middle of a convex arc must lie within 2 l of the shaft: at 2 l the radius is l for mu = 1
+    highest_sagitta = 2 * arm - height
+    if side == "convex" and highest_sagitta * _ABOVE < chord:
+        short = (chord**2 + highest_sagitta**2) / (2 * highest_sagitta)
         if radius <= short * _ABOVE:
             message = f"a convex arc needs a radius above {short:.9g} mm, not {radius:.9g} mm"
             raise IntentError(f"{message}: its middle would lie 2 l or farther from the shaft", "arc.radius")
@@ -163,11 +171,11 @@ def from_arc(
             "reaches 1 where the arc begins, and the cam cannot be turned through",
             "arc.radius",
         )
-    sagitta = math.sqrt((radius - chord) * (radius + chord))  # from the centre to the chord
+    depth = math.sqrt((radius - chord) * (radius + chord))  # from the centre to the chord
     if side == "convex":
-        centre, power = height - sagitta, chord**2 - height**2 + 2 * height * sagitta
+        centre, power = height - depth, chord**2 - height**2 + 2 * height * depth
     else:
-        centre, power = height + sagitta, height**2 - chord**2 + 2 * height * sagitta
+        centre, power = height + depth, height**2 - chord**2 + 2 * height * depth
     top = centre + radius if side == "convex" else centre - radius
     if not 0 < top < 2 * arm:
         where = f"the middle of the arc is {top:.9g} mm from the shaft"
@@ -179,11 +187,11 @@ def from_arc(
 
 
 def _least_concave(lam: int, mu: int, mean: float) -> float:
-    """Radius at which psi'(phi) is 1 where a concave arc begins; it must be larger. IntentError where none will do.
+    """Radius, mm, at which psi'(phi) is 1 where a concave arc begins; it must be larger. IntentError for mu = 1.
 
-    By t psi' is there 2 steep/(steep + room), steep = c sin(delta/2) R and room = (c cos(delta/2) - R) R tan(alpha/2),
-    with the centre at c on the bisector and R the mean distance: 2 for c = R sin(alpha/2)/sin((alpha - delta)/2). With
-    mu = 1, alpha = delta, that is a straight line, which the arc's other side alone is less steep than.
+    With the centre at c on the bisector and R, `mean`, the mean distance, the slope by t is 2 a/(a + b) there, where a
+    = c R sin(delta/2) and b = (c cos(delta/2) - R) R tan(alpha/2); it is 2, psi'(phi) 1, for c = R sin(alpha/2)/
+    sin((alpha - delta)/2). With mu = 1, alpha = delta, that is a straight line, and only convex arcs are less steep.
     """
     alpha, delta = math.pi * mu / lam, math.pi / lam
     if mu == 1:
@@ -203,8 +211,9 @@ def from_rosette(lam: int, mu: int, arm: float, leaf: Formula, scale: float = 1.
 
     The third arm PQ, of length l, lies on the bisector and points to the shaft while psi = 0, so Q = 2 l sin(psi/2)
     n(phi - psi/2). As phi - psi/2 = t + alpha/2, x is (t + alpha/2)/delta: the first leaf begins at phi = 0 and has psi
-    above 0 (W section 5). Raises IntentError if the leaf does not begin and end in the shaft with slopes that join
-    (leaf'(1) = -leaf'(0)), has no value somewhere, falls below 0 or makes no possible law.
+    above 0 (W section 5). Raises IntentError if the ratio or the arm is excluded, if the leaf does not begin and end in
+    the shaft with slopes that join (leaf'(1) = -leaf'(0)), has no value somewhere, falls below 0 or makes no possible
+    law.
     """
     demand_ratio(lam, mu, arm)
     alpha, delta, field = math.pi * mu / lam, math.pi / lam, "rosette.leaf"
@@ -227,7 +236,7 @@ def from_rosette(lam: int, mu: int, arm: float, leaf: Formula, scale: float = 1.
 
 
 def _leaf_stretch(stretch: FromLeaf, x: float) -> Stretch:
-    """Return the stretch, or the rest that it is if the leaf does not depend on its variable from `x` on."""
+    """Return the stretch, or a constant if the leaf is constant from `x` on; psi within rounding of 0 becomes 0."""
     distance = stretch.leaf.constant_value(x)
     if distance is None:
         return stretch

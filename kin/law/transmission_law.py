@@ -1,9 +1,10 @@
-"""Transmission laws of a single-disk cam with an oscillating double follower (W), by every route.
+"""Transmission laws of a single-disk cam with an oscillating double follower, by every route.
 
-The follower's two arms of length l include 2 alpha, alpha = pi mu/lam, its pivot stands at distance l from the shaft.
-phi is the shaft angle, psi the follower's (positive clockwise). The law has period 2 delta = 2 pi/lam and maps onto
-itself by (phi, psi) -> (phi - psi + delta, -psi) (W 4.9). A law is held over a parameter tau in which psi just changes
-its sign, psi(tau + delta) = -psi(tau), and
+W is W. Wunderlich, Single-disk cam mechanisms with oscillating double roller follower, 1984. The follower's two arms of
+length l include 2 alpha, alpha = pi mu/lam, its pivot stands at distance l from the shaft. phi is the shaft angle, psi
+the follower's (positive clockwise). The law has period 2 delta = 2 pi/lam and maps onto
+itself by (phi, psi) -> (phi - psi + delta, -psi) (W 4.9). A law is held over a parameter tau over which psi only
+changes its sign, psi(tau + delta) = -psi(tau), and
 
     phi = tau + w psi + c.
 
@@ -34,15 +35,15 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 _TURN = 2 * math.pi
-_LOOKS = 1024  # parameters at which a formula's rounding is asked for
+_LOOKS = 1024  # parameters at which a formula's rounding is looked at
 
 
 @dataclass(frozen=True, eq=False)
 class Transmission:
-    """psi and phi over the parameter tau; see the module. `arm` is l, mm.
+    """Swing psi and shaft angle phi over the parameter tau, rad. `arm` is l, mm.
 
-    `psi` has period 2 delta; `lean` holds w for each of its stretches, `offset` is c. `arc` is, for routes that give
-    roller A a circular arc, (x, y, signed radius) for the first stretch of psi, the arc standing as at its first place.
+    `psi` has period 2 delta; `lean` holds w for each of its stretches, `offset` is c. `arc` is, where roller A's pitch
+    curve begins with a circular arc, its centre and signed radius (x, y, radius), mm, for the first stretch of psi.
 
     Over the whole turn, stretch i runs from breaks[i] to the next break, the last one over 2 pi; without breaks there
     is one stretch.
@@ -57,7 +58,7 @@ class Transmission:
     arc: tuple[float, float, float] | None = None
 
     def scaled(self, scale: float) -> Transmission:
-        """Give the law of a mechanism `scale` times as large."""
+        """Give the law of a mechanism `scale` times as large: the same psi and phi."""
         functions = tuple(f.scaled(scale) if isinstance(f, FromDelta) else f for f in self.psi.functions)
         arc = None if self.arc is None else (scale * self.arc[0], scale * self.arc[1], scale * self.arc[2])
         return replace(self, arm=scale * self.arm, psi=replace(self.psi, functions=functions), arc=arc)
@@ -74,7 +75,7 @@ class Transmission:
 
     @cached_property
     def breaks(self) -> Array:
-        """Parameters tau in [0, 2 pi) at which the second or a higher derivative may jump, rising."""
+        """Parameters tau (m,) in [0, 2 pi) at which the second or a higher derivative may jump, rising."""
         turns = np.arange(self.lam) * (_TURN / self.lam)
         return np.sort((self.psi.breaks[None, :] + turns[:, None]).ravel())
 
@@ -85,25 +86,25 @@ class Transmission:
 
     @property
     def level(self) -> Array:
-        """For each stretch the value of psi if it is exactly constant there, a dwell, else nan."""
+        """For each stretch (m,) psi, rad, if it is exactly constant, a dwell, else nan; (1,) without breaks."""
         functions = [self.psi.functions[i] for i in self._stretches()]
         return np.array([f.value if isinstance(f, Constant) else math.nan for f in functions])
 
     @property
     def steady(self) -> NDArray[np.bool_]:
-        """For each stretch whether psi is exactly constant: the pitch curve is an arc about the shaft."""
+        """Mask (m,) of the stretches in which psi is exactly constant and the pitch curve is an arc about the shaft."""
         return ~np.isnan(self.level)
 
     @property
     def radius(self) -> Array:
-        """For each stretch the radius of the pitch curve about the shaft, mm, if psi is constant there, else nan."""
+        """For each stretch (m,) the radius of the pitch curve about the shaft, mm, if psi is constant, else nan."""
         return 2 * self.arm * np.cos((self.level + self.alpha) / 2)
 
     @property
     def pitch_arcs(self) -> Array:
-        """For each stretch the arc that the pitch curve exactly is: centre x, y and radius, mm, else nan; (m, 3).
+        """For each stretch the arc that the pitch curve exactly is, (m, 3): centre x, y and radius, mm, else nan.
 
-        The radius is negative where the arc is hollow. Dwells count, and the given arcs of that route.
+        The radius is negative where the arc is hollow. Arcs are those of dwells, and a given first arc with its images.
         """
         stretches, at = self._stretches(), self.breaks if len(self.breaks) else np.zeros(1)
         arcs = np.column_stack((np.zeros((len(at), 2)), self.radius))
@@ -127,11 +128,14 @@ class Transmission:
 
     @cached_property
     def _polar_lead(self) -> _Lead:
-        """The angle t - tau, t = phi - (psi + alpha)/2: nothing at all where tau is t."""
+        """The angle t - tau, t = phi - (psi + alpha)/2: exactly 0 where tau is t."""
         return _Lead.of(tuple(w - 0.5 for w in self.lean), self.offset - self.alpha / 2)
 
     def jets(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Series of shaft angle phi and swing psi, rad, of a jet or ball jet tau, rad; `side` decides at breaks."""
+        """Series of shaft angle phi and swing psi, rad, of a jet or ball jet tau, rad; `side` decides at breaks.
+
+        Raises DomainError where a formula of the law does not exist at a jet.
+        """
         places = self.psi.places(tau, side)
         psi = self.psi.at(tau, places)
         return self._lead.on(tau, psi, places), psi
@@ -148,8 +152,8 @@ class Transmission:
     def polar(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
         """Series of r, mm, and t, rad, of roller A's centre, of a jet or ball jet tau (W 4.10).
 
-        `side` decides at breaks. t is formed from tau, not as phi - (psi + alpha)/2: where psi leaps, those two leap
-        alike.
+        `side` decides at breaks. t is formed from tau, not as phi - (psi + alpha)/2: near leaps of psi the difference
+        would cancel.
         """
         if self._distance is not None:
             return self._distance.on(tau, side), tau
@@ -165,7 +169,10 @@ class Transmission:
     def enclosure(
         self, lower: float | Array, upper: float | Array, order: int
     ) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        """Enclose phi, and psi, with their derivatives by tau over [lower, upper]: (mid, rad), (order + 1, n) each."""
+        """Enclose phi, and psi, rad, with their derivatives by tau over [lower, upper], rad (n,).
+
+        Gives (mid, rad) of phi and (mid, rad) of psi, (order + 1, n) each.
+        """
         balls = [Ball.between(*jet.bounds()) for jet in self.jets(BallJet.variable(lower, upper, order))]
         return (balls[0].mid, balls[0].rad), (balls[1].mid, balls[1].rad)
 
@@ -176,9 +183,9 @@ class Transmission:
 
     @cached_property
     def rounding(self) -> float:
-        """By how much the pitch curve may be off through the rounding of a recipe's own formula, mm; else 0.
+        """Greatest error of the pitch curve, mm, through the rounding of a recipe's own formula; 0 without one.
 
-        It is the radius of what proved arithmetic gives, the greatest at `_LOOKS` parameters of the law's period.
+        It is the greatest radius that proved arithmetic gives at 1024 parameters of the law's period.
         """
         bare = [f.function if isinstance(f, AffineStretch) else f for f in self.psi.functions]
         if not any(isinstance(f, FromLeaf | FromExpression) for f in bare):
@@ -188,7 +195,10 @@ class Transmission:
         return 2 * self.arm * float((phi + psi).max())
 
     def psi_of_shaft(self, phi: float | Array, order: int, side: int = 1) -> Array:
-        """Swing psi, rad, and its derivatives by phi, (order + 1, n), at phi (n,), rad; at a break those of `side`."""
+        """Swing psi, rad, and its derivatives by phi, (order + 1, n), at phi (n,), rad; at a break those of `side`.
+
+        Raises UnsettledError where phi(tau) cannot be solved for tau.
+        """
         return self._by_shaft(self.parameter(phi, side), order, side)
 
     def _by_shaft(self, tau: Array, order: int, side: int) -> Array:
@@ -198,7 +208,7 @@ class Transmission:
 
     @cached_property
     def joints(self) -> tuple[DerivativeJump, ...]:
-        """Shaft angles of the law's period at which psi or its derivatives by phi jump, with what jumps."""
+        """Jumps of psi or its derivatives by phi, at shaft angles of the law's period, rising; () without any."""
         tau = self.psi.breaks
         if not len(tau):
             return ()
@@ -210,11 +220,17 @@ class Transmission:
         return joints_of(((float(at[i]), before[:, i], after[:, i]) for i in order), size)
 
     def parameter(self, phi: float | Array, side: int = 1) -> Array:
-        """Parameter tau (n,) at which phi(tau) is the shaft angle phi (n,), rad."""
+        """Parameter tau (n,) at which phi(tau) is the shaft angle phi (n,), rad; at a break it belongs to `side`.
+
+        Raises UnsettledError where it is not found.
+        """
         return self._solved(self._lead, phi, side)
 
     def polar_parameter(self, t: float | Array, side: int = 1) -> Array:
-        """Solve t(tau) = t, the polar angle of roller A, for tau, (n,): well posed however steep psi is over phi."""
+        """Parameter tau (n,) at which roller A's polar angle t(tau) is t (n,), rad: well posed also for steep psi(phi).
+
+        `side` decides at breaks. Raises UnsettledError where it is not found.
+        """
         return self._solved(self._polar_lead, t, side)
 
     def _solved(self, lead: _Lead, angle: float | Array, side: int) -> Array:
@@ -227,6 +243,7 @@ class Transmission:
             places = self.psi.places(variable)
             return lead.on(variable, self.psi.at(variable, places), places).c
 
+        # the angles at the knots tell the stretch of each angle, in which the solution is bracketed
         ends = np.append(at(knots[:-1], 0)[0], 0.0)
         ends[-1] = ends[0] + period
         places = Piecewise(ends, (Constant(0.0),) * (len(ends) - 1), period)
@@ -239,6 +256,7 @@ class Transmission:
             return value - x, slope
 
         tau = zeros(over, low, high, tau, 2 * np.spacing(np.maximum(np.abs(tau), period)))
+        # an angle on a knot gives the knot to the last bit
         tau = np.where(x == ends[index], knots[index], np.where(x == ends[index + 1], knots[index + 1], tau))
         turns = np.round((angle - x) / period)
         return tau + turns * period
@@ -246,7 +264,7 @@ class Transmission:
 
 @dataclass(frozen=True, eq=False)
 class _Lead:
-    """An angle less tau: psi times `weight`, or times one of `weights` for each stretch, and `offset`."""
+    """An angle less tau: psi times `weight` plus `offset`; stretches of different weights have theirs in `weights`."""
 
     weight: float
     offset: float
@@ -258,7 +276,7 @@ class _Lead:
         return _Lead(weights[0], offset, None if alike else np.array(weights))
 
     def on(self, tau: Series, psi: Series, places: Places) -> Series:
-        """Give the angle, psi being the law's at tau, which lies at these places of the law."""
+        """Give the angle at tau, where the law has the swing `psi` and which lies at `places` of it."""
         if self.weights is not None:
             return tau + (places.weigh(psi, self.weights) + self.offset)
         angle = tau + psi * self.weight if self.weight else tau

@@ -1,10 +1,11 @@
-"""The series D of W 6.5 nearest to a wanted law: least greatest error of psi over the period, and its proof.
+"""The series D nearest to a wanted law: least greatest error of psi over the period, and its proof.
 
-Of a wanted law psi_w over the shaft angle phi and a series D of the harmonics 1, 3, .., J of lambda t, the error is
-psi - psi_w at the same phi. Where two laws of such series meet, at one phi and one psi, they meet at one t, and there
-their series agree: at most J times on [0, delta), as these J + 1 functions are a Chebyshev system there. So, as with
-Remez, D is best where the error has J + 2 extremes of one size in turn, and no series whatever does better than the
-least of them (de la Vallee Poussin); a place and its image under (t, psi) -> (t + delta, -psi) count once.
+D is that of W. Wunderlich, 1984, 6.5: psi = -asin(D/l^2). For a wanted law psi_w over the shaft angle phi and a series
+D of the harmonics 1, 3, .., J of lambda t, the error is psi - psi_w at the same phi. Where two laws of such series
+meet, at one phi and one psi, they meet at one t, and there their series agree: at most J times on [0, delta), as these
+J + 1 functions are a Chebyshev system there. So, as with Remez, D is best where the error has J + 2 extremes of one
+size in turn, and no series whatever does better than the least of them (de la Vallee Poussin); a place and its image
+under (t, psi) -> (t + delta, -psi) count once.
 """
 
 from __future__ import annotations
@@ -30,25 +31,25 @@ if TYPE_CHECKING:
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
-MOST_HARMONICS = 31
-_CLOSE = 1e-6  # of the greatest error: no series is nearer by a larger part
-_NOTHING = 1e-12  # rad: an error that is the rounding of both laws
+MOST_HARMONICS = 31  # the highest harmonic
+_CLOSE = 1e-6  # of the greatest error: the best series is nearer by no larger part
+_NOTHING = 1e-12  # rad: a smaller error is the rounding of both laws
 _STEPS = 80  # of the exchange
-_LOOKS = 48  # places for each extreme to come
+_LOOKS = 48  # places of the grid for each expected extreme
 _SETTLED = 1e-13  # rad: Newton's next step would be its square
 _SECTIONS = 44  # of an interval by the golden ratio: to rounding
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 _SHARE = 0.999  # of l^2: beyond it the arcsine goes on as its tangent while a series is looked for
-_HALVINGS = 12  # of a step that leads no nearer
+_HALVINGS = 12  # of a step that does not lower the error
 _STEEP = 0.02  # least slope of phi over t while a series is looked for
 
 
 @dataclass(frozen=True)
 class Nearest:
-    """The series of cosines and of sines, coefficients of l^2 by odd harmonics of lambda t.
+    """The series of cosines and of sines: coefficients, as parts of l^2, by odd harmonics of lambda t.
 
-    `error` is the greatest error of psi, rad, at the parameter `at` of the wanted law, `least` what no series of these
-    harmonics falls below.
+    `error` is the greatest error of psi, rad, at the parameter `at` of the wanted law; `least`, rad, is a lower bound
+    of it for any series of these harmonics.
     """
 
     cos: dict[int, float]
@@ -59,10 +60,11 @@ class Nearest:
 
 
 def nearest(wanted: Transmission, harmonics: int) -> Nearest:
-    """Find the series of harmonics 1, 3, .. `harmonics`, odd, whose law has the least greatest error.
+    """Find the series of harmonics 1, 3, .. `harmonics`, an odd number, whose law has the least greatest error.
 
-    It is within a millionth of the best. Raises IntentError where the exchange does not come so near.
+    Its error is within a millionth of the least. Raises IntentError where the exchange does not come so near.
     """
+    # Remez: the errors at alternating extremes are levelled until they are no less than the bound that they give
     search = _Search(wanted, np.arange(1, harmonics + 1, 2))
     coefficients = search.on_grid(search.projected())
     best, least = _Extremes.none(), 0.0
@@ -83,9 +85,9 @@ def nearest(wanted: Transmission, harmonics: int) -> Nearest:
             reference, reference.error, search.jacobian(coefficients, reference)
         )
     if not best.greatest <= max(_NOTHING, (1 + _CLOSE) * least):
-        other = "a smaller stroke" if harmonics == MOST_HARMONICS else "other harmonics"
+        remedy = "a smaller stroke" if harmonics == MOST_HARMONICS else "other harmonics"
         raise IntentError(
-            f"the nearest series up to harmonic {harmonics} was not found, as the law is steep; {other} may do",
+            f"the nearest series up to harmonic {harmonics} was not found, as the law is steep; {remedy} may do",
             "delta.harmonics",
         )
     coefficients, greatest, extremes = nearest_yet, best.greatest, best
@@ -97,7 +99,7 @@ def nearest(wanted: Transmission, harmonics: int) -> Nearest:
 
 @dataclass(frozen=True, eq=False)
 class _Extremes:
-    """Places of extremes of the error: parameters of the wanted law, polar angles t of the made one, errors; (n,)."""
+    """Extremes of the error: parameters tau of the wanted law, polar angles t of the series' law, errors, rad; (n,)."""
 
     tau: Array
     t: Array
@@ -105,7 +107,7 @@ class _Extremes:
 
     @staticmethod
     def none() -> _Extremes:
-        """Extremes of no series: one, infinitely far."""
+        """One infinite error, for no series."""
         return _Extremes(np.zeros(1), np.zeros(1), np.full(1, math.inf))
 
     @property
@@ -119,7 +121,7 @@ class _Extremes:
 
 
 class _Search:
-    """The error of laws of series, (2 m,) coefficients of cosines and of sines, over l^2, of m odd harmonics."""
+    """The error of the law of a series: (2 m,) coefficients over l^2, cosines first, of m odd harmonics."""
 
     def __init__(self, wanted: Transmission, odd: NDArray[np.intp]) -> None:
         self.wanted, self.odd = wanted, odd
@@ -140,7 +142,7 @@ class _Search:
         return np.concatenate([np.cos(angles) @ d, np.sin(angles) @ d]) / 512
 
     def _psi(self, coefficients: Array, t: Array) -> tuple[Array, Array]:
-        """Psi and its slope of a series at t (n,); beyond `_SHARE` the arcsine is its tangent."""
+        """Psi and its slope of a series at t (n,); beyond `_SHARE` the tangent stands for the arcsine."""
         angles = self.rates[:, None] * t
         a, b = np.split(coefficients, 2)
         cosine, sine = np.cos(angles), np.sin(angles)
@@ -150,7 +152,7 @@ class _Search:
         return -(np.arcsin(inside) + rate * (d - inside)), -rate * slope
 
     def _error_at(self, coefficients: Array, tau: Array) -> tuple[Array, Array]:
-        """Error at parameters of the wanted law (n,), and the polar angles of the made one there."""
+        """Error, rad, at parameters tau (n,) of the wanted law, and the polar angles of the series' law there."""
         phi, wanted = (rows[0] for rows in self.wanted.at(tau, 0))
         shaft = phi - 0.5 * self.wanted.alpha
 
@@ -163,7 +165,7 @@ class _Search:
         return psi - wanted, shaft - 0.5 * psi
 
     def extremes(self, coefficients: Array) -> _Extremes:
-        """Every local extreme of the error over the period, between the places looked at by golden sections."""
+        """Every local extreme of the error over the period that the grid shows, refined by golden sections."""
         tau = self.grid
         error, _ = self._error_at(coefficients, tau)
         size = np.abs(error)
@@ -191,10 +193,10 @@ class _Search:
         return _Extremes(best, t, error)
 
     def reference(self, extremes: _Extremes) -> _Extremes:
-        """The extremes that alternate round the half period, as many as there are unknowns if there are as many.
+        """Extremes that alternate in sign round the half period: 2 m + 1 if there are as many, else fewer.
 
-        Of neighbours alike in sign the greater stays, and of too many the least two neighbours go. Round the circle an
-        odd number alternates, as the sign changes with t + delta.
+        Of neighbours alike in sign the greater stays; of too many the two least neighbours are dropped. Round the
+        circle an odd number alternates, as the sign changes with t + delta.
         """
         delta = self.wanted.delta
         halves = np.floor(extremes.t / delta)
@@ -216,7 +218,7 @@ class _Search:
         return extremes.taken(np.array([i for i, _, _ in kept]))
 
     def least(self, reference: _Extremes) -> float:
-        """Lower bound of any series' greatest error, rad, by the errors at a reference; 0 by one of too few places."""
+        """Lower bound of any series' greatest error, rad, by the errors at a reference; 0 for one of too few."""
         whole = len(reference.error) == 2 * len(self.odd) + 1
         return float(np.abs(reference.error).min()) if whole else 0.0
 
@@ -230,7 +232,7 @@ class _Search:
         return jacobian
 
     def levelling_change(self, reference: _Extremes, error: Array, jacobian: Array) -> Array:
-        """Change of the coefficients (2 m,) after which errors of a reference alternate at one size, to first order."""
+        """Change of the coefficients (2 m,) after which the errors at a reference are of one size, to first order."""
         solved: Array = np.linalg.solve(np.column_stack([jacobian, -np.sign(reference.error)]), -error)
         return solved[:-1]
 
@@ -259,7 +261,7 @@ class _Search:
         return coefficients
 
     def _sampled_error(self, coefficients: Array) -> tuple[Array, Array]:
-        """Error and polar angles on the grid: infinite of a series that turns so steeply that none are found."""
+        """Error and polar angles on the grid; infinite errors for a series too steep for its angles to be found."""
         try:
             return self._error_at(coefficients, self.grid)
         except UnsettledError:
@@ -280,11 +282,11 @@ class _Search:
 
 
 def proved_error(series: Nearest, wanted: Transmission) -> float:
-    """Prove a bound of |psi - psi_w| over the period at the same shaft angle, rad, hardly above the error found.
+    """Prove a bound of |psi - psi_w| at the same shaft angles, rad, from 1.0001 to 2 times the error of the series.
 
-    Of a series that makes a possible law, F(psi) = psi - f(phi - (psi + alpha)/2) rises, f being psi over t. So the
-    error is below e where F(psi_w + e) is above 0, and above -e where F(psi_w - e) is below, which is proved on cells
-    of the wanted law's stretches over the whole period. Raises IntentError where no bound is.
+    For a series that makes a possible law, F(psi) = psi - f(phi - (psi + alpha)/2) rises, where f is psi over t. So the
+    error is below e where F(psi_w + e) > 0, and above -e where F(psi_w - e) < 0, which is proved on cells of the wanted
+    law's stretches over the whole period. Raises IntentError where no bound is proved.
     """
     made = Harmonics(0.0, tuple((j * wanted.lam, a, series.sin[j]) for j, a in series.cos.items()))
     for slack in (1e-4, 1e-2, 0.1, 1.0):
@@ -300,15 +302,18 @@ def _holds(made: Harmonics, wanted: Transmission, bound: float) -> bool:
     stretches = zip(wanted.psi.functions, wanted.lean, knots[:-1], knots[1:], strict=True)
     for function, lean, begin, end in stretches:
         for sign in (1.0, -1.0):
-            room = _Room(made, function, lean - 0.5, wanted.offset - 0.5 * wanted.alpha, sign, bound)
-            if undecided(room, begin, end, {0: (0.0, math.inf)}) is not None:
+            margin = _Room(made, function, lean - 0.5, wanted.offset - 0.5 * wanted.alpha, sign, bound)
+            if undecided(margin, begin, end, {0: (0.0, math.inf)}) is not None:
                 return False
     return True
 
 
 @dataclass(frozen=True, eq=False)
 class _Room:
-    """`sign` F(psi_w + `sign` bound) over the wanted law's parameter, t being tau + lean psi_w + offset."""
+    """`sign` F(psi_w + `sign` bound) over the wanted law's parameter, positive where the bound holds.
+
+    The polar angle t is tau + lean psi_w + offset - sign bound/2.
+    """
 
     made: Harmonics
     wanted: Stretch

@@ -48,12 +48,12 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "min": elementary.minimum,
     "max": elementary.maximum,
 }
-# atan2 where its cut is known not to be met: not a name in formulas, and no switch.
+# atan2 whose cut is known not to be met: not a name in formulas, and no switch.
 ANGLE = "angle"
 _OPERATIONS = {**FUNCTIONS, ANGLE: elementary.atan2}
-OF_TWO = ("atan2", "hypot", "min", "max")
+OF_TWO = ("atan2", "hypot", "min", "max")  # functions of two arguments
 GREATEST_EXPONENT = 199
-_AHEAD = 1e-3  # of the variable: over so much it is proved that an expression is constant
+_AHEAD = 1e-3  # of the variable: the stretch over which an expression is proved to be constant
 _LIBRARY = 2.0**-49  # relative error allowed to a function of an exact constant
 
 
@@ -69,9 +69,9 @@ class FormulaError(CamgeoError, ValueError):
 
 
 class FormulaDomainError(FormulaError, DomainError):
-    """A formula has no value, or no derivative, where it was asked for: `at` is the (first) parameter, in radians.
+    """A formula has no value, or no derivative, at a given place: `at` is the value of its first variable there.
 
-    `operation` says in words what failed, `indices` (k,) are the points, out of those asked for, at which it did.
+    `operation` names what failed; `indices` (k,) are those of the given points at which it failed, `at` the first one.
     """
 
     def __init__(self, operation: str, indices: NDArray[np.intp], variable: str, place: float, column: int) -> None:
@@ -82,10 +82,10 @@ class FormulaDomainError(FormulaError, DomainError):
 
 @dataclass(frozen=True)
 class Instruction:
-    """One step: `op` applied to the results of earlier steps `args`; `column` is where the text says so.
+    """One step: `op` applied to the results of earlier steps `args`; `column`, from 0, is its place in the text.
 
-    A "constant" has its value and a bound of its error, a "variable" its place among the variables as `value`, a "pow"
-    its exponent.
+    `value` is the value of a "constant", the index of a "variable", the exponent of a "pow"; `error` bounds the error
+    of a constant.
     """
 
     op: str
@@ -99,15 +99,15 @@ class Instruction:
 class Expression:
     """Instructions, each after its arguments; the last one gives the result.
 
-    Called with one jet, ball jet, number or array for each variable it returns the same kind. Raises FormulaDomainError
-    where the expression does not exist; for ball jets the enclosure is unbounded there instead.
+    Evaluation raises FormulaDomainError where the expression does not exist; for ball jets the enclosure is unbounded
+    there instead. TypeError unless there is one argument for each variable.
     """
 
     steps: tuple[Instruction, ...]
     variables: tuple[str, ...]
 
     def __call__(self, *arguments: Any) -> Any:  # noqa: ANN401 -- the kind that came in, see `on`
-        """Return the value at numbers or arrays (any shape), or the series of a jet or ball jet."""
+        """Value at numbers or arrays that broadcast, or series of jets or ball jets; one argument for each variable."""
         if isinstance(arguments[0], Jet | BallJet):
             return self.on(*arguments)
         values = np.broadcast_arrays(*(np.asarray(argument, dtype=float) for argument in arguments))
@@ -123,7 +123,7 @@ class Expression:
         return self.on(BallJet.variable(lower, upper, order))
 
     def constant_value(self, start: float) -> float | None:
-        """Its value, if it does not depend on its one variable from `start` on; else None."""
+        """Value of the expression of one variable if it is constant from `start` to 0.001 beyond; else None."""
         if self.jet(start, 1).c[1].any():
             return None
         enclosed = self.ball(start, start + _AHEAD, 1)
@@ -132,7 +132,8 @@ class Expression:
     def on(self, *series: Series) -> Series:
         """Apply to jets or ball jets, one for each variable.
 
-        Raises FormulaDomainError where the formula has no value or no derivative, TypeError for another number of them.
+        Raises FormulaDomainError where the formula has no value or no derivative, TypeError for another number of
+        series.
         """
         if len(series) != len(self.variables):
             raise TypeError(f"the formula is in {', '.join(self.variables)}; {len(series)} series were given")
@@ -193,20 +194,21 @@ class Builder:
         self._known: dict[tuple[str, tuple[int, ...], float, float], int] = {}
 
     def constant(self, value: float, error: float, column: int) -> int:
-        """Add a constant known to within `error`, and give its number; `column`, from 0, is its place in the text."""
+        """Add a constant known to within `error`, and give its index; `column`, from 0, is its place in the text."""
         return self._place(Instruction("constant", (), value, error, column))
 
     def variable(self, index: int, column: int) -> int:
-        """Add the instruction that reads variable `index`, and give its number among the instructions.
+        """Add the instruction that reads variable `index`, and give its index among the instructions.
 
-        `column`, from 0, is where it stands in the text, for messages.
+        `column`, from 0, is its place in the text, for messages.
         """
         return self._place(Instruction("variable", (), index, 0.0, column))
 
     def apply(self, op: str, args: tuple[int, ...], column: int) -> int:
-        """Add an operation on earlier instructions, by their numbers `args`, and give its number; constants are folded.
+        """Add an operation on earlier instructions, by their indices `args`, and give its index; constants are folded.
 
-        Raises FormulaError for a constant that does not exist and for an exponent out of bounds.
+        `column`, from 0, is its place in the text. Raises FormulaError for a constant that does not exist and for an
+        exponent out of bounds.
         """
         steps = [self._steps[i] for i in args]
         if op == "power" and steps[1].op == "constant":
@@ -220,13 +222,16 @@ class Builder:
         return self._reduce(Instruction(op, args, 0.0, 0.0, column))
 
     def copy(self, step: Instruction, args: tuple[int, ...]) -> int:
-        """Return the place of another expression's instruction on arguments of this one, folded anew."""
+        """Add another expression's instruction on arguments `args` of this builder, folded anew, and give its index.
+
+        Raises FormulaError for a constant that does not exist.
+        """
         if step.op in {"constant", "variable"}:
             return self._place(step)
         return self._reduce(Instruction(step.op, args, step.value, step.error, step.column))
 
     def expression(self, result: int) -> Expression:
-        """Return the expression that ends in a step, with the steps that it needs and no more."""
+        """Return the expression that ends in the step of index `result`, with the steps that it needs and no more."""
         needed = {result}
         for i in range(result, -1, -1):
             if i in needed:

@@ -1,8 +1,8 @@
 """A recipe's formula: exact derivatives, proved bounds, and the parameters at which it switches.
 
 abs, sign, min and max make cases, and atan2 jumps where it crosses its cut. `Formula.pieces` takes a formula apart at
-those switches into expressions without any, each of them smooth up to and beyond its own ends: that is the way to
-one-sided derivatives at a break, which rounding would smear in the formula itself.
+those switches into expressions without any, each of them smooth up to and beyond its own ends. They give one-sided
+derivatives at a break, which rounding would smear in the formula itself.
 """
 
 from __future__ import annotations
@@ -27,15 +27,16 @@ __all__ = ["Expression", "Formula", "FormulaDomainError", "FormulaError"]
 
 # Stretches looked at while a formula is taken apart; some milliseconds each.
 _MOST_STRETCHES = 500
-_SLIVER = 1e-11  # of the variable: switches closer than this are one, found twice
+_SLIVER = 1e-11  # of the variable: switches closer than this are one switch, found twice
 
 
 @dataclass(frozen=True)
 class Formula:
     """A text in one variable or more, read by the grammar of `kin.law.formula.parser`.
 
-    Raises FormulaError for a text that is no formula. Evaluation raises FormulaDomainError where the formula has no
-    value (or no derivative, if one is asked for); the enclosure of a ball is unbounded there instead.
+    Raises FormulaError for a text that is no formula. Evaluation raises FormulaDomainError where the formula, or a
+    derivative that is needed, does not exist; the enclosure of a ball is unbounded there instead. TypeError unless
+    there is one argument for each variable.
     """
 
     text: str
@@ -46,7 +47,7 @@ class Formula:
         object.__setattr__(self, "expression", parse(self.text, self.variables))
 
     def __call__(self, *arguments: Any) -> Any:  # noqa: ANN401 -- the kind that came in, see `on`
-        """Return the value at numbers or arrays (any shape), or the series of a jet or ball jet."""
+        """Value at numbers or arrays that broadcast, or series of jets or ball jets; one argument for each variable."""
         return self.expression(*arguments)
 
     def jet(self, t: float | Array, order: int) -> Jet:
@@ -58,22 +59,22 @@ class Formula:
         return self.expression.ball(lower, upper, order)
 
     def on(self, *series: Series) -> Series:
-        """Apply to jets or ball jets, one for each variable."""
+        """Series of the formula at jets or ball jets, one for each variable."""
         return self.expression.on(*series)
 
     def pieces(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...]]:
         """Return knots (k + 1,) from lower to upper and k expressions without switches, one between each two knots.
 
-        Inside are the parameters at which abs, sign, min or max switch, or atan2 jumps: isolated with balls, none is
-        missed, and found to the last places. Of switches within rounding of each other, one found twice, only one is a
-        knot. Raises FormulaError where a switch cannot be told from a near miss, or there are too many; ValueError
-        unless lower is below upper.
+        The inner knots are the parameters at which abs, sign, min or max switch, or atan2 jumps: isolated with balls,
+        so that none is missed, and found to the last places. Switches within rounding of each other give one knot.
+        Raises FormulaError where rounding hides whether there is a switch, where there are too many, or where the
+        formula has no value; ValueError unless lower is below upper.
         """
         if not lower < upper:
             raise ValueError(f"no interval from {lower} to {upper}")
         waiting, ends, done = [(lower, upper, self.expression)], [lower], []
         count = 0
-        while waiting:  # the innermost switches are settled over the whole interval, then what is left over each part
+        while waiting:  # the innermost switches are settled over the whole interval, the outer ones then over each part
             count += 1
             a, b, expression = waiting.pop()
             places = innermost(expression)

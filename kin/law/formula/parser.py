@@ -1,4 +1,4 @@
-"""The grammar of formulas: from text to an `Expression`, with messages that say what would do.
+"""The grammar of formulas: from text to an `Expression`, with messages that suggest what to write.
 
     sum     = product (("+" | "-") product)*
     product = factor (("*" | "/") factor)*
@@ -29,7 +29,7 @@ _TOKEN = re.compile(
     r"|(?P<sign>\*\*|//|<=|>=|==|!=|[-+*/(),])|(?P<end>$)|(?P<other>.))",
     re.DOTALL,
 )
-# What people write, and what would do.
+# Signs that people write, and what to write instead.
 _OTHER_SIGNS = {
     "^": "a power is written **",
     "²": "a square is written **2",
@@ -93,7 +93,7 @@ class _Token:
 
 @lru_cache(maxsize=256)
 def parse(text: str, variables: tuple[str, ...]) -> Expression:
-    """Expression that a text means; raises FormulaError for a text that is too long, or no formula in `variables`."""
+    """Expression of a text; raises FormulaError for a text that is too long, or no formula in `variables`."""
     if len(text) > MOST_CHARACTERS:
         message = f"the formula has {len(text)} characters; {MOST_CHARACTERS} are allowed"
         raise FormulaError(message, MOST_CHARACTERS)
@@ -101,7 +101,7 @@ def parse(text: str, variables: tuple[str, ...]) -> Expression:
 
 
 class _Parser:
-    """Recursive descent over the tokens; each method returns the place of what it read in the builder."""
+    """Recursive descent over the tokens; each method returns the builder's index of the term that it has read."""
 
     def __init__(self, text: str, variables: tuple[str, ...]) -> None:
         self._tokens = _tokens(text)
@@ -192,7 +192,7 @@ class _Parser:
         return result
 
     def _refuse_implicit(self, first: _Token) -> None:
-        """Two things side by side: say that a product is written out."""
+        """Raise FormulaError where two terms stand side by side: a product is written out."""
         following = self._token
         if following.kind in {"number", "name"} or following.text == "(":
             left = ")" if self._tokens[self._next - 1].text == ")" else first.text
@@ -204,8 +204,8 @@ class _Parser:
     def _close(self, opening: _Token) -> None:
         token = self._take()
         if token.text != ")":
-            what = "is never closed" if token.kind == "end" else f"is not closed before '{token.text}'"
-            raise FormulaError(f"this parenthesis {what}", opening.column)
+            fault = "is never closed" if token.kind == "end" else f"is not closed before '{token.text}'"
+            raise FormulaError(f"this parenthesis {fault}", opening.column)
 
     def _number(self, token: _Token) -> int:
         value = float(token.text)

@@ -1,9 +1,9 @@
 """Where an expression changes sign: isolated with balls so that none is missed, then found to the last places.
 
-A cell is done when a ball shows that the expression has no zero in it, or that it is monotone there. What stays open is
+A cell is done when a ball shows that the expression has no zero in it, or that it is monotone there. Other cells are
 halved. A zero at which derivatives vanish too can never be shown by rounded arithmetic; it is taken as a zero of
 multiplicity m where the m-th derivative keeps its sign over the cell and all lower ones are 0 to within rounding at
-one point. Odd ones are changes of sign, even ones are not.
+one point. Zeros of odd multiplicity are changes of sign, those of even multiplicity are not.
 """
 
 from __future__ import annotations
@@ -27,24 +27,25 @@ if TYPE_CHECKING:
 
 
 _FIRST_CELLS = 32
-_MOST_CELLS = 4096
+_MOST_CELLS = 4096  # open at a time: with more the expression is too close to zero
 # Cells reach over their neighbours by this part of themselves, so that a zero on an edge lies well inside one of them.
 _OVERLAP = 1 / 16
 # Multiple zeros are looked for in cells below this part of the whole; cells below the other are given up.
 _SMALL_CELL = 2.0**-10
 _LEAST_CELL = 2.0**-44
-_MOST_MULTIPLE = 6
+_MOST_MULTIPLE = 6  # greatest multiplicity of a zero that is looked for
 # A zero within this many ulps of an end lies on the end.
 _END_ULPS = 16
-# Where to look at the sign between two zeros, in parts of the distance.
+# Places between two zeros at which the sign is looked at, in parts of their distance.
 _LOOKOUTS = np.array([0.5, 0.25, 0.75, 0.125, 0.875])
 
 
 @dataclass(frozen=True)
 class Signs:
-    """Sign of an expression on each stretch between its changes of sign inside an interval; 0: zero throughout.
+    """Parameters inside an interval at which an expression changes its sign, rising, and its sign on each stretch.
 
-    `at_start` and `at_end` say that the ends of the interval are zeros at which the sign would change.
+    A sign is 1, -1, or 0 for zero throughout; there is one more than changes. `at_start` and `at_end` tell whether an
+    end of the interval is itself a zero of odd multiplicity.
     """
 
     changes: tuple[float, ...]
@@ -61,7 +62,10 @@ class _Zero:
 
 
 def signs(g: Expression, lower: float, upper: float) -> Signs:
-    """Signs of g over [lower, upper]; raises UnsettledError where g stays too close to zero, or is zero too often."""
+    """Signs of g over [lower, upper].
+
+    Raises UnsettledError where g stays too close to zero, is zero too often, has no value or cannot be bounded.
+    """
     whole = g.ball(lower, upper, 0).rows[0]
     if whole.zero[0] or _sign(whole)[0]:
         return Signs((), (int(_sign(whole)[0]),), at_start=False, at_end=False)
@@ -88,14 +92,14 @@ def _sign(row: Ball) -> NDArray[np.int_]:
 
 
 def snap(lower: float, upper: float) -> float:
-    """Distance within which two parameters of an interval from `lower` to `upper` are one, a few roundings of them."""
+    """Distance within which two parameters of an interval from `lower` to `upper` count as one: 16 ulps of its ends."""
     return _END_ULPS * math.ulp(max(abs(lower), abs(upper)))
 
 
 def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
-    """Return all zeros of odd multiplicity; those near the edge of a cell are found in both cells.
+    """Return all zeros of odd multiplicity; a zero near the edge of a cell is found in both cells.
 
-    Raises UnsettledError where g is close to zero too often, or cannot be bounded.
+    Raises UnsettledError where g is close to zero too often or for too long, has no value or cannot be bounded.
     """
     edges = np.linspace(lower, upper, _FIRST_CELLS + 1)
     left, right, kept = edges[:-1], edges[1:], []
@@ -105,6 +109,7 @@ def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
             if not np.isfinite(g.ball(left[:1], right[:1], 0).rad[0, 0]):
                 reason = "cannot be bounded, as acos, asin or a root has no slope where it ends,"
             raise UnsettledError(reason, float(left[0]))
+        # cells whose ball has a sign are done; those whose slope has a sign hold one simple zero at most
         reach = _OVERLAP * (right - left)
         low, high = np.maximum(left - reach, lower), np.minimum(right + reach, upper)
         ball = g.ball(low, high, 1).rows
@@ -113,12 +118,14 @@ def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
         kept += _simple(g, low[steady], high[steady], lower, upper)
         open_ &= ~steady
         left, right, low, high = left[open_], right[open_], low[open_], high[open_]
+        # small cells may hold a multiple zero
         small = right - left < _SMALL_CELL * (upper - lower)
         zeros, settled = _multiple(g, low[small], high[small], lower, upper)
         kept += zeros
         keep = ~small
         keep[small] = ~settled
         left, right = left[keep], right[keep]
+        # cells that stay open down to rounding are given up, the others halved
         lost = right - left < _LEAST_CELL * (upper - lower)
         if lost.any():
             at = left[lost]
@@ -130,7 +137,7 @@ def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
 
 
 def _simple(g: Expression, low: Array, high: Array, lower: float, upper: float) -> list[_Zero]:
-    """Zeros of g in cells over which it is monotone; an uncertain sign at an inner end is a neighbour's affair."""
+    """Zeros of g in cells over which it is monotone; one at an inner end of a cell is left to the neighbouring cell."""
     if not len(low):
         return []
     first, last = _sign(g.ball(low, low, 0).rows[0]), _sign(g.ball(high, high, 0).rows[0])
@@ -155,7 +162,7 @@ def _on_end(g: Expression, m: int, end: float, snapped: float) -> bool:
 def _multiple(
     g: Expression, low: Array, high: Array, lower: float, upper: float
 ) -> tuple[list[_Zero], NDArray[np.bool_]]:
-    """Multiple zeros in small cells, the odd ones of them, and the cells that are settled by it."""
+    """Multiple zeros of odd multiplicity in small cells [low, high] (n,), and the mask (n,) of the cells settled."""
     settled, zeros, snapped = np.zeros(len(low), dtype=bool), [], snap(lower, upper)
     if not len(low):
         return [], settled
@@ -181,7 +188,7 @@ def _multiple(
 
 
 def _refine(g: Expression, m: int, low: Array, high: Array) -> Array:
-    """Return the zeros of the (m - 1)-th derivative, monotone over each [low, high], to the spacing of its ends."""
+    """Return the zeros (n,) of the (m - 1)-th derivative, monotone over each [low, high], to the spacing of numbers."""
     sense = np.where(g.jet(high, m - 1).c[m - 1] > 0, 1.0, -1.0)
 
     def rising(t: Array) -> tuple[Array, Array]:
@@ -192,7 +199,7 @@ def _refine(g: Expression, m: int, low: Array, high: Array) -> Array:
 
 
 def _merged(zeros: list[_Zero]) -> list[float]:
-    """One of each pair that two overlapping cells have found, rising."""
+    """Parameters of the zeros, rising, each once where two overlapping cells have found it."""
     kept: list[_Zero] = []
     for zero in sorted(zeros, key=lambda z: z.at):
         last = kept[-1] if kept else None

@@ -1,4 +1,4 @@
-"""Taking an expression apart at its switches: abs, sign, min, max at the zeros of what decides, atan2 at its cut."""
+"""Taking an expression apart at its switches: abs, sign, min, max where their sign changes, atan2 at its cut."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from kin.numeric.errors import UnsettledError
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    # Builds on the places of a switch's arguments what takes its place.
+    # Adds to a builder, on the indices of a switch's arguments, the steps that replace the switch.
     Build = Callable[[Builder, tuple[int, ...]], int]
 
 _SWITCHES = ("abs", "sign", "min", "max", "atan2")
 
 
 class _Settled(NamedTuple):
-    """One switch over an interval: its changes, and what it amounts to on each stretch between them."""
+    """One switch over an interval: the parameters at which it changes, and what replaces it on each stretch between."""
 
     changes: tuple[float, ...]
     builds: tuple[Build, ...]
 
 
 def innermost(expression: Expression) -> list[int]:
-    """Return the places of the switches whose arguments hold no switch; none if the expression has none at all."""
+    """Return the indices of the steps that are switches with no switch in their arguments; [] if there is none."""
     holding: set[int] = set()
     steps = []
     for place, step in enumerate(expression.steps):
@@ -43,16 +43,16 @@ def innermost(expression: Expression) -> list[int]:
 def branches(
     expression: Expression, places: list[int], lower: float, upper: float
 ) -> tuple[list[float], list[Expression]]:
-    """Settle the innermost switches at the given places over [lower, upper].
+    """Settle the innermost switches, steps of the indices `places`, over [lower, upper].
 
-    Returns the parameters inside at which one changes, rising (k,), and k + 1 expressions in which they are gone.
-    Raises FormulaError where a sign that decides cannot be settled.
+    Returns the k parameters inside at which one of them changes, rising, and k + 1 expressions without them. Raises
+    FormulaError where the sign that decides cannot be settled.
     """
     settled = {place: _settle(expression, place, lower, upper) for place in places}
-    room = snap(lower, upper)
+    least = snap(lower, upper)
     inside: list[float] = []
     for change in sorted(change for switch in settled.values() for change in switch.changes):
-        if not inside or change - inside[-1] > room:
+        if not inside or change - inside[-1] > least:
             inside.append(change)
     expressions = []
     for a, b in pairwise((lower, *inside, upper)):
@@ -70,9 +70,9 @@ def _settle(expression: Expression, place: int, lower: float, upper: float) -> _
             return _settle_angle(expression, step, lower, upper)
         changes = signs(_deciding(expression, step), lower, upper)
     except UnsettledError as error:
-        what = "the difference of the arguments" if step.op in {"min", "max"} else "the argument"
+        decider = "the difference of the arguments" if step.op in {"min", "max"} else "the argument"
         at = f"{expression.variables[0]} = {error.at:.12g}"
-        raise FormulaError(f"{step.op} cannot be settled: {what} {error.reason} near {at}", step.column) from None
+        raise FormulaError(f"{step.op} cannot be settled: {decider} {error.reason} near {at}", step.column) from None
     return _settled(changes, lambda sign: _case(step, sign))
 
 
@@ -81,14 +81,14 @@ def _settled(signs: Signs, build: Callable[[int], Build]) -> _Settled:
 
 
 def _deciding(expression: Expression, step: Instruction) -> Expression:
-    """Return what is compared with 0: the argument, or the difference of two."""
+    """Return the expression whose sign decides: the argument, or the difference of both arguments."""
     builder, places = _copy(expression, {})
     args = tuple(places[i] for i in step.args)
     return builder.expression(builder.apply("sub", args, step.column) if step.op in {"min", "max"} else args[0])
 
 
 def _case(step: Instruction, sign: int) -> Build:
-    """Return what a switch amounts to where the deciding expression has a sign."""
+    """Return what replaces a switch where the deciding expression has the sign `sign`, 1, 0 or -1."""
 
     def build(builder: Builder, args: tuple[int, ...]) -> int:
         if step.op == "sign":
@@ -103,7 +103,7 @@ def _case(step: Instruction, sign: int) -> Build:
 
 
 def _settle_angle(expression: Expression, step: Instruction, lower: float, upper: float) -> _Settled:
-    """Turn by a quarter where y keeps its sign: atan2(y, x) = pi/2 + atan2(-x, y) for y > 0, the cut out of reach."""
+    """Turn atan2 by a quarter where y keeps its sign: for y > 0 it is pi/2 + atan2(-x, y), clear of the cut."""
     builder, places = _copy(expression, {})
     y, x = (builder.expression(places[i]) for i in step.args)
     changes = signs(y, lower, upper)
@@ -133,7 +133,7 @@ def _may_be_left(x: Expression, angle: float) -> bool:
 
 
 def _copy(expression: Expression, builds: Mapping[int, Build]) -> tuple[Builder, list[int]]:
-    """Return a builder with the expression in it, some steps built otherwise, and where each step now stands."""
+    """Return a builder that holds the expression, steps in `builds` replaced, and the new index of each step."""
     builder = Builder(expression.variables)
     places: list[int] = []
     for i, step in enumerate(expression.steps):
