@@ -1,4 +1,4 @@
-"""Solids as files of any format hold them, what is sought of each, and the errors where others are there."""
+"""Solids as files of any format hold them, the sections sought of each, and errors for a wrong number of solids."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ RIGID = 1e-9  # a place turns and shifts only if its axes are square and of leng
 
 
 def no_rows(columns: int) -> Array:
-    """Empty array (0, columns): a solid without leaning walls."""
+    """Empty array (0, columns), as for the leaning walls of a solid that has none."""
     return np.empty((0, columns))
 
 
@@ -43,13 +43,13 @@ class ReadSolid(Nest):
     height              at which the section was taken
     prism               the walls stand upright from the lowest face to the highest one, to the file's rounding
     volume              mm^3, negative if the surface faces inward
-    sections            those that were asked for, by height as asked for
+    sections            at the heights given to the reader, in their order
     faces               heights of the horizontal faces, rising
     leaning             triangles or faces neither horizontal nor upright (k, 4): least and greatest height, reach from
-                        the axis, mm, and by how much they go inward a mm of height, nan where that is not looked at
+                        the axis, mm, and mm that they go inward per mm of height, nan for a STEP file
     slivers             walls that lean no farther than the file's rounding explains (k, 4): least and greatest height,
                         reach from the axis, and greatest distance from the upright, mm
-    rounding            by how much heights may differ through that rounding, mm; 0 where all are as they are meant
+    rounding            mm by which heights that should be equal may differ through that rounding; 0 in a prism or STEP
     units_mm            length of the file's unit, None where it states none
     """
 
@@ -66,7 +66,7 @@ class ReadSolid(Nest):
     units_mm: float | None = None
 
     def section(self, z: float) -> Section:
-        """Section at a height, mm, that was passed to the reader."""
+        """Section at one of the heights z, mm, that were given to the reader; StopIteration for any other height."""
         return next(cut for cut in self.sections if cut.height == z)
 
     @property
@@ -76,17 +76,20 @@ class ReadSolid(Nest):
 
     @property
     def uneven(self) -> float:
-        """Greatest distance, mm, of a point of the mesh from upright walls; exactly 0 where all stand upright."""
+        """Greatest distance, mm, by which the file's rounding holds a wall off the upright; 0 without such walls."""
         return self.uneven_between(-np.inf, np.inf)
 
     def uneven_between(self, low: float, high: float, beyond: float = 0.0) -> float:
-        """Greatest unevenness, mm, of what lies between two heights and reaches `beyond` mm from the axis."""
+        """Greatest distance from the upright, mm, of `slivers` between `low` and `high` that reach `beyond`; else 0.
+
+        `low` and `high` are heights, mm; `beyond` is a distance from the axis, mm.
+        """
         rows = self.slivers
-        there = (rows[:, 0] < high) & (rows[:, 1] > low) & (rows[:, 2] >= beyond)
-        return float(rows[there, 3].max(initial=0.0))
+        chosen = (rows[:, 0] < high) & (rows[:, 1] > low) & (rows[:, 2] >= beyond)
+        return float(rows[chosen, 3].max(initial=0.0))
 
     def in_units(self, heights: Sequence[float], units: float) -> Self:
-        """The solid of a file whose unit is `units` mm, read as if that were mm; `heights` of its sections are mm."""
+        """The solid, read as if its file were in mm, in units of `units` mm; its sections get `heights`, mm."""
         sections = zip(heights, self.sections, strict=False)
         return replace(
             self,
@@ -103,7 +106,7 @@ class ReadSolid(Nest):
         )
 
     def lowered(self, heights: Sequence[float], level: float) -> Self:
-        """The solid with its heights counted from a level, mm; `heights` of its sections are counted so."""
+        """The solid with its heights counted from a level, mm; its sections get `heights`, mm above that level."""
         return replace(
             self,
             z_min=self.z_min - level,
@@ -138,7 +141,7 @@ class Placed(NamedTuple):
 class Sought(NamedTuple):
     """Sections sought of one body, at heights, mm.
 
-    `deepest` is the number of others that a closed chain may lie inside.
+    `deepest` is the number of other closed chains that a chain may lie inside.
     """
 
     heights: Sequence[float] = ()
@@ -146,7 +149,7 @@ class Sought(NamedTuple):
 
 
 def missing(count: int, expected: int, path: Path) -> ReadError:
-    """Make the error for a file of fewer bodies than are expected."""
+    """Make the error for a file that holds `count` bodies, fewer than are expected."""
     holds = f"it holds {count} {'body' if count == 1 else 'bodies'}, where {expected} are expected"
     return ReadError("several", f"{holds}, one above the other", path)
 
@@ -154,9 +157,11 @@ def missing(count: int, expected: int, path: Path) -> ReadError:
 def beside(
     bodies: Sequence[tuple[str, tuple[Array, Array] | None]], count: int, path: Path, expected: int = 1
 ) -> ReadError:
-    """Make the error for a file of `count` bodies, of which some are given: names, and boxes (3,), (3,), mm, if known.
+    """Make the error for a file that holds `count` bodies, more than are expected.
 
-    Where one is expected, that with the largest box is taken for the part, the others for what does not belong there.
+    `bodies` are some of them, at least one: name, and least and greatest coordinates (3,), (3,), mm, None if unknown.
+    Where one is expected, the body with the largest box is taken for the part, and the message asks for the others to
+    be taken out.
     """
     if expected > 1:
         named = "; ".join(described(*body) for body in bodies)
@@ -171,7 +176,7 @@ def beside(
 
 
 def described(name: str, box: tuple[Array, Array] | None) -> str:
-    """Text of a body's name, size and place."""
+    """Text of a body's name, size and place, by its least and greatest coordinates, mm; its name without a box."""
     if box is None:
         return name
     low, high = box

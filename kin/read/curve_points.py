@@ -24,9 +24,9 @@ _LINE = 4096  # bytes, more than a line has
 
 
 def is_curve_points(path: Path) -> bool:
-    """Whether a file is such a table: a whole number, and a master of 0 with a slave in the line below.
+    """Whether a file is a curve point table: a whole number, and a master of 0 with a slave in the line below.
 
-    Raises OSError as the file system does.
+    Raises OSError where the file cannot be read.
     """
     with path.open("rb") as file:
         count, first = (file.readline(_LINE).decode("utf-8-sig", "replace") for _ in range(2))
@@ -35,7 +35,11 @@ def is_curve_points(path: Path) -> bool:
 
 
 def read_curve_points(path: Path) -> Array:
-    """Positions of master and slave (n, 2) as they stand in the file; raises ReadError for other lines or counts."""
+    """Positions of master and slave (n, 2), in the file's unit, of a file for which `is_curve_points` holds.
+
+    Raises OSError where the file cannot be read; ReadError for a file that is too large, a line that is not of two
+    finite numbers, and a number of lines that is not that of the first line or out of bounds.
+    """
     lines = [line for line in contents(path, "csv").decode("utf-8-sig", "replace").splitlines() if line.strip()]
     count, rows = int(lines[0]), [_pair(line) for line in lines[1:]]
     bad = next((i for i, row in enumerate(rows) if row is None), None)

@@ -1,4 +1,4 @@
-"""The one error that a reader of contours raises, with what an engineer needs to find the place in the file."""
+"""The error that readers raise for a file without a contour, with what an engineer needs to find the place in it."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class ReadError(CamgeoError, ValueError):
 
 
 def xml_fault(error: Exception) -> str:
-    """Say where the text of an XML file breaks, by what a parser raised.
+    """Text of where an XML file breaks, by the error of its parser.
 
     ExpatError has `lineno` and `offset`; ParseError has both in `position`, and a `lineno` of None.
     """

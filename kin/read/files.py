@@ -1,4 +1,4 @@
-"""Contours read back from files, told apart by their suffix: drawings and solids of a part, whoever wrote them."""
+"""Drawings and solids of a part, whoever wrote them, read by the suffix of their file."""
 
 from __future__ import annotations
 
@@ -32,12 +32,13 @@ def read_drawing(
 ) -> Drawing:
     """Read the contour and the holes that a drawing gives to cut.
 
-    Ends within `gap`, mm, are joined; None is 1e-6 mm, or 2e-8 of a drawing below 50 mm. With `engraved` what is to be
-    engraved is read too. A closed chain may lie inside `deepest` others. Gaps up to `bridged`, mm, are reported and do
-    not raise. `unstated`, mm, is the unit in which `gap` and `bridged` are meant for a drawing that states none.
+    Ends within `gap`, mm, are joined; None is 1e-6 mm, or 2e-8 of the size of a drawing below 50 mm. With `engraved`
+    the closed chains on the layer ENGRAVE are read too, if there is something on CUT. A closed chain may lie inside
+    `deepest` others. Gaps up to `bridged`, mm, and open chains within the contour are reported in `openings`; without
+    `bridged` they raise. For a drawing that states no unit, `gap` and `bridged` take its unit to be `unstated` mm.
 
-    Raises OSError as the file system does; ReadError for a damaged file, and for what is not one closed contour with
-    holes; ValueError for a suffix that is no drawing's.
+    Raises OSError where the file cannot be read; ReadError for a damaged or too large file, and for what is not one
+    closed contour with holes; ValueError for a suffix that is no drawing's.
     """
     path = Path(path)
     read = format_of(path).drawing
@@ -51,10 +52,10 @@ def read_solid(
 ) -> AnySolid:
     """Read a solid with its sections at `heights`, mm, in which a closed chain may lie inside `deepest` others.
 
-    `units`, mm, is the unit of a file that states none; without it such a file is read in mm.
+    `units`, mm, is the unit of a file that states none; None is mm.
 
-    Raises OSError as the file system does; ReadError for a damaged file, and where a section is not one closed contour
-    with others in it; ValueError for a suffix that is no solid's.
+    Raises OSError where the file cannot be read; ReadError for a damaged or too large file, and where a section is not
+    one closed contour with others in it; ValueError for a suffix that is no solid's.
     """
     path = Path(path)
     record = format_of(path)
@@ -66,9 +67,9 @@ def read_solid(
 
 
 def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
-    """Read the triangles of each body, mm; `units`, mm, is the unit of a file that states none.
+    """Read the triangles of each body, mm; `units`, mm, is the unit of a file that states none, None is mm.
 
-    Raises OSError as the file system does; ReadError for a file that is too large, damaged or none of its format;
+    Raises OSError where the file cannot be read; ReadError for a file that is too large, damaged or none of its format;
     ValueError for a suffix of files without meshes.
     """
     path = Path(path)
@@ -82,10 +83,12 @@ def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
 def read_bodies(path: Path | str, sought: Sequence[Sought], levels: Sequence[float]) -> list[AnySolid]:
     """Read several solids from one file, the lowest first.
 
-    Heights are those above each one's own level, mm, and so they are in what is returned.
+    `sought` and `levels`, mm, have an entry for each solid, from the lowest up. The heights sought of a solid, and all
+    heights of what is returned, are mm above its level.
 
-    Raises OSError as the file system does; ReadError for a format that does not hold several, a damaged file, more or
-    fewer solids, and a section that is not one closed contour with others in it; ValueError for an unknown suffix.
+    Raises OSError where the file cannot be read; ReadError for a format that does not hold several solids, a damaged or
+    too large file, more or fewer solids, and a section that is not one closed contour with others in it; ValueError for
+    an unknown suffix, or not as many levels as solids.
     """
     path = Path(path)
     read = format_of(path).bodies

@@ -32,11 +32,11 @@ Contents: TypeAlias = Literal["drawing", "solid", "program", "table"]
 class DrawingOptions(NamedTuple):
     """How a drawing is read.
 
-    gap       mm; ends of loose pieces are joined if they lie within it. None: 1e-6, or 2e-8 of a drawing below 50 mm
+    gap       mm; ends within it are joined. None: 1e-6, or 2e-8 of the size of a drawing below 50 mm
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
     deepest   how many others a closed chain may lie inside: 1, so that a hole has no island
-    bridged   mm; gaps up to this, and open chains within the contour, are reported by `openings` and do not raise
-    unstated  mm in the unit in which `gap` and `bridged` are meant for a drawing that states none
+    bridged   mm; gaps up to this, and open chains within the contour, are reported in `openings`; with 0 they raise
+    unstated  mm; for a drawing that states no unit, `gap` and `bridged` take its unit to be this long
     """
 
     gap: float | None = None
@@ -50,15 +50,15 @@ class DrawingOptions(NamedTuple):
 class Format:
     """Facts of a file format.
 
-    name      its word
+    name      key in `FORMATS`, the word by which users name the format
     contents  what a file holds: a drawing, a solid, a program for a machine or a table; the judge goes by that
     most      greatest size of a file that is read, bytes: any is read in 2 GB of memory, and in seconds
-    suffixes  endings of files' names; the first is that of its word
+    suffixes  endings of files' names; the first is the usual one
     units     whether a file states its unit
     drawing   reads a drawing: (path, options); None for a format that holds none
     solid     reads one part and its sections at heights, within which chains are nested: (path, heights, deepest)
-    bodies    reads several parts of one file, the lowest first: (path, what is sought of each)
-    meshes    reads the triangles of each body, mm in a file that states its unit, and else as they stand there
+    bodies    reads several parts of one file, the lowest first: (path, sections sought of each part)
+    meshes    reads the triangles of each body, in mm, or in the file's unit where it states none
     """
 
     name: str
@@ -80,7 +80,11 @@ def mesh(
     *,
     units: bool,
 ) -> Format:
-    """Make the entry of a format that holds one mesh: `triangles` (t, 3, 3) of the bytes of a file, and its form."""
+    """Make the entry of a format that holds one mesh.
+
+    `triangles` (bytes, path) gives the corners (t, 3, 3), in the file's unit, and the form of the file. `most` is the
+    greatest size of a file, bytes; `units` says whether a file states its unit.
+    """
 
     def read(path: Path) -> tuple[Corners, Form]:
         return triangles(contents(path, name), path)
@@ -192,7 +196,7 @@ def suffixes() -> dict[str, str]:
 
 
 def format_of(path: Path) -> Format:
-    """Find a file's format by its suffix; raises ValueError for one that is of none."""
+    """Find a file's format by its suffix; raises ValueError for a suffix of no format."""
     known = suffixes()
     name = known.get(path.suffix.lower())
     if name is None:
@@ -201,13 +205,19 @@ def format_of(path: Path) -> Format:
 
 
 def oversize(path: Path, name: str) -> str:
-    """Text that a file is larger than is read of its format; empty where it is not. OSError if it is missing."""
+    """Text that a file is larger than files of the format `name` may be; empty where it is not.
+
+    Raises OSError where the file is missing.
+    """
     size, most = path.stat().st_size, FORMATS[name].most
     return "" if size <= most else f"{size / 1e6:.4g} MB, and of a {name} up to {most / 1e6:.4g} MB are read"
 
 
 def contents(path: Path, name: str) -> bytes:
-    """The bytes of a file of a format; raises ReadError for one that is too large, OSError as the file system does."""
+    """The bytes of a file of the format `name`.
+
+    Raises ReadError for a file that is too large, OSError where it cannot be read.
+    """
     if problem := oversize(path, name):
         raise ReadError("range", problem, path)
     return path.read_bytes()

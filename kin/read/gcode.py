@@ -19,7 +19,7 @@ from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.formats import contents
 
-ARC_MM = 0.002  # how far the ends of an arc may be from equally far from its centre (NIST IR 6556, 3.5.3)
+ARC_MM = 0.002  # by which the distances of an arc's ends from its centre may differ (NIST IR 6556, 3.5.3)
 MOST_LINES = 1_000_000
 LARGEST = 1e6  # of a number as written
 CENTRES = "have the post-processor write arcs by their centre, I and J"
@@ -42,13 +42,14 @@ _SPINDLE, _END = ("3", "5"), ("2", "30")
 
 
 class ToolMove(NamedTuple):
-    """One move, mm: its line in the file, from where to where, and what the cutter does meanwhile.
+    """One move of the cutter from `start` to `end`, x, y and z, mm.
 
+    line        number of its line in the file, from 1
     sweep       of an arc in the plane, rad, counter-clockwise positive; 0 for a straight move
-    centre      of an arc
+    centre      of an arc, x and y, mm; None for a straight move
     feed        mm a minute; 0 for a rapid move
     turning     whether the spindle turns
-    mismatch    by how much the ends of an arc differ in their distance from its centre
+    mismatch    mm by which the ends of an arc differ in their distance from its centre
     """
 
     line: int
@@ -64,7 +65,7 @@ class ToolMove(NamedTuple):
 
 @dataclass(frozen=True)
 class Program:
-    """The moves of a program in order, mm in its unit (25.4 or 1), and its comments in order."""
+    """The moves of a program and its comments, both in order, and the mm in its unit, 25.4 or 1."""
 
     path: Path
     moves: tuple[ToolMove, ...]
@@ -75,7 +76,8 @@ class Program:
 def read_gcode(path: Path | str) -> Program:
     """Read a milling program.
 
-    Raises OSError as the file system does, ReadError, with the line, for a program that is not read.
+    Raises OSError where the file cannot be read; ReadError for a file that is too large or not ASCII, a program that
+    does not end or makes no move, and, with the number of the line, for words that are not read or do not fit together.
     """
     path = Path(path)
     try:
@@ -96,11 +98,15 @@ def read_gcode(path: Path | str) -> Program:
 
 
 def arcs_of(moves: tuple[ToolMove, ...] | list[ToolMove]) -> Arcs:
-    """The moves' paths in the plane, each a line or arc through both of its ends; none may be without length."""
+    """Paths of the moves in the plane, mm: lines, and arcs through both ends, in four parts beyond a quarter turn.
+
+    No move may be without length.
+    """
     start = np.array([move.start[:2] for move in moves])
     chord = np.array([move.end[:2] for move in moves]) - start
     sweep = np.array([move.sweep for move in moves])
     straight = np.hypot(chord[:, 0], chord[:, 1])
+    # the heading at the start is the chord's less half the sweep; chord = 2 sin(sweep / 2) / curvature
     heading = np.arctan2(chord[:, 1], chord[:, 0]) - 0.5 * sweep
     bent = np.where(sweep == 0.0, 1.0, sweep)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -117,15 +123,15 @@ def arcs_of(moves: tuple[ToolMove, ...] | list[ToolMove]) -> Arcs:
 
 
 class _Machine:
-    """A machine that follows a program block by block; what it has done grows as it does."""
+    """State of a machine that follows a program block by block, with the moves made and the comments met so far."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.moves: list[ToolMove] = []
         self.comments: list[str] = []
-        self.modes: dict[str, str] = {}
-        self.at: list[float | None] = [None, None, None]
-        self.unit = 0.0
+        self.modes: dict[str, str] = {}  # code in force of each group of G words
+        self.at: list[float | None] = [None, None, None]  # x, y, z, mm, None until a word has set it
+        self.unit = 0.0  # mm, 0 before G20 or G21
         self.feed = self.speed = 0.0
         self.turning = self.ended = False
 
@@ -157,16 +163,16 @@ class _Machine:
     def _words(self, number: int, line: str) -> list[tuple[str, str]]:
         self.comments += [text.strip() for text in _COMMENT.findall(line)]
         bare = _COMMENT.sub("", line)
-        bare, mark, rest = bare.partition(";")
+        bare, mark, remark = bare.partition(";")
         if mark:
-            self.comments.append(rest.strip())
+            self.comments.append(remark.strip())
         bare = "".join(bare.split()).upper()
         if bare in ("", "%"):
             return []
         words = _WORD.findall(bare)
         if "".join(letter + value for letter, value in words) != bare:
-            left = _WORD.sub(" ", bare).split()
-            raise self._error(number, f"{left[0] if left else bare} is not read", "syntax")
+            unread = _WORD.sub(" ", bare).split()
+            raise self._error(number, f"{unread[0] if unread else bare} is not read", "syntax")
         return [word for word in words if word[0] != "N"]
 
     def _codes(self, number: int, words: list[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -238,11 +244,11 @@ class _Machine:
         for k, axis in enumerate("XYZ"):
             if axis not in numbers:
                 continue
-            value, here = self._length(number, numbers[axis]), self.at[k]
+            value, position = self._length(number, numbers[axis]), self.at[k]
             if distance == "91":
-                if here is None:
+                if position is None:
                     raise self._error(number, f"{axis} moves from an unknown place", "syntax")
-                value += here
+                value += position
             self.at[k] = value
         centred = "I" in numbers or "J" in numbers
         if centred != (motion in "23"):
@@ -255,7 +261,7 @@ class _Machine:
             if motion != "0":
                 raise self._error(number, "a feed move from an unknown place", "syntax")
             return
-        # a coordinate that was not known is taken as it is reached, and the cutter no lower than it ends
+        # a coordinate that was unknown before the move is taken as its end's, and the start no lower than the end
         known = [now if was is None else was for was, now in zip(before, (x, y, z), strict=True)]
         first = (known[0], known[1], max(known[2], z) if None in before else known[2])
         rapid = motion == "0"
@@ -263,7 +269,7 @@ class _Machine:
         self.moves.append(self._bent(move, numbers, motion) if centred else move)
 
     def _bent(self, move: ToolMove, numbers: dict[str, float], motion: str) -> ToolMove:
-        """The arc of a move."""
+        """The move with the sweep and the centre of its arc."""
         number, (x, y, z), (x2, y2, z2) = move.line, move.start, move.end
         centre = (
             x + self._length(number, numbers.get("I", 0.0)),
@@ -278,6 +284,7 @@ class _Machine:
             raise self._error(number, "an arc of radius 0", "range")
         sweep = math.atan2(y2 - centre[1], x2 - centre[0]) - math.atan2(y - centre[1], x - centre[0])
         turn = 2.0 * math.pi
+        # above 0 up to a turn for G3, from a turn below 0 for G2; equal ends make the full circle
         if (x, y) == (x2, y2):
             sweep = turn
         sweep = sweep % turn or turn

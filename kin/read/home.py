@@ -23,7 +23,7 @@ def prepare_home() -> None:
     """
     import logging
 
-    for library in _LIBRARIES:  # without a handler Python prints warnings; who wants them has one
+    for library in _LIBRARIES:  # without a handler Python prints their warnings
         logging.getLogger(library).addHandler(logging.NullHandler())
     if all(_usable(os.environ.get(variable) or default) for variable, default in _FOLDERS.items()):
         return
@@ -34,11 +34,11 @@ def prepare_home() -> None:
     try:
         folder = tempfile.mkdtemp(prefix="camgeo-home-")
     except OSError:
-        return  # then nothing can be done, and their notices tell why
+        return  # without a temporary folder nothing can be done, and the libraries' own notices say why
     owner = os.getpid()
 
     def remove() -> None:
-        if os.getpid() == owner:  # a forked process has this from us
+        if os.getpid() == owner:  # a forked process inherits this function, and leaves the folder alone
             shutil.rmtree(folder, ignore_errors=True)
 
     atexit.register(remove)
@@ -47,10 +47,10 @@ def prepare_home() -> None:
 
 
 def _usable(name: str) -> bool:
-    """Whether the libraries' folders are in a folder, or can be made there."""
+    """Whether the folders of both libraries in the folder `name` can be written, or made where there are none."""
     try:
         folder = Path(name).expanduser()
-    except RuntimeError:  # nobody's home
+    except RuntimeError:  # no home folder is known
         return False
     return all(_writable(folder / library) for library in _LIBRARIES)
 

@@ -22,7 +22,12 @@ MOST_PIECES = 1_000_000  # of all contours: a polygon within 1e-9 mm may have mo
 
 
 class NestingPlace(NamedTuple):
-    """Number of a contour, how many others it lies inside, and the rank of the smallest of these by falling area."""
+    """Place of a contour among others.
+
+    number  of the contour in the list given
+    depth   how many others it lies inside
+    inside  rank by falling area, from 0, of the smallest of these; None for the outer contour
+    """
 
     number: int
     depth: int
@@ -33,10 +38,10 @@ class ClosedContour(NamedTuple):
     """A closed contour, counter-clockwise, mm.
 
     depth   how many others it lies inside
-    inside  which of them directly, by its rank in the `Nest`; None for the outer contour
+    inside  place in `Nest.chains` of the smallest of these; None for the outer contour
     layer   of a drawing on which it stands
-    pieces  of it, as the file counts them: edges, arcs, spans of a spline, moves
-    gap     widest between two of these that a line joins, mm
+    pieces  number of its pieces as the file counts them: edges, arcs, spans of a spline, moves
+    gap     widest gap between two pieces that a line joins, mm
     """
 
     contour: Contour
@@ -65,12 +70,12 @@ class Nest:
 
     @property
     def pieces(self) -> int:
-        """Pieces of the outer contour, as the file counts them: edges, arcs, spans of a spline."""
+        """Number of pieces of the outer contour as the file counts them: edges, arcs, spans of a spline."""
         return self.chains[0].pieces
 
 
 def scaled(chains: Sequence[ClosedContour], factor: float, *, mirrored: bool = False) -> tuple[ClosedContour, ...]:
-    """Return chains enlarged about the origin, and mirrored in the x axis."""
+    """Return chains enlarged about the origin by a factor above 0, and with `mirrored` reflected in the x axis."""
     enlarged = []
     for chain in chains:
         contour = chain.contour.scaled(factor) if factor != 1.0 else chain.contour
@@ -80,13 +85,13 @@ def scaled(chains: Sequence[ClosedContour], factor: float, *, mirrored: bool = F
 
 
 def demand_few(count: int, path: Path) -> None:
-    """Raise ReadError for more closed contours than a part has, before the work on each is begun."""
+    """Raise ReadError for a count of more than MOST_CONTOURS closed contours, before the work on each is begun."""
     if count > MOST_CONTOURS:
         raise ReadError("range", f"it has {count} closed contours; up to {MOST_CONTOURS} are read", path)
 
 
 def demand_few_pieces(count: int, path: Path) -> None:
-    """Raise ReadError for more pieces than the contours of a part have, before the work on each is begun."""
+    """Raise ReadError for a count of more than MOST_PIECES pieces, before the work on each is begun."""
     if count > MOST_PIECES:
         raise ReadError("range", f"its contours have {count} pieces; up to {MOST_PIECES} are read", path)
 
@@ -97,36 +102,37 @@ def counter_clockwise(contour: Contour) -> Contour:
 
 
 def met(place: tuple[float, float], path: Path) -> ReadError:
-    """Return the error for contours that meet at a place."""
+    """Return the error for contours that meet at a place, mm."""
     x, y = place
     return ReadError("crossing", f"two closed contours cross or touch at {place_text(x, y, digits=9)}", path, place)
 
 
 def nested(contours: list[Contour], path: Path, deepest: int = 1) -> list[NestingPlace]:
-    """Order contours, which do not meet, by falling area: the first holds all others.
+    """Places of contours by falling area: the first holds all others. The contours must not meet.
 
-    Raises ReadError "several" for one that lies outside the first, "island" for one inside more than `deepest` others.
+    Raises ReadError: "several" for one that lies outside the first, "island" for one inside more than `deepest` others.
     """
     order = sorted(range(len(contours)), key=lambda k: -abs(contours[k].area))
     points = np.array([contours[k].start[0] for k in order])
     depth, inside_of = np.zeros(len(order), dtype=np.intp), np.full(len(order), -1, dtype=np.intp)
+    # contours that do not meet lie inside one another or not: the start of each smaller one decides
     for rank, k in enumerate(order[:-1]):
-        others = points[rank + 1 :]
+        later = points[rank + 1 :]
         x_min, y_min, x_max, y_max = contours[k].box
-        inside = np.zeros(len(others), dtype=np.bool_)
-        near = np.flatnonzero(((others >= (x_min, y_min)) & (others <= (x_max, y_max))).all(axis=1))  # in its box
+        inside = np.zeros(len(later), dtype=np.bool_)
+        near = np.flatnonzero(((later >= (x_min, y_min)) & (later <= (x_max, y_max))).all(axis=1))  # in its box
         if near.size:
             contour = counter_clockwise(contours[k])
-            chain, off = contour.rough
-            away = signed_distance(chain, others[near])
+            chain, off = contour.rough  # arcs within `off` mm of the contour; the exact ones only for points as near
+            away = signed_distance(chain, later[near])
             if (np.abs(away) <= off).any():
-                away = signed_distance(contour.as_arcs()[0], others[near])
+                away = signed_distance(contour.as_arcs()[0], later[near])
             inside[near] = away < 0.0
         depth[rank + 1 :][inside], inside_of[rank + 1 :][inside] = depth[rank] + 1, rank
         wrong = ~inside if rank == 0 else inside & (depth[rank] >= deepest)
         if not wrong.any():
             continue
-        x, y = others[wrong][0].tolist()
+        x, y = later[wrong][0].tolist()
         box = contours[order[rank + 1 + int(np.flatnonzero(wrong)[0])]].box
         size = f"{box.x_max - box.x_min:.6g} x {box.y_max - box.y_min:.6g} mm"
         what = f"the closed contour at {place_text(x, y, digits=9)}"

@@ -22,18 +22,18 @@ LEAST_POINTS, MOST_POINTS = 4, 100_000
 LARGEST = 1e6  # of a coordinate, in the file's unit
 _WIDTHS = (2, 3)  # numbers of a line
 _LINE = 4096  # bytes, more than a line has
-SAME = 1e-9  # mm, and of the size: the last point is the first
+SAME = 1e-9  # mm, or share of the size above 1 mm, within which points are one
 
 
 def is_point_list(path: Path) -> bool:
-    """Whether a file is such a list: its first line is of two or three numbers and stands again as its last one.
+    """Whether a file lists a closed curve: its first line is of two or three numbers and stands again as its last.
 
-    Raises OSError as the file system does.
+    Raises OSError where the file cannot be read.
     """
     with path.open("rb") as file:
         begin = file.readline(_LINE)
-        rest = file.tell()
-        file.seek(max(rest, file.seek(0, 2) - _LINE))
+        after_first = file.tell()
+        file.seek(max(after_first, file.seek(0, 2) - _LINE))
         end = file.read().strip().rpartition(b"\n")[2]
     first = _cells(begin)
     return first == _cells(end) and len(first) in _WIDTHS and all(map(_is_number, first))
@@ -52,10 +52,11 @@ def _is_number(cell: str) -> bool:
 
 
 def spline_of_points(path: Path, mm: float = 1.0) -> tuple[Contour, int]:
-    """Closed spline through the points of a file, mm, and their number.
+    """Closed spline, counter-clockwise, mm, through the points of a file, and their number without the repeated one.
 
-    Lines of the file hold x, y and perhaps z, `mm` to a unit. Numbers stand apart by commas, semicolons, blanks or
-    tabs. Raises ReadError for what is no closed curve in a plane z = constant, OSError as the file system does.
+    Lines of the file hold x, y and perhaps z, in units of `mm` mm, parted by commas, semicolons, blanks or tabs. Raises
+    ReadError for a file that is too large, has a line of other than these numbers, too few or too many points, a point
+    twice in a row, or no closed curve in a plane z = constant; OSError where the file cannot be read.
     """
     points = mm * _points(path)
     size = float(np.abs(points).max())
@@ -72,7 +73,7 @@ def spline_of_points(path: Path, mm: float = 1.0) -> tuple[Contour, int]:
 
 
 def _points(path: Path) -> Array:
-    """Points (n, 2), in the file's unit; raises ReadError for a file too large or without such points."""
+    """Points (n, 2), in the file's unit; raises ReadError for a file that is too large, and unfit lines or points."""
     if path.stat().st_size > MOST:
         raise ReadError("range", f"larger than {MOST / 1e6:g} MB", path)
     text = path.read_bytes().decode("utf-8-sig", "replace")

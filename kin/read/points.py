@@ -33,7 +33,7 @@ Measured: TypeAlias = Literal["places", "lift"]
 TurnsOf: TypeAlias = Literal["crank", "cam", ""]
 SUFFIXES = (".csv", ".txt", ".xyz", ".asc", ".dmo", ".dmi", ".dms")
 MOST_BYTES = 200_000_000
-LEAST_POINTS, MOST_POINTS = 36, 1_000_000
+LEAST_POINTS, MOST_POINTS = 36, 1_000_000  # in a file; the least is one every 10 degrees
 LARGEST = 1e6  # of a coordinate, in the file's unit
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch": 25.4, "inches": 25.4, "thou": 0.0254}
 CRANK = 2.0  # turns of a four-stroke engine's crank for one of its camshaft
@@ -61,13 +61,13 @@ DMIS = re.compile(r"^FA\s*\(\s*(?P<label>[^)]*)\)\s*=\s*FEAT\s*/\s*POINT\s*,\s*C
 class PointTable:
     """Measured points (n), as their file has them.
 
-    measured    places: x and y; lift: `angle` and `lift`
-    columns     by name: x, y, z, nx, ny (n,), or angle (degrees) and lift; lengths in the file's unit
-    lines       line of each point in the file (n,)
-    unit        mm of the file's unit of length where a heading states it, else None
-    turns_of    what the heading says that the angles of lifts are of; those of a crank are halved in `columns`
-    degrees     whether lifts are stated to be angles, which are in degrees in `columns`
-    labels      surface, or lobe, of each point where the file has such a column; else empty
+    measured    "places" where `columns` have x and y, "lift" where they have angle and lift
+    columns     by name: x, y, z, nx, ny, nz (n,), or angle (degrees) and lift; lengths in the file's unit
+    lines       line of each point in the file (n,), from 1
+    unit        mm of the file's unit of length where the file states it, else None
+    turns_of    shaft that the heading of the angles names, "" for none; crank angles are halved in `columns`
+    degrees     whether lifts are angles, by the unit in their heading; they are degrees in `columns`
+    labels      surface, or lobe, of each point where the file names them; else empty
     """
 
     measured: Measured
@@ -82,16 +82,17 @@ class PointTable:
         return len(self.lines)
 
     def rows(self, chosen: Mask) -> PointTable:
-        """The table with some of its rows alone."""
+        """The table with its `chosen` rows (n,) alone."""
         columns = {name: column[chosen] for name, column in self.columns.items()}
         labels = [self.labels[i] for i in np.flatnonzero(chosen).tolist()] if self.labels else ()
         return replace(self, columns=columns, lines=self.lines[chosen], labels=labels)
 
 
 def heading_of(path: Path) -> tuple[str, ...]:
-    """Names of the columns that the start of a file gives, as written, also where no row follows; empty without any.
+    """Names of the columns, as written, by the first 65536 bytes of a file; empty where rows have no heading.
 
-    Raises OSError as the file system does.
+    Where no row of numbers is found, the cells of the first line that is no comment are taken, or one empty name.
+    Raises OSError where the file cannot be read.
     """
     with path.open("rb") as stream:
         text = _decoded(stream.read(65536))
@@ -106,8 +107,8 @@ def heading_of(path: Path) -> tuple[str, ...]:
 def read_points(path: Path) -> PointTable:
     """Read the points of a file.
 
-    Raises ReadError for a file that is too large, no text, or has too few points or none that are read; OSError as the
-    file system does.
+    Raises OSError where the file cannot be read; ReadError for a file that is too large, no text or without points that
+    are read, rows that are damaged, numbers out of range, too few points, and normals that run along the shaft.
     """
     size = path.stat().st_size
     if size > MOST_BYTES:
@@ -125,10 +126,10 @@ def read_points(path: Path) -> PointTable:
 
 
 def read_contour_points(path: Path, unit: float) -> list[Contour]:
-    """Read closed contours, counter-clockwise, mm, from points that follow one another round each.
+    """Read closed polygons, counter-clockwise, mm, through points in order: one for each surface that the file names.
 
-    Each surface that the file names is one. `unit`, mm, is that of a file that states none. Straight lines join the
-    points. Raises ReadError for points that are no places, and for such as are in no order: their lines cross.
+    `unit`, mm, is the unit of a file that states none. Raises OSError where the file cannot be read; ReadError for a
+    file without sound points, one of angles and lifts, and points out of order, whose lines cross.
     """
     table = read_points(path)
     if "x" not in table.columns:
@@ -159,22 +160,22 @@ def _decoded(data: bytes) -> str:
 
 
 def _dmis(text: str, path: Path) -> PointTable:
-    rows, lines, whole, begin = [], [], "", 0
+    rows, lines, statement, begin = [], [], "", 0
     for number, line in enumerate(text.splitlines(), 1):
-        begin = begin if whole else number
-        whole += line.strip()
-        if whole.endswith("$") and not whole.startswith("$$"):
-            whole = whole[:-1]
+        begin = begin if statement else number
+        statement += line.strip()
+        if statement.endswith("$") and not statement.startswith("$$"):
+            statement = statement[:-1]
             continue
-        if feature := DMIS.match(whole):
+        if feature := DMIS.match(statement):
             try:
                 rows.append([float(cell) for cell in feature["rest"].split(",")])
             except ValueError:
-                raise ReadError("syntax", f"line {begin}: not numbers: {short(whole)}", path) from None
+                raise ReadError("syntax", f"line {begin}: not numbers: {short(statement)}", path) from None
             if len(rows[-1]) not in {3, 6}:
-                raise ReadError("syntax", f"line {begin}: x,y,z or x,y,z,i,j,k are expected: {short(whole)}", path)
+                raise ReadError("syntax", f"line {begin}: x,y,z or x,y,z,i,j,k are expected: {short(statement)}", path)
             lines.append(begin)
-        whole = ""
+        statement = ""
     if not rows:
         raise ReadError("empty", "no FA(label) = FEAT/POINT,CART,... is among its lines", path)
     if len({len(row) for row in rows}) > 1:
@@ -213,6 +214,7 @@ def _without_heading(rows: Rows, path: Path) -> PointTable:
 
 
 def _with_heading(rows: Rows, path: Path) -> PointTable:
+    # columns by name; `inner_x` and `outer_x` are x of two surfaces, read only where there is no plain x
     known = _columns(rows.heading, path)
     names = [name for name, _, _ in known]
     surfaces = list(dict.fromkeys(prefix for name, prefix, _ in known if name == "x" and prefix))
@@ -231,6 +233,7 @@ def _with_heading(rows: Rows, path: Path) -> PointTable:
         names_read = short(", ".join(rows.heading))
         readable = "x,y or radius,angle or angle_deg,lift are read, or of a grinder's table c_deg and x or lift"
         raise ReadError("unsupported", f"{lacking} in its heading {names_read}; {readable}", path)
+    # the columns of each surface, one surface below another
     prefixes = surfaces if first else [""]
     groups = [_group(known, prefix, wanted) for prefix in prefixes]
     used = sorted({i for group in groups for i in group.values()})
@@ -240,6 +243,7 @@ def _with_heading(rows: Rows, path: Path) -> PointTable:
     for name in [name for name in groups[0] if all(name in group for group in groups)]:
         parts = [values[:, place[group[name]]] for group in groups]
         columns[name] = np.concatenate(parts)
+    # one unit of all lengths; angles become degrees, those of a crank degrees of the cam
     units = {unit for name, prefix, unit in known if unit in UNITS and name in {*wanted, "z"} and unit}
     stated = {UNITS[unit] for unit in units}
     if len(stated) > 1:
@@ -259,6 +263,7 @@ def _with_heading(rows: Rows, path: Path) -> PointTable:
     if "radius" in columns:
         radius, angle = columns.pop("radius"), np.radians(columns.pop("angle"))
         columns |= {"x": radius * np.cos(angle), "y": radius * np.sin(angle)}
+    # surface of each point: the prefix of its columns, else the cell of a column
     labels: list[str] = [prefix for prefix in prefixes for _ in rows.lines] if first else []
     column = names.index("surface") if "surface" in names else names.index("lobe") if "lobe" in names else None
     if column is not None and not first:
@@ -266,14 +271,14 @@ def _with_heading(rows: Rows, path: Path) -> PointTable:
     swings = any(name == "lift" and unit in ANGLES for name, _, unit in known)
     lines = np.tile(rows.numbers, len(prefixes))
     if first:  # places that are not touched are left empty
-        there = np.isfinite(np.stack(list(columns.values()))).all(axis=0)
-        columns, lines = {name: row[there] for name, row in columns.items()}, lines[there]
-        labels = [labels[i] for i in np.flatnonzero(there).tolist()]
+        touched = np.isfinite(np.stack(list(columns.values()))).all(axis=0)
+        columns, lines = {name: row[touched] for name, row in columns.items()}, lines[touched]
+        labels = [labels[i] for i in np.flatnonzero(touched).tolist()]
     return PointTable(measured, columns, lines, next(iter(stated), None), turns_of, swings, labels)
 
 
 def _turns_of(cell: str) -> TurnsOf:
-    """Kind of angle below a heading's cell, by its words: of the cam, of the crank, or unknown."""
+    """Shaft of the angles below a heading's cell, by its words; "" where it names none."""
     return "crank" if OF_CRANK.search(cell) else "cam" if OF_CAM.search(cell) else ""
 
 
@@ -300,16 +305,16 @@ def _columns(heading: Sequence[str], path: Path) -> list[tuple[str, str, str]]:
     for (name, prefix, unit, certain), cell in zip(named, heading, strict=True):
         kept = name if certain or (name, prefix) not in sure else ""
         if kept and not certain and first.setdefault(kept, cell) is not cell:
-            both, remedy = short(f"{first[kept]} and {cell}"), f"head those that were measured {kept}"
-            raise ReadError("unsupported", f"its columns {both} may both be {kept}; {remedy}", path)
+            pair, remedy = short(f"{first[kept]} and {cell}"), f"head those that were measured {kept}"
+            raise ReadError("unsupported", f"its columns {pair} may both be {kept}; {remedy}", path)
         known.append((kept, prefix, unit))
     return known
 
 
 def _column(cell: str) -> tuple[str, str, str, bool]:
-    """Name, surface and unit of a cell: `inner_x_mm` is x of `inner` in mm; and whether more than its first word says.
+    """Name, surface and unit of a cell, and whether the name is sure: `inner_x_mm` is x of `inner` in mm.
 
-    The name is empty if unknown.
+    A name by the first word alone, as of `X set`, is not sure. The name is empty if unknown.
     """
     text = cell.strip().strip('"').strip().lower()
     heading = HEADING.match(text)
@@ -331,7 +336,11 @@ def _column(cell: str) -> tuple[str, str, str, bool]:
 
 
 def _demand_sound(table: PointTable, path: Path) -> PointTable:
-    """Refuse numbers that are none, too large ones, too few points."""
+    """The table itself.
+
+    Raises ReadError for numbers that are not finite or too large, too few points, and normals shorter than 0.5 across
+    the shaft.
+    """
     for name, column in table.columns.items():
         wrong = ~(np.abs(column) <= LARGEST)
         if wrong.any():

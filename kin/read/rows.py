@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 SHOWN = 40  # characters of a line in a message
-_LOOKED = 20  # lines by which the mark between columns is told
+_LOOKED = 20  # lines from which the mark between columns is found
 _NUMBER = re.compile(r"[+-]?(?:(?:\d+[.,]?\d*|[.,]\d+)(?:e[+-]?\d+)?|nan|inf(?:inity)?)", re.IGNORECASE | re.ASCII)
 _EXCEL = re.compile(r"sep=.$", re.IGNORECASE)  # its word for the mark between columns
 _MARKS = {";": "semicolons", "\t": "tabs", " ": "blanks", ",": "commas"}
 
 
 class RowError(CamgeoError, ValueError):
-    """A text that is no table of numbers; `line` is that of the row at fault, or None."""
+    """A text that is no table of numbers; `line` is the number of the line at fault, None for the whole text."""
 
     def __init__(self, message: str, line: int | None = None) -> None:
         super().__init__(message)
@@ -39,9 +39,10 @@ class RowError(CamgeoError, ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """A table as text: its lines of numbers (n), their line numbers, the separator of columns, and headings.
+    """A table as text: its lines of numbers (n), their line numbers from 1, the mark between columns, and the heading.
 
-    A heading of two lines has the second one's cells in brackets, as units are. `heading` is empty where there is none.
+    Cells of a second line of headings stand in brackets behind the first, as units do: `x (mm)`. `heading` is empty
+    where there is none.
     """
 
     lines: list[str]
@@ -62,23 +63,24 @@ class Rows:
         return count if len(self.heading) == count else len(_cells(line, self.mark))
 
     def texts(self, column: int) -> list[str]:
-        """Cells of a column as they are written, n of them; empty where a row has not so many."""
+        """Cells of a column, counted from 0, as they are written (n); "" where a row has not so many."""
         rows = (_cells(line, self.mark) for line in self.lines)
         return [row[column] if column < len(row) else "" for row in rows]
 
     def values(self, columns: Sequence[int], *, blanks: bool = False) -> Array:
-        """Numbers (n, k) of some columns; an empty cell is nan where `blanks` may be.
+        """Numbers (n, k) of some columns, counted from 0; with `blanks` an empty cell is nan.
 
-        Raises RowError with the first line that has more columns than the heading, or no number in one of these.
+        Raises RowError with the first line that has more columns than the heading, or no number in one of these
+        columns.
         """
         mark = None if self.mark == " " else self.mark
         body = "\n".join(self.lines if mark == "," else [line.replace(",", ".") for line in self.lines])
         if all(len(line.rstrip(mark).split(mark)) <= self.width for line in self.lines):
-            with suppress(ValueError, IndexError):  # the first line of which is told below
+            with suppress(ValueError, IndexError):  # the row at fault is found below
                 file = io.StringIO(body)
                 return np.loadtxt(file, delimiter=mark, usecols=columns, comments=None, ndmin=2, quotechar='"')
-        each = zip(self.lines, self.numbers.tolist(), strict=True)
-        return np.array([self._row(line, number, columns, blanks=blanks) for line, number in each])
+        numbered = zip(self.lines, self.numbers.tolist(), strict=True)
+        return np.array([self._row(line, number, columns, blanks=blanks) for line, number in numbered])
 
     def _row(self, line: str, number: int, columns: Sequence[int], *, blanks: bool) -> list[float]:
         cells = _cells(line, self.mark)
@@ -98,7 +100,10 @@ class Rows:
 
 
 def read_rows(text: str, comments: tuple[str, ...] = ("#",)) -> Rows:
-    """Find the rows of a text. Raises RowError for a text without any."""
+    """Find the rows of a text; lines that begin with one of `comments` are left out.
+
+    Raises RowError for a text without rows.
+    """
     lines = [(i, line.strip()) for i, line in enumerate(text.lstrip("\ufeff").splitlines(), 1)]
     kept = [(i, line) for i, line in lines if line and not line.startswith(comments) and not _EXCEL.match(line)]
     if not kept:
@@ -122,7 +127,7 @@ def read_rows(text: str, comments: tuple[str, ...] = ("#",)) -> Rows:
 
 
 def short(text: str) -> str:
-    """Text, cut to the length of a message."""
+    """Text, cut to SHOWN characters for a message."""
     return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."
 
 
@@ -158,6 +163,6 @@ def _cells(line: str, mark: str) -> list[str]:
 
 
 def _heading(line: str, mark: str, widths: set[int]) -> list[str]:
-    """Names of one of so many columns, by the rows' mark or another."""
-    ways = [_cells(line, other) for other in (mark, ";", "\t", ",")]
+    """Cells of a heading's line, parted by the first mark that gives one of `widths`; the rows' mark is tried first."""
+    ways = [_cells(line, parting) for parting in (mark, ";", "\t", ",")]
     return next((names for names in ways if len(names) in widths), ways[0])

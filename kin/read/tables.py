@@ -55,13 +55,17 @@ _EXACT = 1e-9  # of the greatest angle: what is less is no rounding of digits
 
 
 class Sheet(NamedTuple):
-    """What a table is to be read as: units and columns that are given, None where the file tells."""
+    """How a table is read: its quantity, and what the caller states of columns and units, None where the file does.
+
+    Columns are those of the angle and of the value, by their heading or their number from 1. The angles "cam" and
+    "crank" are degrees of that shaft. Units of values are keys of `UNITS` for the quantity.
+    """
 
     quantity: Quantity
     columns: tuple[Column, Column] | None = None
     angle: AngleUnit | None = None
     unit: str | None = None  # of the values
-    instead: str = "mm"  # their unit where neither says
+    instead: str = "mm"  # unit of the values where neither caller nor heading states one
     scale: float = 1.0
     offset: float = 0.0  # in the values' unit, after the scale
 
@@ -73,10 +77,10 @@ LENGTHS = Sheet("length")
 def read_table(text: str, sheet: Sheet = LENGTHS, field: str = "motion.table") -> tuple[Samples, float]:
     """Read rows of an angle and a value: angles become radians of the cam, values mm, rad, N or N m.
 
-    Also returns the unit of the last place that any value shows, by the scale. `kin.read.rows` has how columns are
-    parted. Empty lines, lines that start with # and headings are passed over; units of headings are taken. Raises
-    TableError with the line of what is no row, and IntentError for a text without rows, columns that are not there or
-    not one, and units that contradict the heading's.
+    Also returns the size of one unit in the last decimal that any value shows, after the scale, in the values' unit.
+    Empty lines, lines that start with # and headings are passed over; units of headings are taken. `field` names the
+    table in errors. Raises TableError, with the line, for a row that is no angle and value; IntentError for a text
+    without rows, columns that are missing or ambiguous, and units that contradict the heading or the quantity.
     """
     try:
         rows = read_rows(text)
@@ -100,7 +104,7 @@ def read_table(text: str, sheet: Sheet = LENGTHS, field: str = "motion.table") -
 
 
 def _columns(rows: Rows, sheet: Sheet, field: str) -> tuple[int, int]:
-    """Places of the columns of the angle and of the value."""
+    """Places of the columns of the angle and of the value, from 0."""
     width, names = rows.columns, rows.heading
     if sheet.columns is not None:
         first, second = (_place(column, names, width, f"{field}.columns") for column in sheet.columns)
@@ -197,7 +201,10 @@ def _units(rows: Rows, sheet: Sheet, places: tuple[int, int], field: str) -> tup
 
 
 def _rounded(angles: Array, half: float) -> float:
-    """Half of the last digit of angles that are even but for it, as 6.7 and 13.3 are; 0 of others."""
+    """Rounding of angles (n,): `half` a unit of their last digit if they are evenly spaced to within it, else 0.
+
+    So are 0, 6.7, 13.3 and 20. Exact spacing needs no rounding: 0.
+    """
     if len(angles) < _FEW or not np.isfinite(angles).all():
         return 0.0
     off = np.abs(angles - np.linspace(angles[0], angles[-1], len(angles))).max()
@@ -205,6 +212,6 @@ def _rounded(angles: Array, half: float) -> float:
 
 
 def _places(cell: str) -> int:
-    """Decimal places that a number shows."""
+    """Decimal places that a number shows, fewer by its exponent: 1 for 1.25e1."""
     mantissa, _, exponent = cell.lower().replace(",", ".").partition("e")
     return len(mantissa.partition(".")[2]) - int(exponent or 0)

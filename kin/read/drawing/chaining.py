@@ -33,7 +33,7 @@ SLANT = 0.5370795
 
 
 class Loop(NamedTuple):
-    """Runs (k,) in order round a closed loop, which of them are taken backwards (k,), and the widest gap in it."""
+    """Runs (k,) in order round a closed loop, by number, which of them run backwards (k,), and the widest gap, mm."""
 
     runs: Indices
     backwards: NDArray[np.bool_]
@@ -43,8 +43,9 @@ class Loop(NamedTuple):
 def close_pairs(points: Array, tolerance: float, path: Path | None = None) -> tuple[Indices, Indices]:
     """Pairs i, j (k,), (k,) of points (n, m) no farther apart than `tolerance` in any coordinate; each pair once.
 
-    Raises ReadError for those of a file, `path`, where more than `MOST_TOGETHER` lie together.
+    Raises ReadError, if `path` names their file, where more than `MOST_TOGETHER` points lie together.
     """
+    # pairs that are near are near along a slanted direction too: only these candidates are compared in full
     direction = np.cos(SLANT * np.arange(1, points.shape[1] + 1) ** 2)
     along = points @ direction
     order = np.argsort(along, kind="stable")
@@ -52,7 +53,7 @@ def close_pairs(points: Array, tolerance: float, path: Path | None = None) -> tu
     rounding = 8.0 * np.finfo(float).eps * float(np.abs(along).max(initial=0.0))
     reach = tolerance * float(np.abs(direction).sum()) + rounding
     first, second = [order[:0]], [order[:0]]
-    step = 1
+    step = 1  # of the pairs compared, in the order along the direction
     candidates = np.arange(len(order))
     while True:
         candidates = candidates[candidates + step < len(order)]
@@ -70,14 +71,14 @@ def close_pairs(points: Array, tolerance: float, path: Path | None = None) -> tu
 
 
 def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some: bool = False) -> list[Loop]:
-    """Join runs into closed loops: runs with these starts and ends (n, 2), where ends lie within `gap` of each other.
+    """Join runs, whose starts and ends are (n, 2), mm, into closed loops where ends lie within `gap` of each other.
 
-    Ends within `same` are one point. A gap smaller than the rounding of the ends themselves counts as that. Raises
-    ReadError: "branch" where more than two ends meet, "gap" or "open" where an end finds no partner; with `some` such a
-    chain is left out.
+    Ends within `same`, mm, are one point and are joined first. A gap below the rounding of the coordinates is raised to
+    it. Raises ReadError: "branch" where more than two ends meet, "range" where very many do, "gap" or "open" where an
+    end finds no partner; with `some` an open chain is left out instead.
     """
     count = len(start)
-    ends = np.concatenate([start, end])  # end k of run k % count
+    ends = np.concatenate([start, end])  # of run k: its start is number k, its end number k + count
     gap = max(gap, ROUNDING * float(np.abs(ends).max()))
     partner = np.full(2 * count, -1, dtype=np.intp)
     closed = np.flatnonzero((np.abs(start - end) <= min(same, gap)).all(axis=1))
@@ -88,6 +89,7 @@ def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some
     free = np.flatnonzero(partner < 0)
     if free.size and not some:
         raise opening(free, ends, gap, path)
+    # runs of open chains are marked from their free ends on, and so left out
     follow = partner.tolist()
     seen = bytearray(count)
     for opened in free.tolist():
@@ -95,6 +97,7 @@ def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some
         while at >= 0:
             seen[at % count] = 1
             at = follow[at + count if at < count else at - count]
+    # each loop is followed from its first run: where a run leaves at one end, its partner enters the next run
     chains = []
     for first in range(count):
         if seen[first]:
@@ -116,9 +119,10 @@ def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some
 
 
 def join(free: Indices, ends: Array, tolerance: float, partner: Indices, path: Path) -> None:
-    """Write into `partner` (m,), for each of the `free` ends (k,), the one other free end within `tolerance` of it, mm.
+    """Write into `partner` (m,) the number of the other free end within `tolerance`, mm, of each `free` end (k,).
 
-    `ends` are (m, 2), mm. Raises ReadError "branch" where more than two of them meet.
+    `ends` are (m, 2), mm; an end without such a partner is left as it is. Raises ReadError "branch" where more than two
+    free ends meet, "range" where very many do.
     """
     i, j = close_pairs(ends[free], tolerance, path)
     met = np.bincount(np.concatenate([i, j]), minlength=len(free))
@@ -131,7 +135,10 @@ def join(free: Indices, ends: Array, tolerance: float, partner: Indices, path: P
 
 
 def opening(free: Indices, ends: Array, gap: float, path: Path) -> ReadError:
-    """Return the error for ends without a partner: the widest of the openings, each taken to the nearest other end."""
+    """Return the error for `free` ends (k,): the widest opening from one of them to the nearest other one.
+
+    `ends` are (m, 2), mm; `gap`, mm, is what is permitted. The first MOST_SHOWN free ends are looked at.
+    """
     points = ends[free]
     shown = points[:MOST_SHOWN]
     apart = np.hypot(*np.moveaxis(shown[:, None] - points[None], 2, 0))

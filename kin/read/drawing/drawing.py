@@ -37,9 +37,10 @@ REFERENCE = frozenset({"REFERENCE", "TOOLPATH", "DEFPOINTS"})
 
 
 class Fault(NamedTuple):
-    """Something that should not be in a drawing for a machine, though a contour could be read: kind, entity, place, mm.
+    """Something that should not be in a drawing for a machine, though a contour could be read, and its place, mm.
 
-    kind: "zero-length" (left out), "duplicate" (of another entity; left out), "overlap" (only some of its pieces are).
+    kind: "zero-length" (left out), "duplicate" (of another entity; left out), "overlap" (only some of its pieces are
+    drawn twice; it stays), "short" (no longer than the gap that the caller permits; it stays).
     """
 
     kind: str
@@ -68,11 +69,11 @@ class Drawing(Nest):
     widest_gap      widest gap between entities joined to the outer contour, mm
     layers          layers that the contour and the holes were taken from
     aside           what was not read: reference geometry, text, other layers
-    faults          zero-length and duplicate entities
-    short           pieces no longer than a gap that was asked for
-    openings        what was said of ends that do not meet, though most could be read
-    version         of DXF, such as "AC1024", or "SVG"
-    engraved        what is engraved, counter-clockwise, if it was asked for
+    faults          zero-length, duplicate and overlapping entities
+    short           pieces no longer than the gap that the caller permits; empty where the caller states no gap
+    openings        messages on ends that do not meet, where a contour could be read all the same
+    version         of DXF, such as "AC1024", or "SVG" or "STEP"
+    engraved        closed chains on the layer ENGRAVE, counter-clockwise, if the caller wants them
     """
 
     units_mm: float | None
@@ -105,16 +106,18 @@ def drawing_of(
     *,
     version: str,
 ) -> Drawing:
-    """Join what is to be cut, and what is engraved, in drawing units of `unit` mm, to the contours of a drawing in mm.
+    """Join the entities to cut, `curves`, and to engrave, `marks`, to the contours of a drawing, mm.
 
-    Heights may differ by as much as the gap. Gaps up to `options.bridged` are reported among `openings`, as is an open
-    chain within the others; without it they raise. Raises ReadError for nothing to cut, too many pieces, more than one
-    plane, and what is not one closed contour with holes.
+    They are in units of `unit` mm; without a unit the drawing stays in theirs. Heights may differ by as much as the
+    default gap. Gaps up to `options.bridged` and open chains within the contour are reported among `openings`; without
+    `bridged` they raise. Raises ReadError for entities of no length alone, too many pieces, more than one plane, and
+    what is not one closed contour with holes.
     """
     gap, bridged = options.gap, options.bridged
     scale = 1.0 if unit is None else unit
     if unit is None:
         gap, bridged = None if gap is None else gap / options.unstated, bridged / options.unstated
+    # pieces in mm, and the distances within which ends are one or are joined
     pieces, run = gathered(curves.shapes)
     demand_few_pieces(len(run), path)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
@@ -126,6 +129,7 @@ def drawing_of(
         lines = lines.enlarged(scale) if scale != 1.0 else lines
         scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, (gap, usual, same), path))
     demand_one_plane(np.concatenate([s.heights for s in curves.shapes]) * scale, usual, path)
+    # pieces of no length and pieces drawn twice are left out, the rest is joined and nested
     keep, faults = without_faults(pieces, run, curves, same, path)
     if not keep.any():
         raise ReadError("empty", "all entities to cut are of zero length", path)
@@ -163,7 +167,7 @@ def drawing_of(
 
 
 def gathered(shapes: list[Shape]) -> tuple[Pieces, Indices]:
-    """Pieces of all the shapes, in order, and the index of the shape that each belongs to (n,), rising."""
+    """Pieces of all the shapes, in order, and the index of the shape that each piece belongs to (n,), rising."""
     numbers = np.arange(len(shapes))
     chords, arcs = np.concatenate([s.chords for s in shapes]), np.concatenate([s.arcs for s in shapes])
     unrolled = Beziers.joined([s.beziers for s in shapes]).unrolled()
@@ -185,14 +189,14 @@ def gathered(shapes: list[Shape]) -> tuple[Pieces, Indices]:
 
 
 def closeness(pieces: Pieces) -> tuple[float, float]:
-    """Two distances, mm: within the first points are the same, within the second ends are joined by default."""
+    """Two distances, mm: within the first points are one, within the second ends are joined by default."""
     size = extent(pieces)
     same = max(min(SAME_POINT, SAME_SHARE * size), ROUNDING * float(np.abs(pieces.start).max()))
     return same, max(min(GAP, GAP_SHARE * size), same)
 
 
 def demand_one_plane(heights: Array, most: float, path: Path) -> None:
-    """Raise ReadError where heights (n,) differ by more than `most`."""
+    """Raise ReadError where heights (n,) differ by more than `most`, in the same unit."""
     if np.ptp(heights) > most:
         message = f"the entities do not lie in one plane: heights from {heights.min():g} to {heights.max():g}"
         raise ReadError("unsupported", message, path)
@@ -210,9 +214,9 @@ def without_faults(
 ) -> tuple[NDArray[np.bool_], list[Fault]]:
     """Which pieces (n,) to keep, and the faults: pieces of no length, and pieces drawn twice, whichever way round.
 
-    Pieces no longer than `same`, mm, have no direction to speak of; those whose ends and middles agree to that are
-    drawn twice. An entity all of whose pieces are drawn by entities before it is left out. Where only some are, the
-    pieces stay.
+    `run` (n,) is the entity of each piece. Pieces no longer than `same`, mm, have no length; pieces whose ends and
+    middles agree to `same` are drawn twice. An entity is left out if all its pieces are drawn before it, and stays if
+    only some are. Raises ReadError where very many pieces are drawn over one another.
     """
     keep = reach(pieces) > same
     faults = [fault("zero-length", pieces, int(k), run, curves) for k in np.flatnonzero(~keep)]
@@ -237,7 +241,7 @@ def without_faults(
 
 
 def fault(kind: str, pieces: Pieces, piece: int, run: Indices, curves: CutEntities) -> Fault:
-    """Return a Fault at the start of a piece."""
+    """Return a Fault at the start of the piece numbered `piece`; `run` (n,) is the entity of each piece."""
     x, y = pieces.start[piece].tolist()
     return Fault(kind, curves.names[run[piece]], curves.layers[run[piece]], x, y)
 
@@ -256,7 +260,7 @@ def reach(pieces: Pieces) -> Array:
 
 
 class Chained(NamedTuple):
-    """A closed contour, the entities it is made of (k,), and the widest gap between them, mm."""
+    """A closed contour, the numbers of the entities it is made of (k,), and the widest gap between them, mm."""
 
     contour: Contour
     entities: Indices
@@ -274,12 +278,13 @@ Closeness: TypeAlias = tuple[float, float, float]
 def chain_most(
     pieces: Pieces, run: Indices, near: Closeness, path: Path, bridged: float
 ) -> tuple[list[Chained], tuple[str, ...]]:
-    """Contours out of pieces whose runs (n,), rising, are joined end to end, and in words what is open.
+    """Contours out of pieces whose runs (n,), rising, are joined end to end, and messages on what is open.
 
-    Gaps up to `bridged`, mm, are joined too, and open chains within the rest are left out. Raises ReadError for a wider
-    gap, an open outermost contour, and more than two ends that meet.
+    With `bridged` above 0, mm, gaps up to it are joined too, and chains that stay open are left out. Raises ReadError
+    for an open chain without it, an open outermost contour, and more than two ends that meet.
     """
     gap, usual, same = near
+    # the gap grows to the widest opening met until all is closed; beyond `bridged`, open chains are left out
     width, opened = 0.0, None
     while True:
         some = width > bridged
@@ -299,9 +304,11 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
     """Contours out of pieces whose runs (n,), rising, are joined end to end.
 
     With `some` open chains are left out, where a contour goes round them. Raises ReadError: "branch" where more than
-    two ends meet, "gap" or "open" where an end finds no partner or the outermost contour is open.
+    two ends meet, "gap" or "open" where an end finds no partner or the outermost contour is open, "range" for too many
+    contours.
     """
     gap, usual, same = near
+    # first piece and number of pieces of each run
     first = np.flatnonzero(np.diff(run, prepend=-1))
     count = np.diff(first, append=len(run))
     made = []
@@ -310,6 +317,7 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
     closed = np.concatenate([np.empty(0, dtype=np.intp), *(loop.runs for loop in rings)])
     if some and not outermost_closed(pieces, np.isin(np.cumsum(np.diff(run, prepend=-1) > 0) - 1, closed)):
         raise ReadError("open", "the outermost contour is open", path)
+    # pieces of each loop in order, those of runs taken backwards from last to first and turned round
     for loop in rings:
         many, back = count[loop.runs], loop.backwards
         owner = np.repeat(np.arange(len(many)), many)
@@ -322,7 +330,7 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
 
 
 def outermost_closed(pieces: Pieces, closed: Mask) -> bool:
-    """Whether the pieces of closed loops (n,) reach farther than all others on every side."""
+    """Whether the pieces of closed loops, marked in `closed` (n,), reach farther than all others on every side."""
     if not closed.any() or closed.all():
         return bool(closed.any())
     every = np.arange(len(pieces))
@@ -332,7 +340,7 @@ def outermost_closed(pieces: Pieces, closed: Mask) -> bool:
 
 
 def with_lines(pieces: Pieces, usual: float) -> Pieces:
-    """Return the pieces of a loop with a line wherever an end lies farther than `usual` from the next start."""
+    """Return the pieces of a loop with a line wherever an end lies farther than `usual`, mm, from the next start."""
     following = np.roll(pieces.start, -1, axis=0)
     apart = np.flatnonzero(np.hypot(*(following - pieces.end).T) > usual)
     if not apart.size:
@@ -343,7 +351,7 @@ def with_lines(pieces: Pieces, usual: float) -> Pieces:
 
 
 def closed_up(pieces: Pieces, same: float) -> Pieces:
-    """Return the pieces of a loop, ends that lie within `same` of the next start set to it."""
+    """Return the pieces of a loop, ends that lie within `same`, mm, of the next start set to it."""
     following = np.roll(pieces.start, -1, axis=0)
     near = np.abs(following - pieces.end).max(axis=1, keepdims=True) <= same
     return replace(pieces, end=np.where(near, following, pieces.end))

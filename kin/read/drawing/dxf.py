@@ -64,8 +64,8 @@ def read_dxf(path: Path, options: DrawingOptions) -> Drawing:
     layers but those of reference geometry, without what has a line type with dashes, as centre lines and hidden edges
     have: outlines are continuous (ISO 128). The outermost closed chain is the contour, those inside it are holes.
 
-    Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
-    lines, arcs and splines in one plane, with the place and the size of the gap.
+    Raises OSError where the file cannot be read; ReadError for a damaged or too large file, an unknown unit, and, with
+    the place and the size of a gap, a contour that is not one closed chain of lines, arcs and splines in one plane.
     """
     raw = contents(path, "dxf")
     document = parsed(raw, path)
@@ -79,10 +79,7 @@ def read_dxf(path: Path, options: DrawingOptions) -> Drawing:
 
 @contextmanager
 def damage_reported(path: Path) -> Iterator[None]:
-    """Turn what damaged text causes inside ezdxf into a ReadError.
-
-    It can surface anywhere there, as any of DAMAGE. To the caller they all mean the same; the cause stays attached.
-    """
+    """Turn the errors that damaged text causes inside ezdxf, any of DAMAGE, into a ReadError that has them as cause."""
     prepare_home()
     from ezdxf.lldxf.const import DXFError
 
@@ -101,7 +98,7 @@ def damage_reported(path: Path) -> Iterator[None]:
 
 
 def parsed(raw: bytes, path: Path) -> Document:
-    """Parse the bytes of a DXF file by ezdxf. Raises ReadError for a file that is empty, binary or cut short."""
+    """Parse the bytes of a DXF file by ezdxf; raises ReadError for an empty, binary, cut short or damaged file."""
     if not raw.strip():
         raise ReadError("empty", "the file is empty", path)
     if raw.startswith(BINARY_MARK):
@@ -139,7 +136,7 @@ def unit_of(document: Document, head: bytes, path: Path) -> float | None:
 
 
 class Drawn(NamedTuple):
-    """An entity, its layer, its name, and the map of the blocks round it: of the plan, and z to rise + scale z.
+    """An entity, its layer, its name, and how the blocks round it place it: x and y by `to`, z at `rise` + `scale` z.
 
     What is drawn on layer 0 of a block stands on the layer where the block is inserted.
     """
@@ -160,7 +157,8 @@ class Drawn(NamedTuple):
 def everything(document: Document, path: Path) -> list[Drawn]:
     """List the entities of the model space, and in place of each INSERT those of its block, in order.
 
-    Raises ReadError for a block that is not there or lies in another file, and beyond the bounds.
+    Raises ReadError for a block that is not there, lies in another file or is placed unsoundly, and for blocks too deep
+    or of too many entities.
     """
     entities: list[Drawn] = []
     left = [Drawn(entity, entity.dxf.layer, _name(entity)) for entity in document.modelspace()]
@@ -221,10 +219,13 @@ def _inserted(document: Document, insert: Drawn, path: Path) -> Iterator[Drawn]:
 
 
 def entities_to_cut(document: Document, drawn: list[Drawn], path: Path) -> CutEntities:
-    """Find the entities on the layers to cut, and count the others. Raises ReadError for what cannot be read there."""
-    there = {entity.layer.upper() for entity in drawn if entity.kind in CURVES}
-    by_name = CUT in there
-    wanted = {CUT, *BESIDE} if by_name else there - REFERENCE
+    """Find the entities on the layers to cut, and count the others.
+
+    Raises ReadError for an entity on these layers that is not read, and where there is nothing to cut.
+    """
+    drawn_on = {entity.layer.upper() for entity in drawn if entity.kind in CURVES}
+    by_name = CUT in drawn_on
+    wanted = {CUT, *BESIDE} if by_name else drawn_on - REFERENCE
     dashed = Counter[tuple[str, str]]()
     if not by_name:
         types = [_dashes(document, entity) for entity in drawn]
@@ -237,15 +238,15 @@ def entities_to_cut(document: Document, drawn: list[Drawn], path: Path) -> CutEn
     entities.aside.update(on_paper(document))
     entities.aside.update(dashed)
     if not entities.shapes:
-        others = (
+        listing = (
             ", ".join(f"{n} {kind} on {on}" for (on, kind), n in sorted(entities.aside.items())) or "nothing at all"
         )
-        raise ReadError("empty", f"nothing to cut in the model space; the file holds {others}", path)
+        raise ReadError("empty", f"nothing to cut in the model space; the file holds {listing}", path)
     return entities
 
 
 def _dashes(document: Document, drawn: Drawn) -> str:
-    """Name of the line type of a curve, its own or that of its layer, if it has dashes; else empty."""
+    """Name of a curve's line type, its own or its layer's, if it has dashes; else empty."""
     name = str(drawn.entity.dxf.get("linetype", BY_LAYER))
     if name.upper() == BY_LAYER and drawn.layer in document.layers:
         name = str(document.layers.get(drawn.layer).dxf.linetype)
@@ -256,13 +257,19 @@ def _dashes(document: Document, drawn: Drawn) -> str:
 
 
 def entities_engraved(drawn: list[Drawn], path: Path) -> CutEntities:
-    """The entities on the engraving layer; empty unless something is drawn on the layer CUT."""
+    """The entities on the engraving layer; empty unless something is drawn on the layer CUT.
+
+    Raises ReadError for an entity on it that is not read.
+    """
     by_name = any(entity.layer.upper() == CUT for entity in drawn)
     return gather(drawn, {ENGRAVED} if by_name else set(), path)
 
 
 def gather(drawn: list[Drawn], layers: set[str], path: Path) -> CutEntities:
-    """Read the entities on some layers, and count the others; raises ReadError for one on them that is not read."""
+    """Read the entities on these layers, named in capitals, and count the others.
+
+    Raises ReadError for an entity on the layers that is not read.
+    """
     entities = CutEntities([], [], [], Counter())
     for item in drawn:
         if item.layer.upper() not in layers or item.kind in NOTES:

@@ -1,4 +1,8 @@
-"""DXF entities as numbers, in the plane and unit of the drawing: lines and arcs as rows, all else as Bezier pieces."""
+"""DXF entities as numbers, in the plane and unit of the drawing: lines and arcs as rows, all else as Bezier pieces.
+
+Readers of entities raise UnfitError for numbers that are missing, not finite or too large, and those of arcs, polylines
+and ellipses for an extrusion that is not along z.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +18,7 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
 
-# Nothing of these is ever cut: they are listed, not refused.
+# Entities that are never cut: they are listed, not refused.
 NOTES = frozenset({"TEXT", "MTEXT", "ATTDEF", "DIMENSION", "LEADER", "MULTILEADER", "POINT", "VIEWPORT", "TOLERANCE"})
 # Slope, and relative size, that is still rounding.
 LEVEL = 1e-9
@@ -51,7 +55,7 @@ def line(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def arc(entity: Any) -> Shape:  # noqa: ANN401
-    """Return an ARC, counter-clockwise from its start angle to its end angle; equal angles make the full circle."""
+    """Return the shape of an ARC, counter-clockwise from start angle to end angle; equal angles make a full circle."""
     needs(entity, "center", "radius", "start_angle", "end_angle")
     first, last = entity.dxf.start_angle, entity.dxf.end_angle
     check(np.array([first, last]))
@@ -66,10 +70,9 @@ def circle(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def circular(entity: Any, angles: list[float], sweep: float) -> Shape:  # noqa: ANN401
-    """Arcs of one circle over `sweep`, rad, each from one of `angles`, rad.
+    """Arcs of the entity's circle over `sweep`, rad, one from each of `angles`, rad.
 
-    Raises UnfitError without a radius above 0, for an extrusion that is not along z, and for numbers that are not
-    finite or too large.
+    Raises UnfitError without a radius above 0 too.
     """
     side = facing(entity)
     (x, y, z), radius = entity.dxf.center, entity.dxf.radius
@@ -80,7 +83,7 @@ def circular(entity: Any, angles: list[float], sweep: float) -> Shape:  # noqa: 
 
 
 def lwpolyline(entity: Any) -> Shape:  # noqa: ANN401
-    """Return an LWPOLYLINE, from the packed array of its vertices."""
+    """Return the shape of an LWPOLYLINE."""
     rows = np.asarray(entity.lwpoints.values, dtype=np.float64).reshape(-1, 5)
     return polyline_of(entity, rows[:, :2], rows[:, 4], entity.closed, entity.dxf.elevation)
 
@@ -99,7 +102,7 @@ def polyline(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def polyline_of(entity: Any, points: Array, bulges: Array, closed: bool, heights: Any) -> Shape:  # noqa: ANN401
-    """Chords between points (n, 2) with bulges (n,), back to the first if closed; raises UnfitError for one point."""
+    """Chords between points (n, 2) with bulges (n,), back to the first if closed; UnfitError for fewer than two."""
     side = facing(entity)
     if len(points) < 2:
         raise UnfitError("syntax", f"a polyline of {len(points)} vertices")

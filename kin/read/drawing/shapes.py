@@ -23,13 +23,19 @@ ALIKE = 1e-12
 
 
 class UnfitError(CamgeoError):
-    """An entity that is no part of a plane contour: a reason out of read_error.REASONS, and what is wrong with it."""
+    """An entity that is no part of a plane contour.
+
+    Its arguments are a reason, a key of `kin.read.errors.REASONS`, and a text of what is wrong.
+    """
 
 
 class Shape(NamedTuple):
-    """One entity: chords (k, 5) of x, y, x', y', bulge; arcs (k, 5) of x, y, radius, angle, sweep; or Bezier pieces.
+    """One entity, in drawing units: chords, arcs or Bezier pieces, in order along it; two of the three are empty.
 
-    One of the three is filled, in order along the entity. Heights (h,) above the plane are kept to be compared.
+    chords   (k, 5): x and y of start and end, and the bulge, tan(sweep / 4), 0 for a line
+    arcs     (k, 5): x and y of the centre, radius, start angle and sweep, rad, counter-clockwise positive
+    beziers  pieces of splines and ellipses
+    heights  (h,) above the plane, to be compared
     """
 
     chords: Array
@@ -44,7 +50,7 @@ class Shape(NamedTuple):
 
 
 def shape(*, chords: Any = (), arcs: Any = (), beziers: Beziers | None = None, heights: Any) -> Shape:  # noqa: ANN401
-    """Return a Shape, its numbers checked to be finite and of a size that can be computed with."""
+    """Return a Shape; raises UnfitError for numbers, but for those of `beziers`, that are not finite or too large."""
     made = Shape(
         np.asarray(chords, dtype=np.float64).reshape(-1, 5),
         np.asarray(arcs, dtype=np.float64).reshape(-1, 5),
@@ -57,7 +63,7 @@ def shape(*, chords: Any = (), arcs: Any = (), beziers: Beziers | None = None, h
 
 
 def check(*numbers: Array, limit: float = LARGEST) -> None:
-    """Raise UnfitError for numbers that are not finite or too large."""
+    """Raise UnfitError for numbers that are not finite or whose size is above `limit`."""
     for array in numbers:
         bad = array[~(np.abs(array) <= limit)]
         if bad.size:
@@ -66,13 +72,16 @@ def check(*numbers: Array, limit: float = LARGEST) -> None:
 
 
 def check_degree(degree: int) -> None:
-    """Raise UnfitError for a degree of a B-spline that is not read."""
+    """Raise UnfitError for a degree of a B-spline that is below 1 or above HIGHEST_DEGREE."""
     if not 1 <= degree <= HIGHEST_DEGREE:
         raise UnfitError("unsupported", f"it is of degree {degree}; up to {HIGHEST_DEGREE} is read")
 
 
 def check_spline(degree: int, knots: Array, weight: Array, count: int) -> None:
-    """Raise UnfitError where knots and weights do not fit `count` control points of a B-spline, or tear it apart."""
+    """Raise UnfitError where a B-spline's numbers do not fit together or tear it apart.
+
+    It has a degree, knots (k,), weights (n,) and `count` control points; k = count + degree + 1, n = count.
+    """
     if len(knots) != count + degree + 1 or count <= degree or len(weight) != count:
         numbers = f"{count} control points, {len(knots)} knots, {len(weight)} weights, degree {degree}"
         raise UnfitError("syntax", f"these numbers do not fit together: {numbers}")
@@ -113,7 +122,10 @@ class Affine(NamedTuple):
         return self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f
 
     def scale_and_sense(self) -> tuple[float, float]:
-        """Scale of the map and its sense, -1 for a mirror; raises UnfitError for one that makes ellipses of circles."""
+        """Scale of the map, and its sense, -1 for a mirror and else 1.
+
+        Raises UnfitError for a map that makes ellipses of circles.
+        """
         scale, sense = math.hypot(self.a, self.b), 1.0 if self.a * self.d - self.b * self.c > 0.0 else -1.0
         off = max(abs(self.c + sense * self.b), abs(self.d - sense * self.a))
         if not 0.0 < scale < math.inf or not off <= ALIKE * scale:
@@ -122,12 +134,15 @@ class Affine(NamedTuple):
 
     @staticmethod
     def rotation(degrees: float) -> Affine:
-        """Return the rotation by an angle, counter-clockwise where y points up."""
+        """Return the rotation by `degrees`, counter-clockwise where y points up."""
         c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
         return Affine(c, s, -s, c)
 
     def moved(self, drawn: Shape, rise: float = 0.0, scale: float = 1.0) -> Shape:
-        """Shape under the map, each height z at `rise` + `scale` z; raises UnfitError if it makes ellipses of arcs."""
+        """Shape under the map, each height z at `rise` + `scale` z.
+
+        Raises UnfitError if the map makes ellipses of arcs, or numbers that are too large.
+        """
         matrix, shift = np.array([[self.a, self.b], [self.c, self.d]]), np.array([self.e, self.f])
         chords, arcs, beziers = drawn.chords.copy(), drawn.arcs.copy(), drawn.beziers
         if len(chords):

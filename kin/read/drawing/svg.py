@@ -61,11 +61,12 @@ class _Drawn(NamedTuple):
 def read_svg(path: Path, options: DrawingOptions) -> Drawing:
     """Read the outer contour and the holes that an SVG file gives to cut.
 
-    Groups named as the layers of a DXF (by id, or by Inkscape's label) are those; what stands in none of them is cut
-    too, and where nothing stands on CUT all elements are but those on REFERENCE. What is hidden is left out.
+    Groups are layers if their id, or Inkscape's label, is the name of one in a DXF. Cut are CUT, BORE, HOLES, MARK,
+    GROOVE_INNER, GROOVE_OUTER and what stands on no layer; where nothing stands on CUT, all but reference geometry.
+    What is not displayed is left out.
 
-    Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
-    lines, arcs of circles and cubics, and for elements and transforms that are not read.
+    Raises OSError where the file cannot be read; ReadError for a damaged or too large file, elements, transforms and
+    units that are not read, and a contour that is not one closed chain of lines, arcs of circles and cubics.
     """
     root = _parsed(contents(path, "svg"), path)
     unit = unit_of(root, path)
@@ -75,8 +76,8 @@ def read_svg(path: Path, options: DrawingOptions) -> Drawing:
     wanted = {CUT, *BESIDE, ""} if by_name else {element.layer for element in elements} - REFERENCE
     entities = _gathered(elements, wanted, path)
     if not entities.shapes:
-        others = ", ".join(f"{n} {kind} on {on or 'no layer'}" for (on, kind), n in sorted(entities.aside.items()))
-        raise ReadError("empty", f"nothing to cut; the file holds {others or 'nothing at all'}", path)
+        listing = ", ".join(f"{n} {kind} on {on or 'no layer'}" for (on, kind), n in sorted(entities.aside.items()))
+        raise ReadError("empty", f"nothing to cut; the file holds {listing or 'nothing at all'}", path)
     marks = _gathered(elements, {ENGRAVED} if by_name else set(), path) if options.engraved else None
     return drawing_of(entities, marks, unit, path, options, version="SVG")
 
@@ -99,9 +100,10 @@ def _parsed(raw: bytes, path: Path) -> Element:
 
 
 def unit_of(root: Element, path: Path) -> float | None:
-    """Mm in a unit of the drawing, by the page's width and height and its viewBox; None if no width is stated.
+    """Mm in a unit of the drawing, by the page's width and height and its viewBox; None if neither size is stated.
 
-    Raises ReadError for sizes that are not read, a unit out of range, and units that differ along width and height.
+    Without a viewBox a unit is a pixel of CSS. Raises ReadError for sizes that are not read, a unit out of range, and
+    units that differ along width and height.
     """
     sizes = [_length(root.get(name), path) for name in ("width", "height")]
     box = root.get("viewBox")
@@ -121,7 +123,7 @@ def unit_of(root: Element, path: Path) -> float | None:
 
 
 def _length(text: str | None, path: Path) -> float | None:
-    """Length in mm, None if it is left out or a share of what is around; raises ReadError if it is not read."""
+    """Length in mm, None if it is left out, automatic or in percent; raises ReadError if it is not read."""
     if text is None or text.strip() == "auto" or text.strip().endswith("%"):
         return None
     match = LENGTH.fullmatch(text)
@@ -131,7 +133,7 @@ def _length(text: str | None, path: Path) -> float | None:
 
 
 def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 0) -> Iterator[_Drawn]:
-    """Find all elements that draw, in order."""
+    """Find all elements that may draw, in order; raises ReadError for styles and transforms that are not read."""
     for element in parent:
         tag = element.tag if isinstance(element.tag, str) else ""  # not a comment
         kind = tag.removeprefix(SVG)
@@ -144,19 +146,19 @@ def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 
             continue
         if "transform" in style:
             raise ReadError("unsupported", f"{kind} is transformed by its style", path)
-        here = to.after(_transform(element.get("transform", ""), path))
+        placing = to.after(_transform(element.get("transform", ""), path))
         if kind != "g":
-            yield _Drawn(element, layer, here)
+            yield _Drawn(element, layer, placing)
             continue
         if depth == DEEPEST:
             raise ReadError("unsupported", f"groups within groups, {DEEPEST} deep", path)
         names = (element.get(LABEL, "").upper(), element.get("id", "").upper())
         own = next((name for name in names if name in LAYERS), layer)
-        yield from _elements(element, own, here, path, depth + 1)
+        yield from _elements(element, own, placing, path, depth + 1)
 
 
 def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> CutEntities:
-    """Read the elements on some layers, and count the others."""
+    """Read the elements on these layers, and count the others; raises ReadError for an element that is not read."""
     entities = CutEntities([], [], [], Counter())
     for number, (element, layer, to) in enumerate(elements, start=1):
         kind = element.tag.removeprefix(SVG)
@@ -179,7 +181,7 @@ def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> CutEntiti
 
 
 def _circle(element: Element, to: Affine) -> Shape:
-    """Return a circle as two halves, counter-clockwise."""
+    """Return a circle as two halves, counter-clockwise; raises UnfitError for unsound numbers and ellipses."""
     x, y, radius = (_plain(element.get(name, "0")) for name in ("cx", "cy", "r"))
     if not radius > 0.0:
         raise UnfitError("range", f"its radius is {radius:g}")
@@ -201,7 +203,7 @@ def _numbers(text: str) -> list[float] | None:
 
 
 def _transform(text: str, path: Path) -> Affine:
-    """Read the attribute transform: its steps, the last of which is done first."""
+    """Map of the attribute transform, whose last step is done first; raises ReadError for steps that are not read."""
     total, at = Affine(), 0
     while at < len(text.rstrip()):
         step = STEP.match(text, at)

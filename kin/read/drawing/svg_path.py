@@ -24,7 +24,7 @@ COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "A": 7, "C": 6, "Z": 0}
 
 
 class Loose(NamedTuple):
-    """One letter of a path, absolute, with its numbers, from where the pen stands."""
+    """One piece of a path: its letter, where the pen stands before it, and its numbers in absolute coordinates."""
 
     letter: str
     start: tuple[float, float]
@@ -37,10 +37,10 @@ class Loose(NamedTuple):
 
 
 def path_of(text: str, to: Affine) -> list[Shape]:
-    """Shapes of path data under a map, one a stretch of one kind; straight closing lines among them.
+    """Shapes of path data under a map, one for each stretch of lines and arcs or of cubics; closing lines are drawn.
 
     Letters M, L, H, V, A, C and Z are read, absolute and relative; arcs of circles only. Raises UnfitError for anything
-    else.
+    else, too many pieces, and numbers that are too large.
     """
     shapes: list[Shape] = []
     chords: list[tuple[float, ...]] = []
@@ -56,6 +56,7 @@ def path_of(text: str, to: Affine) -> list[Shape]:
         chords.clear()
         cubics.clear()
 
+    # a stretch ends where the pen is lifted, or between lines and cubics
     pen = (0.0, 0.0)
     for count, piece in enumerate(pieces_of(text)):
         if count >= MOST_PIECES:
@@ -75,10 +76,11 @@ def path_of(text: str, to: Affine) -> list[Shape]:
 
 
 def pieces_of(text: str) -> Iterator[Loose]:
-    """Pieces of path data, in absolute numbers; a closing line only where it has a length.
+    """Pieces L, A and C of path data in absolute coordinates; a closing line only where it has a length.
 
     Raises UnfitError for data that do not begin with M, or are not read.
     """
+    # H, V and Z become L; relative numbers are counted from the pen
     pen = first = (0.0, 0.0)
     drawn = False
     for letter, numbers in commands(text):
@@ -108,9 +110,9 @@ def pieces_of(text: str) -> Iterator[Loose]:
 
 
 def commands(text: str) -> Iterator[tuple[str, list[float]]]:
-    """Letters with their numbers; a letter whose numbers are repeated stands for as many, and M for L after the first.
+    """Letters with their numbers; a letter is repeated for each set of numbers, M as L after the first.
 
-    Flags of arcs may stand without a space before what follows them. Raises UnfitError for any other text.
+    Flags of arcs need no space behind them. Raises UnfitError for any other text.
     """
     letter, at, end = "", 0, len(text)
     while at < end:
@@ -140,7 +142,10 @@ VALUE = re.compile(NUMBER)
 
 
 def arguments(text: str, place: int, kind: str) -> tuple[list[float], int]:
-    """Numbers of the letter `kind` from a place in the text on, and where they end; raises UnfitError for others."""
+    """Numbers of the letter `kind` from a place in the text on, and the place behind them.
+
+    Raises UnfitError where a number is missing or infinite.
+    """
     numbers = []
     for k in range(COUNT[kind]):
         gap = GAP.match(text, place)
@@ -158,9 +163,9 @@ def arguments(text: str, place: int, kind: str) -> tuple[list[float], int]:
 def bulge_of(piece: Loose) -> float:
     """Bulge of an arc given by radii, flags and ends, positive where its angle grows (SVG 2, 9.3.8 and B.2).
 
-    The half chord over the radius is the sine of half the sweep. An arc between one point and itself is nothing, one
-    whose radius does not reach across its chord is half a circle: so the standard has it, but a radius short by more
-    than rounding raises UnfitError here, and so do radii of an ellipse.
+    The half chord over the radius is the sine of half the sweep. An arc from a point to itself has the bulge 0. Raises
+    UnfitError for a radius that is short of half the chord by more than rounding, which the standard enlarges, and for
+    radii of an ellipse.
     """
     rx, ry, _, large, forward, x, y = piece.numbers
     if not (rx > 0.0 and abs(rx - ry) <= ALIKE * rx):

@@ -25,7 +25,7 @@ FOLD = np.uint64(31)
 
 
 class WordError(CamgeoError, ValueError):
-    """A word that is no number, by its place among others."""
+    """A word that is no number, by its place among the words, from 0."""
 
     def __init__(self, place: int) -> None:
         super().__init__(f"word {place} is no number")
@@ -33,7 +33,7 @@ class WordError(CamgeoError, ValueError):
 
 
 class EdgeFaults(NamedTuple):
-    """Numbers of edges with one triangle only, with more than two, and with two that run along it the same way."""
+    """Counts of edges with one triangle only, with more than two, and with two that run along it the same way."""
 
     open: int
     crowded: int
@@ -48,7 +48,7 @@ class Mesh:
     corners: Indices
 
     def code(self, a: Indices, b: Indices) -> NDArray[np.int64]:
-        """One number for each ordered pair of corners."""
+        """One number (k,) for each ordered pair of corners a (k,), b (k,), the same for equal pairs."""
         return paired(a, b, len(self.points))
 
     @cached_property
@@ -59,18 +59,18 @@ class Mesh:
 
     @cached_property
     def edge_faults(self) -> EdgeFaults:
-        """Edges that do not belong to exactly two triangles in opposite directions."""
+        """Counts of edges that do not belong to exactly two triangles in opposite directions."""
         start, end = self.edges
         way = start < end
-        both = 2 * np.where(way, self.code(start, end), self.code(end, start)) + way  # the edge, and the way along it
-        both.sort()
-        first, second = both[0 : 2 * (len(both) // 2) : 2], both[1::2]
-        paired = len(both) % 2 == 0 and bool((first + 1 == second).all() and (first % 2 == 0).all())
-        if paired and bool((first[1:] != first[:-1]).all()):
+        codes = 2 * np.where(way, self.code(start, end), self.code(end, start)) + way  # the edge, and the way along it
+        codes.sort()
+        first, second = codes[0 : 2 * (len(codes) // 2) : 2], codes[1::2]
+        all_paired = len(codes) % 2 == 0 and bool((first + 1 == second).all() and (first % 2 == 0).all())
+        if all_paired and bool((first[1:] != first[:-1]).all()):
             return EdgeFaults(0, 0, 0)
-        both = both[both // 2 % (len(self.points) + 1) != 0]  # a corner joined to itself is no edge
-        _, place, count = np.unique(both // 2, return_index=True, return_counts=True)
-        upward = np.add.reduceat(both % 2, place)
+        codes = codes[codes // 2 % (len(self.points) + 1) != 0]  # a corner joined to itself is no edge
+        _, place, count = np.unique(codes // 2, return_index=True, return_counts=True)
+        upward = np.add.reduceat(codes % 2, place)
         single, many, same_way = count == 1, count > 2, (count == 2) & (upward != 1)
         return EdgeFaults(*(int(np.count_nonzero(fault)) for fault in (single, many, same_way)))
 
@@ -86,6 +86,7 @@ class Mesh:
             np.minimum.at(least, roots.ravel(), np.repeat(low, 3))
             while not np.array_equal(further := least[least], least):
                 least = further
+        # the least corner of a body is that of all its triangles by now
         numbers: Indices = np.unique(low, return_inverse=True)[1]
         return numbers
 
@@ -111,7 +112,7 @@ class Mesh:
 
     @cached_property
     def duplicate(self) -> int:
-        """Number of triangles whose corners are those of another one before, in whatever order."""
+        """Number of triangles with the same corners, in any order, as a triangle before."""
         mixed = self.corners.astype(np.uint64) * SPREAD
         mixed = (mixed ^ (mixed >> FOLD)) * SPREAD_AGAIN
         sums = np.sort(mixed[:, 0] + mixed[:, 1] + mixed[:, 2])  # the same in whatever order
@@ -123,7 +124,7 @@ class Mesh:
 
 
 def doubles(words: NDArray[np.bytes_]) -> Array:
-    """Numbers of a file in text form, words (n,), as doubles; raises WordError with the first that is none."""
+    """Numbers (n,) of the words (n,) of a file in text form; raises WordError with the first word that is no number."""
     if b"_" not in words.tobytes():  # Python reads 1_0 as 10
         with suppress(ValueError):
             return words.astype(np.float64)
@@ -139,15 +140,16 @@ def _is_number(word: bytes) -> bool:
 
 
 def welded(corners: NDArray[Real]) -> Mesh:
-    """Return the mesh of triangles (t, 3, 3) whose corners are one where their places are the same, bit for bit."""
+    """Return the mesh of triangles (t, 3, 3), mm: corners are one where their places are the same, bit for bit."""
     points, numbers = weld(corners.reshape(-1, 3))
     return Mesh(points.astype(np.float64), numbers.reshape(-1, 3))
 
 
 def plan_welded(corners: NDArray[Real], bottom: float, top: float) -> Mesh:
-    """Return the same for triangles all of whose corners lie at one of two heights.
+    """Return the mesh of triangles (t, 3, 3), mm, whose corners all lie at the height `bottom` or `top`.
 
-    They are welded as seen from above; corner 2k lies at the bottom and corner 2k + 1 at the top of the same place.
+    Corners are one where they are the same bit for bit as seen from above, at the same height; corner 2k lies at the
+    bottom and corner 2k + 1 at the top of the same place.
     """
     plan, numbers = weld(corners[:, :, :2].reshape(-1, 2))
     points = np.empty((2 * len(plan), 3))
@@ -157,7 +159,7 @@ def plan_welded(corners: NDArray[Real], bottom: float, top: float) -> Mesh:
 
 
 def weld(points: NDArray[Real]) -> tuple[NDArray[Real], Indices]:
-    """Find the distinct ones of points (n, m), bit for bit, and for each point its number among them (n,)."""
+    """Distinct points (k, m) among points (n, m), bit for bit, and for each point its number among them (n,)."""
     columns = [column + points.dtype.type(0.0) for column in points.T]  # -0.0 becomes 0.0
     if points.dtype.itemsize == 4 and len(columns) == 2:
         x, y = (c.view(np.uint32).astype(np.uint64) for c in columns)
@@ -179,7 +181,7 @@ def weld(points: NDArray[Real]) -> tuple[NDArray[Real], Indices]:
 
 
 def hashed_order(columns: list[NDArray[Real]]) -> Indices:
-    """Find an order (n,) in which equal points, given by their coordinates, stand together."""
+    """Find an order (n,) in which equal points stand together; `columns` are their coordinates (n,) along each axis."""
     mixed = np.zeros(len(columns[0]), dtype=np.uint64)
     for column in columns:
         bits = column.view(np.uint32 if column.dtype.itemsize == 4 else np.uint64).astype(np.uint64)

@@ -32,7 +32,7 @@ CORNERS = 3
 
 
 class _Property(NamedTuple):
-    """A property of an element: its name, the type of its numbers, and that of its length if it is a list."""
+    """A property of an element: its name, the type of its numbers, and if it is a list the type of its length."""
 
     name: str
     type: str
@@ -97,14 +97,14 @@ def _header(raw: bytes, path: Path) -> tuple[str, list[_Element], int]:
 
 
 def _elements(elements: list[_Element], path: Path) -> tuple[_Element, _Element]:
-    """Elements of the vertices and of the faces; raises ReadError for other elements, and other properties of these."""
-    there = [element for element in elements if element.number or element.name in {"vertex", "face"}]
-    others = [element.name for element in there if element.name not in {"vertex", "face"}]
-    if others:
-        raise ReadError("unsupported", f"it holds elements {others[0]!r} beside vertices and faces", path)
-    if [element.name for element in there] != ["vertex", "face"]:
+    """Elements of the vertices and of the faces; raises ReadError for other elements, and for properties not read."""
+    kept = [element for element in elements if element.number or element.name in {"vertex", "face"}]
+    unread = [element.name for element in kept if element.name not in {"vertex", "face"}]
+    if unread:
+        raise ReadError("unsupported", f"it holds elements {unread[0]!r} beside vertices and faces", path)
+    if [element.name for element in kept] != ["vertex", "face"]:
         raise ReadError("syntax", "the header lists no vertices and then faces", path)
-    vertex, face = there
+    vertex, face = kept
     axes = {entry.name: entry for entry in vertex.properties if entry.type in {"f4", "f8"} and not entry.length}
     if not {"x", "y", "z"} <= axes.keys() or any(entry.length for entry in vertex.properties):
         raise ReadError("unsupported", "a vertex has no x, y and z of type float or double, or a list", path)
@@ -120,7 +120,11 @@ def _elements(elements: list[_Element], path: Path) -> tuple[_Element, _Element]
 def _of_bytes(
     raw: bytes, order: str, vertex: _Element, face: _Element, path: Path
 ) -> tuple[NDArray[np.float32] | NDArray[np.float64], Indices]:
-    """Vertices (v, 3) and corners of the faces (t, 3) of a binary file."""
+    """Vertices (v, 3) and corners of the faces (t, 3) of a binary file.
+
+    Raises ReadError for too few or too many bytes, and faces that are no triangles.
+    """
+    # a row a vertex, a record a face; the faces that the file has whole are checked before the file's length
     names = [entry.name for entry in vertex.properties]
     row = np.dtype([(f"{k}", order + entry.type) for k, entry in enumerate(vertex.properties)])
     parts: list[tuple[str, str] | tuple[str, str, int]] = []
@@ -131,8 +135,8 @@ def _of_bytes(
     begin, expected = vertex.number * row.itemsize, vertex.number * row.itemsize + face.number * record.itemsize
     if len(raw) < begin:
         raise ReadError("truncated", f"{vertex.number} vertices take {begin} bytes, and {len(raw)} follow", path)
-    there = min(face.number, (len(raw) - begin) // record.itemsize)
-    faces = np.frombuffer(raw, record, count=there, offset=begin)
+    complete = min(face.number, (len(raw) - begin) // record.itemsize)
+    faces = np.frombuffer(raw, record, count=complete, offset=begin)
     _demand_triangles(faces["count"].astype(np.int64), path)
     if len(raw) != expected:
         message = f"{vertex.number} vertices and {face.number} triangles take {expected} bytes, and {len(raw)} follow"
@@ -153,6 +157,7 @@ def _of_text(raw: bytes, vertex: _Element, face: _Element, path: Path) -> tuple[
     if not words or max(map(len, words)) > LONGEST_WORD:
         reason = "syntax" if words else "truncated"
         raise ReadError(reason, "the vertices are missing, or a word is longer than a number", path)
+    # the faces that the text has whole are checked before the number of words
     wide = len(vertex.properties)
     begin = wide * vertex.number
     if len(words) < begin:
@@ -163,8 +168,8 @@ def _of_text(raw: bytes, vertex: _Element, face: _Element, path: Path) -> tuple[
     points = table[:, [names.index(axis) for axis in "xyz"]]
     place = next(k for k, entry in enumerate(face.properties) if entry.length)
     width = len(face.properties) + CORNERS
-    there = min(face.number, (len(words) - begin) // width)
-    rows = _numbers(words[begin : begin + there * width], path).reshape(-1, width)
+    complete = min(face.number, (len(words) - begin) // width)
+    rows = _numbers(words[begin : begin + complete * width], path).reshape(-1, width)
     _demand_triangles(rows[:, place], path)
     expected = begin + face.number * width
     if len(words) != expected:
@@ -189,7 +194,7 @@ def _numbers(words: list[bytes], path: Path) -> NDArray[np.float64]:
 
 
 def _demand_triangles(counts: NDArray[np.int64] | NDArray[np.float64], path: Path) -> None:
-    """Refuse faces of other than three corners: what follows the first stands elsewhere than is thought."""
+    """Raise ReadError for faces of other than three corners: numbers behind the first such face are misread."""
     wrong = np.flatnonzero(counts != CORNERS)
     if wrong.size:
         message = f"face {wrong[0] + 1} has {counts[wrong[0]]:g} corners; triangles alone are read: export it as such"

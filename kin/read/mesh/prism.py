@@ -32,7 +32,7 @@ class Outline(NamedTuple):
 
 
 class Upright(NamedTuple):
-    """A welded mesh, whether it is a prism, and its bottom's outline if it is one with corners at two heights alone."""
+    """A welded mesh, whether it is a prism, and the bottom's outline of a prism with corners at two heights alone."""
 
     mesh: Mesh
     prism: bool
@@ -49,8 +49,8 @@ class Evened(NamedTuple):
 class Walls(NamedTuple):
     """Triangles that lean (k, 4), and those that rounding explains (k, 4).
 
-    `leaning` has their least and greatest height and reach from the axis, mm, and by how much they go inward a mm of
-    height; `slivers` the same three, and by how much they lean, mm.
+    `leaning` has their least and greatest height and reach from the axis, mm, and mm that they go inward per mm of
+    height; `slivers` the same three, and the mm by which they lean.
     """
 
     leaning: Array
@@ -58,21 +58,22 @@ class Walls(NamedTuple):
 
 
 def walls(mesh: Mesh, apart: float) -> Walls:
-    """Tell the triangles that are neither level nor upright within `apart`, mm, to which rounding explains.
+    """Part the triangles that are neither level nor upright into walls that lean, and slivers that rounding explains.
 
-    A place where two sections differ lies, as seen from above, within a triangle between them that is not upright. So
-    where none leans the sections are the same but for slivers no wider than `apart`, whose area in all is no more than
-    `apart` along the mean section: should there be so many that it is, each is one that leans.
+    Slivers are no wider than `apart`, mm, as seen from above. A place where two sections differ lies, as seen from
+    above, within a triangle between them that is not upright. So where none leans the sections are the same but for
+    slivers, whose area in all is no more than `apart` along the mean section; if it is more, all are taken to lean.
     """
+    # twice the areas of triangles as seen from the side and from above; width is the area over the longest side
     x, y, upward = mesh.area_vectors
-    across, z = np.hypot(x, y), np.abs(upward)
+    across, plan_area = np.hypot(x, y), np.abs(upward)
     corners = mesh.points[mesh.corners]
     low, high = corners[:, :, 2].min(axis=1), corners[:, :, 2].max(axis=1)
     side = np.roll(corners, -1, axis=1)[:, :, :2] - corners[:, :, :2]
-    width = z / np.maximum(np.hypot(side[:, :, 0], side[:, :, 1]).max(axis=1), np.finfo(float).tiny)
-    lean = (low < high) & (z > 0.0)
+    width = plan_area / np.maximum(np.hypot(side[:, :, 0], side[:, :, 1]).max(axis=1), np.finfo(float).tiny)
+    lean = (low < high) & (plan_area > 0.0)
     sliver = lean & (width <= apart)
-    if float(z[sliver].sum()) * float(np.ptp(mesh.points[:, 2])) > apart * float(across.sum()):
+    if float(plan_area[sliver].sum()) * float(np.ptp(mesh.points[:, 2])) > apart * float(across.sum()):
         sliver[:] = False
     reach = np.hypot(corners[:, :, 0], corners[:, :, 1]).max(axis=1)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
@@ -83,7 +84,7 @@ def walls(mesh: Mesh, apart: float) -> Walls:
 
 
 def upright(corners: Corners) -> Upright:
-    """Weld triangles (t, 3, 3) that are not all at one height, and tell whether they are a prism, bit for bit."""
+    """Weld triangles (t, 3, 3), mm, that are not all at one height, and find whether they are a prism, bit for bit."""
     z = corners[:, :, 2]
     z_min, z_max = float(z.min()), float(z.max())
     if bool(((z == z_min) | (z == z_max)).all()):
@@ -95,10 +96,10 @@ def upright(corners: Corners) -> Upright:
 
 
 def _outline(mesh: Mesh) -> Outline | None:
-    """Return the outline of the bottom if a mesh between two levels, of `plan_welded`, is a prism; None if it is not.
+    """Return the outline of the bottom if a mesh between two levels, by `plan_welded`, is a prism; None if it is not.
 
-    There are triangles between the levels; each stands upright, with but two corners as seen from above; and their
-    edges at the bottom are the same as those at the top, the other way round.
+    In a prism there are triangles between the levels; each stands upright, with two corners as seen from above; and
+    their edges at the bottom are the same as their edges at the top, the other way round.
     """
     high, plan = (mesh.corners & 1).astype(bool), mesh.corners >> 1
     above = np.count_nonzero(high, axis=1)
@@ -128,11 +129,11 @@ def _walls_upright(mesh: Mesh, z_min: float, z_max: float) -> bool:
 
 
 def evened(corners: Corners) -> Evened | None:
-    """Bring together what only rounding holds apart; None where a place is no single one, or there are steps.
+    """Bring corners of triangles (t, 3, 3), mm, together that only rounding holds apart; None where walls are not so.
 
     Corners that belong above one another differ by twice the `rounding` of either at most, along x and along y; so do
-    the heights of the corners of a face. Each place is taken in the middle of its corners. A place that comes out
-    wider than that is more than one: walls that lean by more than rounding explains stay as they are.
+    the heights of the corners of a face. Each place is moved to the middle of its corners. A place wider than that, and
+    a level face between bottom and top, give None: such walls lean, or have steps.
     """
     apart = 2.0 * rounding(corners)
     distinct_corners, numbers = weld(corners.reshape(-1, 3))
@@ -159,7 +160,7 @@ def evened(corners: Corners) -> Evened | None:
 
 
 def _places(points: Array, apart: float) -> Indices:
-    """Number the places of points (n, 2), from 0: groups with no gap above `apart` along x, nor along y in one."""
+    """Numbers (n,), from 0, of the places of points (n, 2): groups without a gap above `apart`, mm, along x or y."""
     place = np.zeros(len(points), dtype=np.intp)
     count = [0, 0]
     for turn in range(SPLITS):
@@ -202,5 +203,5 @@ def rounding(corners: Corners) -> float:
 
 
 def _digits(value: float) -> int:
-    """Number of significant decimals of a number, of those that tell it from all other doubles."""
+    """Number of significant decimals in the shortest text that reads back as this double."""
     return len(repr(value).partition("e")[0].replace(".", "").strip("0"))

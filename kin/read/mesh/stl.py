@@ -51,10 +51,10 @@ NOT_ONE = frozenset({"several", "island", "crossing"})
 class Solid(ReadSolid):
     """A part as a file of triangles holds it, mm; its walls are upright to the rounding of `kin.read.mesh.prism`.
 
-    triangles           number of them
+    triangles           number of triangles
     edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
-    degenerate          triangles without area
-    duplicate           triangles that another one covers
+    degenerate          number of triangles without area
+    duplicate           number of triangles with the corners of a triangle before
     form                "binary" or "text", or "3mf"
     """
 
@@ -81,14 +81,15 @@ class Solid(ReadSolid):
 
 
 def read_stl(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> Solid:
-    """Read a part. Costs about one sort of the corners.
+    """Read a part from a STL file, as mm. Costs about one sort of the corners.
 
-    The contour is that of the section at half the part's height, where a part has steps of the widest one midway
-    between two of them; or it is that of the first of `heights`, all of which become `sections`. In a section a closed
-    chain may lie inside `deepest` others.
+    `heights`, mm, become `sections`, and the contour is that of the first. Without any it is that of the section at
+    half the part's height, or where a part has steps of the widest section midway between two of them. A height beyond
+    a prism with corners at two heights alone is left out. In a section a closed chain may lie inside `deepest` others.
 
-    Raises OSError as the file system does; ReadError where the file is cut short or damaged, and where the section
-    does not close or is not one contour with holes. All other faults are in the Solid's fields.
+    Raises OSError where the file cannot be read; ReadError where the file is too large, cut short or damaged, for
+    bodies apart, a height beyond any other part, and a section that does not close or is not one contour with holes.
+    All other faults are in the Solid's fields.
     """
     path = Path(path)
     corners, form = triangles_of(contents(path, "stl"), path)
@@ -98,9 +99,12 @@ def read_stl(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) 
 def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path, deepest: int = 1) -> Solid:
     """Make the part of triangles (t, 3, 3), mm.
 
-    The contour is that of the first of `heights`, all of which become `sections`; without any it is that of the section
-    at half the part's height, or where a part has steps of the widest one midway between two of them. Raises ReadError
-    for coordinates out of range, a flat part, and a section that does not close or is not one contour with holes.
+    `heights`, mm, become `sections`, and the contour is that of the first. Without any it is that of the section at
+    half the part's height, or where a part has steps of the widest section midway between two of them. A height beyond
+    a prism with corners at two heights alone is left out. In a section a closed chain may lie inside `deepest` others.
+
+    Raises ReadError for coordinates out of range, a flat part, bodies apart, a height beyond any other part, and a
+    section that does not close or is not one contour with holes.
     """
     if not bool((np.abs(corners) <= LARGEST).all()):
         raise ReadError("range", "a coordinate is not finite or out of range", path)
@@ -109,32 +113,38 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     if z_min == z_max:
         raise ReadError("empty", f"the part is flat: all corners lie at z = {z_min:g}", path)
     shell = upright(corners)
-    read, leaning, slivers = shell.mesh, no_rows(4), no_rows(4)  # faults are those of the mesh as it is in the file
+    mesh_in_file, leaning, slivers = (
+        shell.mesh,
+        no_rows(4),
+        no_rows(4),
+    )  # faults are those of the mesh as it is in the file
+    # a prism to the bit, else after rounding is taken out of its corners, else walls that may lean
     apart = 0.0
     if not shell.prism:
         moved = evened(corners)
-        again = None if moved is None else upright(moved.corners)
-        if moved is not None and again is not None and again.prism:
-            corners, slivers, shell = moved.corners, np.array([[z_min, z_max, np.inf, moved.by]]), again
+        evened_shell = None if moved is None else upright(moved.corners)
+        if moved is not None and evened_shell is not None and evened_shell.prism:
+            corners, slivers, shell = moved.corners, np.array([[z_min, z_max, np.inf, moved.by]]), evened_shell
     mesh, outline = shell.mesh, shell.outline
     if not shell.prism:
-        _refuse_apart(read, path, deepest)
+        _refuse_apart(mesh_in_file, path, deepest)
         apart = 2.0 * rounding(corners)
         leaning, slivers = walls(mesh, apart)
+    # a prism with corners at two heights has its bottom's outline as every section
     height = heights[0] if len(heights) else (z_min + z_max) / 2.0
-    whole = outline
+    prism_outline = outline
     z = corners[:, :, 2]
     levels = distinct(z[(z == z[:, :1]).all(axis=1), 0].astype(np.float64))
     if outline is None:
         steps = no_rows(0) if len(heights) else _steps(corners, apart)
         height, outline = widest(mesh, steps, path) if len(steps) > 2 else cut(mesh, height, path)
     try:
-        chains = sectioned(outline, path, deepest, across=whole is None)
+        chains = sectioned(outline, path, deepest, across=prism_outline is None)
     except ReadError as error:
-        raise _named_bodies(read, error, path) from None
+        raise _named_bodies(mesh_in_file, error, path) from None
     sections = []
     for wanted in heights:
-        if whole is None:
+        if prism_outline is None:
             sections.append(Section(sectioned(cut(mesh, wanted, path)[1], path, deepest, across=True), wanted))
         elif z_min < wanted < z_max:
             sections.append(Section(chains, wanted))
@@ -144,11 +154,11 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
         z_max=z_max,
         height=height,
         prism=shell.prism,
-        volume=read.volume,
-        triangles=len(read.corners),
-        edges=read.edge_faults,
-        degenerate=read.degenerate,
-        duplicate=read.duplicate,
+        volume=mesh_in_file.volume,
+        triangles=len(mesh_in_file.corners),
+        edges=mesh_in_file.edge_faults,
+        degenerate=mesh_in_file.degenerate,
+        duplicate=mesh_in_file.duplicate,
         form=form,
         sections=tuple(sections),
         faces=tuple(levels.tolist()),
@@ -159,27 +169,28 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
 
 
 def _steps(corners: Corners, apart: float) -> Array:
-    """Heights of the faces of triangles (t, 3, 3) that are level within `apart`, mm, one for those as near."""
+    """Heights (k,), rising, of triangles (t, 3, 3) that are level within `apart`, mm; heights as near count once."""
     z = corners[:, :, 2]
     levels: Array = np.sort(z[np.ptp(z, axis=1) <= apart].mean(axis=1, dtype=np.float64))
     return levels[np.diff(levels, prepend=-np.inf) > apart]
 
 
 def _named_bodies(mesh: Mesh, error: ReadError, path: Path) -> ReadError:
-    """Return an error on a section, or where there are several closed bodies one that names them."""
+    """Return an error on a section as it is, or where there are several closed bodies an error that names them."""
     if error.reason not in NOT_ONE or mesh.edge_faults.open or not mesh.bodies.any():
         return error
     return _others(mesh, path)
 
 
 def _others(mesh: Mesh, path: Path) -> ReadError:
+    """Return the error that names the largest bodies of a mesh."""
     boxes = _boxes(mesh)
     largest = sorted(range(len(boxes)), key=lambda k: -float(np.prod(boxes[k][1] - boxes[k][0])))[:MOST_BODIES]
     return beside([(f"body {k + 1}", boxes[k]) for k in largest], len(boxes), path)
 
 
 def _boxes(mesh: Mesh) -> list[tuple[Array, Array]]:
-    """Least and greatest coordinates (3,) of each body."""
+    """Least and greatest coordinates (3,), mm, of each body, in the order of its number."""
     order = np.argsort(mesh.bodies, kind="stable")
     heads = np.flatnonzero(np.diff(mesh.bodies[order], prepend=-1))
     corners = mesh.points[mesh.corners[order]]
@@ -188,7 +199,7 @@ def _boxes(mesh: Mesh) -> list[tuple[Array, Array]]:
 
 
 def _refuse_apart(mesh: Mesh, path: Path, deepest: int) -> None:
-    """Refuse a closed mesh of which some body stands apart from the rest, above it or beside it or in a hole of it."""
+    """Raise ReadError for a closed mesh with a body apart from the rest, above or beside it or in one of its holes."""
     if mesh.edge_faults.open or not mesh.bodies.any():
         return
     boxes = _boxes(mesh)
@@ -206,7 +217,7 @@ def _refuse_apart(mesh: Mesh, path: Path, deepest: int) -> None:
 
 
 def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
-    """Height, mm, of the section that is taken at `height`, or just above it, and its outline.
+    """Height, mm, of the section taken at `height`, or above it if corners lie there, and its outline.
 
     Raises ReadError where the part does not reach there, or reaches above and below and has no wall there.
     """
@@ -222,9 +233,10 @@ def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
 
 
 def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
-    """Height, mm, and outline of the section midway between two of the rising `levels` whose box is largest.
+    """Height, mm, and outline of the section with the largest box, of those midway between two rising `levels`, mm.
 
-    Raises ReadError where the part has no wall at one of these heights.
+    Of many layers between levels the MOST_STEPS thickest are looked at. Raises ReadError where the part has no wall at
+    one of these heights.
     """
     thick = np.argsort(-np.diff(levels), kind="stable")[:MOST_STEPS]
     cuts = [cut(mesh, float(0.5 * (levels[k] + levels[k + 1])), path) for k in thick]
@@ -232,10 +244,11 @@ def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
 
 
 def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -> tuple[ClosedContour, ...]:
-    """Closed chains of a section, the outer one first, nested at most `deepest` deep inside it.
+    """Closed chains of a section, the outer one first; each lies inside at most `deepest` others.
 
-    `across` says that the section runs across triangles, whose points on straight lines are left out, and not along
-    the edge of a plane face. Raises ReadError for chains that meet, lie outside the first, are too deep or too many.
+    `across` says that the section runs across triangles, and not along the edge of a plane face: points on straight
+    lines are left out. Raises ReadError for chains that do not close, meet, lie outside the first, are too deep or too
+    many.
     """
     loops = [outline.points[ring] for ring in rings(outline, path)]
     demand_few(len(loops), path)
@@ -251,8 +264,8 @@ def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -
 def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "text"]]:
     """Corners (t, 3, 3) of the triangles, in the file's order and unit, and the form of the file.
 
-    The length tells the forms apart, as a binary header may begin with "solid" too. Raises ReadError for a file that
-    is empty, cut short or none of the format.
+    A file of the length that its count of triangles makes is binary, though its header may begin with "solid". Raises
+    ReadError for a file that is empty, cut short or none of the format.
     """
     count = int.from_bytes(raw[HEADER - 4 : HEADER], "little") if len(raw) >= HEADER else 0
     expected = HEADER + RECORD.itemsize * count
@@ -274,7 +287,11 @@ def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "te
 
 
 def facets(raw: bytes, path: Path) -> Array:
-    """Corners (t, 3, 3) of the facets of the text form; raises ReadError where the text is cut short or has a fault."""
+    """Corners (t, 3, 3) of the facets of a text in small letters, in the file's order and unit.
+
+    Raises ReadError where the text is empty, cut short, of several solids, or has a wrong word or number.
+    """
+    # between the lines of solid and endsolid stand facets of 21 words each: a table, whose fixed words are compared
     text = raw.strip()
     body, mark, _ = text.rpartition(b"endsolid")
     if not mark:
@@ -306,10 +323,10 @@ def facets(raw: bytes, path: Path) -> Array:
 
 
 def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
-    """Height of a section, mm, and its outline: at `height`, or halfway to the next corners above if some lie at it.
+    """Height of a section, mm, and its outline: at `height`, or halfway to the next corners above if corners lie there.
 
-    Each triangle gives an edge from where its boundary comes down through the plane to where it goes up; neighbours
-    agree on that point since it belongs to an edge of the mesh.
+    The top of the mesh must be above `height`. Each triangle gives an edge from where its boundary comes down through
+    the plane to where it goes up; neighbours agree on that point since it belongs to an edge of the mesh.
     """
     levels = distinct(mesh.points[:, 2])
     if bool((levels == height).any()):
@@ -330,18 +347,21 @@ def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
 
 
 def straightened(points: Array) -> Array:
-    """Ring (n, 2) without the points on the straight between their neighbours, where a section cuts diagonals."""
+    """Ring (n, 2), mm, without points on the straight between their neighbours, where a section cuts diagonals."""
     before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
-    chord, here = after - before, points - before
+    chord, offset = after - before, points - before
     length = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), np.finfo(float).tiny)
-    beside = np.abs(chord[:, 0] * here[:, 1] - chord[:, 1] * here[:, 0]) / length
-    along = (chord[:, 0] * here[:, 0] + chord[:, 1] * here[:, 1]) / length
-    straight = (beside <= STRAIGHT * np.abs(points).max()) & (along > 0.0) & (along < length)
+    off_chord = np.abs(chord[:, 0] * offset[:, 1] - chord[:, 1] * offset[:, 0]) / length
+    along = (chord[:, 0] * offset[:, 0] + chord[:, 1] * offset[:, 1]) / length
+    straight = (off_chord <= STRAIGHT * np.abs(points).max()) & (along > 0.0) & (along < length)
     return points[~straight] if np.count_nonzero(~straight) >= 3 else points
 
 
 def rings(outline: Outline, path: Path) -> list[Indices]:
-    """Point numbers of the closed rings that the edges form. Raises ReadError "open" or "branch" with the place."""
+    """Point numbers (k,) of each closed ring that the edges form.
+
+    Raises ReadError with the place: "open" where edges do not close, "branch" where a ring touches itself or another.
+    """
     points, start, end = outline
     start, end = start[start != end], end[start != end]  # triangles without area leave these
     leaving, arriving = (np.bincount(ends, minlength=len(points)) for ends in (start, end))

@@ -49,15 +49,17 @@ PART = "cam"
 
 
 def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> Solid:
-    """Read the part: the only object that is built, or of several the one named "cam".
+    """Read the part: the only object that is built, or of several the object named "cam".
 
-    The contour is that of the first of `heights`, mm, all of which become `sections`; without any it is that of the
-    section at half the part's height, or where a part has steps of the widest one midway between two of them. In a
-    section a closed chain may lie inside `deepest` others. Where a part lies on the plate and which way it is turned
-    there does not count; a place that scales, shears or mirrors it makes it another part, and is applied.
+    `heights`, mm, become `sections`, and the contour is that of the first. Without any it is that of the section at
+    half the part's height, or where a part has steps of the widest section midway between two of them. A height beyond
+    a prism with corners at two heights alone is left out. In a section a closed chain may lie inside `deepest` others.
+    A place on the plate that only turns and shifts the part is passed over; one that scales, shears or mirrors it is
+    applied.
 
-    Raises OSError as the file system does; ReadError for a file that is too large, damaged or no 3MF, where it is not
-    clear which object is meant, and where a section does not close or is not one contour with holes.
+    Raises OSError where the file cannot be read; ReadError for a file that is too large, damaged or no 3MF, several
+    objects none or more of which are named "cam", bodies apart, a height beyond any other part, and a section that does
+    not close or is not one contour with holes.
     """
     path = Path(path)
     built = read_placed(path)
@@ -73,13 +75,13 @@ def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) 
 
 
 def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
-    """Read as many objects as are sought, the lowest first, as they stand to the lowest.
+    """Read as many objects as are sought, the lowest first by the middle of its height.
 
-    Where the lowest lies on the plate and which way it is turned there does not count, unless its place scales, shears
-    or mirrors it. Where one does not reach a height it has no such section.
+    Objects stand in the axes of the lowest, or on the plate where that one's place scales, shears or mirrors it. Where
+    an object does not reach a height it has no such section.
 
-    Raises OSError as the file system does; ReadError for a file that is too large, damaged or no 3MF, where more or
-    fewer objects are built, and where a section does not close or is not one contour with holes.
+    Raises OSError where the file cannot be read; ReadError for a file that is too large, damaged or no 3MF, more or
+    fewer objects, and a section that does not close or is not one contour with holes.
     """
     path = Path(path)
     built = read_placed(path)
@@ -110,9 +112,10 @@ def _ends(corners: Array) -> tuple[float, float]:
 
 
 def read_placed(path: Path | str) -> tuple[Placed, ...]:
-    """Read every object that is built, in the order of the build.
+    """Read every object that is built, in the order of the build, but for supports and the like; each in mm.
 
-    Raises OSError as the file system does; ReadError for a file that is too large, damaged or no 3MF.
+    Raises OSError where the file cannot be read; ReadError for a file that is too large, damaged or no 3MF, and for an
+    object that is empty, out of range or of too many triangles.
     """
     path = Path(path)
     if problem := oversize(path, "3mf"):
@@ -185,7 +188,7 @@ class _Links:
 
 @dataclass()
 class _Object:
-    """An object as it stands in the file: mesh or components, in the file's unit."""
+    """An object as it stands in the file, in the file's unit: a mesh, or components by name and place (4, 3)."""
 
     name: str
     printed: bool
@@ -197,7 +200,7 @@ class _Object:
 
 
 class _Model:
-    """A model as its elements come by."""
+    """A model, filled in as the parser meets its elements; `mm` is the length of its unit."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -206,7 +209,7 @@ class _Model:
         self.current: _Object | None = None
         self.items: list[tuple[str, Array]] = []
         self.components = 0  # that have been put together
-        self.room = 0  # for triangles, once the model has been read
+        self.room = 0  # triangles that may still be put together
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         if tag == f"{CORE}vertex":
@@ -248,14 +251,14 @@ class _Model:
             corners = corners * self.mm
             if not len(corners):
                 raise ReadError("empty", f"object {item.name or name!r} holds no triangles", self.path)
-            there = np.concatenate((place[:3], self.mm * place[3:]))
-            if not all(bool((np.abs(numbers) <= LARGEST).all()) for numbers in (corners, there)):
+            placing = np.concatenate((place[:3], self.mm * place[3:]))
+            if not all(bool((np.abs(numbers) <= LARGEST).all()) for numbers in (corners, placing)):
                 raise ReadError("range", f"object {item.name or name!r} reaches out of range", self.path)
-            objects.append(Placed(item.name, corners, there, self.mm))
+            objects.append(Placed(item.name, corners, placing, self.mm))
         return tuple(objects)
 
     def _demand_room(self, triangles: int = 0) -> None:
-        """Refuse components and triangles that are put together without end."""
+        """Count triangles that are put together; raise ReadError for more of them, or of components, than are read."""
         self.room -= triangles
         if self.room < 0 or self.components > MOST_COMPONENTS:
             most = f"more than {MOST_TRIANGLES} triangles or {MOST_COMPONENTS} components"
@@ -285,7 +288,7 @@ class _Model:
         return item.whole
 
     def _demand_used(self, item: _Object, count: int, corners: Indices) -> None:
-        """Refuse a mesh most of whose vertices no triangle has."""
+        """Raise ReadError for a mesh of `count` vertices most of which no triangle has."""
         used = np.zeros(count, dtype=bool)
         used[corners.ravel()] = True
         loose = count - int(np.count_nonzero(used))
@@ -342,6 +345,6 @@ class _Model:
 
 
 def _moved(corners: Array, place: Array) -> Array:
-    """Triangles in their place; mirrored ones are run through the other way, so that they go on facing outward."""
+    """Triangles (t, 3, 3) in a place (4, 3); corners of mirrored ones are reversed, so that they still face outward."""
     moved: Array = corners @ place[:3] + place[3]
     return moved if np.linalg.det(place[:3]) > 0.0 else moved[:, ::-1]

@@ -30,9 +30,9 @@ SPLINES = ("B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE")
 class StepFile(NamedTuple):
     """A file, with the length of its unit in mm, its unit of angle in rad if stated, and its own accuracy in mm.
 
-    `place` is where the file puts what it draws, None where it stays. What is read is there already.
-    Entities are read from a value that refers to them, in the entity numbered `by`; ReadError for what is not one of
-    the kind, or out of bounds.
+    `place` is where the file puts its solid, None where it leaves it; points and directions come back placed. Methods
+    read the entity that `value`, of the entity numbered `by`, refers to. They raise ReadError where it is of another
+    kind or its numbers are out of bounds.
     """
 
     file: Exchange
@@ -62,7 +62,7 @@ class StepFile(NamedTuple):
         return turned_direction
 
     def triple(self, value: Value, by: int, kind: str) -> Array:
-        """Three numbers (3,) of an entity of a kind, a point in the file's unit or a direction of any length."""
+        """Three numbers (3,) of an entity of a kind, not placed: a point in the file's unit, or any direction."""
         number = self.file.reference(value, by)
         numbers = self.file.several(self.file.values(number, kind, 2)[1], number)
         if len(numbers) != 3:
@@ -70,14 +70,14 @@ class StepFile(NamedTuple):
         return np.array([self.file.number(coordinate, number) for coordinate in numbers])
 
     def length(self, value: Value, by: int) -> float:
-        """Length above 0, mm."""
+        """Length above 0, mm, of the number `value`."""
         size = self.file.number(value, by) * self.mm
         if not 0.0 < size <= 1e6 * LARGEST:
             raise self.file.error(by, f"a length of {size:g} mm", "range")
         return size
 
     def frame(self, value: Value, by: int) -> Frame:
-        """Axes of an AXIS2_PLACEMENT_3D, those left out as ISO 10303-42 has them."""
+        """Axes of an AXIS2_PLACEMENT_3D; axes left out are the standard's (ISO 10303-42)."""
         number = self.file.reference(value, by)
         _, place, axis, first, *_ = (*self.file.values(number, "AXIS2_PLACEMENT_3D", 2), None, None)
         z = np.array([0.0, 0.0, 1.0]) if axis is None else self.triple(axis, number, "DIRECTION")
@@ -113,7 +113,7 @@ class Straight(NamedTuple):
 
 
 class Conic(NamedTuple):
-    """Part of a circle or an ellipse: centre + u cos t + v sin t, (3,) each, from t = first over `sweep`."""
+    """Part of a circle or an ellipse: centre + u cos t + v sin t, (3,) each, from t = first over `sweep`, rad."""
 
     centre: Array
     u: Array
@@ -131,7 +131,7 @@ class Conic(NamedTuple):
 class Spline(NamedTuple):
     """Spans of a B-spline in its own sense: plan (x, y), and heights as (z, 0), with the same weights.
 
-    `back` says that the edge runs against it.
+    `back` says that the edge runs against the spline.
     """
 
     plan: Beziers
@@ -162,7 +162,7 @@ class StepEdge:
 
     @property
     def samples(self) -> Array:
-        """Points (k, 3) along the curve, its two ends included."""
+        """Points (k, 3), mm, along the curve in its own sense, its two ends included."""
         match self.curve:
             case Straight():
                 return np.stack([self.start, 0.5 * (self.start + self.end), self.end])
@@ -197,7 +197,7 @@ class StepEdge:
 
 
 def _spline_crossings(curve: Spline, z: float) -> list[tuple[Array, bool]]:
-    """Where the sign of the height above z changes: between roots of its spans, or at a joint of two."""
+    """Crossings where the sign of the height above z changes: at a root within a span, or at a joint of two spans."""
     polynomials = curve.rise.weight * (curve.rise.control[:, :, 0] - z)
     near = np.flatnonzero(~((polynomials > 0.0).all(axis=1) | (polynomials < 0.0).all(axis=1)))
     if not near.size:
@@ -223,6 +223,7 @@ def _conic_crossings(curve: Conic, z: float) -> list[tuple[Array, bool]]:
     size = float(np.hypot(a, b))
     if size <= abs(c):
         return []
+    # a cos t + b sin t = c at t = middle - half and middle + half
     middle, half = np.arctan2(b, a), np.arccos(c / size)
     crossings = []
     for t in (middle - half, middle + half):
@@ -234,7 +235,10 @@ def _conic_crossings(curve: Conic, z: float) -> list[tuple[Array, bool]]:
 
 
 def edge_of(space: StepFile, number: int) -> StepEdge:
-    """Read an EDGE_CURVE. Raises ReadError for a curve that is not read, or one that is trimmed inside."""
+    """Read the EDGE_CURVE of a number.
+
+    Raises ReadError for a curve that is not read, unsound numbers, and a spline that goes on beyond the edge's ends.
+    """
     file = space.file
     _, first, last, geometry, sense, *_ = file.values(number, "EDGE_CURVE", 5)
     start, end = (_vertex(space, file.reference(vertex, number)) for vertex in (first, last))
@@ -272,7 +276,7 @@ def _line(space: StepFile, number: int) -> Straight:
 
 
 def _conic(space: StepFile, number: int, kind: str, ends: tuple[Array, Array], *, forward: bool) -> Conic:
-    """Circle or ellipse between two places in its own sense, turned round unless the edge runs forward."""
+    """Circle or ellipse between two `ends` (3,) in its own sense, reversed unless the edge runs forward."""
     axes, *sizes = space.file.values(number, kind, 3 if kind == "CIRCLE" else 4)[1:]
     frame = space.frame(axes, number)
     a = space.length(sizes[0], number)
@@ -287,7 +291,7 @@ def _conic(space: StepFile, number: int, kind: str, ends: tuple[Array, Array], *
 
 
 def spline_of(space: StepFile, number: int) -> Spline:
-    """Read a B-spline curve, rational or not. Raises ReadError where its numbers do not fit together."""
+    """Read the B-spline curve, rational or not, of a number. Raises ReadError where its numbers do not fit together."""
     file = space.file
     records = file.instances[number]
     if "B_SPLINE_CURVE" in records:  # of several types at once, each with its own values
@@ -317,7 +321,10 @@ def spline_of(space: StepFile, number: int) -> Spline:
 
 
 def _knots(space: StepFile, number: int, knotted: tuple[Value, ...], degree: int, count: int) -> Array:
-    """Knots, each as often as it counts; those of a BEZIER_CURVE are its ends of every span."""
+    """Knots (k,), each as often as it counts, of a curve with `count` control points.
+
+    Without the values of knots, as in a BEZIER_CURVE, the ends of spans are knots, `degree` times each between spans.
+    """
     file = space.file
     if len(knotted) >= 2:
         often, places = (file.several(item, number) for item in knotted[:2])

@@ -59,7 +59,7 @@ class Plane(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RoundFace:
-    """A cylinder or a cone about a vertical axis: centre (2,), radius at the height `base`, and its growth with z."""
+    """A cylinder or a cone about a vertical axis: centre (2,), radius at the height `base`, its growth per mm of z."""
 
     centre: Array
     radius: float
@@ -86,7 +86,7 @@ class RoundFace:
 
 @dataclass(frozen=True, eq=False)
 class Tube:
-    """A cylinder about a horizontal axis: a point (3,) of it, its direction (3,), and its radius."""
+    """A cylinder about a horizontal axis: a point (3,) on the axis, the axis's unit vector (3,), and the radius."""
 
     point: Array
     along: Array
@@ -105,7 +105,7 @@ class Tube:
 
 @dataclass(frozen=True, eq=False)
 class Swept:
-    """Vertical wall over a plane curve: its spans as seen from above."""
+    """Vertical wall over a plane curve, given by the curve's spans as seen from above."""
 
     spans: Beziers
 
@@ -135,7 +135,10 @@ class Use(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Face:
-    """An ADVANCED_FACE: its number, its surface, the loops that bound it, and whether its normal is the surface's."""
+    """An ADVANCED_FACE: its number, its surface, the loops that bound it, and whether its normal is the surface's.
+
+    `edges` are the edges of the solid by number.
+    """
 
     number: int
     surface: Surface
@@ -145,12 +148,12 @@ class Face:
 
     @cached_property
     def uses(self) -> list[tuple[StepEdge, bool]]:
-        """All edges of its bounds, and the senses in which they run."""
+        """All edges of its bounds, and whether the bound runs along each in the edge's own sense."""
         return [(self.edges[use.edge], use.forward) for loop in self.loops for use in loop]
 
     @cached_property
     def heights(self) -> tuple[float, float]:
-        """Least and greatest height of its edges; of a level cylinder its own."""
+        """Least and greatest height, mm, of its edges, or of the whole cylinder about a level axis."""
         if isinstance(self.surface, Tube):
             axis = float(self.surface.point[2])
             return axis - self.surface.radius, axis + self.surface.radius
@@ -176,7 +179,8 @@ class Face:
     def winding(self) -> float:
         """Angle, rad, by which all bounds together run round the axis of a cylinder or a cone; 0 where they are sound.
 
-        An arc that goes the long way round lies on the same surface, and its height is no other: only this tells.
+        It finds an arc that goes the long way round, which lies on the same surface at the same height. 0 for planes
+        and swept walls.
         """
         if isinstance(self.surface, RoundFace):
             x, y, centre = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.append(self.surface.centre, 0.0)
@@ -195,7 +199,10 @@ class Face:
         return total
 
     def section(self, space: StepFile, z: float) -> list[Shape]:
-        """The face's part of the section at a height; raises ReadError where its bounds do not pair."""
+        """Pieces of the section at a height z, mm, that lie in the face; none for a level face or a height beyond it.
+
+        Raises ReadError where its bounds do not enclose a part of its surface at that height.
+        """
         low, high = self.heights
         if self.surface.level or not low < z < high:
             return []
@@ -213,8 +220,8 @@ class Face:
                 across = np.array([-along[1], along[0], 0.0])
                 pieces = []
                 for side in (1.0, -1.0):
-                    here = [crossing for crossing in crossings if side * float((crossing[0] - point) @ across) > 0.0]
-                    pieces += self._chords(space, here, along[:2] * (-side if self.outward else side))
+                    on_side = [crossing for crossing in crossings if side * float((crossing[0] - point) @ across) > 0.0]
+                    pieces += self._chords(space, on_side, along[:2] * (-side if self.outward else side))
                 return pieces
         self._demand_ends(space, crossings)
         return [shape(beziers=self.surface.spans, heights=0.0)]
@@ -250,7 +257,7 @@ class Face:
         return pieces
 
     def _demand_ends(self, space: StepFile, crossings: list[Crossing]) -> None:
-        """Refuse a swept face that is bounded by anything but the ends of its curve."""
+        """Raise ReadError for a swept face that is bounded by anything but the ends of its curve."""
         if len(crossings) != 2 or crossings[0][1] == crossings[1][1] or not isinstance(self.surface, Swept):
             raise self._contrary(space)
         control = self.surface.spans.control
@@ -271,9 +278,9 @@ def _arc(centre: Array, radius: float, first: float, sweep: float) -> Shape:
 
 
 def face_of(space: StepFile, number: int, edges: dict[int, StepEdge]) -> Face:
-    """Read an ADVANCED_FACE, and the edges of its bounds into `edges`.
+    """Read the ADVANCED_FACE of a number, and the edges of its bounds into `edges`.
 
-    Raises ReadError for an unsupported surface or edge.
+    Raises ReadError for a surface or an edge that is not read, and a loop whose edges do not follow one another.
     """
     file = space.file
     kind = file.kind(number, ("ADVANCED_FACE", "FACE_SURFACE"), number)
@@ -308,18 +315,18 @@ def _use(space: StepFile, number: int, edges: dict[int, StepEdge]) -> Use:
 
 
 def _check_loop(space: StepFile, number: int, uses: list[Use], edges: dict[int, StepEdge]) -> None:
-    """Refuse a loop whose edges do not follow one another."""
+    """Raise ReadError for a loop whose edges do not follow one another."""
     if not uses:
         raise space.file.error(number, "it has no edges", "syntax")
     for use, following in zip(uses, [*uses[1:], uses[0]], strict=True):
-        edge, other = edges[use.edge], edges[following.edge]
+        edge, next_edge = edges[use.edge], edges[following.edge]
         end = edge.end if use.forward else edge.start
-        start = other.start if following.forward else other.end
+        start = next_edge.start if following.forward else next_edge.end
         gap = float(np.linalg.norm(start - end))
         if gap > space.accuracy:
             x, y, z = end.tolist()
             where = f"edge #{edge.number} ends at {place_text(x, y, z, digits=9)} mm"
-            message = f"{where}, {gap:.3g} mm from where #{other.number} starts"
+            message = f"{where}, {gap:.3g} mm from where #{next_edge.number} starts"
             raise space.file.error(number, message, "open")
 
 
@@ -328,22 +335,22 @@ def _surface(space: StepFile, number: int, by: int) -> Surface:
     kind = file.kind(number, SURFACES, by)
     if kind == "SURFACE_OF_LINEAR_EXTRUSION":
         return _swept(space, number)
-    _, axes, *rest = file.values(number, kind, {"PLANE": 2, "CYLINDRICAL_SURFACE": 3, "CONICAL_SURFACE": 4}[kind])
+    _, axes, *sizes = file.values(number, kind, {"PLANE": 2, "CYLINDRICAL_SURFACE": 3, "CONICAL_SURFACE": 4}[kind])
     frame = space.frame(axes, number)
     if kind == "PLANE":
         return Plane(frame.origin, frame.z)
     upright = np.hypot(*frame.z[:2]) <= LEVEL
     if kind == "CYLINDRICAL_SURFACE":
-        radius = space.length(rest[0], number)
+        radius = space.length(sizes[0], number)
         if upright:
             return RoundFace(frame.origin[:2], radius, 0.0, 0.0)
         if abs(frame.z[2]) > LEVEL:
             raise file.error(number, "its axis is neither upright nor level")
         return Tube(frame.origin, frame.z, radius)
-    radius = file.number(rest[0], number) * space.mm
+    radius = file.number(sizes[0], number) * space.mm
     if space.radian is None:
         raise file.error(number, "the file states no unit of plane angle")
-    slope = float(np.tan(file.number(rest[1], number) * space.radian))
+    slope = float(np.tan(file.number(sizes[1], number) * space.radian))
     if not upright:
         raise file.error(number, "its axis is not upright")
     return RoundFace(frame.origin[:2], radius, float(frame.origin[2]), float(np.copysign(slope, frame.z[2])))

@@ -57,7 +57,7 @@ class Exchange(NamedTuple):
     schema: str
 
     def error(self, number: int, what: str, reason: str = "unsupported") -> ReadError:
-        """Make the error that names an instance."""
+        """Make the error that names the instance of a number."""
         kinds = "+".join(self.instances.get(number, {"": ()})) or "?"
         return ReadError(reason, f"#{number} {kinds[:LONGEST]}: {what}", self.path)
 
@@ -78,7 +78,10 @@ class Exchange(NamedTuple):
         raise self.error(number, f"is none of {', '.join(kinds)}")
 
     def values(self, number: int, kind: str, count: int) -> tuple[Value, ...]:
-        """Values of an instance's record, of which there are at least `count`; raises ReadError where it has fewer."""
+        """Values of the record of type `kind` in the instance of a number.
+
+        Raises ReadError where there is no such record, or it has fewer than `count` values.
+        """
         values = self.instances.get(number, {}).get(kind)
         if values is None:
             raise self.error(number, f"is no {kind}")
@@ -124,7 +127,7 @@ def shown(value: Value) -> str:
 
 
 def exchange(raw: bytes, path: Path) -> Exchange:
-    """Parse a file. Raises ReadError where it is cut short, or no such file."""
+    """Parse the bytes of a STEP file. Raises ReadError for a file that is empty, cut short or none of the format."""
     if not raw.strip():
         raise ReadError("empty", "the file is empty", path)
     text = raw.decode("latin-1")
@@ -187,7 +190,7 @@ def _tokens(body: str, path: Path) -> list[tuple[str, str]]:
 
 
 def _list(tokens: list[tuple[str, str]], index: int, number: int, path: Path) -> tuple[tuple[Value, ...], int]:
-    """Values between brackets from token `index` on, and the number of the token behind them."""
+    """Values between brackets from token `index` on, and the index of the token behind them."""
     stack: list[tuple[str, list[Value]]] = []
     name = ""
     while index < len(tokens):

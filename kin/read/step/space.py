@@ -40,9 +40,10 @@ DEEPEST = 16  # of assemblies within assemblies
 
 
 def space_of(file: Exchange, solid: int, *, alone: bool = True) -> StepFile:
-    """Units, accuracy and place of the representation that holds a solid, which may be `alone` in the file.
+    """Units, accuracy and place of the representation that holds the solid of a number.
 
-    Raises ReadError for what is not read.
+    `alone` says that the file may place no other solid. Raises ReadError for units, placements and assemblies that are
+    not read.
     """
     for kind in UNREAD:
         for number in file.of(kind):
@@ -71,7 +72,7 @@ def space_of(file: Exchange, solid: int, *, alone: bool = True) -> StepFile:
 
 
 class _Places:
-    """The placements of a file's representations, in the unit of the one that holds the solid."""
+    """The placements of a file's representations, in the unit of the representation that holds the solid."""
 
     def __init__(self, space: StepFile) -> None:
         self.space, self.file = space, space.file
@@ -91,7 +92,10 @@ class _Places:
                 self.plain.append((number, first, other))
 
     def of(self, holder: int, *, alone: bool) -> Frame | None:
-        """Where the solid of a representation stands in the outermost assembly, `alone` there or with other solids."""
+        """Where the solid of a representation stands in the outermost assembly, `alone` there or with other solids.
+
+        None where nothing places it.
+        """
         file = self.file
         same = self._alike(holder)
         for related in same - {holder}:
@@ -122,7 +126,7 @@ class _Places:
         return placement
 
     def _alike(self, name: int) -> set[int]:
-        """Return the representations that are related to one without a transformation, and it."""
+        """Return the numbers of a representation and of all that are related to it without a transformation."""
         alike, fresh = {name}, [name]
         while fresh:
             representation = fresh.pop()
@@ -137,7 +141,7 @@ class _Places:
         return file.several(file.values(number, kind, 3)[1], number)
 
     def _own(self, number: int) -> Frame | None:
-        """Return the placement among a representation's items, which is one."""
+        """Return the one placement among a representation's items, None without any."""
         axes = [
             item
             for item in self._items(number)
@@ -156,7 +160,7 @@ class _Places:
         return self.space.frame(value, by)
 
     def _transformation(self, number: int, child: int, parent: int) -> Frame:
-        """Where the assembly puts the child's own axes."""
+        """Where the assembly `parent` puts the axes of `child`, by the relation of a number."""
         file = self.file
         item = file.reference(file.values(number, TRANSFORMED, 1)[0], number)
         file.kind(item, ("ITEM_DEFINED_TRANSFORMATION",), number)
@@ -173,7 +177,7 @@ class _Places:
             raise file.error(number, "is in another unit than its part; export the part alone")
 
     def _demand_occurrence(self, number: int, child: int, parent: int) -> None:
-        """Refuse a relation whose two sides are not those of the occurrence that it places."""
+        """Raise ReadError for a relation whose two sides are not the assembly and part of the occurrence it places."""
         file = self.file
         seat = next((s for s in file.of(IN_PLACE) if file.values(s, IN_PLACE, 2)[0] == number), None)
         if seat is None:
@@ -194,7 +198,7 @@ class _Places:
 
 
 def _still(place: Frame | None) -> bool:
-    """Whether a place leaves all where it is."""
+    """Whether a place leaves every point where it is."""
     return place is None or bool((np.abs(np.array(place) - np.array([np.zeros(3), *np.eye(3)])) <= SAME).all())
 
 

@@ -44,12 +44,12 @@ MOST_NAMED = 3  # edges in a message
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class StepSolid(ReadSolid):
-    """A part as a STEP file holds it, mm; its volume is that of sections.
+    """A part as a STEP file holds it, mm; its volume is the integral of its sections' areas.
 
-    faults              edges that do not belong to exactly two faces which run along them opposite ways; lids that look
-                        into the solid
-    misfit              farthest that an edge lies off its faces or its ends off itself
-    schema              of the file
+    faults              in words: edges that do not belong to exactly two faces which run along them opposite ways; arcs
+                        that go the wrong way round; lids that look into the solid
+    misfit              greatest distance of an edge from its faces, or of its ends from its curve
+    schema              name of the file's schema
     """
 
     faults: tuple[str, ...]
@@ -58,24 +58,25 @@ class StepSolid(ReadSolid):
 
 
 def read_step(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> StepSolid:
-    """Read a part.
+    """Read a part from a STEP file.
 
-    The contour is that of the first of `heights`, all of which become `sections`; without any it is that of the widest
-    section midway between two levels of the part. In a section a closed chain may lie inside `deepest` others.
+    `heights`, mm, become `sections`, and the contour is that of the first; without any it is that of the section of
+    the largest area midway between two levels of the part. In a section a closed chain may lie inside `deepest` others.
 
-    Raises OSError as the file system does; ReadError, with the number of the instance where it has one, for what is not
-    read and where a section is not one closed contour with others in it.
+    Raises OSError where the file cannot be read; ReadError for a file that is too large or damaged, what is not read,
+    with the number of the instance, a height beyond the part, and a section that is not one closed contour with others
+    in it.
     """
     (solid,) = read_step_bodies(path, [Sought(heights, deepest)])
     return solid
 
 
 def read_step_bodies(path: Path | str, sought: Sequence[Sought]) -> list[StepSolid]:
-    """Read as many solids as are sought, the lowest first.
+    """Read as many solids as are sought, the lowest first by the middle of its height.
 
-    Where one of several does not reach a height it has no such section. Raises OSError as the file system does;
-    ReadError where the file holds more or fewer solids, for what is not read, and where a section is not one closed
-    contour with others in it.
+    Where one of several does not reach a height it has no such section. Raises OSError where the file cannot be read;
+    ReadError for a file that is too large or damaged, more or fewer solids, what is not read, a height beyond a single
+    solid, and a section that is not one closed contour with others in it.
     """
     path = Path(path)
     bodies = _Body.every(exchange(contents(path, "step"), path), len(sought))
@@ -114,7 +115,7 @@ def _solid(body: _Body, sought: Sought) -> StepSolid:
 
 @dataclass(frozen=True, eq=False)
 class _Body:
-    """The faces and edges of one solid."""
+    """The faces and edges of one solid, and the heights of its corners and level holes, mm, rising."""
 
     space: StepFile
     faces: list[Face]
@@ -137,7 +138,7 @@ class _Body:
 
     @staticmethod
     def _reach(file: Exchange, solid: int) -> tuple[Array, Array] | None:
-        """Box of a solid that may not be sound, if it can be found."""
+        """Box of a solid that may not be sound, None where it cannot be read."""
         with suppress(ReadError):
             return _Body._one(file, solid).box
         return None
@@ -274,9 +275,9 @@ class _Body:
 
     @cached_property
     def misfit(self) -> float:
-        """Farthest that an edge lies off its faces, or its ends off itself, mm.
+        """Greatest distance of an edge from its faces, or of its ends from its curve, mm.
 
-        Raises ReadError, naming it, where that is more than the file's own accuracy.
+        Raises ReadError, with the number of the edge or face, where that is more than the file's own accuracy.
         """
         off = {edge.number: edge.misfit for edge in self.edges.values()}
         off |= {face.number: face.misfit for face in self.faces}
