@@ -17,7 +17,7 @@ from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
 from camgeo.part.features import EDGE_KEYS
 from camgeo.registry import registry
-from kin.judge.check import Check
+from kin.judge.check import Check, as_drawn
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -192,7 +192,8 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         raise recipe.error(next((key for key in EDGE_KEYS if key in recipe.marks), "part"), str(error)) from error
     discs = tuple(disc for disc, _ in bodied)
     checks += [check for _, walls in bodied for check in walls]
-    return Design(exact, discs, tuple(checks), driven)
+    drawn = tuple(as_drawn(check, mirrored=recipe.rotation == "ccw") for check in checks)
+    return Design(exact, discs, drawn, driven)
 
 
 def sketched(recipe: Recipe) -> Design:

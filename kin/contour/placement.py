@@ -16,6 +16,7 @@ import numpy as np
 from kin.contour.arcs import cross
 from kin.contour.nearest import signed_distance
 from kin.numeric.angles import TURN
+from kin.numeric.lengths import UNIT, length_words, place_words, turn_words
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
@@ -32,7 +33,7 @@ SAME_SIZE = 0.1  # share by which the size may differ from a factor: as much as 
 
 
 def placement(contour: Contour, exact: Array, tolerance: float) -> str:
-    """Words for how the exact contour must be placed, turned, mirrored, scaled or offset to fit a file's contour.
+    """Marked words for how the exact contour is placed, turned, mirrored, scaled or offset to fit a file's contour.
 
     `exact` are some hundred points (n, 2) of the exact contour, mm, in order; `tolerance` is in mm. Empty where no
     turn, shift, mirror image, change of unit or offset makes it fit, where none is needed, and for a contour that is
@@ -56,6 +57,8 @@ def placement(contour: Contour, exact: Array, tolerance: float) -> str:
 
 def _words(placed: Array, factor: float, exact: Array, tolerance: float, *, mirrored: bool) -> str:
     turn, x, y, offset = placed.tolist()
+    if mirrored:  # the fit is to the mirrored contour; the words mirror the exact one first
+        turn, y = -turn, -y
     fine = tolerance / float(np.abs(exact).max())
     turn = _rounded(float(np.degrees(np.pi - np.mod(np.pi - turn, TURN))), float(np.degrees(fine)))
     turn = abs(turn) if turn == -180.0 else turn
@@ -64,9 +67,13 @@ def _words(placed: Array, factor: float, exact: Array, tolerance: float, *, mirr
         [] if factor == 1.0 else [f"{max(factor, 1.0 / factor):.6g} times as {'large' if factor > 1.0 else 'small'}"]
     )
     words += ["mirrored in the x axis"] if mirrored else []
-    words += [f"turned by {turn:.9g} degrees"] if turn else []
-    words += [f"moved by ({x:.9g}, {y:.9g}) mm"] if x or y else []
-    words += [f"{abs(offset):.9g} mm {'larger' if offset > 0.0 else 'smaller'} all round"] if offset else []
+    words += [f"turned by {turn_words(turn)} degrees"] if turn else []
+    words += [f"moved by {place_words(x, y, digits=9)} {UNIT}"] if x or y else []
+    words += (
+        [f"{length_words(abs(offset), '.9g')} {UNIT} {'larger' if offset > 0.0 else 'smaller'} all round"]
+        if offset
+        else []
+    )
     return f"it is the exact one {', '.join(words)}" if words else ""
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.judge.bore import bore_check, round_check
-from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
+from kin.judge.check import ROUNDING, Check, about, as_drawn, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
 from kin.judge.layers import SAME, between_sections, settled
 from kin.judge.limits import limit_of
@@ -143,7 +143,8 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
     checks += [_worst(same) for same in rounds.values() if same]
     checks.append(_volume(solid, intent, surfaces))
     chains = tuple(surface.contour for surface in surfaces if surface.contour is not None)
-    named = tuple(about(check, path.name) for check in checks)
+    drawn = (as_drawn(check, mirrored=intent.mirrored) for check in checks)
+    named = tuple(about(check, path.name) for check in drawn)
     return Verdict(kind, named, tuple(surfaces), (), solid.units_mm or units or 1.0, (chains,), solid.uneven)
 
 

@@ -7,6 +7,7 @@ from typing import Literal
 
 from kin.numeric.angles import degrees
 from kin.numeric.lengths import FIRST, Words, amount_words, marked
+from kin.numeric.lengths import mirrored as mirrored_words
 from kin.numeric.records import dataclass, replace
 
 Sense = Literal["at_least", "at_most"]
@@ -74,6 +75,13 @@ def less_sure(check: Check, by: float) -> Check:
     why = f"heights differ by up to {amount_words(by, check.unit, '.3g')} through rounding"
     detail = f"{marked(check.detail)}; {why}" if check.detail else why
     return replace(check, ok=check.ok and value <= check.limit, value=value, detail=detail)
+
+
+def as_drawn(check: Check, *, mirrored: bool) -> Check:
+    """Give the check with its places and turns in the axes of the file, which is drawn mirrored or not."""
+    if not mirrored or not check.detail:
+        return check
+    return replace(check, detail=mirrored_words(marked(check.detail)))
 
 
 def about(check: Check, file: str) -> Check:

@@ -16,7 +16,7 @@ from kin.contour.least_distance import least_distance
 from kin.contour.nearest import nearest, signed_distance
 from kin.judge.check import Check, at_most, failed
 from kin.judge.cuts import across, at_the_floor, cuts_of, features_of, rounds, trace
-from kin.numeric.lengths import UNIT, length_words, place_words
+from kin.numeric.lengths import UNIT, file_place_words, length_words
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.gcode import ARC_MM, arcs_of
@@ -241,5 +241,5 @@ def _gouge_check(features: list[Feature], milling: Milling, tolerance: float) ->
                 near, place = least_distance(arcs_of(fresh), chain, float(edge.side), milling.radius, tolerance)
                 if milling.radius - near > worst:
                     worst = milling.radius - near
-                    detail = f"the path from line {fresh[0].line} near {place_words(place[0], place[1])}"
+                    detail = f"the path from line {fresh[0].line} near {file_place_words(*place)}"
     return at_most("gouge", max(worst, 0.0), tolerance, "mm", detail=detail if worst > tolerance else "")

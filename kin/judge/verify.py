@@ -15,13 +15,13 @@ import numpy as np
 from kin.contour.intersections import crossings
 from kin.contour.nearest import signed_distance
 from kin.judge.bore import bore_check
-from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
+from kin.judge.check import ROUNDING, Check, about, as_drawn, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
 from kin.judge.surfaces import SIZED, SortedChains, deepest, sort_chains
 from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
 from kin.numeric.errors import CamgeoError
-from kin.numeric.lengths import UNIT, length_words, marked, place_words, shown, span_words
+from kin.numeric.lengths import UNIT, file_place_words, length_words, marked, place_words, shown, span_words
 from kin.read.bodies import Sought
 from kin.read.errors import ReadError
 from kin.read.files import read_bodies, read_drawing, read_solid
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from kin.contour.contour import Contour
     from kin.judge.intent import Limits, PartIntent, ShaftIntent
-    from kin.read.drawing.drawing import Drawing
+    from kin.read.drawing.drawing import Drawing, Fault
     from kin.read.formats import AnySolid, Contents, Format
 
 UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
@@ -127,25 +127,28 @@ def _verdict(
         return Verdict(kind.name, (about(failed(unread, error.message), path.name),))
     checks, surfaces, closures = list[Check](), list[SurfaceVerdict](), list[ClosureVerdict]()
     for part, file in files:
-        checks += file.checks
+        part_checks = list(file.checks)
         standing = part.milling.standing if part.milling is not None else 0.0
         for chain, surface in zip(file.surfaces, part.surfaces, strict=True):
             verdict, more = judge_contour(
                 chain, surface, phi, limits, file.uneven, standing=standing, linkage=part.linkage
             )
-            checks += [replace(check, surface=surface.name) for check in more]
+            part_checks += [replace(check, surface=surface.name) for check in more]
             surfaces.append(verdict)
             if file.stated_error is not None and verdict.measured_error is not None:
                 from kin.judge.grinding import stated_check  # tables alone state it
 
-                checks.append(stated_check(verdict.measured_error - file.uneven, file.stated_error, limits.tolerance))
+                part_checks.append(
+                    stated_check(verdict.measured_error - file.uneven, file.stated_error, limits.tolerance)
+                )
         if part.closures:
             from kin.judge.closure import judge_closures  # most cams have one surface
 
             pairs = [(surface, chain.contour) for chain, surface in zip(file.surfaces, part.surfaces, strict=True)]
             left, more = judge_closures(pairs, part.closures, limits, file.uneven)
             closures += left
-            checks += more
+            part_checks += more
+        checks += [as_drawn(check, mirrored=part.mirrored) for check in part_checks]
     named = tuple(about(check, path.name) for check in checks)
     bodies = tuple(tuple(chain.contour for chain in file.chains) for _, file in files)
     units, uneven = files[0][1].units, max(file.uneven for _, file in files)
@@ -188,7 +191,7 @@ def _of_drawing(path: Path, part: PartIntent, limits: Limits, units: float | Non
     parts = sort_chains(chains[0], chains[1:], part, limits.tolerance, path)
     joined = max(chain.gap for chain in parts.surfaces) if drawing.openings else 0.0
     uneven = joined if limits.gap is None else max(joined, limits.gap)
-    checks = [_units_check(drawing.units_mm, units, part, parts), _closed_check(drawing, parts, limits, uneven)]
+    checks = [_units_check(drawing.units_mm, units, part, parts), _closed_check(drawing, scale, parts, limits, uneven)]
     marks = scaled([ClosedContour(contour) for contour in drawing.engraved], scale, mirrored=part.mirrored)
     checks += [*parts.checks, *_opening_checks(parts.holes, [mark.contour for mark in marks], part, limits)]
     return _Read(checks, parts.surfaces, chains, scale if drawing.units_mm is None else drawing.units_mm, uneven)
@@ -266,10 +269,13 @@ def _size(part: PartIntent, parts: SortedChains) -> float:
     return float(np.abs(parts.surfaces[0].contour.vertices).max() / np.abs(exact).max())
 
 
-def _closed_check(drawing: Drawing, parts: SortedChains, limits: Limits, joined: float) -> Check:
-    """Check that no surface is open or crosses itself, and that nothing is drawn twice or without length."""
+def _closed_check(drawing: Drawing, scale: float, parts: SortedChains, limits: Limits, joined: float) -> Check:
+    """Check that no surface is open or crosses itself, and that nothing is drawn twice or without length.
+
+    `scale` is mm in a unit of the drawing as it was read.
+    """
     faults = list(drawing.openings)
-    faults += [f"{fault.kind} {fault.entity} at {place_words(fault.x, fault.y)}" for fault in drawing.faults]
+    faults += [_fault_words(fault, scale) for fault in drawing.faults]
     faults += _crossing_places(parts, joined)
     check = _count_check("closed", faults)
     if drawing.openings:
@@ -277,11 +283,15 @@ def _closed_check(drawing: Drawing, parts: SortedChains, limits: Limits, joined:
         detail = f"the rest is judged with {joined:.3g} mm counted; {remedy}" if joined else "the rest is judged"
         return replace(check, detail=f"{marked(check.detail)}; {detail}")
     if limits.gap is not None:
-        short = [f"{piece.entity} at {place_words(piece.x, piece.y)}" for piece in drawing.short]
+        short = [_fault_words(piece, scale).removeprefix(f"{piece.kind} ") for piece in drawing.short]
         detail = f"ends up to {limits.gap:.6g} mm apart are joined, which is counted; {len(short)} pieces are no longer"
         named = f"{detail}: {_listed(short)}" if short else detail
         return replace(check, detail=f"{marked(check.detail)}; {named}".removeprefix("; "))
     return check
+
+
+def _fault_words(fault: Fault, scale: float) -> str:
+    return f"{fault.kind} {fault.entity} at {file_place_words(scale * fault.x, scale * fault.y)}"
 
 
 def _crossing_places(parts: SortedChains, joined: float = 0.0) -> list[str]:

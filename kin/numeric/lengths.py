@@ -2,6 +2,9 @@
 
 Words are put together in many places that do not know the unit of the report. So a length stands among them as its
 whole value and its form, between two characters of Unicode's private use, and becomes digits at the end.
+
+Places and turns are composed in the axes of a cam that turns clockwise. Their y and their sense are marked, so that
+`mirrored` gives them as a file has them that is drawn mirrored.
 """
 
 from __future__ import annotations
@@ -17,12 +20,17 @@ if TYPE_CHECKING:
 FIRST, LAST = "\ue000", "\ue001"
 UNIT = f"{FIRST}{LAST}"
 """The name of the unit, among words."""
-_MARKED = re.compile(f"{FIRST}(?:([^{LAST}]*?):([^{LAST}]*?):([123]))?{LAST}")
+_MARKED = re.compile(f"{FIRST}(?:([^{LAST}]*?):([^{LAST}]*?):([123]|y|turn))?{LAST}")
+_POWERS = {"1": 1, "2": 2, "3": 3, "y": 1, "turn": 0}  # of a length in each kind of mark
 
 
 def length_words(mm: float, form: str = ".6g", power: int = 1) -> str:
     """Mark a length, mm, or an area or volume by its power, to stand among words in this form without its unit."""
-    return f"{FIRST}{float(mm)!r}:{form}:{power}{LAST}"
+    return _mark(mm, form, str(power))
+
+
+def _mark(value: float, form: str, kind: str) -> str:
+    return f"{FIRST}{float(value)!r}:{form}:{kind}{LAST}"
 
 
 def amount_words(value: float, unit: str, form: str = ".6g") -> str:
@@ -35,9 +43,31 @@ def span_words(low: float, high: float, form: str = ".9g") -> str:
     return f"{length_words(low, form)} to {length_words(high, form)} {UNIT}"
 
 
-def place_words(*coordinates: float, digits: int = 6) -> str:
-    """Text of coordinates, mm, in brackets, marked as lengths; a size below `ROUNDING` is 0."""
-    return f"({', '.join(length_words(0.0 if abs(c) < ROUNDING else float(c), f'.{digits}g') for c in coordinates)})"
+def place_words(x: float, y: float, digits: int = 6) -> str:
+    """Text of a place, mm, in brackets, marked so that `mirrored` changes the sign of y; a size below ROUNDING is 0."""
+    x, y = (0.0 if abs(c) < ROUNDING else c for c in (x, y))
+    return f"({_mark(x, f'.{digits}g', '1')}, {_mark(y, f'.{digits}g', 'y')})"
+
+
+def file_place_words(x: float, y: float, digits: int = 6) -> str:
+    """Text of a place, mm, in brackets, in the axes of the file itself: `mirrored` leaves it."""
+    x, y = (0.0 if abs(c) < ROUNDING else c for c in (x, y))
+    return f"({length_words(x, f'.{digits}g')}, {length_words(y, f'.{digits}g')})"
+
+
+def turn_words(degrees: float, form: str = ".9g") -> str:
+    """Text of a turn, degrees counter-clockwise, without its unit, marked so that `mirrored` changes its sign."""
+    return _mark(degrees, form, "turn")
+
+
+def mirrored(words: str) -> str:
+    """Marked words about a drawing mirrored in the x axis: y of each place and each turn with the other sign."""
+
+    def other(mark: re.Match[str]) -> str:
+        value, form, kind = mark.groups()
+        return _mark(0.0 - float(value), form, kind) if kind in {"y", "turn"} else mark[0]
+
+    return _MARKED.sub(other, words)
 
 
 class Words(str):
@@ -71,7 +101,7 @@ def shown(words: str, mm: float = 1.0, unit: str = "mm") -> str:
     """Show the lengths of marked words in a unit of so many mm."""
 
     def digits(mark: re.Match[str]) -> str:
-        value, form, power = mark.groups()
-        return unit if value is None else f"{float(value) / mm ** int(power):{form}}"
+        value, form, kind = mark.groups()
+        return unit if value is None else f"{float(value) / mm ** _POWERS[kind]:{form}}"
 
     return _MARKED.sub(digits, words)

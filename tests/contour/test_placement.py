@@ -18,6 +18,7 @@ from kin.contour.placement import placement
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.support_function import lift_from_fourier
+from kin.numeric.lengths import mirrored, shown
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,6 +39,10 @@ def larger(points: np.ndarray, by: float) -> np.ndarray:
 
 
 def words(points: np.ndarray) -> str:
+    return shown(marked_words(points))
+
+
+def marked_words(points: np.ndarray) -> str:
     return placement(
         Contour.from_vertices(points),
         YOKE.envelope.points(np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)),
@@ -54,6 +59,7 @@ def words(points: np.ndarray) -> str:
         (lambda exact: turned(exact, -33.3), "turned by -33.3 degrees"),
         (lambda exact: exact + np.array([2.65, -1.32]), "moved by (2.65, -1.32) mm"),
         (lambda exact: (exact * [1.0, -1.0])[::-1], "mirrored in the x axis"),
+        (lambda exact: turned((exact * [1.0, -1.0])[::-1], 40.0), "mirrored in the x axis, turned by 40 degrees"),
         (lambda exact: 25.4 * exact, "25.4 times as large"),
         (lambda exact: exact / 25.4, "25.4 times as small"),
         (lambda exact: larger(exact, 0.1), "0.1 mm larger all round"),
@@ -67,6 +73,16 @@ def words(points: np.ndarray) -> str:
 )
 def test_what_makes_the_exact_one_fit(placed: Callable[[np.ndarray], np.ndarray], expected: str) -> None:
     assert words(placed(support_points(2000))) == (f"it is the exact one {expected}" if expected else "")
+
+
+def test_words_of_a_mirrored_drawing_place_the_mirrored_exact_one() -> None:
+    """A cam turned by 40 degrees and moved by (3, 4) is, drawn mirrored, turned by -40 and moved by (3, -4)."""
+    words = mirrored(marked_words(turned(support_points(2000), 40.0) + np.array([3.0, 4.0])))
+    assert shown(words) == "it is the exact one turned by -40 degrees, moved by (3, -4) mm"
+    assert (
+        shown(words, 25.4, "inch")
+        == "it is the exact one turned by -40 degrees, moved by (0.118110236, -0.157480315) inch"
+    )
 
 
 @given(st.floats(-179.0, 179.0), st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))

@@ -15,6 +15,7 @@ from camgeo.part.body import body_of
 from camgeo.part.walls import Looks
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
+from kin.judge.check import as_drawn
 
 
 def opening(design, name):
@@ -202,7 +203,8 @@ def test_rotation_mirrors_the_part_and_leaves_its_walls():
     part = "{bore: 12, keyway: {standard: din6885, at: 30}, bolts: {count: 3, circle: 32, hole: 4, start: 10}}"
     one, checks = found(recipe_of(part))
     other, mirrored = found(recipe_of(part, more="rotation: ccw\n"))
-    assert checks["wall"] == mirrored["wall"]
+    assert checks["wall"].detail.endswith("mm at (21.13, 6.165)")
+    assert as_drawn(checks["wall"], mirrored=True) == mirrored["wall"]
     for a, b in zip(one.discs[0].body.mirrored().openings, other.discs[0].body.mirrored().openings, strict=True):
         assert np.array_equal(a.outline.points, b.outline.points)
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import pickle
 import re
 from typing import TYPE_CHECKING
 
 import pytest
 from support.cases import few
+from support.heavy import ezdxf
 
+import camgeo
 from camgeo.output import pipeline
 from camgeo.part.hub import Hub
-from camgeo.recipe.loading import load_text
+from camgeo.recipe.loading import load, load_text
 from kin.judge.check import at_most, less_sure
 from kin.numeric.lengths import UNIT, in_unit, length_words, place_words, span_words
 
@@ -91,6 +94,41 @@ def test_a_place_is_in_inches_too() -> None:
         (detail,) = [check["detail"] for check in checks if check["name"] == "wall"]
         x, y = (float(number) for number in re.findall(r"at \(([-\d.e]+), ([-\d.e]+)\)", detail)[0])
         assert 5.0 < scale * (x * x + y * y) ** 0.5 < 30.0
+
+
+@pytest.mark.parametrize("rotation", ["cw", "ccw"])
+def test_places_of_a_file_are_in_the_axes_of_that_file(tmp_path: Path, rotation: str) -> None:
+    """What is wrong at a place of a drawing is reported at that place, mirrored drawing or not."""
+    recipe = tmp_path / "cam.yaml"
+    part = "part: {bore: 10, bolts: {circle: 30, count: 3, hole: 3, start: 40}}"
+    recipe.write_text(f"rotation: {rotation}\ncam: {{kind: support, p: 25 + 2*cos(3*t) + 0.5*sin(2*t)}}\n{part}\n")
+    assert pipeline.export(load(recipe), tmp_path, only=["dxf"]).ok
+    drawing = tmp_path / "cam" / "cam.dxf"
+
+    document = ezdxf.readfile(drawing)
+    space = document.modelspace()
+    hole = space.query("CIRCLE[layer=='HOLES']")[0]
+    x, y, _ = hole.dxf.center
+    space.delete_entity(hole)
+    space.add_circle((2.0, 9.0), 1.0, dxfattribs={"layer": "HOLES"})
+    space.add_line((3.0, 4.0), (3.0, 4.0), dxfattribs={"layer": "CUT"})
+    document.saveas(tmp_path / "holes.dxf")
+    details = _details(recipe, tmp_path / "holes.dxf")
+    assert f"bolt hole 1 at ({x:.6g}, {y:.6g}) is missing" in details["holes"]
+    assert "about (2, 9), where none is expected" in details["holes"]
+    assert "at (3, 4)" in details["closed"]
+
+    document = ezdxf.readfile(drawing)
+    for entity in document.modelspace():
+        entity.transform(ezdxf.math.Matrix44.z_rotate(math.radians(7.0)) @ ezdxf.math.Matrix44.translate(1.0, 2.0, 0.0))
+    document.saveas(tmp_path / "moved.dxf")
+    details = _details(recipe, tmp_path / "moved.dxf")
+    assert details["contour"].endswith("it is the exact one turned by 7 degrees, moved by (1, 2) mm")
+    assert details["bore"].startswith("bore, about (1, 2),")
+
+
+def _details(recipe: Path, drawing: Path) -> dict[str, str]:
+    return {check.name: check.detail or "" for check in camgeo.verify(recipe, drawing).checks}
 
 
 def test_words_without_marks_stay_and_marks_go_everywhere(tmp_path: Path) -> None:

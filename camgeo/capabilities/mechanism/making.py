@@ -20,6 +20,7 @@ from camgeo.output.job import MadeFiles
 from camgeo.synthesis.view import Drawer, entry, view_of
 from kin.contour.contour import Contour
 from kin.contour.region import farthest
+from kin.judge.check import as_drawn
 from kin.law.contacts import Arrangement, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 
 if TYPE_CHECKING:
@@ -50,7 +51,8 @@ def make_mechanism(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     if not first:
         return made
     with job.clock.stage("collision"):  # last, as it takes longest
-        checks = collision_checks(assembly)
+        mirrored = job.recipe.rotation == "ccw"
+        checks = [as_drawn(check, mirrored=mirrored) for check in collision_checks(assembly)]
     return MadeFiles(made.files, (*checks, *made.checks))
 
 

@@ -35,7 +35,8 @@ from camgeo.output.file_intent import shaft_of_file
 from camgeo.output.job import Job
 from camgeo.output.skipped import scene_of
 from camgeo.registry.capability import Results
-from kin.judge.check import Check, about, at_most, failed
+from kin.judge.check import Check, about, as_drawn, at_most, failed
+from kin.numeric.lengths import UNIT, place_words
 from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
@@ -153,7 +154,8 @@ def _compare_contours(job: Job, file: FileResult) -> list[Check]:
             rows = _compare_polygons(fits[name], contour, file.tolerance)
         except (ToleranceError, ValueError) as error:
             raise _Skip(f"no polygon within a tenth of the tolerance: {error}") from error
-        checks += [replace(check, surface=name) for check in rows]
+        mirrored = job.recipe.rotation == "ccw"
+        checks += [as_drawn(replace(check, surface=name), mirrored=mirrored) for check in rows]
     return checks
 
 
@@ -171,7 +173,7 @@ def _compare_polygons(fit: Fits, contour: Contour, tolerance: float) -> list[Che
     error = abs(float(shape.area) - area)
     areas = f"{float(shape.area):.9g} mm^2, of the exact contour {area:.9g}"
     farthest = max(_farthest(drawn, exact.vertices), _farthest(exact.vertices, drawn))
-    place = f"at ({farthest.x:.6g}, {farthest.y:.6g}) mm; both as polygons, each within a tenth of the tolerance"
+    place = f"at {place_words(farthest.x, farthest.y)} {UNIT}; both as polygons, each within a tenth of the tolerance"
     return [
         at_most(CONTOUR_VALID.name, 0 if shape.is_valid else 1, 0, "faults", detail=reason),
         at_most(CONTOUR_AREA.name, error, 2.0 * length * tolerance, "mm^2", detail=areas),

@@ -372,7 +372,7 @@ def rings(outline: Outline, path: Path) -> list[Indices]:
         if wrong.any():
             x, y = points[np.flatnonzero(wrong)[0]].tolist()
             places = np.count_nonzero(wrong)
-            raise ReadError(reason, f"{what} at {place_text(x, y, digits=9)}; {places} such points", path, (x, y))
+            raise ReadError(reason, f"{what} at {place_text(x, y, digits=9)} mm; {places} such points", path, (x, y))
     following = np.full(len(points), -1, dtype=np.intp)
     following[start] = end
     step = following.tolist()
