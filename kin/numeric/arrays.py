@@ -18,8 +18,8 @@ else:  # numpy.typing is for type checkers, and slow to import
 
 
 def paired(first: Indices, second: Indices, size: int) -> NDArray[np.int64]:
-    """Return one number for each ordered pair of indices below `size`.
+    """Return one number (n,) for each ordered pair of indices `first` (n,), `second` (n,) below `size`.
 
-    It takes 64 bits, also where an index has 32 (Python in a browser): the product would overflow there.
+    The number has 64 bits, also where an index has 32 (Python in a browser), in which the product would overflow.
     """
     return first.astype(np.int64, copy=False) * size + second

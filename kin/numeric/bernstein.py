@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 # Roots closer to an end than this are taken for the end itself.
 END_MARGIN = 1e-12
-# An interval this narrow whose coefficients still change sign more than once holds a touching root, for our purposes.
+# An interval this narrow whose coefficients still change sign more than once is taken to hold a touching root.
 TOUCHING = 1e-9
 # Newton's steps double their digits: after one this short the next would be below rounding.
 SETTLED = 1e-12
@@ -30,8 +30,8 @@ def values(coefficients: Array, t: Array) -> Array:
     grows with k, not with its square, and the rounding is that of de Casteljau's scheme within a factor of two.
     """
     k = coefficients.shape[1] - 1
-    others = range(1, coefficients.ndim)
-    rows = coefficients.transpose(*others, 0)  # the loops of numpy run along the polynomials
+    inner_axes = range(1, coefficients.ndim)
+    rows = coefficients.transpose(*inner_axes, 0)  # the loops of numpy run along the polynomials
     late = t > 0.5
     if bool(late.any()):
         rows = np.where(late, rows[::-1], rows)
@@ -86,7 +86,7 @@ def derivative(coefficients: Array) -> Array:
 
 
 def halves(coefficients: Array) -> tuple[Array, Array]:
-    """Coefficients (n, k+1, ...) over [0, 1/2] and over [1/2, 1]."""
+    """Coefficients (n, k+1, ...) over [0, 1/2] and over [1/2, 1], from those over [0, 1]."""
     k = coefficients.shape[1]
     left, right = np.empty_like(coefficients), np.empty_like(coefficients)
     b = coefficients
@@ -98,7 +98,7 @@ def halves(coefficients: Array) -> tuple[Array, Array]:
 
 
 def split(coefficients: Array, share: Array) -> tuple[Array, Array]:
-    """Coefficients (n, k+1, ...) over [0, share] and over [share, 1], `share` (n,) within [0, 1]."""
+    """Coefficients (n, k+1, ...) over [0, share] and over [share, 1], from those over [0, 1]; `share` is (n,)."""
     rows = np.array(np.moveaxis(coefficients, 0, -1), order="C")
     left, back = np.empty_like(rows), 1.0 - share
     left[0] = rows[0]
@@ -109,7 +109,7 @@ def split(coefficients: Array, share: Array) -> tuple[Array, Array]:
 
 
 def restrict(coefficients: Array, a: Array, b: Array) -> Array:
-    """Coefficients (n, k+1, ...) over the intervals [a, b] (n,) instead of [0, 1]."""
+    """Coefficients (n, k+1, ...) over the intervals [a, b], (n,) each, from those over [0, 1]; 0 <= a <= b <= 1."""
     rows = np.array(np.moveaxis(coefficients, 0, -1), order="C")
     for level in range(1, len(rows)):  # what lies right of a
         rows[:-level] = rows[:-level] * (1.0 - a) + rows[1 : len(rows) - level + 1] * a
@@ -149,6 +149,7 @@ def _first_sign(coefficients: Array) -> Array:
 def roots(coefficients: Array) -> list[float]:
     """Roots in (0, 1), rising, at which a Bernstein polynomial (k+1,) changes sign; a touching root may be listed too.
 
+    Roots within END_MARGIN of 0 or 1 are left out.
     The number of sign changes of the coefficients bounds the number of roots (variation diminishing): none or one is
     decided at once, more are halved.
     """

@@ -69,8 +69,8 @@ def fitted(values: Array) -> Array:
 def evaluated(coefficients: Array, row: Indices, x: Array) -> Array:
     """Values (n,) at x (n,) in [-1, 1] of the series in the rows (n,) of `coefficients` (m, DEGREE + 1).
 
-    A few as sums of cosines, many by Clenshaw's recurrence: the one saves calls, the other work. Where all rows are
-    asked at the same x, `together` is quicker.
+    A few values are sums of cosines, which save calls; many are by Clenshaw's recurrence, which saves work. Where all
+    rows have the same x, `together` is quicker.
     """
     value: Array
     if len(x) <= _FEW:
@@ -106,7 +106,7 @@ def split(coefficients: Array, parts: int) -> Array:
 
 
 def value(coefficients: list[float], x: float) -> float:
-    """Value of one series at one x in plain floats, by Clenshaw's recurrence."""
+    """Value of one series at one x in [-1, 1] in plain floats, by Clenshaw's recurrence."""
     ahead = further = 0.0
     twice = 2.0 * x
     for k in range(len(coefficients) - 1, 0, -1):
@@ -115,7 +115,7 @@ def value(coefficients: list[float], x: float) -> float:
 
 
 def degrees(coefficients: Array, floor: float) -> Indices:
-    """Highest degree (m,) at which a coefficient of each row exceeds `floor`; 0 where none does."""
+    """Highest degree (m,) at which a coefficient of each row (m, DEGREE + 1) exceeds `floor` in size; 0 without any."""
     above = np.abs(coefficients) > floor
     highest: Indices = np.where(above.any(axis=1), DEGREE - np.argmax(above[:, ::-1], axis=1), 0)
     return highest

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 def distinct(values: Array) -> Array:
     """Return the values (m,) of an array (n,), rising and each once.
 
-    As `numpy.unique`, which imports numpy.ma, a tenth of numpy's whole import, only to ask whether its argument is
-    masked.
+    The same as `numpy.unique`, which imports numpy.ma, a tenth of numpy's whole import, only to see whether its
+    argument is masked.
     """
     ordered = np.sort(values)
     first = np.ones(ordered.size, dtype=np.bool_)

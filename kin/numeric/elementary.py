@@ -187,7 +187,7 @@ def atan2(y: Number, x: Number) -> Number:
 
 
 def hypot(x: Number, y: Number) -> Number:
-    """Length of (x, y); its derivatives do not exist at the origin."""
+    """Length of (x, y); DomainError for a jet with derivatives at the origin, where they do not exist."""
     return sqrt(x**2 + y**2)
 
 

@@ -1,4 +1,4 @@
-"""The base of all errors that are raised on purpose, and the error of a search that ended short of its promise."""
+"""The base of all errors that are raised on purpose, and the error of a search that did not reach its accuracy."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ class CamgeoError(Exception):
     """Base of every error that kin and camgeo raise on purpose: `camgeo.CamgeoError` of the library."""
 
     def __reduce__(self) -> tuple[Callable[..., CamgeoError], tuple[object, ...]]:
-        """Travel between processes as it is: what an error is made of is not what its text is."""
+        """Pickle the arguments and attributes: an error cannot be made again from its text."""
         return _again, (type(self), self.args, self.__dict__)
 
 
@@ -24,9 +24,9 @@ def _again(kind: type[CamgeoError], args: tuple[object, ...], state: dict[str, o
 
 
 class UnsettledError(CamgeoError, ArithmeticError):
-    """A search that ended short of its promise: what was sought, and how far it came.
+    """A search that did not reach its accuracy: what was sought, and how far the search came.
 
-    `at` is the parameter near which it ended, None where there is no such place.
+    `at` is the parameter near which it ended, None where there is no single place.
     """
 
     def __init__(self, reason: str, at: float | None = None) -> None:

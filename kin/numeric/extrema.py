@@ -29,13 +29,16 @@ BLOCK = 8192  # intervals at a time, so that their arrays stay in the cache
 
 
 def resolution(points: Array) -> float:
-    """Give what extremes of lengths are found to, mm, on a contour through points (n, 2) seen from the shaft."""
+    """Resolution of extremes of lengths, mm, on a contour through points (n, 2), mm, counted from the shaft."""
     return RESOLUTION * float(np.abs(points).max())
 
 
 @dataclass(frozen=True)
 class Extremes:
-    """Greatest and least value, where, and in which of the intervals; nan and -1 where there was nothing to look at."""
+    """Greatest and least value, the x at which each is reached, and the index of its interval.
+
+    Without intervals the values are -inf and inf, the places nan, the indices -1.
+    """
 
     greatest: float
     greatest_at: float
@@ -46,7 +49,7 @@ class Extremes:
 
     @property
     def worst(self) -> tuple[float, float]:
-        """Value of greatest size, and the place where it is."""
+        """Greatest absolute value, and the x at which it is reached."""
         if abs(self.least) > abs(self.greatest):
             return abs(self.least), self.least_at
         return abs(self.greatest), self.greatest_at
@@ -69,9 +72,9 @@ def extremes(
     """Extremes of f over m intervals [low, high], each (m,), f smooth inside each.
 
     `at_low` and `at_high` (3, m) are f, f', f'' at the ends, one-sided into the interval; `evaluate(x, interval)`
-    gives the same rows at points inside, `interval` (k,) being the interval each x comes from. Values are good to
-    `resolution`, as far as f'''' does not swing within an interval; halving costs grow as resolution ** -1/4.
-    UnsettledError where that is not reached: f is rougher than it, by rounding.
+    gives the same rows (3, k) at points x (k,) inside, `interval` (k,) being the interval each x comes from. Values are
+    good to `resolution`, as far as f'''' does not swing within an interval; halving costs grow as resolution ** -1/4.
+    Raises UnsettledError where the resolution is not reached, as rounding makes f rougher than that.
     """
     most = 8 * len(low) + MOST_OPEN
     ends = Extremes(-np.inf, np.nan, -1, np.inf, np.nan, -1)
@@ -100,7 +103,7 @@ def extremes(
 
 
 class _Block(NamedTuple):
-    """Some of the intervals."""
+    """Some of the intervals, with the number of the interval given that each is a part of."""
 
     low: Array
     high: Array
@@ -110,7 +113,10 @@ class _Block(NamedTuple):
 
 
 def _scan(extremes: Extremes, block: _Block, resolution: float) -> tuple[Extremes, NDArray[np.bool_]]:
-    """Take in the ends of the intervals, and the extremes between where the cubic is trusted; and which to halve."""
+    """Extremes with those of a block taken in, and which of its intervals to halve.
+
+    Counted are the ends of the intervals, and the cubic's extremes between where it is trusted.
+    """
     low, high, at_low, at_high, owner = block
     x, value, doubt = _cubic(high - low, at_low, at_high)
     trusted = doubt <= resolution
@@ -134,7 +140,7 @@ def _scan(extremes: Extremes, block: _Block, resolution: float) -> tuple[Extreme
 def _cubic(h: Array, at_low: Array, at_high: Array) -> tuple[Array, Array, Array]:
     """Each cubic's extremes inside its interval of width h (n,): share of the width (2, n), value (2, n), doubt (n,).
 
-    Instead of an extreme that is not inside the low end is given.
+    The low end stands for an extreme that is not inside. The doubt is twice the estimate of the module's heading.
     """
     f, g = at_low[0], h * at_low[1]
     rise, slope = at_high[0] - f, h * at_high[1]

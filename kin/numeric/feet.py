@@ -33,8 +33,8 @@ CHUNK = 4_000_000  # entries of a matrix of points against samples held at a tim
 class Feet:
     """The feet of n points on an exact contour.
 
-    parameter (n,)      of the foot
-    excess (n,)         of the point, mm
+    parameter (n,)      of the foot, rad
+    excess (n,)         distance of the point from the contour, mm, above 0 outside it
     normal (n, 2)       gradient of the excess
     curvature (n,)      of the line of equal excess through the point, 1/mm
     """
@@ -57,7 +57,7 @@ def equal_steps(count: int) -> Array:
 
 
 def grid(breaks: Array, count: int = COARSE) -> Array:
-    """`count` equal steps of [0, 2 pi), the breaks, and `WITHIN` parts of short stretches between, rising, distinct."""
+    """Angles in [0, 2 pi), rising, distinct: `count` equal steps, the breaks, and `WITHIN` parts of short stretches."""
     ends = np.sort(np.mod(breaks, TURN))
     width = np.diff(ends, append=ends[:1] + TURN)
     short = width < WITHIN * TURN / count
@@ -70,10 +70,10 @@ def climb(
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Climb to the maximum nearest uphill from x (n,) by Newton's method, bracketed and with bounded steps.
 
-    `slopes(x, which)` gives f, f' and -f''; `breaks`, in [0, 2 pi), are where f'' jumps. Returns x, the step that
-    remains (below FINE_STEP and across no break, unless the bracket closed first), and f, f', -f'' at x: (n,) each.
-    Where stretches between breaks are short, the step is small beside the shortest, too. Raises UnsettledError where
-    MOST_STEPS steps do not do.
+    `slopes(x, which)` gives f, f' and -f'' at x, `which` being the indices of these starts; `breaks`, in [0, 2 pi), are
+    where f'' jumps. Returns x, the step that remains (at most FINE_STEP and across no break; 0 where the bracket closed
+    first), and f, f', -f'' at x: (n,) each. Where stretches between breaks are short, the step is small beside the
+    shortest, too. Raises UnsettledError where MOST_STEPS steps do not suffice.
     """
     x = x.copy()
     ends = distinct(breaks)
@@ -110,9 +110,9 @@ def climb(
 
 
 def across(breaks: Array, x: Array, step: Array) -> NDArray[np.bool_]:
-    """Whether a break in [0, 2 pi) lies between x and x + step, (n,) each; a step of less than half a turn.
+    """Whether a break in [0, 2 pi) lies between x and x + step, (n,) each; steps are below half a turn.
 
-    Derivatives at a break are those behind it, so that a step back from one leads across it.
+    Derivatives at a break are those behind it, so that a step back from a break leads across it.
     """
     low, high = np.minimum(x, x + step), np.maximum(x, x + step)
     turns = TURN * np.floor(low / TURN)
@@ -130,9 +130,10 @@ def _newton(slope: Array, bend: Array) -> Array:
 
 
 def two_best(score: Callable[[Array], Array], points: Array, count: int) -> tuple[Indices, Indices]:
-    """For each point the sample of highest score, and the best of those well away from it: (n,) each.
+    """For each point the sample of the highest score, and the best sample well away from it: indices (n,) each.
 
-    Near a corner of a trimmed contour two feet count, and coarse samples cannot tell which one wins.
+    `score(points (k, 2))` gives scores (k, count) of `count` samples. Near a corner of a trimmed contour a point has
+    two feet, and coarse samples do not show which one is the better.
     """
     first, second = np.empty(len(points), dtype=np.intp), np.empty(len(points), dtype=np.intp)
     away = count // 64
@@ -151,17 +152,19 @@ class Tight(Protocol):
     """Protocol of a contour that knows its radii of curvature, and so the places where its curvature is tight."""
 
     def points(self, parameter: Array) -> Array:
-        """Points (n, 2) of the contour."""
+        """Points (n, 2), mm, of the contour at parameters (n,), rad."""
 
     def radii(self) -> tuple[Array, Array]:
         """Parameters (m,) closely round the turn, and radii of curvature there (m,), mm, negative where hollow."""
 
 
 def searched_again(feet: Feet, points: Array, contour: Tight, search: Callable[[Array], Feet]) -> Feet:
-    """Replace the feet of points that lie inside a tight corner of the contour, nearly as deep as they are near to it.
+    """Replace, in place, the feet of points that lie deep inside the contour and near one of its tight corners.
 
-    There two feet compete, one on either side of the corner, and the nearer one has to be looked for.
+    There two feet compete, one on either side of the corner, and `search` finds the nearer one of each point (k, 2).
+    Deep is deeper than the least radius of curvature; near is within CORNER_REACH depths along the contour.
     """
+    # corners are samples with a radius below the greatest depth; distances to them are lengths along the contour
     parameter, radius = contour.radii()
     deep = np.flatnonzero(feet.excess < -radius[radius >= 0.0].min(initial=np.inf))
     if not len(deep):
@@ -175,8 +178,8 @@ def searched_again(feet: Feet, points: Array, contour: Tight, search: Callable[[
     after = np.clip(np.searchsorted(marks, at), 1, len(marks) - 1)
     apart = np.minimum(at - marks[after - 1], marks[after] - at)
     deep = deep[apart <= CORNER_REACH * -feet.excess[deep]]
-    other = search(points[deep])
-    for mine, new in zip(feet.rows, other.rows, strict=True):
+    nearer = search(points[deep])
+    for mine, new in zip(feet.rows, nearer.rows, strict=True):
         mine[deep] = new
     return feet
 
@@ -189,7 +192,7 @@ def better(first: Feet, two: Feet, score_one: Array | None = None, score_two: Ar
 
 
 def turn_quadrature(breaks: Array) -> tuple[Array, Array]:
-    """Nodes and weights (m,), rad, that integrate over one turn a function smooth between the breaks."""
+    """Nodes and weights, (m,) each, rad, that integrate over one turn a function smooth between the breaks."""
     ends = grid(breaks, 64)
     ends = np.append(ends, ends[0] + TURN)
     node, weight = quadrature.gauss(16)

@@ -48,7 +48,7 @@ class Ball:
 
     @staticmethod
     def exact(value: float | Array) -> Ball:
-        """Return balls of radius 0 about these numbers."""
+        """Return balls of radius 0 about these doubles; a number that is not finite gives radius infinity."""
         mid = np.array(value, dtype=float)
         return _ball(mid, np.where(np.isfinite(mid), 0.0, np.inf))
 
@@ -172,7 +172,7 @@ def _fresh() -> np.errstate:
 
 
 def _ball(mid: Array, rad: Array) -> Ball:
-    """Return the ball, or the one that says nothing where the arithmetic has left the finite numbers."""
+    """Return the ball, with midpoint 0 and radius infinity where the arithmetic has left the finite numbers."""
     sound = np.isfinite(rad)
     if not sound.all():
         mid, rad = np.where(sound, mid, 0.0), np.where(sound, rad, np.inf)
@@ -209,7 +209,10 @@ def rising(
     tiny: float = 0.0,
     floor: float = -math.inf,
 ) -> Ball:
-    """Image of x under an increasing function, nowhere below floor; `tiny` covers its underflow."""
+    """Ball that encloses an increasing function, nowhere below `floor`, of every number in the ball x.
+
+    `tiny` is the error of its underflow. The radius is infinite where x is not within the domain, least and greatest.
+    """
     lower, upper = x.bounds()
     with _fresh():
         inside = (lower >= domain[0]) & (upper <= domain[1])
@@ -233,8 +236,8 @@ def sin_cos(x: Ball) -> tuple[Ball, Ball]:
         holds = ~(np.ceil(left) > np.floor(right))  # true also where nothing is known
         greatest = np.where(holds[0::2], 1.0, greatest)
         least = np.where(holds[1::2], -1.0, least)
-        both = Ball.between(least, greatest)
-    return both[0], both[1]
+        enclosing = Ball.between(least, greatest)
+    return enclosing[0], enclosing[1]
 
 
 def tan(x: Ball) -> Ball:
@@ -304,7 +307,10 @@ def tanh(x: Ball) -> Ball:
 
 
 def atan2(y: Ball, x: Ball) -> Ball:
-    """Angles of the points of the boxes x by y; [-pi, pi] where a box meets the cut (x <= 0, y = 0)."""
+    """Ball that encloses the polar angles, rad, of all points of the box x by y.
+
+    It is [-pi, pi] where the box meets the cut (x <= 0, y = 0).
+    """
     (y0, y1), (x0, x1) = y.bounds(), x.bounds()
     with _fresh():
         corners = np.stack([np.arctan2(b, a) for b in (y0, y1) for a in (x0, x1)])

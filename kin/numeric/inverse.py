@@ -33,10 +33,10 @@ class Inverse:
         return self.function(self.places)
 
     def __call__(self, value: Array) -> Array:
-        """Give x (n,) where the function has the values (n,), an end of the places for a value beyond it.
+        """Give x (n,) where the function has the values (n,), the end of the places for a value beyond its range.
 
-        Newton's method begins from the cubic through two neighbours of the table of the inverse. UnsettledError where
-        it does not end.
+        Newton's method begins from the cubic through two neighbours of the table of the inverse. Raises UnsettledError
+        where the method does not end.
         """
         values, slopes = self._table
         value = np.clip(value, values[0], values[-1])

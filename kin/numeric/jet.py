@@ -1,4 +1,4 @@
-"""The two kinds of truncated Taylor series: `Jet` at points, `BallJet` over intervals. See `kin.numeric.elementary`."""
+"""The two kinds of truncated Taylor series: `Jet` at points, `BallJet` over intervals, with their arithmetic."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 class DomainError(CamgeoError, ArithmeticError):
     """A jet left the domain of an operation or the finite numbers.
 
-    `operation` says which, in words; `indices` (k,) are the points, out of the n of the jet, at which it did.
+    `operation` names the fault in words; `indices` (k,) are the points of the jet at which it lies.
     """
 
     def __init__(self, operation: str, indices: NDArray[np.intp]) -> None:
@@ -45,13 +45,13 @@ class DomainError(CamgeoError, ArithmeticError):
 
 
 def demand(sound: NDArray[np.bool_] | np.bool_, operation: str) -> None:
-    """Raise DomainError unless all points (n,) are sound."""
+    """Raise DomainError, with the words `operation`, unless all points (n,) are sound."""
     if not sound.all():
         raise DomainError(operation, np.flatnonzero(~sound))
 
 
 def finite(c: Array, operation: str) -> Jet:
-    """Return the jet of these coefficients (order + 1, n), all of them finite, or DomainError."""
+    """Return the jet of these coefficients (order + 1, n); DomainError unless all of them are finite."""
     sound = np.isfinite(c)
     if np.count_nonzero(sound) < c.size:
         demand(sound.all(axis=0), operation)
@@ -72,7 +72,7 @@ class Jet:
 
     @staticmethod
     def variable(t: float | Array, order: int) -> Jet:
-        """Return the variable itself at the points t (n,)."""
+        """Return the variable itself at the points t (n,); DomainError for one that is not finite."""
         c = np.zeros((order + 1, np.size(t)))
         c[0] = t
         if order > 0:
@@ -80,7 +80,7 @@ class Jet:
         return finite(c, "a number that is not finite")
 
     def constant(self, value: float | Array) -> Jet:
-        """Return a constant, of the order and at the points of this jet."""
+        """Return a constant, of the order and at the points of this jet; DomainError if it is not finite."""
         c = np.zeros_like(self.c)
         c[0] = value
         return finite(c, "a number that is not finite")
@@ -275,7 +275,10 @@ Series = TypeVar("Series", Jet, BallJet)
 
 
 def derivatives_by(f: Series, parameter: Series) -> list[Series]:
-    """F and its derivatives by another function of the same variable: series of f's order, one less, and so on to 0."""
+    """F and its derivatives by another function of the same variable: series of f's order, one less, and so on to 0.
+
+    Jets raise DomainError where the rate of `parameter` is 0 or a result is not finite.
+    """
     rows = [f]
     if not f.order:
         return rows
@@ -290,7 +293,10 @@ def derivatives_by(f: Series, parameter: Series) -> list[Series]:
 
 
 def horner(coefficients: Sequence[float] | Array, x: Series) -> Series:
-    """Polynomials of these coefficients (k,) or (k, n), lowest first, at a jet or ball jet."""
+    """Polynomials of these coefficients (k,) or (k, n), lowest first, at a jet or ball jet; a jet may overflow.
+
+    Then it raises DomainError.
+    """
     if isinstance(x, BallJet):
         ball = x.constant(coefficients[-1])
         for row in coefficients[-2::-1]:

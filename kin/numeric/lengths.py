@@ -25,7 +25,7 @@ _POWERS = {"1": 1, "2": 2, "3": 3, "y": 1, "turn": 0}  # of a length in each kin
 
 
 def length_words(mm: float, form: str = ".6g", power: int = 1) -> str:
-    """Mark a length, mm, or an area or volume by its power, to stand among words in this form without its unit."""
+    """Mark a length, mm, or by its power an area or volume, to stand among words in a format without its unit."""
     return _mark(mm, form, str(power))
 
 
@@ -61,7 +61,7 @@ def turn_words(degrees: float, form: str = ".9g") -> str:
 
 
 def mirrored(words: str) -> str:
-    """Marked words about a drawing mirrored in the x axis: y of each place and each turn with the other sign."""
+    """Marked words for a drawing mirrored in the x axis: y of each place, and each turn, have the other sign."""
 
     def other(mark: re.Match[str]) -> str:
         value, form, kind = mark.groups()
@@ -83,7 +83,7 @@ class Words(str):
         return words
 
     def __reduce__(self) -> tuple[type[Words], tuple[str]]:
-        """Go to another process with the marks."""
+        """Pickle the marked words."""
         return Words, (self.marked,)
 
 
@@ -93,12 +93,12 @@ def marked(words: str) -> str:
 
 
 def in_unit(words: str, mm: float, unit: str) -> str:
-    """Give words with their lengths in a unit of so many mm; those without marks as they are."""
+    """Give words with their lengths in a unit of `mm` mm, named `unit`; words without marks as they are."""
     return shown(marked(words), mm, unit)
 
 
 def shown(words: str, mm: float = 1.0, unit: str = "mm") -> str:
-    """Show the lengths of marked words in a unit of so many mm."""
+    """Show the lengths of marked words in a unit of `mm` mm, and its name `unit`."""
 
     def digits(mark: re.Match[str]) -> str:
         value, form, kind = mark.groups()

@@ -21,7 +21,7 @@ _MOST = 5000  # pivots in all; a programme of a hundred rows takes some hundred
 
 
 class Optimum(NamedTuple):
-    """Least value, the variables (n,), and by how much the rows are missed at best: 0 where there is such a point."""
+    """Least value, the variables (n,), and the least sum of errors of the rows, 0 where a point fulfils them."""
 
     value: float
     x: Array
@@ -31,42 +31,46 @@ class Optimum(NamedTuple):
 def minimise(cost: Array, rows: Array, right: Array, enough: float = 1e-10) -> Optimum:
     """Minimise cost (n,) times x, x >= 0, with rows (m, n) times x = right (m,).
 
-    Rows are expected to be of size 1. `missed` is the least sum of what the rows are missed by; where it is above
-    `enough`, the value is infinite and x is the point that misses by it. The cost must have a least value.
+    Rows are expected to be of size 1. Where the errors of the rows sum to more than `enough` at every x, the value is
+    infinite, `missed` is the least sum and x the point that has it. The cost must have a least value.
     """
     count, size = rows.shape
+    # phase 1: an artificial variable for each row without a slack; their sum is made least
     sign = np.where(right < 0.0, -1.0, 1.0)
     table = np.hstack([rows * sign[:, None], np.eye(count), (right * sign)[:, None]])
     basis = np.arange(size, size + count)
-    alone = np.flatnonzero((table[:, :size] != 0.0).sum(axis=0) == 1)
-    for column in alone:  # a slack of a row that it may stand for, so that the row needs no artificial variable
+    single_entries = np.flatnonzero((table[:, :size] != 0.0).sum(axis=0) == 1)
+    for (
+        column
+    ) in single_entries:  # a slack of a row that it may stand for, so that the row needs no artificial variable
         row = int(np.argmax(table[:, column]))
         if table[row, column] == 1.0 and basis[row] >= size:
             basis[row] = column
     whole = table.copy()
     artificial = basis >= size
-    first = -table[artificial].sum(axis=0)
-    first[size : size + count] = 0.0
-    _pivot(table, first, basis, size)
-    missed = max(-float(first[-1]), 0.0)
-    if missed > enough:  # perhaps by what the rounding of all pivots has left alone: the table is worked out anew
+    artificial_costs = -table[artificial].sum(axis=0)
+    artificial_costs[size : size + count] = 0.0
+    _pivot(table, artificial_costs, basis, size)
+    missed = max(-float(artificial_costs[-1]), 0.0)
+    if missed > enough:  # perhaps only by the rounding of all pivots: the table is worked out anew
         table, *_ = np.linalg.lstsq(whole[:, basis], whole, rcond=None)
-        first = -table[basis >= size].sum(axis=0)
-        first[size : size + count] = 0.0
-        _pivot(table, first, basis, size)
-        missed = max(-float(first[-1]), 0.0)
+        artificial_costs = -table[basis >= size].sum(axis=0)
+        artificial_costs[size : size + count] = 0.0
+        _pivot(table, artificial_costs, basis, size)
+        missed = max(-float(artificial_costs[-1]), 0.0)
     if missed > enough:
         return Optimum(np.inf, _point(rows, right, basis, size), missed)
+    # phase 2: the cost itself from there
     costs = np.concatenate([cost, np.zeros(count + 1)])
-    second = costs - costs[basis] @ table
-    _pivot(table, second, basis, size)
+    reduced_costs = costs - costs[basis] @ table
+    _pivot(table, reduced_costs, basis, size)
     x = _point(rows, right, basis, size)
     missed = float(np.abs(rows @ x - right).sum())
     return Optimum(float(cost @ x), x, 0.0) if missed <= enough else Optimum(np.inf, x, missed)
 
 
 def _pivot(table: Array, costs: Array, basis: Indices, size: int) -> None:
-    """Exchange columns below `size` for those of the basis while the costs fall; all three change in place."""
+    """Bring columns below `size` into the basis while the costs fall; table, costs and basis change in place."""
     for step in range(_MOST):
         open_ = costs[:size]
         enter = int(np.argmin(open_)) if step < _STEPS else int(np.argmax(open_ < -_ZERO))
@@ -83,15 +87,15 @@ def _pivot(table: Array, costs: Array, basis: Indices, size: int) -> None:
         near = np.flatnonzero(ratio <= ratio.min() + _ZERO)
         leave = int(near[np.argmax(np.abs(column[near]))]) if step < _STEPS else int(near[np.argmin(basis[near])])
         table[leave] /= table[leave, enter]
-        others = table[:, enter].copy()
-        others[leave] = 0.0
-        table -= others[:, None] * table[leave]
+        factors = table[:, enter].copy()
+        factors[leave] = 0.0
+        table -= factors[:, None] * table[leave]
         costs -= costs[enter] * table[leave]
         basis[leave] = enter
 
 
 def _point(rows: Array, right: Array, basis: Indices, size: int) -> Array:
-    """The variables of a basis, worked out of the rows as they were given, so that no pivot's rounding is left."""
+    """The variables of a basis, solved from the rows as they were given, so that no pivot's rounding is left."""
     x = np.zeros(size)
     used = basis[basis < size]
     solved, *_ = np.linalg.lstsq(rows[:, used], right, rcond=None)

@@ -56,7 +56,7 @@ _FLAT = 1e-150
 
 @dataclass(frozen=True)
 class Window:
-    """A window of the input: from `start` in [0, period) over `length`, the output from `least` to `greatest`."""
+    """A window of the input, from `start` in [0, period) over `length`; the output stays from `least` to `greatest`."""
 
     start: float
     length: float
@@ -78,11 +78,11 @@ def dwells(
 ) -> tuple[Window, ...]:
     """Find the longest windows over which f stays within `band`, the longest first.
 
-    f(x (n,), order) gives (order + 1, n) derivatives, of which the values alone are asked for, at 0 <= x <= period
-    and never at a break; f is continuous and periodic, and smooth between breaks. No window can be lengthened by
-    shifting it a little, and none overlaps a longer one; there are at most `most`. Ends are good to 1e-10 of the
-    period, or as far as f's rounding lets them be known. An output that never leaves the band is one window of a
-    whole period. Raises ValueError for a band that is not positive, or is lost in the rounding of f.
+    f(x (n,), order) gives (order + 1, n) derivatives; it is called with order 0, at 0 <= x <= period. It is continuous
+    and periodic, and smooth between breaks. No window can be lengthened by shifting it a little, and none overlaps a
+    longer one; there are at most `most`. Ends are good to 1e-10 of the period, or as far as f's rounding lets them be
+    known. An output that never leaves the band is one window of a whole period. Raises ValueError for a band that is
+    not positive or is lost in the rounding of f, and for an output that jumps; RoughError for one too rough to follow.
     """
     search = _search(f, breaks, band, period)
     (least, _), (greatest, _) = search.of.least(), search.of.greatest()
@@ -98,10 +98,11 @@ def longest_of_each(
 ) -> tuple[Window, ...]:
     """Find the longest window of each section between `edges` (m + 1,), the period's 0 and end among them.
 
-    Over a window f(x (n,), order) stays within `band`; it is periodic and continuous, and smooth between `breaks`. It
-    leaves the band about each edge, so that no window reaches from one section into the next. Ends are good to 1e-10 of
-    the period, or as far as f's rounding lets them be known. Raises ValueError for a band that is not positive, or is
-    lost in the rounding of f.
+    Over a window f stays within `band`. f(x (n,), order) gives (order + 1, n) derivatives and is called with order 0;
+    it is periodic and continuous, and smooth between `breaks`. It leaves the band about each edge, so that no window
+    reaches from one section into the next. Ends are good to 1e-10 of the period, or as far as f's rounding lets them be
+    known. Raises ValueError for a band that is not positive or is lost in the rounding of f, and for an output that
+    jumps; RoughError for one too rough to follow.
     """
     search = _search(f, breaks, band, float(edges[-1]))
     at_nodes = search.node_windows()
@@ -126,7 +127,7 @@ def _search(f: Callable[[Array, int], Array], breaks: Sequence[float] | Array, b
 
 
 def _demand_continuous(pieces: MonotonePieces, band: float) -> None:
-    """Refuse jumps between pieces or over the seam; less than this of the band is a matter of resolution."""
+    """Raise ValueError for a jump between pieces or over the seam of more than _JUMP of the band, and of rounding."""
     jump = np.abs(np.roll(pieces.coefficients[:, 0], -1) - pieces.coefficients[:, -1])
     worst = int(np.argmax(jump))
     if jump[worst] > _JUMP * band + 4.0 * pieces.noise:
@@ -134,9 +135,9 @@ def _demand_continuous(pieces: MonotonePieces, band: float) -> None:
 
 
 def doubled(value: Array, extreme: np.ufunc) -> list[Array]:
-    """Extremes over runs of 1, 2, 4, ...
+    """Extremes over runs of 1, 2, 4, ... of the values (n,), up to the longest that fits.
 
-    Of the values (n,), as many as fit; entry k of each is that of the run from k on.
+    `extreme` is numpy's minimum or maximum. Entry k of each array (n - run + 1,) belongs to the run that begins at k.
     """
     runs = [value]
     while 2 ** len(runs) <= len(value):
@@ -207,7 +208,7 @@ class _Search:
         return (lowest >= low - noise) & (highest <= low + self.band + noise)
 
     def reach_right(self, node: Indices, low: Array) -> Indices:
-        """The last node of the run from `node` (k,) to the right that stays in the band, `node` itself not asked."""
+        """Last node (k,) of the run from `node` (k,) to the right that stays in the band; `node` counts as within."""
         node = node.copy()
         for level in range(len(self.lowest) - 1, -1, -1):
             last = len(self.lowest[level]) - 1
@@ -216,7 +217,7 @@ class _Search:
         return node
 
     def reach_left(self, node: Indices, low: Array) -> Indices:
-        """First node (k,) of the run from `node` (k,) to the left that stays in the band, `node` itself not asked."""
+        """First node (k,) of the run from `node` (k,) to the left that stays in the band; `node` counts as within."""
         node = node.copy()
         for level in range(len(self.lowest) - 1, -1, -1):
             begin = node - 2**level
@@ -225,7 +226,7 @@ class _Search:
         return node
 
     def node_windows(self) -> _Windows:
-        """For each node of the middle period the windows whose band begins at its value, and ends at it."""
+        """For each node of the middle period the windows whose band has its lower, and its upper, edge at the node."""
         count = len(self.of.coefficients)
         node = np.tile(np.arange(count, 2 * count), 2)
         upper = np.arange(2 * count) >= count
@@ -239,9 +240,9 @@ class _Search:
 
     @cached_property
     def runs(self) -> Indices:
-        """For each piece the run of pieces, numbered through three periods, along which |f'| rises or falls all along.
+        """Number of the run of each piece, through three periods: along a run |f'| rises all along, or falls.
 
-        Jumps the other way that are less than what balances count as none.
+        Jumps the other way within _BALANCED do not end a run.
         """
         of = self.of
         steep = np.abs(np.diff(of.coefficients, axis=1)[:, [0, -1]]) / of.width[:, None]
@@ -257,12 +258,12 @@ class _Search:
         return np.searchsorted(edges, np.mod(0.5 * (w.a + w.b), self.period), side="right") - 1
 
     def maximal_windows(self, at_nodes: _Windows, shortest: float) -> _Windows:
-        """Windows that cannot be lengthened; those clearly below `shortest` at whose ends slopes balance may lack."""
+        """Windows that cannot be lengthened; windows of balanced slopes clearly below `shortest` may be missing."""
         balanced = self.balanced_windows(at_nodes.a, shortest - _EQUAL * self.period)
         return at_nodes.take(self.is_longest(at_nodes)).joined(balanced)
 
     def is_longest(self, w: _Windows) -> Flags:
-        """Whether the windows can not be lengthened by moving their bands a little up or down."""
+        """Whether the windows cannot be lengthened by moving their bands a little up or down."""
         rates_at_a, rates_at_b = self._rates(w.first, w.a, w.first + 1), self._rates(w.last, w.b, w.last)
         low = self.value[w.anchor] - self.band * w.upper
         at_low, at_high = self._touched(w, low)
@@ -277,30 +278,32 @@ class _Search:
         return ~lengthened
 
     def _rates(self, piece: Indices, x: Array, node: Indices) -> tuple[Array, Array]:
-        """|f'| to the left and right of ends x (k,) that lie in pieces (k,), maybe on the nodes (k,)."""
+        """|f'| to the left and right of ends x (k,) that lie in pieces (k,), perhaps on the nodes (k,)."""
         own = np.abs(self.slope(piece, x))
-        other = 2 * node - 1 - piece  # the piece on the node's other side
-        beyond = np.where(np.abs(x - self.x[node]) <= _SAME * self.period, np.abs(self.slope(other, self.x[node])), own)
+        neighbour = 2 * node - 1 - piece  # the piece on the node's other side
+        beyond = np.where(
+            np.abs(x - self.x[node]) <= _SAME * self.period, np.abs(self.slope(neighbour, self.x[node])), own
+        )
         steep = 1.0 / _FLAT
-        left, right = np.where(other < piece, beyond, own), np.where(other < piece, own, beyond)
+        left, right = np.where(neighbour < piece, beyond, own), np.where(neighbour < piece, own, beyond)
         return np.clip(left, _FLAT, steep), np.clip(right, _FLAT, steep)
 
     def _touched(self, w: _Windows, low: Array) -> tuple[Flags, Flags]:
         """Whether a node between the ends lies on the lower and on the upper edge of the band."""
         begin = w.first + 1 + (self.x[w.first + 1] - w.a <= _SAME * self.period)
         end = w.last - (w.b - self.x[w.last] <= _SAME * self.period)
-        some = begin <= end
-        length = np.where(some, end - begin + 1, 1)
+        any_node = begin <= end
+        length = np.where(any_node, end - begin + 1, 1)
         level = np.frexp(length.astype(float))[1] - 1
-        begin, end = np.where(some, begin, 0), np.where(some, end, 0)
+        begin, end = np.where(any_node, begin, 0), np.where(any_node, end, 0)
         lowest, highest = np.full(len(begin), np.inf), np.full(len(begin), -np.inf)
         for k in np.flatnonzero(np.bincount(level)).tolist():
-            here = np.flatnonzero(level == k)
-            tail = end[here] + 1 - 2**k
-            lowest[here] = np.minimum(self.lowest[k][begin[here]], self.lowest[k][tail])
-            highest[here] = np.maximum(self.highest[k][begin[here]], self.highest[k][tail])
+            at_level = np.flatnonzero(level == k)
+            tail = end[at_level] + 1 - 2**k
+            lowest[at_level] = np.minimum(self.lowest[k][begin[at_level]], self.lowest[k][tail])
+            highest[at_level] = np.maximum(self.highest[k][begin[at_level]], self.highest[k][tail])
         noise = self.of.noise
-        return some & (lowest <= low + noise), some & (highest >= low + self.band - noise)
+        return any_node & (lowest <= low + noise), any_node & (highest >= low + self.band - noise)
 
     def balanced_windows(self, starts: Array, least: float) -> _Windows:
         """Windows through whose ends f goes alike, with equal slopes, between neighbouring starts of node windows.
@@ -369,9 +372,9 @@ class _Family:
             settled = apart | one_way | small | (len(of) > _MOST_CELLS)
             peak = settled & ~apart & (at_a >= at_b) & (to_a <= to_b)
             places.append((of[peak], left[peak], right[peak], (at_a - at_b)[peak], (to_a - to_b)[peak]))
-            rest = ~settled
-            of, left, right, end = of[rest], left[rest], right[rest], end[rest]
-            at_a, at_b, to_a, to_b = at_a[rest], at_b[rest], to_a[rest], to_b[rest]
+            unsettled = ~settled
+            of, left, right, end = of[unsettled], left[unsettled], right[unsettled], end[unsettled]
+            at_a, at_b, to_a, to_b = at_a[unsettled], at_b[unsettled], to_a[unsettled], to_b[unsettled]
             middle = 0.5 * (left + right)
             mid, mid_a, mid_b = self.take(of).ends(middle)
             of = np.concatenate([of, of])
@@ -407,15 +410,15 @@ class _Family:
 
 
 def _disjoint(windows: _Windows, period: float, most: int) -> _Windows:
-    """The longest, the longest of those that do not overlap it, and so on; of equals the one that begins first."""
+    """At most `most` windows, the longest first: each the longest that overlaps none before, of equals the earliest."""
     length = windows.b - windows.a
     start = np.mod(windows.a, period)
     order = np.lexsort([start, -np.round(length / (_EQUAL * period))])
     chosen: list[int] = []
-    room = _EQUAL * period
+    slack = _EQUAL * period
     for k in order.tolist():
         if all(
-            (start[k] - start[c]) % period >= length[c] - room and (start[c] - start[k]) % period >= length[k] - room
+            (start[k] - start[c]) % period >= length[c] - slack and (start[c] - start[k]) % period >= length[k] - slack
             for c in chosen
         ):
             chosen.append(k)
@@ -444,9 +447,10 @@ def _polished(w: _Windows, f: Callable[[Array, int], Array], search: _Search) ->
 
 
 def _moved(x: Array, piece: Indices, level: Array, f: Callable[[Array], Array], search: _Search) -> Array:
-    """Newton's method for f itself, by the slopes of its polynomial, which `cells` has made alike to `_RESOLUTION`.
+    """Ends x (k,) moved to where f itself reaches the levels (k,), by Newton's method with its polynomial's slopes.
 
-    Each of the two steps leaves of what an end is off no more than the part by which the slopes differ.
+    The polynomial follows f to `_RESOLUTION`. Each of the two steps leaves of an end's error no more than the part by
+    which the slopes of f and of the polynomial differ.
     """
     for _ in range(_STEPS):
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -50,7 +50,7 @@ SAME = 1e-6
 
 
 class RoughError(CamgeoError, ArithmeticError):
-    """A function that no polynomials follow to the resolution asked for; `at` is one of the places."""
+    """A function that no polynomials follow to a `resolution`; `at` is one of the x at which they do not."""
 
     def __init__(self, place: float, resolution: float) -> None:
         super().__init__(f"the function is too rough to be resolved to {resolution:.3g} near {place:.9g}")
@@ -62,7 +62,7 @@ class RoughError(CamgeoError, ArithmeticError):
 class Cells:
     """Polynomials for r functions on m cells [low, high] (m,), rising: Bernstein `coefficients` (r, m, DEGREE + 1).
 
-    `noise` (r, m) is how far the coefficients may be off by rounding.
+    `noise` (r, m) is the greatest error of the coefficients by rounding.
     """
 
     low: Array
@@ -77,14 +77,20 @@ class Cells:
         return np.stack([values(c[cell], share) for c in self.coefficients])
 
     def reach(self, level: Array) -> tuple[Indices, Array]:
-        """Cells and shares of them, (n,) each, where the first function, which rises, has the values `level` (n,)."""
+        """Cells, and shares of their width, (n,) each, where the first function, which rises, has values `level` (n,).
+
+        Raises UnsettledError where a level is not a number.
+        """
         rising = self.coefficients[0]
         cell = np.clip(np.searchsorted(rising[:, 0], level, side="right") - 1, 0, len(rising) - 1)
         return cell, rising_root(rising[cell] - level[:, None])
 
 
 class _Basis(NamedTuple):
-    """Chebyshev points in (0, 1) (k,), and what takes values there to Bernstein and last two Chebyshev coefficients."""
+    """Chebyshev points in (0, 1) (k,), and matrices that take values there to coefficients.
+
+    These are the Bernstein coefficients (k, k), and the last two Chebyshev coefficients (2, k).
+    """
 
     points: Array
     bernstein: Array
@@ -104,7 +110,7 @@ def _basis() -> _Basis:
 
 
 def _evenly(places: Array, counts: Indices) -> tuple[Array, Array]:
-    """Ends of equal cells between places (m + 1,), so many between each two."""
+    """Low and high ends (n,) of equal cells, `counts` (m,) of them between neighbours of the places (m + 1,)."""
     begin, end = np.repeat(places[:-1], counts), np.repeat(places[1:], counts)
     count = np.repeat(counts, counts)
     number = np.arange(len(count)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -115,8 +121,8 @@ def _evenly(places: Array, counts: Indices) -> tuple[Array, Array]:
 def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array = 0.0, *, share: float = 0.0) -> Cells:
     """Interpolate r functions, f(x (n,)) -> (r, n), between places (m + 1,) that rise, breaks among them.
 
-    Each is resolved to `resolution` ((r,) or one for all), or to a share of its greatest absolute value, or to its own
-    rounding, whichever is most. Rounding is known by its not going down as cells are halved. Raises RoughError where
+    Each is resolved to `resolution` ((r,) or one for all), or to a `share` of its greatest absolute value, or to its
+    own rounding, whichever is most. Errors that do not fall as cells are halved are rounding. Raises RoughError where
     too many cells are left unresolved.
     """
     basis = _basis()
@@ -130,6 +136,7 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array 
     before = np.full((GENERATIONS, len(low)), np.inf)  # what was left of each cell's forebears, the oldest first
     done = []
     while len(low):
+        # the last two Chebyshev coefficients on each cell estimate the error, in units of what is allowed: `excess`
         at = low[:, None] + (high - low)[:, None] * basis.points
         y = f(at.ravel())
         y = y.reshape(len(y), *at.shape)
@@ -140,6 +147,7 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array 
         excess = np.divide(last, allowed, out=np.zeros_like(last), where=last > 0).max(axis=0)
         rounding = (excess > STAGNANT * before[0]) & (last <= MOST_NOISE * scale[:, None]).all(axis=0)
         rounding &= np.roll(rounding, len(low) // 2)  # in both halves of a cell
+        # cells that are resolved, rounding or too narrow are done, the rest are halved
         unresolved = (excess > 1.0) & ~rounding & (high - low > least)
         done.append((low[~unresolved], high[~unresolved], y[:, ~unresolved], (last * rounding)[:, ~unresolved]))
         low, high = low[unresolved], high[unresolved]
@@ -160,7 +168,7 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array 
 class MonotonePieces:
     """A function on n pieces between nodes x (n + 1,), each a polynomial, monotone and with a monotone slope.
 
-    `coefficients` (n, k + 1) are Bernstein coefficients over each piece, `blur` (n,) how far rounding may put them off.
+    `coefficients` (n, k + 1) are Bernstein coefficients over each piece, `blur` (n,) their greatest error by rounding.
     """
 
     x: Array
@@ -179,7 +187,7 @@ class MonotonePieces:
 
     @property
     def values(self) -> Array:
-        """Value at each node (n + 1,), that of the piece that begins there."""
+        """Value at each node (n + 1,), by the piece that begins there, or ends at the last node."""
         return np.append(self.coefficients[:, 0], self.coefficients[-1, -1])
 
     def at(self, piece: Indices, x: Array) -> Array:
@@ -193,9 +201,9 @@ class MonotonePieces:
         return values(c, (x - self.x[piece]) / width) / width
 
     def crossing(self, piece: Indices, level: Array) -> Array:
-        """Points x (n,) at which the given pieces (n,) reach levels (n,), or the nearer ends.
+        """Points x (n,) at which the given pieces (n,) reach levels (n,), or the ends nearer to the level.
 
-        An end whose value is the level but for rounding is that place: a piece may be flat there.
+        An end whose value is the level to rounding is taken as the point, as the piece may be flat there.
         """
         c = self.coefficients[piece]
         rising = np.where(c[:, -1] >= c[:, 0], 1.0, -1.0)
@@ -231,7 +239,7 @@ class MonotonePieces:
 
 
 def pieces(cells: Cells, row: int = 0) -> MonotonePieces:
-    """Cut one of the functions into pieces."""
+    """Cut the function of a row into pieces that are monotone and have monotone slopes."""
     least = LEAST_CELL * (cells.high[-1] - cells.low[0])
     low, high, c, noise = _single(cells.low, cells.high, cells.coefficients[row], cells.noise[row], least)
     for order in (1, 2):
@@ -241,7 +249,7 @@ def pieces(cells: Cells, row: int = 0) -> MonotonePieces:
 
 
 def extremes(cells: Cells, row: int = 0) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Least and greatest value of one of the functions, each with the x where it is; costs less than its `pieces`.
+    """Least and greatest value of the function of a row, each with its x; costs less than its `pieces`.
 
     A polynomial lies within the hull of its coefficients, so that only cells are cut whose halves reach beyond a value
     that some cell has; of many cells those are few.
@@ -278,7 +286,7 @@ def _single(low: Array, high: Array, c: Array, noise: Array, least: float) -> tu
 
 
 def _differences(c: Array, order: int, noise: Array) -> Array:
-    """Differences of coefficients (n, k + 1), those that may be rounding set to 0."""
+    """Differences of an order of coefficients (n, k + 1); differences that may be rounding are 0."""
     d = np.diff(c, order, axis=1)
     d[np.abs(d) <= 2.0**order * noise[:, None]] = 0.0
     return d
@@ -295,7 +303,7 @@ def _changes(c: Array, order: int, noise: Array) -> Indices:
 
 
 def _cut(low: Array, high: Array, c: Array, noise: Array, order: int) -> tuple[Array, Array, Array, Array]:
-    """Cut where the derivative of the given order changes sign."""
+    """Cells cut where the derivative of the given order changes sign, once in a cell at most."""
     turning = np.flatnonzero(_changes(c, order, noise) == 1)
     d = np.diff(c[turning], order, axis=1)
     kept = _differences(c[turning], order, noise[turning])
@@ -305,17 +313,17 @@ def _cut(low: Array, high: Array, c: Array, noise: Array, order: int) -> tuple[A
     turning, t = turning[inside], t[inside]
     at = low[turning] + t * (high[turning] - low[turning])
     left, right = restrict(c[turning], np.zeros_like(t), t), restrict(c[turning], t, np.ones_like(t))
-    rest = np.ones(len(low), dtype=np.bool_)
-    rest[turning] = False
+    uncut = np.ones(len(low), dtype=np.bool_)
+    uncut[turning] = False
     return (
-        np.concatenate([low[rest], low[turning], at]),
-        np.concatenate([high[rest], at, high[turning]]),
-        np.concatenate([c[rest], left, right]),
-        np.concatenate([noise[rest], noise[turning], noise[turning]]),
+        np.concatenate([low[uncut], low[turning], at]),
+        np.concatenate([high[uncut], at, high[turning]]),
+        np.concatenate([c[uncut], left, right]),
+        np.concatenate([noise[uncut], noise[turning], noise[turning]]),
     )
 
 
 def between(begin: float, end: float, breaks: Iterable[float]) -> Array:
-    """Places to interpolate between: the ends, and the breaks (any order) that are inside."""
+    """Places (m + 1,), rising, to interpolate between: both ends, and the breaks (any order) that are inside."""
     inside = [x for x in breaks if begin < x < end]
     return distinct(np.array([begin, *inside, end]))

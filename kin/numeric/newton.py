@@ -26,10 +26,10 @@ def zeros(
 ) -> Array:
     """Zeros (n,) of n functions that rise through zero between low and high (n,), from `start` (n,) between these.
 
-    `function(x)` gives values and slopes at x, (n,) each. A step that leaves what remains of its bracket ends at its
+    `function(x)` gives values and slopes at x, (n,) each. A step out of what remains of a bracket ends at the bracket's
     end or, every other time, in its middle; after the first `FREE` steps brackets are halved alone. A zero has settled,
-    and stays, after a step of Newton's own of at most `close` (or (n,)), the next of which would be about its square;
-    after one of another kind only where that was rounding. Without one in its bracket, the end nearer to zero is found.
+    and stays, after a Newton step of at most `close` (one or (n,)), as the next would be about its square; after any
+    other step only if that was rounding. For a function without a zero in its bracket the end nearer to zero is given.
 
     Raises UnsettledError where a function is not a number, or where a bracket halved `HALVINGS` times is still wide.
     """
@@ -45,9 +45,9 @@ def zeros(
         following = np.where(inside, following, 0.5 * (low + high))
         moved = np.abs(following - x)
         x = np.where(open_, following, x)
-        none = np.minimum(close, ROUNDING * np.maximum(np.abs(x), 1.0))
-        enough = np.where(inside & (newton == following), close, none)
-        open_ &= ~(moved <= enough) | np.isnan(value)
+        rounding = np.minimum(close, ROUNDING * np.maximum(np.abs(x), 1.0))
+        small = np.where(inside & (newton == following), close, rounding)
+        open_ &= ~(moved <= small) | np.isnan(value)
         if not open_.any():
             return x
     count, first = int(np.count_nonzero(open_)), int(np.argmax(open_))

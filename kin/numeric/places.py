@@ -1,4 +1,4 @@
-"""Places as messages say them."""
+"""Places as messages write them."""
 
 from __future__ import annotations
 

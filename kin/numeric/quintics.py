@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
 
 def coefficients(low: Array, high: Array, width: Array) -> Array:
-    """Coefficients (6, n) of powers of the share of the width (n,), from f, f', f'' (3, n) at both ends."""
+    """Quintics' coefficients (6, n), lowest first, of powers of the share of the width (n,), from both ends.
+
+    `low` and `high` (3, n) are f, f', f'' at the ends.
+    """
     f, slope, bend = low[0], width * low[1], 0.5 * width**2 * low[2]
     rise, more, last = high[0] - f - slope - bend, width * high[1] - slope - 2.0 * bend, 0.5 * width**2 * high[2] - bend
     cubic, quartic = 10.0 * rise - 4.0 * more + last, 7.0 * more - 15.0 * rise - 2.0 * last
@@ -28,7 +31,10 @@ def coefficients(low: Array, high: Array, width: Array) -> Array:
 
 
 def polynomial(c: Array, width: Array, step: Array, order: int) -> Array:
-    """Value and derivatives (order + 1, n) at steps (n,) from the beginning, by coefficients (k, n)."""
+    """Value and derivatives by x (order + 1, n) at steps (n,) from the beginnings of intervals of a width (n,).
+
+    `c` (k, n) are coefficients, lowest first, of powers of the share of the width; k is above `order`.
+    """
     wide = np.where(width > 0.0, width, 1.0)
     share, rows = step / wide, []
     for _ in range(order + 1):
@@ -42,9 +48,10 @@ def polynomial(c: Array, width: Array, step: Array, order: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Quintics:
-    """A function on m intervals between nodes x (m + 1,), one period long; `low` and `high` (3, m) are f, f', f''.
+    """A function on m intervals between nodes x (m + 1,), one period long.
 
-    They are those at the ends of each interval, seen from within; derivatives may jump from one to the next.
+    `low` and `high` (3, m) are f, f', f'' at the ends of each interval, seen from within; derivatives may jump from one
+    interval to the next.
     """
 
     x: Array
@@ -52,14 +59,18 @@ class Quintics:
     high: Array
 
     def __call__(self, x: Array, order: int, side: int = 1) -> Array:
-        """Give f and up to two derivatives (order + 1, n) at any x (n,).
+        """Give f and its derivatives (order + 1, n) at any x (n,), which is taken into the period.
 
-        At a node they are those to the right, or to the left (side -1); the period goes on from its end at its start.
+        At a node they are those to the right (side 1) or to the left (side -1).
         """
         return self.within(*self._place(x, side), order)
 
     def extremes(self, begin: float, end: float, resolution: float) -> Extremes:
-        """Extremes from one x to another, less than a period on, to a resolution."""
+        """Extremes from x = `begin` to `end`, less than a period on, to a resolution.
+
+        Places are in the period from x[0] to x[-1]; indices count intervals from the one that holds `begin`. Raises
+        UnsettledError where rounding makes the function rougher than the resolution.
+        """
         (first, last), (x, y) = self._place(np.array([begin, end]), 1)
         count = len(self.x) - 1
         further = int(last - first) % count
@@ -74,7 +85,7 @@ class Quintics:
         return extremes(low, high, at_low, at_high, lambda x, k: self.within(interval[k], x, 2), resolution=resolution)
 
     def within(self, interval: Indices, x: Array, order: int) -> Array:
-        """F and its derivatives (order + 1, n) at x (n,) in the given intervals (n,)."""
+        """Value and derivatives by x (order + 1, n) at x (n,) in the given intervals (n,)."""
         width = np.diff(self.x)[interval]
         return polynomial(self._coefficients[:, interval], width, x - self.x[interval], order)
 

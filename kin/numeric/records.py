@@ -3,8 +3,8 @@
 The standard library compiles six functions from text for each class when its module is loaded: half a millisecond a
 class, and a short run loads over two hundred. Below 80 classes, or 40 ms, this module would not be worth its lines.
 Here the fields are read from the annotations when the first record is made, and functions of one text for all classes
-go by their names. `dataclasses.fields` and what rests on it (`replace`, `asdict`, matching by place) is answered by the
-standard library, when that is asked. To a type checker there is no difference.
+go by their names. `dataclasses.fields` and what rests on it (`replace`, `asdict`, matching by place) come from the
+standard library when they are first used. To a type checker there is no difference.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _MAKING = RLock()
 
 
 class _Shape:
-    """The fields of a class, as its annotations have them."""
+    """The fields of a class, read from its annotations."""
 
     def __init__(self, kind: type, *, kw_only: bool) -> None:
         self.kind = kind
@@ -64,12 +64,12 @@ class _Shape:
 
     @cached_property
     def values(self) -> Callable[[object], tuple[object, ...]]:
-        """Function that gives what is compared of a record, as a tuple."""
+        """Function that gives the values of a record's compared fields, as a tuple."""
         names = [name for name, entry in self.fields.items() if entry.compare]
         return attrgetter(*names) if len(names) > 1 else lambda record: tuple([getattr(record, name) for name in names])
 
     def compile(self) -> None:
-        """Make `__init__`; what a factory makes is MISSING where it is not given."""
+        """Make `__init__`; MISSING is the default of a field with a factory, which then makes the value."""
         placed, named, body = ["self"], ["*"], ["pass"]
         by_place: list[object] = []
         by_key: dict[str, object] = {}
@@ -120,14 +120,14 @@ class _Shape:
 
 @cache
 def _compiled(text: str) -> CodeType:
-    """Code of a function; that of records with as many fields is compiled once."""
+    """Code of the function in a text; records whose texts are the same share it."""
     names: dict[str, FunctionType] = {}
-    exec(text, names)  # noqa: S102 - of numbers alone
+    exec(text, names)  # noqa: S102 - the text has numbers in place of all names of fields
     return names["__init__"].__code__
 
 
 class _Later:
-    """An attribute of a class that is made when it is first asked for."""
+    """An attribute of a class that is made when it is first read."""
 
     def __init__(self, kind: type, name: str, make: Callable[[], None]) -> None:
         self.kind = kind
@@ -156,7 +156,7 @@ def _keep(_self: object, name: str) -> NoReturn:
 
 @recursive_repr()
 def full_text(self: object) -> str:
-    """Text of a record with all fields that are shown, also of one whose own `repr` is shorter."""
+    """Text of a record with all fields that are shown, also of a record whose own `repr` is shorter."""
     shown = [name for name, entry in _shape(self).fields.items() if entry.repr]
     return f"{type(self).__qualname__}({', '.join(f'{name}={getattr(self, name)!r}' for name in shown)})"
 

@@ -37,10 +37,10 @@ def product(a: Array, b: Array) -> Array:
 
 def quotient(a: Array, b: Array) -> Array:
     """Taylor coefficients of a/b, as many as a has, by long division; b[0] must not be 0."""
-    out, rest = np.empty_like(a), a.copy()
+    out, remainder = np.empty_like(a), a.copy()
     for k in range(len(a)):
-        out[k] = rest[k] / b[0]
-        rest[k + 1 :] -= out[k] * b[1 : len(a) - k]
+        out[k] = remainder[k] / b[0]
+        remainder[k + 1 :] -= out[k] * b[1 : len(a) - k]
     return out
 
 
@@ -68,7 +68,7 @@ def ball_product(a: Ball, b: Ball) -> Ball:
 
 
 def compose(outer: Array, inner: Array) -> Array:
-    """Coefficients (m, n) of f(g) from those of f at g[0] and those of g, (m, n) each."""
+    """Coefficients (m, n) of f(g), from the coefficients `outer` (m, n) of f at g[0] and `inner` (m, n) of g."""
     size = len(inner)
     if not inner[2:].any():
         out = outer.copy()
@@ -87,9 +87,9 @@ def compose(outer: Array, inner: Array) -> Array:
 
 
 def compose_balls(outer: Ball, inner: Ball) -> Ball:
-    """Enclose the Taylor coefficients of f(g) (m, n).
+    """Enclose the Taylor coefficients (m, n) of f(g).
 
-    `outer` encloses those of f over the balls g[0], `inner` those of g.
+    `outer` (m, n) encloses the coefficients of f over the balls g[0], `inner` (m, n) the coefficients of g.
     """
     size = len(inner.mid)
     if not inner.mid[2:].any() and not inner.rad[2:].any():
@@ -113,7 +113,7 @@ def stack(rows: list[Row]) -> Row:
 
 @lru_cache(maxsize=256)
 def binomials(numerator: float, order: int, denominator: int = 1) -> tuple[float, ...]:
-    """Binomial coefficients of a rational exponent, each the nearest double."""
+    """Binomial coefficients "numerator/denominator choose k" for k from 0 to `order`, each the nearest double."""
     from fractions import Fraction
 
     exponent, value, coefficients = Fraction(numerator) / denominator, Fraction(1), []
@@ -163,7 +163,7 @@ def _exact(exponent: float, k: int) -> bool:
 
 
 def led(rows: Row, value: Row) -> Row:
-    """Return rows whose first one, the value, is replaced by another."""
+    """Return the rows, changed in place, with `value` as the first of them."""
     if isinstance(rows, Ball) and isinstance(value, Ball):
         rows.mid[0], rows.rad[0] = value.mid, value.rad
     else:
@@ -212,7 +212,7 @@ def tan_rows(value: Row, sense: float, order: int) -> Row:
 
 
 def atan_rows(x: Row, value: Row, order: int) -> Row:
-    """Taylor coefficients of atan, from its value at x: (1 + x^2) y' = 1, differentiated."""
+    """Taylor coefficients (order + 1, ...) of atan, from its value at x: (1 + x^2) y' = 1, differentiated."""
     slope = (x**2 + 1.0) ** -1
     rows = [value, slope]
     for k in range(1, order):
@@ -225,10 +225,10 @@ def atan_rows(x: Row, value: Row, order: int) -> Row:
 
 
 def asin_rows(x: Row, value: Row, order: int) -> Row:
-    """Taylor coefficients of asin, from its value at x: (1 - x^2) y'' = x y', differentiated."""
-    room = (1.0 - x) * (1.0 + x)
-    slope = room**-1
-    rows = [value, room**-0.5]
+    """Taylor coefficients (order + 1, ...) of asin, from its value at x: (1 - x^2) y'' = x y', differentiated."""
+    complement = (1.0 - x) * (1.0 + x)
+    slope = complement**-1
+    rows = [value, complement**-0.5]
     for k in range(order - 1):
         # With d_k = (k + 1) y_(k+1):  (k + 1)(1 - x^2) d_(k+1) = (2 k + 1) x d_k + k d_(k-1).
         rise = x * rows[k + 1] * ((2 * k + 1) * (k + 1))
