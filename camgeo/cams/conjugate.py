@@ -52,7 +52,7 @@ FEASIBLE = 1e-11  # of the distance: by so much a limit may be missed
 class Conjugate(Holding):
     """Second contact of a follower on conjugate discs: its touch and its distance `apart` from the first, mm or rad.
 
-    `length` is that of a bell crank's second arm, mm; None on a stem.
+    `length` is the length of a bell crank's second arm, mm; None on a stem.
     """
 
     closure: ClassVar[str] = "form-closure"
@@ -86,7 +86,7 @@ class Conjugate(Holding):
         return f"{name} on conjugate discs"
 
     def flanks(self, touch: Touch, side: Side) -> tuple[Flank, ...]:
-        """Flanks of both discs, in the order of the discs: each carries one surface."""
+        """Flanks of both discs, in their order: `touch` runs on disc 1, and the metal of both lies on `side`."""
         return Flank(FIRST, side, touch.radius), Flank(SECOND, side, self.touch.radius, disc=1)
 
     def contacts(self, first: Contact[Guide, Touch]) -> tuple[Contact[Guide, Touch], ...]:
@@ -173,12 +173,14 @@ class Conjugate(Holding):
 
         cam, guide = exact.cam, exact.follower.contacts[0].guide
         if not isinstance(guide, Translating):
+            # where two limits meet, rounding of the size would break one
             angles = rising - MARGIN, falling - MARGIN
             try:
                 arm = least_size.least_arm(exact.law, guide.arm, guide.side, *angles, second=self.second_arm)
             except IntentError:
                 return None
             return base_size(cam, arm.prime, mm, arm.pivot)
+        # the base radius that disc 1 needs, then the distance that disc 2 needs with it
         advised = base_size(cam, least_size.least_stem(exact.law, rising, falling, guide.offset).prime, mm)
         if advised is None:
             return None
@@ -366,7 +368,7 @@ _WANTED = {
 
 
 def conjugate_of(values: Values, touch: Touch) -> Conjugate:
-    """The second contact of values without fault; it has the first contact's touch, but for a radius of its own."""
+    """The second contact of values without fault, with the first contact's `touch` but for a radius of its own."""
     if "radius" in values:
         touch = replace(touch, radius=values["radius"])
     apart = values["angle"] if "angle" in values else values["distance"]

@@ -70,7 +70,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         return super().half_turn if self.frame_swing is None else self.frame_swing.half_turn
 
     def joints(self) -> tuple[DerivativeJump, ...]:
-        """Joints of the half turn's motion, or of the swing over the shaft angle, rad."""
+        """Joints of the half turn's motion, mm, or of the swing over the shaft angle, rad."""
         return super().joints() if self.frame_swing is None else self.frame_swing.joints
 
     def kept(self) -> Kept | None:

@@ -186,7 +186,7 @@ def _size(cam: Values, reader: Reader) -> None:
 
 
 def _with_pivot(follower: Values) -> Values:
-    """The follower with a provisional pivot, where it has an arm without one."""
+    """The follower with a provisional pivot, where an arm lacks one."""
     arm = follower.get("arm")
     return follower if arm is None else {**follower, "arm": {"pivot": arm.get("length", 1.0), **arm}}
 

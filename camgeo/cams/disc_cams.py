@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 class DiscCam(GuidedCam):
     """Size and motion of a disc cam.
 
-    `base_radius`, mm, is that of the cam's own circle at displacement 0; `side` is 1 for metal inside the contour, -1
-    for a ring. `beyond` is how far the lobe reaches along the shaft from the axis of a round tappet, mm; 0 under a
+    `base_radius`, mm, is the radius of the cam's circle at displacement 0; `side` is 1 for metal inside the contour,
+    -1 for a ring. `beyond` is how far the lobe reaches along the shaft from the axis of a round tappet, mm; 0 under a
     straight face.
     """
 
@@ -225,8 +225,8 @@ class ExactFaced(ExactLed):
         """Surface of each contact, the envelope of its flat face (`camgeo.curve.disc`), over the shaft angle."""
         from camgeo.curve.disc import face_shape
 
-        flanks, (_, *others) = self.flanks, self.follower.contacts
-        faces = [self.cam.face(self.law), *(opposite_face(self.law, contact) for contact in others)]
+        flanks, (_, *opposite) = self.flanks, self.follower.contacts
+        faces = [self.cam.face(self.law), *(opposite_face(self.law, contact) for contact in opposite)]
         surfaces = []
         for face, flank in zip(faces, flanks, strict=True):
             whole = Curve.whole(face_shape(face))

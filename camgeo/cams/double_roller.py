@@ -103,7 +103,7 @@ class DoubleRollerCam(PairCam):
         return Surface(base, curve, self.roller_radius, pressure=ArmPressure(law, base))
 
     def circles(self) -> tuple[Circle, ...]:
-        """The prime circle, and the circle of the pivot."""
+        """The prime circle, at the pitch curve's least distance from the shaft, and the circle of the pivot."""
         return (Circle("prime circle"), Circle("pivot circle", self.arm))
 
     def grow(self, out: float, scale: float) -> DoubleRollerCam:

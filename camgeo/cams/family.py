@@ -118,7 +118,7 @@ class Advice(ABC):
         """Words for a change of the cam that leaves no undercut.
 
         `free_at`, mm, is the largest roller radius without undercut, or under a flat face the growth of all radii of
-        curvature that undercut needs to vanish.
+        curvature that removes undercut.
         """
 
     @abstractmethod
@@ -155,8 +155,8 @@ class Advice(ABC):
 class Preload:
     """Preload of two contacts: `interference`, mm, by which both together overlap the metal.
 
-    `shares` are the first and the second contact's parts of it, in sum 1. `stiffness`, N/m, is that of the first and
-    the second contact along their normals; None where no force is wanted.
+    `shares` are the first and the second contact's parts of the interference, with the sum 1. `stiffness`, N/m, is that
+    of the first and the second contact along their normals; None where no force is wanted.
     """
 
     interference: float
@@ -184,7 +184,7 @@ class Linear(ABC):
 
     @abstractmethod
     def harmonic(self, path: str) -> tuple[int, bool, float] | None:
-        """Harmonic that the field at a path of the recipe sets; None for a field that sets none.
+        """Harmonic that a field sets, by its path such as `cam.fourier.cos.3`; None for a field that sets none.
 
         It is the order (0 for the mean), whether it is a sine, and its coefficient per unit of the field's value.
         """

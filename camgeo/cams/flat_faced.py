@@ -109,7 +109,7 @@ class FlatFacedCam(Cam):
         return ()
 
     def surface(self, whole: Curve) -> Surface:
-        """Surface of the disc for the envelope of the face as a whole curve; a family may have corners on it."""
+        """Surface of the disc for the envelope of the face as a whole curve; a family may put corners on it."""
         return Surface(whole, whole)
 
     @abstractmethod

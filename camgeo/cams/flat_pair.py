@@ -66,7 +66,7 @@ class FlatPairCam(PairCam):
         return Follower("flat pair", contacts, self.law_checks, "form-closure")
 
     def surface(self, law: Transmission, out: float) -> Surface:
-        """Surface of the disc: the curve with an isoptic circle (W 1984, section 5), or its parallel at `out` mm."""
+        """Surface of the disc: the curve with an isoptic circle (W 1984, section 5), or a parallel `out` mm outside."""
         from camgeo.curve.wunderlich import FlatPairShape
 
         whole = Curve.whole(FlatPairShape(law))

@@ -139,7 +139,7 @@ class Holding:
         return own
 
     def circles(self, surface: str, own: tuple[Circle, ...]) -> tuple[Circle, ...]:  # noqa: ARG002
-        """Reference circles of the disc with the surface of this name; `own` are those of a cam with one contact."""
+        """Reference circles of the disc with the surface of this name; `own` are the circles for one contact."""
         return own
 
     def least_stem(
@@ -207,7 +207,7 @@ def base_size(cam: GuidedCam, prime: float, mm: float, pivot: float | None = Non
 
 
 def least_prime_for_roller(law: Displacement, guide: moving_frame.Guide, roller: float) -> float | None:
-    """Least radius of the prime circle, mm, from the guide's own on, that is large enough for a roller; else None.
+    """Least radius of the prime circle, mm, from the guide's own on, that is large enough for a roller, or None.
 
     A circle is large enough where the roller's radius, mm, is at most half the pitch curve's least convex radius.
     """

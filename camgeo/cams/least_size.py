@@ -111,10 +111,10 @@ def least_stem(motion: Displacement, rising: float, falling: float, offset: floa
     a, b = 1.0 / math.tan(rising), 1.0 / math.tan(falling)
     if offset is not None:
         return Translating(positive_foot(max(up - offset * a, down + offset * b)), offset)
-    for need, angle, sign, other in ((up, rising, 1.0, b), (down, falling, -1.0, a)):
+    for need, angle, sign, cotangent in ((up, rising, 1.0, b), (down, falling, -1.0, a)):
         # foot of the perpendicular from the shaft on one limit's edge, if the other limit is kept there
         d, e = need * math.sin(angle) ** 2, sign * need * math.sin(angle) * math.cos(angle)
-        if d - sign * other * e >= (down if sign > 0 else up):
+        if d - sign * cotangent * e >= (down if sign > 0 else up):
             return Translating(positive_foot(d), e)
     # else the corner of both limits is nearest to the shaft
     e = (up - down) / (a + b)
@@ -241,8 +241,8 @@ def least_round(
     """Guide of the least prime circle, of radius `start`, mm, or more, that keeps pressure angles and a radius.
 
     It is `guide` with the shaft elsewhere. `angles` are the greatest on the rise and on the return, rad; `radius`, mm,
-    is the least of curvature of the pitch curve's convex stretches. Raises IntentError where no guide is found, and for
-    an angle that is not between 0 and 90 degrees.
+    is the least radius of curvature on the pitch curve's convex stretches. Raises IntentError where no guide is found,
+    and for an angle that is not between 0 and 90 degrees.
     """
     rising, falling = angles
     _demand_angles(rising, falling)

@@ -168,7 +168,7 @@ class PairCam(Cam):
 
     @abstractmethod
     def follower(self, law: Transmission, out: float) -> Follower:
-        """The follower; faces stand `out` mm beside the lines through their pivot, rollers take no account of it."""
+        """The follower; faces stand `out` mm beside the lines through their pivot, on rollers it is of no effect."""
 
     @abstractmethod
     def surface(self, law: Transmission, out: float) -> Surface:
@@ -191,7 +191,7 @@ class PairCam(Cam):
     def transmission(self) -> Transmission:
         """Wunderlich's law of transmission, by the recipe's route; raises IntentError where the route gives no law.
 
-        For routes by D or by a swing the error has the share of it with which a law is possible.
+        For routes by D or by a swing its message has the share of D or swing with which a law is possible.
         """
         from kin.law.programme import IntentError
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 class PreloadedCam(AlteredCam):
     """The exact cam `nominal` with metal that overlaps its contacts by the preload `held_by`; the motion stays.
 
-    Surface number k is that of the cam `grown_metal[k]`.
+    `grown_metal` has a grown cam for each surface, in their order.
     """
 
     grown_metal: tuple[ExactCam, ...]
@@ -156,7 +156,7 @@ PRELOAD = mapping(
 def build_preload(cam: Values, shares: tuple[float, float] = (0.5, 0.5)) -> Preload | None:
     """Preload from values of a cam without fault; None where the recipe gives no preload.
 
-    `shares` are the first and the second contact's parts of the interference. One stiffness holds for both contacts.
+    `shares` are the first and the second contact's parts of the interference. A single stiffness holds for both.
     """
     values = cam.get("preload")
     if values is None:

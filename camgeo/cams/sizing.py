@@ -63,7 +63,7 @@ class Sizing:
 
     @staticmethod
     def of(values: Values, follower: Values) -> Sizing:
-        """Limits from the values of a recipe's `sizing`, and the place from those of its `follower`."""
+        """Limits from the values of a recipe's `sizing`, and the place from the values of its `follower`."""
         angle, radius = values.get("pressure-angle"), values.get("radius-of-curvature")
         angles = None if angle is None else (angle["at_most"], angle.get("on_return", angle["at_most"]))
         place = follower["arm"].get("pivot") if "arm" in follower else follower.get("offset")
@@ -109,7 +109,7 @@ class SizedAdvice(Advice):
         return self.cam.touch.radius
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """Words for a larger radius of curvature under `sizing`: the roller's radius, or twice the present limit.
+        """Words for the roller's radius, or twice the present limit if more, as radius of curvature under `sizing`.
 
         For a ring they are for a roller radius below `free_at`, mm; empty unless that is above 0.
         """
@@ -192,17 +192,17 @@ def find_size(cam: SizedDiscCam) -> SizedDiscCam:
 
     match cam.guide, cam.nominal():
         case Translating(), ExactGuided(law=law):
-            result = _stem(cam, law)
+            sized = _stem(cam, law)
         case Oscillating(length=float(length), side=side), ExactGuided(law=law):
-            result = _arm(cam, law, length, side)
+            sized = _arm(cam, law, length, side)
         case guide, ExactFaced(law=law):
             if isinstance(guide, Oscillating) and cam.sizing.place is None:
                 raise IntentError("a flat face does not find the pivot; give follower.arm.pivot", "follower.arm")
-            result = _face(cam, law)
+            sized = _face(cam, law)
         case _:
             raise TypeError("a disc cam has a round touch or a flat face")
-    _demand_kept(result)
-    return result
+    _demand_kept(sized)
+    return sized
 
 
 def _stem(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:

@@ -53,7 +53,7 @@ class Surface:
 
     @property
     def prefix(self) -> str:
-        """Prefix of the names of its columns in tables: its name, where the cam has several surfaces."""
+        """Prefix of the names of its columns in tables: its name and `_`; empty where the cam has one surface."""
         return f"{self.name.replace(' ', '_')}_" if self.name else ""
 
     def extremes(self, name: str) -> tuple[Extreme, Extreme] | None:

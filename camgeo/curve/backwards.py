@@ -92,7 +92,7 @@ def backwards(curve: Curve) -> Curve:
 
 
 def runs_backwards(runs: Sequence[SmoothRun]) -> tuple[SmoothRun, ...]:
-    """Runs in the parameter of the curve run through the other way."""
+    """Runs of a curve for the curve run through the other way: in reverse order, their parameters negated."""
     return tuple(
         SmoothRun(-run.high, -run.low, tuple(-b for b in reversed(run.breaks)), run.closed) for run in reversed(runs)
     )

@@ -228,11 +228,11 @@ class Curve:
         if alike.any():
             first = int(np.argmax(alike))
             low = float(breaks[first])
-            others = np.concatenate([breaks[first + 1 :], breaks[:first] + shape.period])
+            inside = np.concatenate([breaks[first + 1 :], breaks[:first] + shape.period])
         else:
             low = 0.5 * float(breaks[-1] - shape.period + breaks[0])
-            others = breaks
-        return Curve(shape, (SmoothRun(low, low + shape.period, tuple(float(b) for b in others), closed=True),))
+            inside = breaks
+        return Curve(shape, (SmoothRun(low, low + shape.period, tuple(float(b) for b in inside), closed=True),))
 
     @property
     def closed(self) -> bool:
@@ -297,7 +297,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Cells:
-    """Proved bounds on a partition of the curve: `low`, `high` (m,), rising, and `rows` (8, m), those of `Bounds`."""
+    """Proved bounds on a partition of the curve: `low`, `high` (m,), rising, and `rows` (8, m) of `Bounds`."""
 
     low: Array
     high: Array

@@ -157,7 +157,7 @@ def subdivide(low: Array, high: Array, parts: int) -> tuple[Array, Array]:
 
 
 def subdivide_undecided(low: Array, high: Array) -> tuple[Array, Array, Indices]:
-    """Low and high ends (m,) of the parts of intervals from `low` to `high` (n,), and the index of each part's (m,)."""
+    """Low and high ends (m,) of the parts of undecided intervals (n,), and the index of each part's interval (m,)."""
     parts = max(PARTS, TOGETHER // low.size)
     return *subdivide(low, high, parts), np.repeat(np.arange(low.size), parts)
 

@@ -76,9 +76,9 @@ def measures(curve: Curve) -> Measures:
 def moments(curve: Curve, inset: float = 0.0) -> Moments:
     """Moments of the area within a curve, or within its parallel `inset` mm inside.
 
-    The integral of a homogeneous function f of degree d over the area is that of h sigma f/(d + 2) round the curve (by
-    the divergence of f times the place), h the distance of the tangent from the shaft. The parallel has the speed sigma
-    - inset omega.
+    A homogeneous function f of degree d has as integral over the area the integral of h sigma f/(d + 2) round the curve
+    (by the divergence of f times the place), h the distance of the tangent from the shaft. The parallel has the speed
+    sigma - inset omega. Raises CurveError where no finite bounds of the curve are proved.
     """
 
     def rates(frame: Frame) -> Array:
@@ -165,7 +165,7 @@ def touched(contour: Curve, parameter: Array) -> Mask:
 
 
 def farthest(curve: Curve) -> Extreme:
-    """Greatest distance of a contour from the shaft, mm, its parameter, and the excess that is not excluded, mm."""
+    """Greatest distance of a contour from the shaft, mm, its parameter, and how much greater it may be, mm."""
     return _root(_greatest(curve, lambda frame: np.sum(frame.point**2, axis=1), _radial), 1.0)
 
 

@@ -156,7 +156,7 @@ class AlongNormals(Moved):
 
 @dataclass(frozen=True, eq=False)
 class BySupport(Moved):
-    """Curve whose support function is greater by `by`, mm, than that of `base`: it has the same normals."""
+    """Curve with the support function of `base` plus `by`, mm: it has the same normals."""
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""

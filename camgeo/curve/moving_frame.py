@@ -138,7 +138,7 @@ class Translating:
 
     @staticmethod
     def on(prime: float, offset: float = 0.0) -> Translating:
-        """Guide with a prime circle of radius `prime` and an offset, mm; raises IntentError unless they meet."""
+        """Guide with a prime circle of radius `prime` and an offset, mm; raises IntentError if the line misses it."""
         if not (math.isfinite(prime) and abs(offset) < prime):
             raise IntentError(
                 f"the offset, {offset:.6g} mm, must be below the prime circle's radius, {prime:.6g} mm",

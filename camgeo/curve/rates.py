@@ -36,7 +36,7 @@ class Rates(Protocol):
     """Speed and turn of a shape from jets of a motion's figures."""
 
     def __call__(self, figures: tuple[Series, ...], /) -> tuple[Series, Series]:
-        """Speed and turn as jets."""
+        """Speed, mm, and turn, rad, as jets."""
         ...
 
 
@@ -80,14 +80,14 @@ class MotionShape(ABC, Generic[SourceT]):
 
     @abstractmethod
     def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
-        """Figures of the motion at jets of its parameter."""
+        """Figures of the motion, such as S, as series at jets of its parameter."""
 
     @abstractmethod
     def rates_of(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
         """Speed, mm, and turn, rad, from the motion's figures, two orders fewer."""
 
     def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Speed and turn as series, two orders fewer than `tau`."""
+        """Speed, mm, and turn, rad, as series at jets `tau`, of two orders fewer."""
         return self.rates_of(self.figures(tau, side))
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:

@@ -77,7 +77,7 @@ class SupportShape:
         return speed, turn
 
     def rates(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
-        """Speed and turn as series, two orders fewer."""
+        """Speed, mm, and turn, rad, as series at jets `tau`, of two orders fewer."""
         speed = self.lift.radius_on(tau, side)
         return speed, speed * 0.0 + 1.0
 

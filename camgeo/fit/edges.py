@@ -127,8 +127,8 @@ def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -
     """Sampled height of the curve over each edge, plus `tolerance`, mm, with derivatives by the edge's two nodes.
 
     They are not proved. `sides` (n + 1,) is 1 or -1 for the side on which a vertex stands off by `tolerance`. For an
-    edge across an inflection, whose ends stand on different sides, both sides count. The derivatives are those of the
-    edge's own height where the curve is highest over it (envelope theorem).
+    edge across an inflection, whose ends stand on different sides, both sides count. Derivatives are taken where the
+    curve is highest over the edge (envelope theorem).
     """
     count = edges.nodes.size - 1
     width = edges.high - edges.low

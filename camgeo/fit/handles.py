@@ -168,7 +168,7 @@ def fit_handles(curve: Curve, spans: Spans, handles: Array, out: float) -> tuple
 
     With them come the parameters of the places' feet (n, m) and the sum of squares (n,), mm^2. Where the ends lie `out`
     mm outside the curve, a span is to keep to the parallel there, and the humps on both sides of its middle, which
-    reach as far beyond the curve, hardly count. Steps are those of Levenberg and Marquardt in the handles' logarithms:
+    reach as far beyond the curve, hardly count. The method is Levenberg's and Marquardt's in the handles' logarithms:
     near places where the nearest cubic ceases to exist the equations have no solution. Handles need not be the best, as
     each span is proved.
     """

@@ -41,7 +41,7 @@ SEEN = 1.03  # times the limit, up to which the samples of an edge across an inf
 
 
 def polygon_density(frame: Frame) -> Array:
-    """Edges for each unit of parameter at a tolerance of 1 mm: ``sqrt(|kappa|/16) ds/dt``."""
+    """Edges per unit of the parameter at a tolerance of 1 mm (k,): ``sqrt(|kappa|/16) ds/dt``."""
     density: Array = np.sqrt(np.abs(frame.turn * frame.speed)) / 4.0
     return density
 
@@ -256,7 +256,7 @@ def _settle(curve: Curve, run: SmoothRun, parts: list[_Part], tolerance: float) 
 
 
 def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bool:
-    """Give a part better nodes; False where it has the fewest edges and no sagitta is above `allowed`, mm.
+    """Give a part better nodes; False where its edges are the fewest and no sagitta is above `allowed`, mm.
 
     Sagittas have a rounding error of `noise`, mm, which levelling does not remove.
     """
@@ -282,7 +282,7 @@ def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bo
 
 
 def _shorten_failing(parts: list[_Part], edges: ProvedEdges, tolerance: float) -> bool:
-    """Shorten edges across inflections whose proved height is above the tolerance, mm; False where there are none."""
+    """Shorten edges across inflections whose proved height is above the tolerance, mm; False without such edges."""
     last = list(accumulate((part.count + part.crossed for part in parts), initial=-1))[1:]
     shorter = False
     for (first, second), k in zip(pairwise(parts), last, strict=False):
@@ -346,6 +346,7 @@ def _across_breaks(
         totals = np.array([density.total for density in densities])
         longest = int(np.argmax(totals))
         starts = [float(totals[:longest].sum() + 0.5 * totals[longest]), 0.0]
+    # closed runs may begin in the middle of their longest stretch or at their own beginning
     most = sum(part.count for part in parts)
     least = max(3 if run.closed else 1, math.ceil(whole.total / math.sqrt(tolerance)))
     for count in range(least, min(most, least + FREE_TRIES)):

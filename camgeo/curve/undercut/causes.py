@@ -70,7 +70,7 @@ def follower_radius(curve: Curve) -> float:
 
 
 def causes(curve: Curve) -> Causes:
-    """Reversals of a contour, and the narrowest necks that its roller does not pass, each proved to be complete.
+    """Reversals of a contour, and the narrowest necks that its roller does not pass; that there are no more is proved.
 
     Raises ValueError for an outer parallel and for a concave curve under a flat face, which cannot touch it; CurveError
     where undercut can be neither proved nor excluded.

@@ -110,10 +110,10 @@ def _trim(curve: Curve, sense: int) -> Curve:
     if remainder.pieces > 1:
         middle = 0.5 * (remainder.lost[0].start + remainder.lost[0].end)
         raise UndercutError(f"the undercut divides the metal into {remainder.pieces} pieces", middle)
-    result = Curve(curve.shape, kept_runs(curve, remainder))
-    if _turns(result) != sense:
+    contour = Curve(curve.shape, kept_runs(curve, remainder))
+    if _turns(contour) != sense:
         raise UndercutError("the shaft lies outside of what the undercut leaves", place)
-    return result
+    return contour
 
 
 def remains(curve: Curve, reasons: Causes) -> Remains:
