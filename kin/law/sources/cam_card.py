@@ -1,7 +1,7 @@
-"""Lobes by their cam cards: the lift, and for how long a lobe is above stated lifts.
+"""Lobes by their cam cards: the lift, and the angles over which a lobe is above stated lifts.
 
-The powers 2-p-q-r-s of the lobe polynomial are whole numbers, so that no single member of the family meets what a card
-says. A mixture of members over one angle, with weights of 0 or more that sum to 1, is a lobe polynomial too: each rises
+The powers 2-p-q-r-s of the lobe polynomial are whole numbers, so that no single member of the family meets a card. A
+mixture of members over one angle, with weights of 0 or more that sum to 1, is a lobe polynomial too: each rises
 from its foot to its nose without a turn (of S' five terms change their sign four times at most, Descartes, and its
 fourfold zero at the foot takes all four), and so does the mixture. Lift and slopes are linear in the weights, so that
 the mixture of least peak acceleration is a linear programme for each angle.
@@ -31,19 +31,19 @@ _POWERS = (4, 6, 8, 10, 14, 20, 26, 34, 44, 60, 80, 100)  # of the members that 
 _ALL = (2, *_POWERS)
 _EXPONENTS = np.array(_ALL, dtype=float)
 _LOOKS = 129  # places from the nose to the foot at which the acceleration is bounded
-_HALVES = 32  # angles of a side that are tried, evenly in their logarithm, before the best is refined
+_HALVES = 32  # angles of a side that are tried before the best is refined
 _CUTS = 12  # rounds in which places with a greater acceleration are added to a programme
-_EXACT = 1e-10  # of the lift: rows of a programme that are missed by less are met, and then corrected
-_ACTIVE = 0.98  # of the peak: places with less of it are left to be found anew by the next programme
-_SHORTEST = 1e-3  # of the longest side: none is shorter
+_EXACT = 1e-10  # of the lift: rows of a programme that are missed by less count as met, and are corrected
+_ACTIVE = 0.98  # of the peak: places with a lesser acceleration are dropped before the next programme
+_SHORTEST = 1e-3  # of the longest side: the shortest
 _REFINED = 10  # steps of a golden section
-_DEGREES = 0.01  # of the crank, to which the nearest card is told
+_DEGREES = 0.01  # of the crank: the nearest card is rounded to this
 _NEAREST = 10  # halvings of the greatest difference of a card
-_FARTHEST = 720.0  # degrees of the crank
-_CLOSE = 1e-4  # of a peak: places with no greater acceleration than so are no new ones
+_FARTHEST = 720.0  # degrees of the crank: greatest difference of the nearest card
+_CLOSE = 1e-4  # of a peak: an acceleration greater by less needs no new place
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-_LEVELS = 7  # halvings of the acceleration at the nose that two sides have in common
-_LEAST_WEIGHT = 1e-12  # of a mixture: less is rounding
+_LEVELS = 7  # halvings towards the acceleration at the nose that two sides have in common
+_LEAST_WEIGHT = 1e-12  # of a mixture: a lesser weight is rounding
 
 
 class Crossing(NamedTuple):
@@ -54,10 +54,10 @@ class Crossing(NamedTuple):
 
 
 class SideCard(NamedTuple):
-    """One side of a lobe as a card gives it; `half` rad where that is given too, or the side itself where it is known.
+    """One side of a lobe as a card gives it: its crossings, or the side itself, `known`.
 
-    `crank` is degrees of the crank by degrees of the cam from the nose: 4 where a duration is that of both sides, 2 of
-    one. `field` is that of the crossings.
+    `half`, rad, is the angle from foot to nose, None where it is free. `crank` is degrees of a duration by degrees of
+    the cam from the nose: 4 where a duration is that of both sides, 2 of one. `field` is the crossings' field.
     """
 
     crossings: tuple[Crossing, ...] = ()
@@ -69,7 +69,7 @@ class SideCard(NamedTuple):
 
 
 class Mixture(NamedTuple):
-    """A side that meets a card: its members' powers with their weights, the greatest first, and the side."""
+    """A side that meets a card, and (powers, weight) of its members, by falling weight; () for a known side."""
 
     members: tuple[tuple[tuple[int, ...], float], ...]
     side: LobeSide
@@ -82,20 +82,20 @@ def _members() -> tuple[tuple[int, ...], ...]:
 
 @cache
 def _lagrange() -> tuple[Array, Array]:
-    """Lagrange's polynomials over the powers of each member at 0 and at 1, each at the place of its power, (n, 13)."""
+    """Lagrange's polynomials over the powers of each of n members, at 0 and at 1: (n, 13) each, a column a power."""
     places = {power: k for k, power in enumerate(_ALL)}
     at_0, at_1 = np.zeros((2, len(_members()), len(_ALL)))
     for i, powers in enumerate(_members()):
         for k in powers:
-            others = [other for other in powers if other != k]
-            at_0[i, places[k]] = math.prod(other / (other - k) for other in others)
-            at_1[i, places[k]] = math.prod((other - 1) / (other - k) for other in others)
+            remaining = [p for p in powers if p != k]
+            at_0[i, places[k]] = math.prod(p / (p - k) for p in remaining)
+            at_1[i, places[k]] = math.prod((p - 1) / (p - k) for p in remaining)
     return at_0, at_1
 
 
 @cache
 def _bends() -> tuple[Array, Array]:
-    """Second derivatives by u of Lagrange's polynomials at 0 and at 1 of each member, at all places, (k, n)."""
+    """Second derivatives by u, at k places, of the terms that `_lagrange` weighs at 0 and at 1: (k, n), (k, n)."""
     u = np.linspace(0.0, 1.0, _LOOKS)[:-1]
     powers = _EXPONENTS * (_EXPONENTS - 1.0) * u[:, None] ** (_EXPONENTS - 2.0)
     at_0, at_1 = _lagrange()
@@ -103,7 +103,7 @@ def _bends() -> tuple[Array, Array]:
 
 
 class _Family(NamedTuple):
-    """The members over one angle, of a lift: which they are, and their shares of Lagrange's polynomials at 0 and 1."""
+    """Members of one lift over one angle `half`, rad: indices, and the shares of Lagrange's polynomials at 0 and 1."""
 
     lift: float
     half: float
@@ -111,20 +111,20 @@ class _Family(NamedTuple):
     shares: tuple[float, float]
 
     def lifts(self, angle: float) -> Array:
-        """Each member's lift at an angle from the nose, shares of the whole one, (n,)."""
+        """Each member's lift (n,), as a share of the whole lift, at an angle from the nose, rad."""
         at_0, at_1 = _lagrange()
         powers, (first, second) = (angle / self.half) ** _EXPONENTS, self.shares
         return 1.0 + (first * (at_0 @ powers) + second * (at_1 @ powers))[self.chosen]
 
     def accelerations(self, places: slice = slice(None)) -> Array:
-        """Each member's S'' at places from the nose to the foot, of the lift by rad^2, (k, n)."""
+        """Each member's S'' (k, n), as shares of the lift by rad^2, at k places from the nose to the foot."""
         at_0, at_1 = _bends()
         first, second = (share / self.half**2 for share in self.shares)
         return (first * at_0[places] + second * at_1[places])[:, self.chosen]
 
 
 def _family(lift: float, half: float, ramp: Ramp | None) -> _Family:
-    """Members that fall from the nose; beside a steep ramp some do not."""
+    """Members whose acceleration at the nose is negative; beside a steep ramp it is not in some."""
     at_0, at_1 = _lagrange()
     foot, slope = (0.0, 0.0) if ramp is None else (ramp.height / lift, ramp.velocity * half / lift)
     shares = (foot - 1.0 + slope, -slope)
@@ -134,8 +134,8 @@ def _family(lift: float, half: float, ramp: Ramp | None) -> _Family:
 class _Programme(NamedTuple):
     """Sides over their angles: mixtures that meet their crossings, and have one acceleration at the nose.
 
-    `within` degrees of the crank a crossing may be off. `nose` is the acceleration there of a side that is known, by
-    rad^2, of the lift.
+    A crossing may be off by `within` degrees of the crank. `nose` is the acceleration at the nose of a known side, as a
+    share of the lift by rad^2. Rows are linear equations of the members' weights, the columns.
     """
 
     families: tuple[_Family, ...]
@@ -144,28 +144,29 @@ class _Programme(NamedTuple):
     within: float = 0.0
 
     def least_miss(self) -> tuple[float, list[Array]]:
-        """Least distance by which the rows are missed, 0 where they can be met, and the weights of each side for it."""
+        """Least distance by which the rows are missed, 0 where they can be met, and its weights (n,) of each side."""
         rows, right = self._rows()
         solution = minimise(np.zeros(rows.shape[1]), rows, right, _EXACT)
         return solution.missed, self._weights(solution.x)
 
     def least_nose(self, sign: float) -> float:
-        """Least acceleration at the nose, by rad^2, of the lift, times `sign`; infinite where rows cannot be met."""
+        """Least of `sign` times the acceleration at the nose, a share of the lift by rad^2; inf without a mixture."""
         rows, right = self._rows()
         cost = np.zeros(rows.shape[1])
         cost[: len(self.families[0].chosen)] = sign * self.families[0].accelerations(slice(1))[0]
         return minimise(cost, rows, right, _EXACT).value
 
     def least_peak(self, cuts: list[int]) -> tuple[float, list[Array]]:
-        """Least peak of |S''|, of the lift by rad^2, and the weights of each side; infinite where rows cannot be met.
+        """Least peak of |S''|, a share of the lift by rad^2, and the weights of each side; (inf, []) without a mixture.
 
-        `cuts` are the places, of those that are looked at, at which it is bounded from the first; those are added at
-        which it turned out greater.
+        `cuts` are indices of places at which the acceleration is bounded from the first. Places at which it turns out
+        greater are added to the list, those far below the peak are dropped from it.
         """
         rows, right = self._rows()
         bends = self._accelerations(rows.shape[1])
         size = np.abs(bends).max(axis=1)
         for _ in range(_CUTS):
+            # columns: weights, the peak as a share of the least greatest acceleration, and a slack for each cut
             count = len(cuts)
             lower = bends[cuts] / size[cuts][:, None]
             whole = np.block(
@@ -179,6 +180,7 @@ class _Programme(NamedTuple):
             solution = minimise(cost, whole, np.concatenate([right, np.zeros(count)]), _EXACT)
             if not math.isfinite(solution.value):
                 return math.inf, []
+            # the four greatest accelerations of the mixture, where they exceed the peak, are new cuts
             peaks = bends @ solution.x[: rows.shape[1]]
             highest = [int(i) for i in peaks.argsort()[-4:]]
             new = [i for i in highest if peaks[i] > solution.value * size.min() * (1.0 + _CLOSE) and i not in cuts]
@@ -191,7 +193,7 @@ class _Programme(NamedTuple):
 
     @staticmethod
     def _exact(x: Array, rows: Array, right: Array) -> Array:
-        """The columns of the members, corrected so that what rounding has left of the rows is met too."""
+        """The weights, corrected by least squares for what rounding has left of the rows."""
         used = np.flatnonzero(x[: rows.shape[1]] > _LEAST_WEIGHT)
         x = x[: rows.shape[1]].copy()
         more, *_ = np.linalg.lstsq(rows[:, used], right - rows @ x, rcond=None)
@@ -199,7 +201,7 @@ class _Programme(NamedTuple):
         return x
 
     def _accelerations(self, columns: int) -> Array:
-        """S'' and -S'' of each column at every place that is looked at, side by side, of the lift by rad^2."""
+        """S'' and -S'' of each column at every place, one side after the other, as shares of the lift by rad^2."""
         start, blocks = 0, []
         for family in self.families:
             block = np.zeros((_LOOKS - 1, columns))
@@ -209,17 +211,20 @@ class _Programme(NamedTuple):
         return np.vstack(blocks)
 
     def _rows(self) -> tuple[Array, Array]:
-        """Rows and right sides: weights that sum to 1, crossings, one acceleration at the nose."""
+        """Rows and right sides: weights that sum to 1, crossings, one acceleration at the nose.
+
+        With `within` a crossing is two inequalities, each with a slack column behind those of the weights.
+        """
         size = sum(len(family.chosen) for family in self.families)
         slack = 0 if self.within == 0.0 else 2 * sum(len(card.crossings) for card in self.cards)
         rows: list[Array] = []
         right: list[float] = []
         start, used = 0, size
         for family, card in zip(self.families, self.cards, strict=True):
-            here = slice(start, start + len(family.chosen))
-            start = here.stop
+            columns = slice(start, start + len(family.chosen))
+            start = columns.stop
             row = np.zeros(size + slack)
-            row[here] = 1.0
+            row[columns] = 1.0
             rows.append(row)
             right.append(1.0)
             for lift, angle in card.crossings:
@@ -227,7 +232,7 @@ class _Programme(NamedTuple):
                 ways = ((0.0, 0.0),) if off == 0.0 else ((-off, -1.0), (off, 1.0))
                 for shift, sign in ways:
                     row = np.zeros(size + slack)
-                    row[here] = family.lifts(min(max(angle + shift, 0.0), family.half))
+                    row[columns] = family.lifts(min(max(angle + shift, 0.0), family.half))
                     if sign:
                         row[used] = sign
                         used += 1
@@ -253,12 +258,13 @@ class _Programme(NamedTuple):
 
 @lru_cache(maxsize=16)
 def sides_of_card(lift: float, opening: SideCard, closing: SideCard, most: float) -> tuple[Mixture, Mixture]:
-    """The sides of a lobe whose crossings are those of its card, with the least peak acceleration there is.
+    """The sides of a lobe, opening and closing, that meet its card with the least peak acceleration.
 
-    `most` rad is the longest a side may be, its ramp included. Sides that are alike are mirrored; of others one that is
-    known keeps its acceleration at the nose, and the other takes it. Crossings are met to 1e-9 degrees, and the peak is
-    the least to about a thousandth. Raises IntentError where no mixture meets the card, with the nearest: that whose
-    greatest difference is the least.
+    `lift` is mm or rad, as the crossings' lifts; `most`, rad, is the longest a side may be, its ramp included. Equal
+    cards give one side twice. A known side keeps its acceleration at the nose, which the other side then has too.
+    Crossings are met to 1e-9 degrees, and the peak is the least to about a thousandth. Raises IntentError for crossings
+    in no possible order or beyond the side, and where no mixture meets the card: it then names the card of the least
+    greatest difference that one meets.
     """
     sides = [opening] if opening == closing else [card for card in (opening, closing) if card.known is None]
     known = next((card.known for card in (opening, closing) if card.known is not None), None)
@@ -271,20 +277,22 @@ def sides_of_card(lift: float, opening: SideCard, closing: SideCard, most: float
     mixtures = [_mixture(family, card, weights) for card, (family, weights) in zip(sides, solved, strict=True)]
     if opening == closing:
         return mixtures[0], mixtures[0]
-    others = iter(mixtures)
-    first, second = (Mixture((), card.known) if card.known is not None else next(others) for card in (opening, closing))
+    solved_sides = iter(mixtures)
+    first, second = (
+        Mixture((), card.known) if card.known is not None else next(solved_sides) for card in (opening, closing)
+    )
     return first, second
 
 
 def _solved(
     lift: float, sides: Sequence[SideCard], nose: float | None, most: float
 ) -> list[tuple[_Family, Array]] | None:
-    """The mixtures of least peak acceleration that meet the sides' crossings; None where none do.
+    """The mixtures of least peak acceleration that meet the sides' crossings; None where there are none.
 
-    The peak of two sides is that of the worse one, so none is below what the worse one has alone, over the angle that
-    is best of it. Where the other can have the same acceleration at the nose with no greater peak, nothing is lower.
-    Elsewhere the one in common is halved between those that are best of each: on the way from a side's own its least
-    peak rises. All pairs of angles that turn up are tried with any acceleration in common, and the best is taken.
+    The peak of two sides is that of the worse side, so it is no less than the worse side's own least peak, over its
+    best angle. Where the other side can have the same acceleration at the nose with no greater peak, that is the least.
+    Elsewhere the common acceleration is found by halving between those that are best for each side, as a side's least
+    peak rises with the distance from its own best. Each pair of angles met is tried with any common acceleration.
     """
     alone = [_side(lift, card, nose, most) for card in sides]
     best = _one_acceleration(lift, sides, alone, nose)
@@ -319,7 +327,7 @@ _peak = itemgetter(0)
 
 
 class _Side(NamedTuple):
-    """A side by itself: the angle that is best of it, and over that the least peak and its acceleration at the nose."""
+    """A side by itself: its best angle, rad, and over that angle its least peak and its acceleration at the nose."""
 
     half: float
     peak: float
@@ -327,7 +335,7 @@ class _Side(NamedTuple):
 
 
 def _side(lift: float, card: SideCard, nose: float | None, most: float) -> _Side:
-    """The best of one side alone, or with a given acceleration at the nose."""
+    """The best of one side alone, or with the acceleration `nose` at the nose."""
     half = _search(lift, card, nose, most)
     programme = _programme(lift, [card], [half], nose)
     peak, weights = programme.least_peak(_first_cuts(1))
@@ -336,7 +344,7 @@ def _side(lift: float, card: SideCard, nose: float | None, most: float) -> _Side
 
 
 class _Joined(NamedTuple):
-    """Least peak of all sides over their angles, their acceleration at the nose, and their mixtures; None without."""
+    """Least peak of all sides over their angles, their acceleration at the nose, and their mixtures, or None."""
 
     peak: float
     nose: float
@@ -344,7 +352,7 @@ class _Joined(NamedTuple):
 
 
 def _one_acceleration(lift: float, sides: Sequence[SideCard], own: Sequence[_Side], nose: float | None) -> _Joined:
-    """Give the least peak of sides with one acceleration at the nose, each over its own angle; infinite without one."""
+    """Give the least peak of sides with one acceleration at the nose, each over its own angle; else infinite."""
     programme = _programme(lift, sides, [side.half for side in own], nose)
     peak, weights = programme.least_peak(_first_cuts(len(sides)))
     if not weights:
@@ -354,7 +362,7 @@ def _one_acceleration(lift: float, sides: Sequence[SideCard], own: Sequence[_Sid
 
 
 def _demand_order(lift: float, card: SideCard, most: float) -> None:
-    """Raise IntentError for crossings that no lobe has."""
+    """Raise IntentError for crossings that no lobe of this lift and longest side `most`, rad, has."""
     foot = 0.0 if card.ramp is None else card.ramp.height
     left = most - (0.0 if card.ramp is None else card.ramp.over)
     if left <= 0.0:
@@ -378,7 +386,7 @@ def _demand_order(lift: float, card: SideCard, most: float) -> None:
 
 
 def _at_nose(side: LobeSide) -> float:
-    """Acceleration at the nose of a side that is known, by rad^2."""
+    """Acceleration at the nose of a known side, mm/rad^2 or rad/rad^2."""
     from kin.numeric.elementary import Jet
 
     _, _, bend = side.flank(Jet.variable(np.array([1.0]), 2)).derivatives()
@@ -393,14 +401,14 @@ def _programme(
 
 
 def _first_cuts(sides: int) -> list[int]:
-    """A few places of each side and sign, of those that are looked at."""
+    """Indices of a few places of each side and sign, at which the acceleration is bounded first."""
     return list(range(0, 2 * sides * (_LOOKS - 1), _LOOKS // 8))
 
 
 def _search(lift: float, card: SideCard, nose: float | None, most: float, within: float | None = None) -> float:
-    """The angle of a side that has the least peak acceleration; `within` degrees of the crank, one that meets its rows.
+    """The angle, rad, over which a side has the least peak acceleration; of the least miss where none meets its rows.
 
-    Of a side that none meets it is the one that misses by the least.
+    With `within`, degrees of the crank by which crossings may be off, it is the angle of the least miss.
     """
     cuts = _first_cuts(1)
 
@@ -415,9 +423,9 @@ def _search(lift: float, card: SideCard, nose: float | None, most: float, within
 
 
 def _common_noses(lift: float, sides: Sequence[SideCard], most: float, within: float) -> tuple[float, float] | None:
-    """Least and greatest acceleration at the nose, by rad^2, of the lift, that two sides can have in common.
+    """Least and greatest acceleration at the nose that two sides can have in common, shares of the lift by rad^2.
 
-    Each has it over an angle of its own; None where they have none in common.
+    Each has it over an angle of its own. None where they can have none in common.
     """
     least, greatest = -math.inf, math.inf
     for card in sides:
@@ -432,19 +440,19 @@ def _common_noses(lift: float, sides: Sequence[SideCard], most: float, within: f
 
 
 def _angles(card: SideCard, most: float, within: float) -> list[float]:
-    """Angles of a side to be tried first, from the least to the greatest."""
+    """Angles of a side, rad, to be tried first, rising; that of the card alone where it gives one."""
     if card.half is not None:
         return [card.half]
     left = most - (0.0 if card.ramp is None else card.ramp.over)
     least = max(crossing.angle for crossing in card.crossings) - math.radians(within / card.crank)
     least = max(least, _SHORTEST * left)
-    # evenly in the logarithm of what lies beyond the last crossing
+    # evenly in the logarithm of the angle beyond the last crossing
     low, high = math.log(2e-3 * least), math.log((left - least) * (1.0 - 1e-9))
     return [least + math.exp(low + (high - low) * k / (_HALVES - 1)) for k in range(_HALVES)]
 
 
 def _best(angles: Sequence[float], merit: Callable[[float], tuple[float, float]]) -> float:
-    """The angle of least merit: the best that is tried, refined by a golden section between its neighbours."""
+    """The angle of least merit: the best of those tried, refined by a golden section between its neighbours."""
     if len(angles) == 1:
         return angles[0]
     merits = [merit(angle) for angle in angles]
@@ -469,7 +477,7 @@ def _best(angles: Sequence[float], merit: Callable[[float], tuple[float, float]]
 
 
 def _mixture(family: _Family, card: SideCard, weights: Array) -> Mixture:
-    """The side of a mixture; its weights are worked out again of the members as they are made."""
+    """The side that mixes the family's members by their weights (n,), and the members that it has."""
     used = np.flatnonzero(weights > _LEAST_WEIGHT)
     members = [_members()[family.chosen[i]] for i in used]
     share = weights[used] / math.fsum(weights[used].tolist())
@@ -481,7 +489,7 @@ def _mixture(family: _Family, card: SideCard, weights: Array) -> Mixture:
 
 
 def _no_card(lift: float, sides: Sequence[SideCard], nose: float | None, most: float) -> IntentError:
-    """The error of a card that none meets, with the nearest one: the least greatest difference in degrees."""
+    """The error for a card that no lobe meets, with the nearest card: that of the least greatest difference."""
     low, high = 0.0, 1.0
     while _weights_within(lift, sides, nose, most, high) is None and high < _FARTHEST:
         low, high = high, 2.0 * high
@@ -513,7 +521,7 @@ def _crank(card: SideCard, crossing: Crossing) -> float:
 def _weights_within(
     lift: float, sides: Sequence[SideCard], nose: float | None, most: float, within: float
 ) -> list[tuple[_Family, Array]] | None:
-    """Mixtures that meet all crossings within so many degrees of the crank; None where there are none."""
+    """Mixtures that meet all crossings within `within` degrees of the crank; None where there are none."""
     if len(sides) > 1:
         reach = _common_noses(lift, sides, most, within)
         if reach is None:
@@ -532,10 +540,10 @@ def _weights_within(
 def _nearest(
     lift: float, sides: Sequence[SideCard], nose: float | None, most: float, within: float
 ) -> list[SideCard] | None:
-    """The card of a mixture that is off by no more than about `within` degrees of the crank, in round numbers; or None.
+    """The card, rounded, of a mixture that is off by no more than about `within` degrees of the crank; else None.
 
-    What is nearest lies on the border of all that can be met. So much of every other member is added that the card in
-    round numbers lies within it.
+    The nearest card lies on the border of those that can be met. So much of every other member is added that the
+    rounded card can be met too.
     """
     mixtures = _weights_within(lift, sides, nose, most, within)
     if mixtures is None:

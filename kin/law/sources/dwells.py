@@ -1,8 +1,9 @@
 """Dwells of a table: runs of equal rows, exactly level on their inner part.
 
-Rounded rows stay equal for a while after a motion has left its dwell. So the ends of a dwell move in, from where the
-motion without dwells has no acceleration to speak of, until its peak is about that without dwells. Where a quarter of a
-run does not do, its rows are equal for another reason, such as a slow flank of few digits, and it is none.
+Rounded rows stay equal for a while after a motion has left its dwell. So the ends of a dwell are moved in, first to
+where the motion without dwells has little acceleration, until the peak with the dwell is about that without. Where a
+dwell over a quarter of a run is still too long, its rows are equal for another reason, such as a slow flank of few
+digits, and the run is no dwell.
 """
 
 from __future__ import annotations
@@ -21,20 +22,23 @@ if TYPE_CHECKING:
     from kin.law.sources.least_jerk import Bounds, Least, LowerLimit
     from kin.law.sources.tabled import Tabled
 
-_LEAST_ROWS = 3
-_LEAST_ANGLE = math.radians(10.0)
-_MOST_RUNS = 24  # the longest ones
-_INNER = 0.25  # of a run: what is left of a dwell at least
-_PEAK = 1.1  # times the acceleration without dwells
-_SQUARE = 1.3  # times its mean square jerk, on either half of a stroke
-_SMALL = 0.1  # of that acceleration, below which a motion may as well rest
-_LOOKS = 49  # places in the part of a run that may be moved in where that is looked for
-_STEP = 0.02  # of a run: by so much at least an end moves
-_FASTER = 1.5  # from one step to the next
+_LEAST_ROWS = 3  # of a run that may be a dwell
+_LEAST_ANGLE = math.radians(10.0)  # of such a run
+_MOST_RUNS = 24  # the longest runs
+_INNER = 0.25  # of a run: the shortest dwell
+_PEAK = 1.1  # times the peak acceleration without dwells: the greatest beside a dwell
+_SQUARE = 1.3  # times the mean square jerk without dwells, on either half of a stroke: likewise
+_SMALL = 0.1  # of the peak acceleration: with less a motion may as well rest
+_LOOKS = 49  # places in a run at which the acceleration is looked at
+_STEP = 0.02  # of a run: the least first step of an end
+_FASTER = 1.5  # factor from one step to the next
 
 
 class Run(NamedTuple):
-    """Equal rows from an angle to another, beyond the turn perhaps; `step` is the angle from row to row."""
+    """Equal rows from angle `begin` to `end`, rad, perhaps beyond the turn, at `level`, mm or rad.
+
+    `step`, rad, is the mean angle from row to row; a run without width has 0.
+    """
 
     begin: float
     end: float
@@ -52,7 +56,7 @@ class Run(NamedTuple):
 
 
 class MotionBetweenDwells(NamedTuple):
-    """A motion from the end of one dwell to the beginning of the next."""
+    """A motion from the end of one dwell, `begin`, to the beginning of the next, `end`, rad."""
 
     begin: float
     end: float
@@ -60,9 +64,10 @@ class MotionBetweenDwells(NamedTuple):
 
 
 def runs(rows: Tabled, least_level: float | None) -> list[Run]:
-    """Runs of three rows and more that are equal as written, over 10 degrees and more; the lowest at the least level.
+    """Runs of three or more rows that are equal as written, over 10 degrees or more, rising; the 24 longest.
 
-    A motion that rests at its ends has a run at each of them, however short.
+    The lowest run, if the motion is lowest there, gets the level `least_level`, mm or rad. A motion that rests at its
+    ends has a run at each of them, of no width without equal rows.
     """
     x, s = rows.x, rows.s
     if rows.space.rest:
@@ -96,9 +101,10 @@ def runs(rows: Tabled, least_level: float | None) -> list[Run]:
 def stretches(
     rows: Tabled, dwells: Sequence[Run], plain: Least, bounds: Bounds, limit: LowerLimit | None
 ) -> tuple[list[Run], list[MotionBetweenDwells]]:
-    """Runs that are dwells, their ends moved in, and the stretches of motion between them; [], [] for no dwell.
+    """Runs that are dwells, their ends moved in, and the motions between them; [], [] for no dwell.
 
-    `plain` is the motion without dwells within the same bounds.
+    `dwells` are the runs; `plain` is the motion without dwells within the same bounds. Raises UnsolvedError where
+    rounding stands in the way of a motion, CrowdedError where it touches too many bounds to be found in seconds.
     """
     kept = list(dwells)
     while kept:
@@ -116,7 +122,7 @@ def stretches(
 
 
 def _leave_out(kept: list[Run], which: int, period: float) -> None:
-    """Drop a run that is no dwell; at an end where a motion rests the end itself is left of it."""
+    """Drop a run that is no dwell; at an end where the motion rests it becomes a run without width."""
     run = kept[which]
     if not period and which in {0, len(kept) - 1}:
         end = run.end if which else run.begin
@@ -141,9 +147,10 @@ def _between_stretches(kept: Sequence[Run], between: Sequence[MotionBetweenDwell
 def _stretch(
     rows: Tabled, pair: tuple[Run, Run], plain: Least, bounds: Bounds, limit: LowerLimit | None
 ) -> tuple[MotionBetweenDwells | None, int]:
-    """The motion between two runs; or None, with 0 where the first one is no dwell, and 1 where the second one is none.
+    """The motion between two runs and 0; or None, and the index, 0 or 1, of the run that is no dwell.
 
-    The ends of both runs are moved in until the motion between them is about as calm as that without dwells, `plain`.
+    The ends of both runs are moved in until the motion between them is about as calm as the motion without dwells,
+    `plain`.
     """
     before, after = pair
     middle = 0.5 * (before.end + after.begin)
@@ -155,6 +162,7 @@ def _stretch(
     moved = [_quiet(plain, run, way, small) for run, way, small in zip(pair, (-1, 1), plain_peaks, strict=True)]
     steps = [max(0.5 * run.step, _STEP * (run.end - run.begin)) for run in pair]
     touch = plain.touch
+    # a side is wild while the motion is rougher there than `plain`, or cannot be found; its end is moved in further
     while True:
         begin, end = before.end - moved[0], after.begin + moved[1]
         space = FunctionSpace(begin, end, (before.level, after.level))
@@ -187,7 +195,10 @@ def _stretch(
 
 
 def _quiet(plain: Least, run: Run, way: int, peak: float) -> float:
-    """How far in from an end of a run the motion without dwells has little acceleration."""
+    """Angle, rad, from an end of a run to where the motion without dwells has little acceleration; at most the limit.
+
+    `way` is -1 at the end of the run, 1 at its beginning; `peak` is the acceleration to compare with.
+    """
     shares = np.linspace(0.0, run.limit, _LOOKS)
     edge = run.end if way < 0 else run.begin
     quiet = np.abs(plain.curve(edge + way * shares, 2)) <= _SMALL * peak

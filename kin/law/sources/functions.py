@@ -1,4 +1,4 @@
-"""Functions that motions are made of, in jet arithmetic; each is exact at the ends where it rests."""
+"""Functions of which motions are made, in jet arithmetic; each is exact at the ends where it rests."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Cosines:
 
 @dataclass(frozen=True)
 class RiseFall:
-    """64 u**3 (1 - u)**3: up and down again, v, a at rest at both ends (3-4-5-6)."""
+    """64 u**3 (1 - u)**3: up and down again, velocity and acceleration 0 at both ends (3-4-5-6)."""
 
     def __call__(self, u: Series, /) -> Series:
         """Displacement, a series of u's own kind: 1 at the middle."""
@@ -58,8 +58,8 @@ class RiseFall:
 class TwoPoint:
     """Polynomial of degree 2 m + 1 by its derivatives 0..m at u = 0 and 1.
 
-    s = (1 - u)**(m + 1) P(u) + u**(m + 1) Q(1 - u), P and Q of degree m (Hermite's two-point form), so that either
-    end has its derivatives to the last bit. `first` and `last` are the coefficients of P and Q.
+    s = (1 - u)**(m + 1) P(u) + u**(m + 1) Q(1 - u), P and Q of degree m (Hermite's two-point form), so that both
+    ends have their derivatives to the last bit. `first` and `last` are the coefficients of P and Q.
     """
 
     first: tuple[float, ...]
@@ -67,7 +67,7 @@ class TwoPoint:
 
     @staticmethod
     def of(start: Sequence[float], end: Sequence[float]) -> TwoPoint:
-        """Make it from the derivatives 0..m at u = 0 and u = 1, by u."""
+        """Make the polynomial from its derivatives 0..m by u, `start` at u = 0 and `end` at u = 1."""
         turned = [-x if k % 2 else x for k, x in enumerate(end)]
         return TwoPoint(_over_power(start), _over_power(turned))
 
@@ -99,12 +99,12 @@ class Flank:
     def of(
         powers: Sequence[int], top: float = 1.0, foot: float = 0.0, slope: float = 0.0
     ) -> tuple[Flank, tuple[float, ...]]:
-        """Make the flank less foot + slope v, of the lobe top + sum of C_k u**k, u = 1 - v, from its five powers k.
+        """Make the flank of the lobe top + sum of C_k u**k, u = 1 - v, less foot + slope v, from its five powers k.
 
-        Returns the flank and the five coefficients C_k. Value and four derivatives of the flank vanish at v = 0. With
-        l_k Lagrange's polynomials over the powers, C_k is (foot - top + slope) l_k(0) - slope l_k(1): so the sums of
-        C_k, k C_k, k (k - 1) C_k ... are as those at u = 1 must be. The division by (1 - u)**5 is done in exact
-        fractions, so that nothing cancels near u = 1.
+        Returns the flank and the five coefficients C_k, in the order of the powers. Value and four derivatives of the
+        flank vanish at v = 0. With l_k Lagrange's polynomials over the powers, C_k is (foot - top + slope) l_k(0) -
+        slope l_k(1), which gives the sums of C_k, k C_k, k (k - 1) C_k ... that the conditions at u = 1 need. The
+        division by (1 - u)**5 is done in exact fractions, so that nothing cancels near u = 1.
         """
         from fractions import Fraction
 
@@ -126,7 +126,7 @@ class Flank:
 
     @staticmethod
     def mixed(flanks: Sequence[Flank], weights: Sequence[float]) -> Flank:
-        """The sum of flanks, each times its weight."""
+        """The sum of flanks, each times its weight, one for each flank."""
         longest = max(len(flank.coefficients) for flank in flanks)
         padded = [(*flank.coefficients, *(0.0,) * (longest - len(flank.coefficients))) for flank in flanks]
         columns = zip(*padded, strict=True)

@@ -29,17 +29,18 @@ if TYPE_CHECKING:
 Shape = Literal["sin", "cos", "flat"]
 
 _PI = math.pi
-_SAME = 4 * 2.0**-52  # shares that differ by less are the same
+_SAME = 4 * 2.0**-52  # shares that differ by less are equal
 _LEAST_POINTS = 3
-_END = 1e-9  # of u, within which rows of a law begin at 0 and end at 1
-_LEAST_SHARE = 1e-6  # of a run: a shorter one is a jump in all but name
+_END = 1e-9  # greatest error of u at the first and last rows of a law
+_LEAST_SHARE = 1e-6  # of a segment: a shorter part is as good as a jump
 
 
 def scca(sine: float, constant: float, velocity: float = 0.0, field: str = "law") -> Law:
-    """Make the law of sine, constant and cosine acceleration, shares of the accelerating half, with constant velocity.
+    """Make the law of sine, constant and cosine acceleration, with constant velocity in the middle (SCCA).
 
-    `sine` and `constant` are b and c, d = 1 - b - c is the cosine's; `velocity` is the share of the whole segment in
-    the middle at constant velocity. A member that has a name is that law. IntentError for shares out of bounds.
+    `sine`, b, and `constant`, c, are shares of the accelerating half; the cosine's is d = 1 - b - c. `velocity` is the
+    share of the whole segment at constant velocity. A member that is a standard law is given as that law. Raises
+    IntentError, at a field below `field`, for shares out of bounds.
     """
     b, c, x = float(sine), float(constant), float(velocity)
     d = 1.0 - b - c
@@ -58,7 +59,7 @@ def scca(sine: float, constant: float, velocity: float = 0.0, field: str = "law"
 
 
 def scca_motion(b: float, c: float, x: float) -> Piecewise:
-    """Displacement of a member of the SCCA family, by its three shares."""
+    """Displacement of the SCCA law of shares b of sine and c of constant acceleration, x of constant velocity."""
     d = max(1.0 - b - c, 0.0) if b + c < 1.0 - _SAME else 0.0
     # Norton's Ca and Cv without constant velocity; with it V = Cv/(1 + x (Cv - 1)) and A = V Ca/(Cv (1 - x)).
     plain = 4 * _PI**2 / ((_PI**2 - 8) * (b * b - d * d) - 2 * _PI * (_PI - 2) * b + _PI**2)
@@ -114,10 +115,10 @@ def _trapezoid() -> Law:
 
 
 def blended(first: float, last: float, field: str = "law") -> Law:
-    """Make the law of constant velocity between a blend from rest and one to rest, shares `first` and `last` of it.
+    """Make the law of constant velocity between blends from rest and to rest, shares `first` and `last` of the segment.
 
-    A blend is 2 u**3 - u**4 of its own share, so that acceleration is 0 at its ends and has no step; where the share is
-    0 the law moves at that end. IntentError for shares that are not within the segment.
+    A blend is 2 u**3 - u**4 over its own share, so that acceleration is 0 at its ends and has no step; where the share
+    is 0 the law moves at that end. Raises IntentError for shares that are out of bounds or together above 1.
     """
     for share in (first, last):
         if not (share == 0.0 or _LEAST_SHARE <= share <= 1.0):
@@ -144,7 +145,8 @@ def blended(first: float, last: float, field: str = "law") -> Law:
 def through_points(points: Sequence[tuple[float, float]], field: str = "law") -> Law:
     """Make the law of a spline through points (u, s) from (0, 0) to (1, 1), at rest at both ends.
 
-    IntentError for points that do not rise in u from 0 to 1, or do not begin at 0 and end at 1.
+    Raises IntentError for fewer than three points or more than 1000, and for points that are not finite, do not rise in
+    u, or do not lead from (0, 0) to (1, 1).
     """
     from kin.law.sources.points import from_points
 
@@ -159,9 +161,10 @@ def through_points(points: Sequence[tuple[float, float]], field: str = "law") ->
 
 
 def from_rows(samples: Samples, reading: float, field: str = "law") -> Law:
-    """Make the law of least jerk within a reading of each row (u, s) from (0, 0) to (1, 1), at rest at both ends.
+    """Make the law of least mean square jerk within `reading` of each row (u, s) from (0, 0) to (1, 1), at rest there.
 
-    Raises IntentError, and kin.law.sources.tabled.TableError, for rows that give no law.
+    Raises IntentError for rows that do not lead from (0, 0) to (1, 1) or give no motion, as TableError where a line is
+    at fault.
     """
     from kin.law.sources.table import from_table
 
@@ -178,10 +181,11 @@ def from_rows(samples: Samples, reading: float, field: str = "law") -> Law:
 
 
 def split(law: Law, share: float, field: str = "law") -> Law:
-    """Take a symmetric law so that it accelerates over `share` of the segment and decelerates over the rest.
+    """Make of a symmetric law one that accelerates over `share` of the segment and decelerates over the rest.
 
-    Either part is half the law, stretched alike in time and stroke: velocity stays joined at Cv, and acceleration,
-    which falls to 1/(2 share) and 1/(2 - 2 share) of what it was. IntentError for a law that is not symmetric.
+    Each part is half the law, stretched alike in time and stroke: velocities keep their values and meet, accelerations
+    are 1/(2 share) and 1/(2 - 2 share) of the law's. Raises IntentError for a share outside 0.01 to 0.99, and for a law
+    that is not symmetric.
     """
     if not (math.isfinite(share) and 0.01 <= share <= 0.99):
         raise IntentError(f"`split` lies between 0.01 and 0.99, not {share:.9g}", f"{field}.split")
@@ -210,7 +214,7 @@ def split(law: Law, share: float, field: str = "law") -> Law:
 
 
 def sines(weights: Mapping[int, float], name: str) -> Law:
-    """Make s = u - sum of w_k sin(2 pi k u)/(2 pi k), at rest at both ends: all w_k together are 1."""
+    """Make s = u - sum of w_k sin(2 pi k u)/(2 pi k), by weights w_k that sum to 1: at rest at both ends."""
     terms = tuple((2 * _PI * k, w / (2 * _PI * k)) for k, w in weights.items())
     return _single(name, Sines(terms))
 
@@ -231,7 +235,7 @@ def _single(name: str, function: Stretch, *, reverses: bool = False) -> Law:
 
 @dataclass(frozen=True)
 class _Entry:
-    """A law of the catalogue: how it is made, and its displacement in a line."""
+    """A law of the catalogue: the function that makes it, and its displacement in a line of text."""
 
     make: Callable[[], Law]
     formula: str
@@ -294,7 +298,7 @@ NAMES: tuple[str, ...] = tuple(_ENTRIES)
 
 
 def formula(name: str) -> str:
-    """The displacement of a law of the catalogue, in a line of text."""
+    """The displacement of a law of the catalogue, in a line of text; KeyError for another name."""
     return _ENTRIES[name].formula
 
 
@@ -302,7 +306,7 @@ def formula(name: str) -> str:
 def named(name: str, field: str = "motion") -> Law:
     """Law of the catalogue by its name, made at first use.
 
-    Raises IntentError, which lists the names, for another one.
+    Raises IntentError, at `field`, for another name; it lists the names.
     """
     if name not in _ENTRIES:
         from difflib import get_close_matches  # for the message alone

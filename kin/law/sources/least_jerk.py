@@ -8,7 +8,7 @@ S''' is a spline of degree two over the same knots. Its coefficients mu solve G 
 the quadratic B-splines and E takes third divided differences of the values s (C. de Boor, A Practical Guide to Splines,
 chapter 14). The multipliers are E^T mu. Differences of neighbours alone enter, so that close knots do little harm.
 
-Which bounds are touched is found on the dual side: bounds that are missed are added, all at once where that raises the
+The touched bounds are found by the dual problem: bounds that are missed are added, all at once where that raises the
 integral, else by the steps of C. L. Lawson and R. J. Hanson (Solving Least Squares Problems, chapter 23), which stop
 where a multiplier comes to 0. The integral grows each time, so no set of bounds comes twice.
 """
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array, Indices
 
-_MISSED = 1e-6  # of the unit of a bound: by so much it may be missed
-_STALLED = 1e-3  # of it, where rounding lets the integral grow no more
+_MISSED = 1e-6  # of the unit of a bound: greatest miss that counts as kept
+_STALLED = 1e-3  # of the unit: greatest miss that is accepted where the integral grows no more by rounding
 _GROWS = 1e-12  # of the integral: a growth above rounding
-# of one search: the cubes of the knots, summed over its solves, which are some 3 s of a core. A thousand rows that
-# scatter by 400 readings take 4.3e10, a hundred thousand that are but rounded 2.3e8
+# Most work of one search, the sum of knots^3 over its solves: some 3 s of a core. A thousand rows that scatter by 400
+# readings take 4.3e10, a hundred thousand that are only rounded 2.3e8.
 _MOST_WORK = 5e10
-_FEW = 1000  # bounds that are looked at together; of more these are the first, and then those that are missed
-_DIPS, _HELD = 60, 0.1  # times at most that a function is held up at dips, and to what share of the tolerance
+_FEW = 1000  # bounds that are looked at together; of more a search begins with these and adds those that are missed
+_DIPS, _HELD = 60, 0.1  # most rounds of bounds at dips, and the share of the tolerance that these bounds allow
 _GAUSS = np.polynomial.legendre.leggauss(3)  # exact for squares of quadratic pieces
 _BACK = np.array([[2], [1], [0]])  # B-splines on a piece, counted back from the one that begins there
 _BLOCK = 24  # B-splines of one block of equations with its separators, from three times as many on
@@ -46,15 +46,15 @@ _ROW, _COLUMN = np.repeat(np.arange(3), 3), np.tile(np.arange(3), 3)
 
 
 class UnsolvedError(CamgeoError, ArithmeticError):
-    """Bounds that are missed by more than rounding when the integral grows no more."""
+    """A search in which bounds are still missed by more than rounding when the integral grows no more."""
 
 
 class CrowdedError(CamgeoError, ArithmeticError):
-    """A search that would take minutes: too many bounds are touched, and found one by one."""
+    """A search that would take minutes, as too many bounds are touched and are found one by one."""
 
 
 class FunctionSpace(NamedTuple):
-    """Functions from `begin` to `end`: at rest at both ends, at the levels `rest`, or of that period (None)."""
+    """Functions from `begin` to `end`, rad: at rest at both ends, at the levels `rest`, or, with None, periodic."""
 
     begin: float
     end: float
@@ -67,9 +67,9 @@ class FunctionSpace(NamedTuple):
 
 
 class Bounds(NamedTuple):
-    """Rising angles (n,), least and greatest value at each, the unit in which a miss is measured, and the row it is of.
+    """Bounds (n,) of a function at rising angles x, rad: least value `lo`, greatest value `hi`, and row of a table.
 
-    All are (n,). A bound of no row has the number -1.
+    A miss is measured in `unit`; all values are mm or rad. A bound of no row has the row -1.
     """
 
     x: Array
@@ -83,17 +83,20 @@ class Bounds(NamedTuple):
         return Bounds(self.x[which], self.lo[which], self.hi[which], self.unit[which], self.row[which])
 
     def with_more(self, more: Bounds, period: float) -> Bounds:
-        """Bounds joined with `more`, in the order of their angles; of two at one angle the narrower limits hold."""
+        """Bounds joined with `more`, in the order of their angles; of two at one angle the narrower limits hold.
+
+        `period`, rad, is that of the function, 0 without one.
+        """
         at, away = self.nearest(more.x, period)
         same = away <= SAME_ANGLE
         lo, hi, unit, at = self.lo.copy(), self.hi.copy(), self.unit.copy(), at[same]
         lo[at], hi[at] = np.maximum(lo[at], more.lo[same]), np.minimum(hi[at], more.hi[same])
         unit[at] = np.minimum(unit[at], more.unit[same])
-        both = joined_bounds([self._replace(lo=lo, hi=hi, unit=unit), more.at(np.flatnonzero(~same))])
-        return both.at(np.argsort(both.x, kind="stable"))
+        merged = joined_bounds([self._replace(lo=lo, hi=hi, unit=unit), more.at(np.flatnonzero(~same))])
+        return merged.at(np.argsort(merged.x, kind="stable"))
 
     def nearest(self, x: Array, period: float) -> tuple[Indices, Array]:
-        """Places of the bounds nearest to angles x (m,), and how far away they are."""
+        """Indices (m,) of the bounds nearest to angles x (m,), and their distances (m,), rad; `period` 0 for none."""
         away = np.abs(x[:, None] - self.x)
         if period:
             away = np.minimum(away, period - away)
@@ -101,7 +104,7 @@ class Bounds(NamedTuple):
         return at, away[np.arange(len(x)), at]
 
     def touching(self, start: Touch | None) -> Touch | None:
-        """Places of those bounds that are of the rows of a touch."""
+        """The touch `start` by rows as one by indices of these bounds, rising; rows without a bound are left out."""
         if start is None:
             return None
         place = np.full(int(max(self.row.max(initial=-1), start.which.max(initial=-1))) + 2, -1, dtype=np.intp)
@@ -113,29 +116,29 @@ class Bounds(NamedTuple):
 
 
 def joined_bounds(parts: Sequence[Bounds]) -> Bounds:
-    """Concatenate bounds in the order passed."""
+    """Concatenate bounds in the order given."""
     x, lo, hi, unit = (np.concatenate([part[k] for part in parts]) for k in range(4))
     return Bounds(x, lo, hi, unit, np.concatenate([part.row for part in parts]))
 
 
 class LowerLimit(NamedTuple):
-    """A level that a function is nowhere below by more than a tolerance."""
+    """A level, mm or rad, below which a function may nowhere be by more than the tolerance."""
 
     level: float
     tolerance: float
 
 
 class Touch(NamedTuple):
-    """Bounds (k,) that a function touches, by their places or their rows; which of them are upper ones."""
+    """Bounds (k,) that a function touches, as indices or as rows of a table, and the mask of upper bounds."""
 
     which: Indices
     upper: NDArray[np.bool_]
 
 
 class Curve(NamedTuple):
-    """A quintic spline: the starts and widths of its m pieces, and coefficients (6, m) of powers from 0 to 1 over each.
+    """A quintic spline: starts and widths of its m pieces, rad, and coefficients (6, m) of powers of u, 0 to 1 on each.
 
-    Beyond its end it goes on with the `period`, if it has one.
+    Beyond its end it goes on with the `period`, rad, unless that is 0.
     """
 
     starts: Array
@@ -144,7 +147,7 @@ class Curve(NamedTuple):
     period: float
 
     def __call__(self, x: Array, order: int = 0) -> Array:
-        """Value of the function, or its derivative of an order, (n,), at x (n,)."""
+        """Value of the function, or its derivative of the given order, (n,), at x (n,), rad."""
         if self.period:
             x = self.starts[0] + np.mod(x - self.starts[0], self.period)
         piece = np.maximum(np.searchsorted(self.starts, x, side="right") - 1, 0)
@@ -160,6 +163,7 @@ class Curve(NamedTuple):
 
     def peak(self, begin: float, end: float) -> float:
         """Greatest absolute second derivative from angle `begin` to `end`, rad."""
+        # extremes of the second derivative, a cubic in u: zeros of a quadratic, or of a line where the cubic term is 0
         _, q1, q2, q3 = self._rows(2)
         root = np.sqrt(np.maximum(q2 * q2 - 3.0 * q1 * q3, 0.0))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -182,7 +186,7 @@ class Curve(NamedTuple):
         return float(weights @ jerk**2 @ half)
 
     def lowest(self) -> tuple[float, float]:
-        """The place, rad, at which the function is least, and its value there."""
+        """Angle, rad, at which the function is least, and its value there."""
         place = np.concatenate([self.starts, self.dips(np.inf)[0]])
         value = self(place)
         i = int(np.argmin(value))
@@ -190,6 +194,7 @@ class Curve(NamedTuple):
 
     def dips(self, level: float) -> tuple[Array, Array]:
         """Local minima below `level`, except at knots: places (m,), rad, and positive depths below the level (m,)."""
+        # brackets in which the slope rises through 0, then Newton's method inside them
         slope = _polynomial(self._rows(1)[:, None], _SHARES[:, None])
         i, piece = np.nonzero((slope[:-1] < 0.0) & (slope[1:] >= 0.0))
         low, high = _SHARES[i], _SHARES[i + 1]
@@ -206,32 +211,32 @@ class Curve(NamedTuple):
 
 
 def _polynomial(rows: Array, u: Array) -> Array:
-    """Polynomials with coefficients of rising powers in their rows, at u."""
+    """Values of polynomials at u, row k of `rows` the coefficients of u^k."""
     value: Array = rows[-1]
     for row in rows[-2::-1]:
         value = value * u + row
     return value
 
 
-# places on a piece between which a minimum is looked for, close to its ends too, where it may rest; and steps to it
+# places on a piece between which a minimum is looked for, close to its ends too, where the function may rest
 _SHARES = np.array([0.0, 1e-3, 0.01, 0.05, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 0.97, 0.995, 0.9995, 1.0])
-_NEWTON = 8
-_MOVES, _CLOSE = 14, 1e-3  # times that bounds at the limit move to where they are called for; later only close ones
-_BETWEEN = 2.0 / 3.0  # from a bound at the limit to the dip beside it: dips move by about half of that, and back
+_NEWTON = 8  # steps to a minimum
+_MOVES, _CLOSE = 14, 1e-3  # rounds in which bounds at the limit move to dips beside them; later only very close ones
+_BETWEEN = 2.0 / 3.0  # of the way from a bound at the limit to the dip beside it: dips move back by about half of it
 
 
 class _Spline(NamedTuple):
     """The spline of least integral of S'''^2 through values, by the quadratic B-splines of its third derivative.
 
-    Over a piece of width h that is b0 (1 - u)^2 + 2 b1 u (1 - u) + b2 u^2.
+    Over a piece the third derivative is b0 (1 - u)^2 + 2 b1 u (1 - u) + b2 u^2.
     """
 
     period: float  # 0 between two rests
     starts: Array  # of the pieces
     widths: Array
     values: Array  # at the ends of all pieces, one more than there are pieces
-    near: Array  # one over the steps from knot to knot, 0 for none
-    far: Array  # one over those from a knot to the next but one
+    near: Array  # 1 over the steps from knot to knot, 0 for a step of no width
+    far: Array  # 1 over the steps from a knot to the next but one
     mu: Array  # coefficients
     bernstein: tuple[Array, Array, Array]
     square: float  # integral of S'''^2
@@ -253,7 +258,7 @@ class _Spline(NamedTuple):
         c[0] = self.values[:-1]
         cube = width**3
         c[3], c[4], c[5] = b0 * cube / 6.0, (b1 - b0) * cube / 12.0, (b0 - 2.0 * b1 + b2) * cube / 60.0
-        # what velocity and acceleration add over each piece, seen from its start and from its end
+        # the rise over each piece less that of the terms above, by its width: seen from its start and from its end
         gain = self.values[1:] - c[0]
         ahead = (gain - c[3] - c[4] - c[5]) / width
         behind = (gain - c[3] - 3.0 * c[4] - 6.0 * c[5]) / width
@@ -268,7 +273,7 @@ class _Spline(NamedTuple):
 
 
 def _fall(values: Array) -> Array:
-    """From each value to the next, the first one from 0 and the last one to it, with the sign turned: one more."""
+    """Falls (n + 1,) from each of the values (n,) to the next, with a 0 before the first and behind the last."""
     fall = np.empty(len(values) + 1)
     fall[0], fall[-1] = -values[0], values[-1]
     np.subtract(values[:-1], values[1:], out=fall[1:-1])
@@ -276,24 +281,27 @@ def _fall(values: Array) -> Array:
 
 
 class _Blocks(NamedTuple):
-    """The normal equations of so many B-splines as p blocks of b neighbours, with two separators after each.
+    """The normal equations of B-splines as p blocks of b neighbours, with two separators after each.
 
-    Their matrix is one array: the blocks (p, b, b), how each is coupled to the separators before and after it
-    (p, b, 4), and the separators (n, n). A place of no B-spline in a block has a 1.
+    Their matrix is one flat array: the blocks (p, b, b), their couplings to the separators before and after each
+    (p, b, 4), and the separators (n, n). A place without a B-spline in a block has a 1 on the diagonal.
     """
 
     taken: Indices  # the three B-splines on each piece, (3, m)
-    used: Indices  # those of their nine products on each piece that the array has
-    flat: Indices  # where they go in it
-    ones: Indices  # places in it
+    used: Indices  # indices of those of their nine products on each piece that the array holds
+    flat: Indices  # places of these products in the array
+    ones: Indices  # places of the 1s in the array
     size: tuple[int, int, int]  # p, b, n
     inner: Indices  # B-splines in blocks
-    place: Indices  # where they stand there
+    place: Indices  # places of these B-splines in the blocks
     parting: Indices  # B-splines that are separators (n,)
     beside: Indices  # separators of each block (p, 4)
 
     def solve(self, products: Array, rhs: Array) -> Array:
-        """Solution of the equations, by blocks: so small that no library calls for threads."""
+        """Solution of the equations, block by block: so small that no library starts threads.
+
+        `products` are the nine products of B-splines on each piece, `rhs` the right side, one for each B-spline.
+        """
         p, b, n = self.size
         matrix = np.bincount(self.flat, products.ravel()[self.used], p * b * (b + 4) + n * n)
         if not p:
@@ -302,6 +310,7 @@ class _Blocks(NamedTuple):
         couple, sides = matrix[p * b * b : p * b * (b + 4)].reshape(p, b, 4), np.zeros((p, b, 5))
         sides[:, :, :4] = couple
         sides.reshape(-1, 5)[self.place, 4] = rhs[self.inner]
+        # each block is eliminated, which leaves a system of the separators; then the blocks follow from these
         alone = np.linalg.solve(matrix[: p * b * b].reshape(p, b, b), sides)
         moved = couple.transpose(0, 2, 1) @ alone
         pairs = self.beside[:, :, None] * n + self.beside[:, None, :]
@@ -316,10 +325,11 @@ class _Blocks(NamedTuple):
 
 @lru_cache(maxsize=256)
 def _blocks(count: int, *, periodic: bool) -> _Blocks:
-    """Blocks for so many knots; few B-splines are not divided: all are separators."""
+    """Blocks for `count` knots; a few B-splines are not divided: all of them are separators."""
     size = count if periodic else count + 3
     columns = (np.arange(count) - _BACK) % count if periodic else np.arange(count + 1) + 2 - _BACK
     p = size // _BLOCK if size >= 3 * _BLOCK else 0
+    # block of each B-spline, the last two of each block being separators
     starts = np.arange(p + 1) * size // max(p, 1) if p else np.array([0, size])
     block = np.searchsorted(starts, np.arange(size), side="right") - 1
     offset, left = np.arange(size) - starts[block], starts[block + 1] - np.arange(size)
@@ -327,6 +337,7 @@ def _blocks(count: int, *, periodic: bool) -> _Blocks:
     parting = left <= 2 if p else left > 0
     number = 2 * block + 2 - left if p else offset
     place = block * b + offset
+    # place of each product in the array: among separators, in a coupling, or in a block
     row, column = columns[_ROW].ravel(), columns[_COLUMN].ravel()
     flat = np.where(
         parting[row],
@@ -356,6 +367,7 @@ def _blocks(count: int, *, periodic: bool) -> _Blocks:
 def _spline(space: FunctionSpace, x: Array, s: Array) -> _Spline:
     """Solve for the third derivative of the spline through s (k,) at x (k,)."""
     k = len(x)
+    # knots and values with their continuation: by the period, or threefold at an end at rest
     if space.rest is None:  # B-spline i stands over the knots i to i + 3
         place = np.arange(k + 3)
         t, values = x[place % k] + space.period * (place // k), s[place % k]
@@ -367,10 +379,11 @@ def _spline(space: FunctionSpace, x: Array, s: Array) -> _Spline:
         near, far = np.zeros(k + 5), np.zeros(k + 4)
         near[2:-2], far[1:-1] = 1.0 / (t[3:-2] - t[2:-3]), 1.0 / (t[3:-1] - t[1:-3])
         first, last, before = 2, k + 3, far[1:-2]
+    # third divided differences of the values are the right side
     bend = _rise(_rise(values) * near) * far
     rhs = 2.0 * _rise(bend)
     widths = t[first + 1 : last + 1] - t[first:last]
-    # on a piece the three B-splines are a (1 - u)^2, c u^2, and what is left of 1
+    # on a piece the three B-splines are a (1 - u)^2, c u^2, and the remainder to 1
     a, c = widths * before, widths * far[first:last]
     aa, cc, ac = a * a / 5.0, c * c / 5.0, a * c / 30.0
     ab, cb = a / 3.0 - aa - ac, c / 3.0 - cc - ac
@@ -385,7 +398,7 @@ def _spline(space: FunctionSpace, x: Array, s: Array) -> _Spline:
 
 
 def _rise(values: Array) -> Array:
-    """From each value to the next."""
+    """Rises (n - 1,) from each of the values (n,) to the next."""
     return values[1:] - values[:-1]
 
 
@@ -401,9 +414,10 @@ def curve_through(space: FunctionSpace, x: Array, s: Array) -> Curve:
 
 
 class Least(NamedTuple):
-    """The function of least mean square jerk: rows of the bounds that it touches, which are upper ones, multipliers.
+    """The function of least mean square jerk: rows of the k bounds that it touches, mask of upper bounds, multipliers.
 
-    `square` is the integral of the jerk's square; the curve goes through `values` at `x`, (k,) each as the others.
+    `square` is the integral of the jerk's square; the `curve` goes through `values` at angles `x`, rad. Arrays are
+    (k,).
     """
 
     row: Indices
@@ -416,7 +430,7 @@ class Least(NamedTuple):
 
     @property
     def touch(self) -> Touch:
-        """Bounds that are touched, from which a search nearby may begin."""
+        """Touched bounds by their rows, from which a similar search may begin."""
         real = self.row >= 0
         return Touch(self.row[real], self.upper[real])
 
@@ -429,11 +443,11 @@ def least(
     *,
     ample: float = math.inf,
 ) -> Least | None:
-    """The function of least mean square jerk within bounds and above a limit, looked for from the rows of `start`.
+    """The function of least mean square jerk within bounds and above a limit, searched from the rows of `start`.
 
-    None where a constant keeps all the bounds of a function with a period. A search whose integral passes `ample` ends
-    there, with a function of a lesser integral than that looked for, which misses bounds. Raises UnsolvedError where
-    rounding stands in the way, and CrowdedError where the bounds touched are too many for it to end in seconds.
+    None where a constant keeps all the bounds of a periodic function. A search whose integral passes `ample` ends with
+    a function that misses bounds, and whose integral is less than that of the solution. Raises UnsolvedError where
+    rounding stands in the way, and CrowdedError where too many bounds are touched for it to end in seconds.
     """
     touch = bounds.touching(start)
     for turn in range(_DIPS):
@@ -452,14 +466,16 @@ def least(
 def _with_limit(
     space: FunctionSpace, bounds: Bounds, nearest: Least, dips: Array, *, limit: LowerLimit, share: float
 ) -> tuple[Bounds, Touch]:
-    """Bounds with one at the limit at each dip; where one holds the function up beside it, that moves towards the dip.
+    """Bounds with a new one at the limit at each dip, and the touch with the new ones.
 
-    Beside it is nearer than `share` of the way to the next touch. With 1 none is left that holds the function nowhere:
-    knots that come close to each other leave no digits. Also returns what is touched, with the bounds at the dips.
+    A bound at the limit that is touched beside a dip, nearer than `share` of the way to the next touch, moves towards
+    the dip instead. With `share` 1, bounds at the limit that are not touched are dropped: knots close to each other
+    cost digits.
     """
     if space.period:
         dips = bounds.x[0] + np.mod(dips - bounds.x[0], space.period)
     x, hi, upper = dips.copy(), np.full(len(dips), np.inf), np.zeros(len(dips), dtype=bool)
+    # touched bounds at the limit that have a dip beside them
     lifted = np.flatnonzero(nearest.row < 0)
     moved = np.zeros(len(bounds.x), dtype=bool)
     if len(lifted):
@@ -471,21 +487,21 @@ def _with_limit(
         x[beside] += (1.0 - _BETWEEN) * (nearest.x[near] - dips[beside])
         hi[beside], upper[beside], moved[old] = bounds.hi[old], nearest.upper[near], True
     idle = (bounds.row < 0) & np.isinf(bounds.hi) & ~np.isin(bounds.x, nearest.x) & (share == 1.0)
-    rest = bounds.at(np.flatnonzero(~moved & ~idle))
+    staying = bounds.at(np.flatnonzero(~moved & ~idle))
     unit = np.full(len(x), _HELD * limit.tolerance / _MISSED)
     more = Bounds(x, np.full(len(x), limit.level), hi, unit, np.full(len(x), -1))
-    bounds = rest.with_more(more, space.period)
+    bounds = staying.with_more(more, space.period)
     new, _ = bounds.nearest(x, space.period)
-    kept = np.isin(nearest.x, rest.x) & ~np.isin(nearest.x, bounds.x[new])
+    kept = np.isin(nearest.x, staying.x) & ~np.isin(nearest.x, bounds.x[new])
     which = np.concatenate([np.searchsorted(bounds.x, nearest.x[kept]), new])
     order = np.argsort(which)
     return bounds, Touch(which[order], np.concatenate([nearest.upper[kept], upper])[order])
 
 
 def _of_many(space: FunctionSpace, bounds: Bounds, start: Touch | None, ample: float) -> Least | None:
-    """Solve without a lower limit; `start` has places among the bounds.
+    """Solve without a lower limit, from the touch `start` by indices of bounds.
 
-    Of many bounds only some are put in at a time.
+    Of many bounds some are chosen, and those that are missed are added.
     """
     n = len(bounds.x)
     chosen = np.arange(n) if n <= _FEW else np.arange(0, n, -(-n // _FEW))
@@ -513,14 +529,14 @@ def _of_many(space: FunctionSpace, bounds: Bounds, start: Touch | None, ample: f
 
 
 def excess_of_bounds(curve: Curve, bounds: Bounds) -> tuple[Array, NDArray[np.bool_]]:
-    """Excess (n,) over each bound in its unit, below 0 inside; and whether the upper limit is the nearer (n,)."""
+    """Excess (n,) of a curve over each bound in its unit, negative inside, and the mask (n,) of nearer upper limits."""
     s = curve(bounds.x)
     under, over = (bounds.lo - s) / bounds.unit, (s - bounds.hi) / bounds.unit
     return np.maximum(under, over), over > under
 
 
 def _worst(miss: Array) -> Indices:
-    """The worst of each run of bounds that are missed, by their places."""
+    """Indices of the worst bound of each run of neighbouring bounds that are missed, from the misses (n,)."""
     out = np.flatnonzero(miss > _MISSED)
     if not len(out):
         return out
@@ -532,7 +548,7 @@ def _worst(miss: Array) -> Indices:
 
 
 class _State(NamedTuple):
-    """A set of bounds that are touched, the spline through them, and its multipliers, which have their signs."""
+    """A set of touched bounds, the spline through them, and its multipliers, all of the right sign."""
 
     touch: Touch
     spline: _Spline
@@ -540,15 +556,18 @@ class _State(NamedTuple):
 
 
 class _Search:
-    """The search for the bounds that are touched, after so much work (the knots' cubes, summed over the solves)."""
+    """The search for the touched bounds; `work` is the sum of knots^3 over all solves so far."""
 
     def __init__(self, space: FunctionSpace, bounds: Bounds, work: float) -> None:
         self.space, self.bounds, self.work = space, bounds, work
-        self.least = 2 if space.rest is None else 0  # bounds that are touched, of a function that is no constant
+        self.least = 2 if space.rest is None else 0  # fewest touched bounds of a function that is no constant
         self._before: set[bytes] = set()
 
     def run(self, start: Touch | None, ample: float) -> Least | None:
-        """Add bounds that are missed until there are none, or the integral passes `ample`."""
+        """Add bounds that are missed until there are none, or the integral passes `ample`; None for a constant.
+
+        Raises UnsolvedError where a bound is still missed when the integral grows no more.
+        """
         state = None if start is None else self._without_wrong_signs(start)
         state = state or self._first()
         while state is not None:
@@ -568,6 +587,7 @@ class _Search:
             )
             if not len(added) or spline.square > ample:
                 return last
+            # all at once if that raises the integral, else by steps: all of them, or the worst alone
             above[touch.which] = touch.upper
             which = np.sort(np.concatenate([touch.which, added]))
             state = self._without_wrong_signs(Touch(which, above[which]))
@@ -581,7 +601,7 @@ class _Search:
         return None
 
     def _is_repeated(self, touch: Touch) -> bool:
-        """Whether the same bounds were touched before, which rounding alone can bring about."""
+        """Whether the same bounds were touched before, which only rounding can cause; remembers them."""
         key = touch.which.tobytes() + touch.upper.tobytes()
         again = key in self._before
         self._before.add(key)
@@ -591,7 +611,7 @@ class _Search:
         return np.where(touch.upper, self.bounds.hi[touch.which], self.bounds.lo[touch.which])
 
     def _solved(self, touch: Touch) -> _State:
-        """The work is counted before it is done: a solve of many thousand knots would take all memory."""
+        """Spline through the touched bounds; raises CrowdedError before a solve that would exceed the work allowed."""
         self.work += float(len(touch.which)) ** 3
         if self.work > _MOST_WORK:
             raise CrowdedError
@@ -599,7 +619,7 @@ class _Search:
         return _State(touch, spline, spline.pull())
 
     def _first(self) -> _State | None:
-        """The least that any function does: none, or from the greatest lower bound to the least upper one."""
+        """State of no bound, or of the greatest lower and least upper bound; None where a constant keeps all bounds."""
         if self.space.rest is not None:
             return self._solved(Touch(np.empty(0, dtype=np.intp), np.empty(0, dtype=bool)))
         i, j = int(np.argmax(self.bounds.lo)), int(np.argmin(self.bounds.hi))
@@ -609,7 +629,7 @@ class _Search:
         return self._solved(Touch(which, which == j))
 
     def _without_wrong_signs(self, touch: Touch) -> _State | None:
-        """The bounds of a set whose multipliers (`pull`) have their signs; None where too few are left."""
+        """Drop bounds until all multipliers have the right sign; None where too few bounds are left."""
         while len(touch.which) >= self.least:
             state = self._solved(touch)
             right = np.where(touch.upper, -state.pull, state.pull) > 0.0
@@ -619,7 +639,10 @@ class _Search:
         return None
 
     def _with_more(self, last: Least, touch: Touch, added: Indices, upper: NDArray[np.bool_]) -> _State | None:
-        """From multipliers with their signs towards those of more bounds, letting go of those that come to 0."""
+        """Step from multipliers of the right sign towards those with the bounds `added`, dropping bounds that reach 0.
+
+        None where none of the added bounds stays, or too few bounds are left (Lawson and Hanson, chapter 23).
+        """
         size = np.zeros(len(self.bounds.x))
         size[touch.which] = np.abs(last.pull)
         which = np.sort(np.concatenate([touch.which, added]))

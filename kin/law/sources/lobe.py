@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 
     from kin.law.segment import Stretch
 
-FROM_REST = 0.4  # of a ramp's height, over which it comes to its velocity
-LEAST_RAMP = math.radians(1e-4)  # rad: a shorter one is a jump of velocity but for its name
-_NOTHING = 1e-12  # rad: a part so short is rounding
+FROM_REST = 0.4  # of a ramp's height: the part over which it reaches its velocity
+LEAST_RAMP = math.radians(1e-4)  # rad: a shorter ramp is as good as a jump of velocity
+_NOTHING = 1e-12  # rad: a shorter part is rounding
 GREATEST_POWER = 100
 
 
 class Ramp(NamedTuple):
     """A lash ramp: its height, mm or rad, and its constant velocity, by rad of the cam.
 
-    It leaves rest by 2 u**3 - u**4 over the first two fifths of its height, and takes the rest at that velocity.
+    It leaves rest by 2 u**3 - u**4 over the first two fifths of its height, and climbs the others at that velocity.
     """
 
     height: float
@@ -34,7 +34,7 @@ class Ramp(NamedTuple):
 
     @property
     def parts(self) -> tuple[float, float]:
-        """Angles of the part from rest and of that at constant velocity, rad: the former's mean velocity is half."""
+        """Angles, rad, of the part from rest, at half the velocity on average, and of the part at constant velocity."""
         return 2.0 * FROM_REST * self.height / self.velocity, (1.0 - FROM_REST) * self.height / self.velocity
 
     @property
@@ -46,8 +46,8 @@ class Ramp(NamedTuple):
 class LobeSide(NamedTuple):
     """One side of a lobe, from its foot, or from its ramp's end, to the nose over `half` rad.
 
-    Without a ramp `flank` rises to 1 and is taken `scale` times, mm or rad. With one it is what the lobe has above the
-    ramp's straight line, and `scale` is 1.
+    Without a ramp `flank` rises to 1 and is multiplied by `scale`, mm or rad. With a ramp the flank is the lobe's
+    height above the ramp's straight line, mm or rad, and `scale` is 1.
     """
 
     half: float
@@ -57,7 +57,7 @@ class LobeSide(NamedTuple):
 
     @staticmethod
     def of(lift: float, half: float, powers: Sequence[int], ramp: Ramp | None) -> LobeSide:
-        """Make the side of a lobe from its five powers, without checks."""
+        """Make the side of a lobe from its five powers over `half`, rad, without checks; `lift` in mm or rad."""
         if ramp is None:
             return LobeSide(half, Flank.of(powers)[0], lift)
         return LobeSide(half, Flank.of(powers, lift, ramp.height, ramp.velocity * half)[0], 1.0, ramp)
@@ -83,9 +83,9 @@ def lobe(
 
     `powers` are (2, p, q, r, s), rising whole numbers; the coefficients make S to S'''' vanish at u = 1 (R. L.
     Norton, Cam Design and Manufacturing Handbook, chapter on valve trains). With a ramp the lobe meets it at its height
-    with its velocity, S'' to S'''' vanish there, and the ramp lies beyond `half`. Where
-    the motion does not repeat (`around` is not 1) the nose stands in the middle. Raises IntentError for powers that
-    give no lobe, and for a `nose` of a motion that does not repeat.
+    with its velocity, S'' to S'''' vanish there, and the ramp lies beyond `half`. The motion covers `total`, rad, with
+    the nose at `nose`, rad; where it does not repeat (`around` is not 1) the nose stands in the middle. Raises
+    IntentError for a lift, angle, powers or ramp that give no lobe, and for a `nose` of a motion that does not repeat.
     """
     side = side_of(lift, half, powers, ramp, total=total, field=field)
     return lobe_of(side, side, total, nose=nose, around=around, field=field)
@@ -94,9 +94,10 @@ def lobe(
 def side_of(
     lift: float, half: float, powers: Sequence[float], ramp: Ramp | None, *, total: float, field: str
 ) -> LobeSide:
-    """Make the side of a lobe by its powers.
+    """Make the side of a lobe from its powers, over `half`, rad, of a motion over `total`, rad; `lift` in mm or rad.
 
-    Raises IntentError, with a field below `field`, for powers that give none.
+    Raises IntentError, at a field below `field`, for a lift not above 0, `half` outside 0 to total/2, powers that are
+    not 2 and four more whole ones that rise to 100 at most, and a ramp that is impossible or too long.
     """
     demand_lift(lift, field)
     if not (math.isfinite(half) and 0 < half < total / 2):
@@ -127,10 +128,10 @@ def lobe_of(
     around: int | None = 1,
     field: str = "motion.lobe",
 ) -> Motion:
-    """Join the two sides of a lobe at its nose, and rest beyond them.
+    """Join the two sides of a lobe at its nose, with rest beyond them, into a motion over `total`, rad.
 
-    Where the motion does not repeat, `around` other than 1, the nose stands in the middle, and IntentError is
-    raised for one that is given.
+    The nose stands at `nose`, rad; in the middle where the motion does not repeat (`around` is not 1). Raises
+    IntentError for a `nose` of a motion that does not repeat.
     """
     if around != 1 and nose != 0.0:
         raise IntentError("the nose stands in the middle where the motion does not repeat each turn", f"{field}.nose")
@@ -141,7 +142,7 @@ def lobe_of(
     if around != 1 or (middle > before and middle + after < total):
         knots = [0.0, *(middle + part.begin for part in stretches), middle + after, total]
         return joined(knots, [Constant(0.0), *(part.moved(middle) for part in stretches), Constant(0.0)], around)
-    # what begins before the turn, or after it, is moved by a turn; what its end cuts stands at both ends
+    # parts before or behind the turn are moved by a turn; a part that its end cuts stands at both ends
     pieces: list[tuple[float, float, Stretch]] = []
     for turns in (-1.0, 0.0, 1.0):
         shift = middle + turns * total
@@ -155,7 +156,10 @@ def lobe_of(
 
 
 class _Stretch(NamedTuple):
-    """A part of a lobe about a nose at 0, and its angles, rad; `width` is that over which the function runs."""
+    """A part of a lobe about a nose at 0, over [begin, end], rad: scale times a function of the angle over `width`.
+
+    A negative width runs the function backwards, from the end.
+    """
 
     begin: float
     end: float
@@ -164,7 +168,7 @@ class _Stretch(NamedTuple):
     width: float = 0.0
 
     def moved(self, by: float) -> Stretch:
-        """The function of the angle, the nose moved; one that falls runs backwards from its end."""
+        """The function of the angle, with the nose at `by`, rad."""
         if isinstance(self.function, Constant):
             return self.function
         start = self.begin if self.width > 0.0 else self.end
@@ -221,5 +225,5 @@ def _demand_left(half: float, ramp: Ramp, total: float, field: str) -> None:
 
 
 def coefficients(powers: Sequence[int]) -> tuple[float, ...]:
-    """Coefficients C2, Cp, Cq, Cr and Cs of a lobe polynomial."""
+    """Coefficients C2, Cp, Cq, Cr and Cs of the lobe polynomial of five powers, without a ramp."""
     return Flank.of(powers)[1]

@@ -1,4 +1,4 @@
-"""A motion over an angle, from whatever source: derivatives, bounds, breaks, dwells, and how its parts join."""
+"""A motion over an angle, from any source: derivatives, bounds, breaks, dwells, and how its parts join."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-_JOIN = 1e-9  # of the greatest derivative: what differs less over the seam is rounding
+_JOIN = 1e-9  # of the greatest derivative: a smaller difference over the seam is rounding
 _CLOSED = 1e-11  # of the greatest of S, S', S'': a jump of S or S' below this is rounding, as for a lift
 _LOOKS = 64  # places at which the size of a derivative is looked at, besides the knots
-_INSIDE = (np.arange(8) + 0.5) / 8  # and in shares of each part
+_INSIDE = (np.arange(8) + 0.5) / 8  # such places in each part, as shares of it
 _SEAM_ORDER = 6  # derivatives that agree where a function runs on over the seam
 
 
 class DwellStretch(NamedTuple):
-    """A dwell from `begin` to `end` (rad, `end` may lie beyond a turn) at a displacement."""
+    """A dwell from `begin` to `end`, rad, where `end` may lie beyond a turn, at the displacement `level`, mm or rad."""
 
     begin: float
     end: float
@@ -47,7 +47,7 @@ class TableRemark(NamedTuple):
 class Kept(NamedTuple):
     """Greatest distance of a motion from a row of its table, mm or rad, the row's line, and remarks.
 
-    Of what is no table, such as a cam card, there are remarks alone.
+    A motion from another source, such as a cam card, has remarks alone: `distance` is None.
     """
 
     distance: float | None
@@ -57,10 +57,10 @@ class Kept(NamedTuple):
 
 @dataclass(frozen=True)
 class Motion:
-    """Displacement S over [0, total] rad, mm or rad; `around` says how the end is followed by the beginning.
+    """Displacement S, mm or rad, over [0, total] rad; `around` tells how the motion goes on beyond.
 
     With 1 the motion repeats. With -1 it goes on as S(total) - S(t - total), as a constant-breadth cam does after its
-    half turn. With None nothing is said. `kept` tells how a motion keeps the rows of the table that it was made of.
+    half turn. With None it does not go on. `kept` tells how close it is to the table that it was made from, if any.
     """
 
     motion: Piecewise
@@ -81,25 +81,34 @@ class Motion:
         return self.motion.derivatives(self.total, order, -1)[:, 0]
 
     def derivatives(self, theta: float | Array, order: int, side: Side = 1) -> Array:
-        """Give S and its derivatives at theta (n,) in [0, total], (order + 1, n); at a break the limit from `side`."""
+        """Give S and its derivatives at theta (n,) in [0, total], (order + 1, n); at a break the limit from `side`.
+
+        Raises ValueError outside [0, total], DomainError where a formula does not exist.
+        """
         return self.motion.derivatives(theta, order, side)
 
     def enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
-        """Middles and radii, (order + 1, n) each, of intervals that hold S and its derivatives over [lower, upper]."""
+        """Middles and radii, (order + 1, n) each, of intervals that hold S and its derivatives over [lower, upper].
+
+        Raises ValueError where [lower, upper], (n,) each, leaves [0, total].
+        """
         return self.motion.enclosure(lower, upper, order)
 
     def on(self, t: Series, side: Side = 1) -> Series:
-        """Apply S to jets (Taylor series at points) or ball jets (proved Taylor series over intervals)."""
+        """Apply S to a jet (Taylor series at points) or a ball jet (proved Taylor series over intervals).
+
+        Raises ValueError outside [0, total], DomainError where a formula does not exist at a jet.
+        """
         return self.motion.on(t, side)
 
     @property
     def breaks(self) -> Array:
-        """Angles inside (0, total) at which a derivative may jump, rising."""
+        """Angles (b,) inside (0, total) at which a derivative may jump, rising."""
         return self.motion.breaks
 
     @cached_property
     def rests(self) -> tuple[DwellStretch, ...]:
-        """Dwells, exact ones, rising; one that runs over the end of a repeating motion is one."""
+        """Exact dwells, rising; one that runs over the end of a repeating motion is a single dwell, the last."""
         knots = self.motion.knots.tolist()
         rests = [
             DwellStretch(knots[i], knots[i + 1], f.value)
@@ -114,7 +123,7 @@ class Motion:
 
     @cached_property
     def joints(self) -> tuple[DerivativeJump, ...]:
-        """Angles at which S, S', S'' or S''' jump, with what jumps; the end of a motion that goes on is at 0."""
+        """Angles at which S, S', S'' or S''' jump, and the limits; jumps over the end of the motion are at 0."""
         knots = self.motion.knots
         side = np.repeat([1, -1], knots.size - 1)
         right, left = np.hsplit(self.motion.derivatives(np.append(knots[:-1], knots[1:]), ORDERS, side), 2)
@@ -138,7 +147,10 @@ class Motion:
         return float(np.abs(self.motion.derivatives(np.linspace(knots[0], knots[-1], _LOOKS), 2)).max())
 
     def demand_joined(self, field: str = "motion", unit: str = "mm") -> Motion:
-        """Return the motion if S and S' join all round, else raise IntentError with the first place where not."""
+        """Return the motion if S and S' join all round; else raise IntentError, at `field`, with the first jump.
+
+        `unit` is that of S, mm or rad, for the message.
+        """
         for joint in self.joints:
             low = [(k, a, b) for k, a, b in joint.jumps if k < 2 and abs(b - a) > _CLOSED * self._size]
             if low:
@@ -159,12 +171,15 @@ class Motion:
         return replace(self, motion=self.motion.raised(by)) if by else self
 
     def from_lowest(self) -> Motion:
-        """The motion less its least value, so that it stands at 0 where it is lowest."""
+        """The motion less its least value, so that it is 0 where it is lowest."""
         least = self.range[0]
         return self if abs(least) <= _CLOSED * self._size else self.raised(-least)
 
     def periodic(self, field: str = "motion", unit: str = "mm") -> Piecewise:
-        """S with period `total`, joined in S and S'; a dwell or a function that runs over the end is one stretch."""
+        """S with period `total`; a dwell or a function that runs over the end is one stretch.
+
+        Raises IntentError, at `field`, where S or S' jumps; `unit`, mm or rad, is for the message.
+        """
         self.demand_joined(field, unit)
         knots, functions = self.motion.knots.tolist(), list(self.motion.functions)
         if len(functions) > 1 and isinstance(functions[0], Constant) and isinstance(functions[-1], Constant):
@@ -173,7 +188,7 @@ class Motion:
         return Piecewise(self.motion.knots, self.motion.functions, self.total, self._runs_on())
 
     def _runs_on(self) -> bool:
-        """Tell whether one function alone goes on over the end as it began."""
+        """Whether the motion is one function that goes on smoothly over the end."""
         if len(self.motion.functions) > 1:
             return False
         begin, end = self.at_start(_SEAM_ORDER), self.at_end(_SEAM_ORDER)
@@ -187,11 +202,9 @@ def _remedy(angle: float, order: int) -> str:
 
 
 def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | None = 1) -> Motion:
-    """Make a motion from stretches, stretch i between knots i and i + 1, rad.
+    """Make a motion from stretches, stretch i between knots i and i + 1, rad; adjacent dwells at one level become one.
 
-    Neighbouring dwells at one level become one.
-
-    With `around` 1 the motion repeats; with -1 it goes on as S(total) - S(t - total); with None nothing is said.
+    With `around` 1 the motion repeats; with -1 it goes on as S(total) - S(t - total); with None it does not go on.
     """
     kept: list[Stretch] = []
     at = [float(knots[0])]
@@ -205,9 +218,9 @@ def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | N
 
 
 def opposed(half: Motion) -> Motion:
-    """Go on from a motion S over half a turn as S(total) - S(t - total), over the whole turn (SW eq. 4).
+    """Motion over the whole turn that goes on from `half`, S over half a turn, mm, as S(total) - S(t - total).
 
-    Raises IntentError where the velocities do not meet, S'(total) = -S'(0).
+    K.-L. Shu and L.-I. Wu 2012, eq. 4. Raises IntentError where S or S' jumps, over the ends too: S'(total) = -S'(0).
     """
     half.demand_joined("motion", "mm")
     end, knots = float(half.at_end(0)[0]), half.motion.knots.tolist()

@@ -19,13 +19,14 @@ if TYPE_CHECKING:
 
 _GRID = 129  # places on a stretch at which a derivative is looked at first
 _STEPS = 6  # of Newton's method from there: the error of a grid is squared six times
-_REST = 1e-9  # of the greatest value: less than that is rounding, no step
+_REST = 1e-9  # of the greatest value: a smaller step is rounding
 
 
 def extremes(motion: Piecewise, k: int) -> tuple[float, float, float, float]:
-    """Least value of derivative k and where, greatest value and where.
+    """Least value of derivative k and its place, greatest value and its place.
 
     Local extremes of a grid on each stretch are followed to the zeros of the next derivative; limits at knots count.
+    Raises DomainError where a function of the motion does not exist.
     """
     least, greatest = (math.inf, 0.0), (-math.inf, 0.0)
     for function, (begin, end) in zip(motion.functions, pairwise(motion.knots.tolist()), strict=True):

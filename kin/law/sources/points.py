@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-MOST_POINTS = 1000
+MOST_POINTS = 1000  # the system of equations is dense
 _LEAST = 3  # points of a motion without a dwell
 
 
@@ -33,10 +33,11 @@ def from_points(
     field: str = "motion.points",
     unit: float = 1.0,
 ) -> Motion:
-    """Make the C4 quintic spline through displacements s at angles theta (rad, rising, in [0, total]).
+    """Make the C4 quintic spline through displacements s (n,), mm or rad, at angles theta (n,), rad, in [0, total].
 
-    Each of `dwells` runs from a point to the next one (beyond `total` over the end), both of one displacement: there
-    S rests, and S' = S'' = 0 at its ends. Without any, and `around` 1, the spline is periodic.
+    Each of `dwells` gives the angles, rad, of a point and of the next one (beyond `total` over the end), both of one
+    displacement: between them S rests, and S' = S'' = 0 at its ends. Without any, and `around` 1, the spline is
+    periodic; with `around` -1 or None it is laid as `kin.law.sources.ring.laid` does.
 
     Raises IntentError for too few or too many points, numbers that are not finite, angles that do not rise, that lie
     outside [0, total] or do not fill it where the motion does not repeat, a repeating motion that does not close, and a
@@ -62,6 +63,7 @@ def from_points(
                 f"{field}[{len(values) - 1}]",
             )
         angles, values = angles[:-1], values[:-1]
+    # the fit, with the dwells as rows of equal displacement
     rows = Samples(angles, values, np.arange(len(angles)))
     demand_whole(rows, total, around, field)
     if len(angles) < (2 if dwells else _LEAST):

@@ -37,10 +37,10 @@ class JointState:
 
 @dataclass(frozen=True)
 class Matched:
-    """Law of a segment that takes v and a (degree 7: and j) from its neighbours, or where given from `at_*`.
+    """Law of a segment, 5 or 7 in degree, that takes v and a (degree 7: and j) from its neighbours, or from `at_*`.
 
-    Two of them in a row need the state between them given by one: with v = 0 and an acceleration that is the quick
-    return (VDI 2143, R, G, U, B).
+    Of two matched segments in a row one must give the state between them; v = 0 with an acceleration there is the quick
+    return (VDI 2143, motions R, G, U, B).
     """
 
     degree: int = 5
@@ -57,7 +57,7 @@ class Dwell:
 
 @dataclass(frozen=True)
 class Move:
-    """A stroke over an angle (rad): `by` a signed stroke, or `to` an absolute displacement, exactly one of them."""
+    """A stroke over the angle `over`, rad: either the signed stroke `by` or the absolute displacement `to`."""
 
     over: float
     law: Law | Matched
@@ -67,7 +67,7 @@ class Move:
 
 @dataclass(frozen=True)
 class RiseAndFall:
-    """Up by `by` and back again over an angle (rad), by the polynomial 3-4-5-6."""
+    """Up by `by`, mm or rad, and back again over the angle `over`, rad, by the polynomial 3-4-5-6."""
 
     over: float
     by: float
@@ -75,7 +75,7 @@ class RiseAndFall:
 
 @dataclass(frozen=True)
 class Given:
-    """A formula f(u), u from 0 to 1 over an angle (rad), counted from the segment's start, times `scale`."""
+    """Displacement from the segment's start: `scale` times a formula f(u), u from 0 to 1 over the angle `over`, rad."""
 
     over: float
     formula: Formula
@@ -87,7 +87,7 @@ Step = Dwell | Move | RiseAndFall | Given
 
 @dataclass()
 class _Part:
-    """A segment in the making, over [begin, end], from `level` to `level + by`; its stretches, once they are known."""
+    """A segment in the making, over [begin, end], rad, from `level` to `level + by`; `built` once it is known."""
 
     field: str
     step: Step
@@ -104,10 +104,11 @@ class _Part:
 def programme(segments: Sequence[Step], total: float, *, around: int | None = 1, field: str = "motion") -> Motion:
     """Join segments into a motion over [0, total] rad.
 
-    With `around` 1 the motion repeats; with -1 it goes on as S(total) - S(t - total); with None nothing is said. A
-    matched segment at an end takes its neighbour across it, and rest where `around` is None.
-    Raises IntentError if the angles do not sum to `total` within 1e-9 rad, for a segment that cannot be, and where
-    two matched segments meet with no state given. Velocities that jump are left to `Motion.joints`.
+    With `around` 1 the motion repeats; with -1 it goes on as S(total) - S(t - total); with None it does not go on. A
+    matched segment at an end matches its neighbour beyond it, or rest where `around` is None. Raises IntentError if
+    there is no segment or the angles do not sum to `total` within 1e-9 rad, for a segment without angle or stroke, a
+    formula that does not exist or begin at 0, a degree other than 5 and 7, and where two matched segments meet with no
+    state given. Jumps of velocity are no errors here: `Motion.joints` has them.
     """
     if not segments:
         raise IntentError("a motion needs at least one segment", field)
@@ -123,6 +124,7 @@ def programme(segments: Sequence[Step], total: float, *, around: int | None = 1,
         raise IntentError(
             f"the segments cover {math.degrees(covered):.10g} degrees, {math.degrees(total):.10g} are wanted", field
         )
+    # all but matched segments first, then these between their neighbours
     ends = [math.fsum(segment.over for segment in segments[:i]) for i in range(len(segments))] + [total]
     parts: list[_Part] = []
     strokes: list[float] = []
@@ -144,7 +146,7 @@ def programme(segments: Sequence[Step], total: float, *, around: int | None = 1,
 
 
 def _build(part: _Part) -> None:
-    """Lay the stretches of a segment, all but a matched one's, and tell its stroke."""
+    """Set the stroke of a segment, and its stretches unless it is matched."""
     step, begin, end = part.step, part.begin, part.end
     if isinstance(step, Dwell):
         part.lay([begin, end], [Constant(part.level)])
@@ -209,7 +211,7 @@ def _formula(part: _Part, step: Given) -> None:
 
 
 def _match(parts: Sequence[_Part], i: int, around: int | None) -> None:
-    """Lay a matched segment between its neighbours' states, or those given."""
+    """Lay a matched segment between the states of its neighbours, or the given ones."""
     part = parts[i]
     step = part.step
     assert isinstance(step, Move)
@@ -225,7 +227,7 @@ def _match(parts: Sequence[_Part], i: int, around: int | None) -> None:
 
 
 def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Array:
-    """v, a and j at the end of matched segment i on the side `way` (-1 its start), (3,)."""
+    """Velocity, acceleration and jerk (3,) at the start (`way` -1) or end (1) of the matched segment i."""
     stated = _matched_state(parts[i], way)
     if stated is not None:
         return stated
@@ -234,17 +236,17 @@ def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Arra
         if around is None:
             return np.zeros(3)
         sign, n = float(around), n % len(parts)
-    other = parts[n]
-    if other.built is not None and not _is_matched(other):
-        at, side = (other.end, -1) if way < 0 else (other.begin, 1)
-        return sign * other.built.derivatives(at, 3, side)[1:, 0]
-    state = _matched_state(other, -way)
+    neighbour = parts[n]
+    if neighbour.built is not None and not _is_matched(neighbour):
+        at, side = (neighbour.end, -1) if way < 0 else (neighbour.begin, 1)
+        return sign * neighbour.built.derivatives(at, 3, side)[1:, 0]
+    state = _matched_state(neighbour, -way)
     if state is None:
-        first = parts[i] if way > 0 else other
+        first = parts[i] if way > 0 else neighbour
         where = math.degrees(first.end)
         which = "the last entry" if first is parts[-1] else "the first one"
         problem = f"two matched segments meet at {where:.6g} degrees: give {which} `at_end: {{v: ..., a: ...}}`"
-        if other is parts[i]:
+        if neighbour is parts[i]:
             problem = "a matched segment that stands alone has no neighbour to match: "
             problem += "add one, such as a dwell" if around == 1 else "add one, or give it `at_end: {v: 0, a: 0}`"
         raise IntentError(problem, first.field, where)
@@ -256,7 +258,7 @@ def _is_matched(part: _Part) -> bool:
 
 
 def _matched_state(part: _Part, way: int) -> Array | None:
-    """The state that a matched segment has been given at its end on a side, if it is matched and has."""
+    """State (3,) given for the start (`way` -1) or end (1) of a matched segment; None without one."""
     if not (isinstance(part.step, Move) and isinstance(part.step.law, Matched)):
         return None
     state = part.step.law.at_start if way < 0 else part.step.law.at_end

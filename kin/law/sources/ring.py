@@ -1,4 +1,4 @@
-"""Motions from samples: what lies between the dwells is fitted stretch by stretch, and laid round the turn."""
+"""Motions from samples: rows between dwells are fitted stretch by stretch, and the stretches laid round the turn."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-SAME_ANGLE = 1e-9  # rad
-_FOLDED = 1e-13  # rad: by so much at most folding by a turn rounds
+SAME_ANGLE = 1e-9  # rad: angles that differ by less are equal
+_FOLDED = 1e-13  # rad: greatest rounding of folding by a turn
 
 
 class Samples(NamedTuple):
     """Angles (rad, rising), displacements, and the line of each in its file, each (n,).
 
-    `unit` is one unit of the file's displacements, in mm or rad: messages tell them as the file has them. By `slack`,
-    rad, an angle may be off that was rounded when it was written; `turned` of its own units were a degree.
+    `unit` is one unit of the file's displacements, in mm or rad, for messages. `slack`, rad, is the greatest rounding
+    error of an angle as written; `turned` is the number of the file's units of angle in a degree.
     """
 
     theta: Array
@@ -46,7 +46,7 @@ class Samples(NamedTuple):
 
 
 class Dwelling(NamedTuple):
-    """A dwell from row `first` to row `last` (counted on beyond the turn) at a level."""
+    """A dwell from row `first` to row `last`, counted on beyond the turn, at `level`, mm or rad."""
 
     first: int
     last: int
@@ -59,36 +59,39 @@ class FittingMethod(Protocol):
     def __call__(
         self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
     ) -> tuple[Array, Sequence[Stretch]]:
-        """Give the sites (m + 1,) and m functions."""
+        """Give the sites (m + 1,), rad, and m functions, one between each two sites.
+
+        The functions rest at the levels `ends`, or are periodic for None; `between` are the first and last angle.
+        """
 
 
 def laid(rows: Samples, dwells: Sequence[Dwelling], total: float, around: int | None, fit: FittingMethod) -> Motion:
-    """Fit the rows between the dwells and lay everything over [0, total].
+    """Fit the rows between the dwells, and lay all stretches over [0, total], rad.
 
-    Rows of a motion that repeats (`around` 1) lie within one turn, rows of the others reach from 0 to `total`. With
-    -1 the motion is fitted over two halves, the second one upside down; with None it rests at both ends.
+    Rows of a motion that repeats (`around` 1) lie within one turn, other rows reach from 0 to `total`. With `around` -1
+    the motion is fitted over two halves, the second one upside down; with None it rests at both ends. Both begin at 0.
     """
     if around == 1:
         return settled(*_round(rows, dwells, total, fit), total, total)
     if around is None:
         return _open(rows, dwells, fit)
     n = len(rows.theta) - 1
-    other = rows.s[0] + rows.s[-1] - rows.s[:-1]
-    both = Samples(
+    second_half = rows.s[0] + rows.s[-1] - rows.s[:-1]
+    halves = Samples(
         np.concatenate([rows.theta[:-1], rows.theta[:-1] + total]),
-        np.concatenate([rows.s[:-1], other]),
+        np.concatenate([rows.s[:-1], second_half]),
         np.concatenate([rows.lines[:-1], rows.lines[:-1]]),
         rows.unit,
     )
     again = [Dwelling(d.first + n, d.last + n, rows.s[0] + rows.s[-1] - d.level) for d in dwells]
-    knots, functions = _round(both, merged([*dwells, *again], 2 * n), 2 * total, fit)
+    knots, functions = _round(halves, merged([*dwells, *again], 2 * n), 2 * total, fit)
     half = settled(knots, functions, 2 * total, total)
     start = float(half.derivatives(0.0, 0)[0, 0])
     return Motion(half.raised(-start).motion, -1)
 
 
 def merged(dwells: Sequence[Dwelling], count: int) -> list[Dwelling]:
-    """Dwells that touch become one, across the end of the turn too."""
+    """Join dwells that touch, across the end of the turn of `count` rows too."""
     joined_dwells: list[Dwelling] = []
     for dwell in dwells:
         if joined_dwells and joined_dwells[-1].last == dwell.first:
@@ -104,7 +107,7 @@ def merged(dwells: Sequence[Dwelling], count: int) -> list[Dwelling]:
 def _round(
     rows: Samples, dwells: Sequence[Dwelling], turn: float, fit: FittingMethod
 ) -> tuple[list[float], list[Stretch]]:
-    """Stretches round a turn, from the first row or the first dwell on."""
+    """Knots and stretches round a turn, from the first row or the first dwell on."""
     n = len(rows.theta)
     if not dwells:
         sites, spans = fit(rows, None, (float(rows.theta[0]), float(rows.theta[0]) + turn))
@@ -147,7 +150,10 @@ def _open(rows: Samples, dwells: Sequence[Dwelling], fit: FittingMethod) -> Moti
 
 
 def settled(knots: Sequence[float], functions: Sequence[Stretch], turn: float, total: float) -> Motion:
-    """Fold stretches that cover one turn from anywhere into [0, turn], and keep [0, total]."""
+    """Fold stretches over one turn, from any angle on, into [0, turn], rad, and keep [0, total].
+
+    Stretch i lies between knots i and i + 1. The motion repeats.
+    """
     pieces: list[tuple[float, float, Stretch]] = []
     for function, begin, end in zip(functions, knots[:-1], knots[1:], strict=True):
         shift = turn * math.floor((begin + SAME_ANGLE) / turn)

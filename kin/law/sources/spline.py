@@ -1,4 +1,4 @@
-"""Quintic splines through points: C4, with rest at an end where the motion dwells beside it.
+"""Quintic splines through points: C4, at rest at ends beside dwells.
 
 B-splines by the recurrence of C. de Boor, A Practical Guide to Splines, chapters 9 to 11 and 14. A clamped spline
 whose three first coefficients are one number has that value and S' = S'' = 0 at its start, exactly.
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 DEGREE = 5
-_AT_REST = 3  # coefficients that have one level at an end where the spline rests
+_AT_REST = 3  # coefficients that are equal at an end where the spline rests
 
 
 @dataclass(frozen=True, eq=False)
 class Basis:
     """Quintic B-splines over sites a = x0 <= x1 <= ... <= xm = b: clamped at both ends, or of period b - a.
 
-    Clamped there are m + 5 coefficients, with a period m of them. At a site that stands k times derivative 6 - k jumps.
+    A clamped spline has m + 5 coefficients, a periodic one m. At a site that is given k times derivative 6 - k jumps.
     """
 
     sites: Array
@@ -48,16 +48,19 @@ class Basis:
         return m if self.periodic else m + DEGREE
 
     def rows(self, x: Array) -> tuple[Indices, Array]:
-        """Span of each x (n,) and the six B-splines that do not vanish there, (6, n)."""
+        """Index of the span of each x (n,), and values (6, n) of the six B-splines that do not vanish there."""
         span = np.clip(np.searchsorted(self.sites, x, side="right") - 1, 0, len(self.sites) - 2)
         return span, b_splines(self.knots, span + DEGREE, x, DEGREE)
 
     def columns(self, span: Indices) -> Indices:
-        """Coefficients that the six B-splines of spans (n,) take, (6, n)."""
+        """Indices (6, n) of the coefficients of the six B-splines over spans (n,)."""
         return (span + np.arange(DEGREE + 1)[:, None]) % self.size
 
     def spans(self, coefficients: Array) -> tuple[AffineStretch, ...]:
-        """The spline as polynomials, one between two places, about its start; the last clamped one about its end."""
+        """The spline of given coefficients as polynomials, one for each span of some width, in rising order.
+
+        Each is expanded about its start, the last one of a clamped spline about its end.
+        """
         c = coefficients[np.arange(len(self.sites) - 1 + DEGREE) % self.size]
         wide = np.flatnonzero(np.diff(self.sites) > 0.0)
         knots, index = self.knots, wide + DEGREE
@@ -73,14 +76,14 @@ class Basis:
             taylor[k] = (values * c[at]).sum(axis=0) * width**k / factorial
             if k < DEGREE:  # coefficients of the derivative, a spline one degree lower over the same knots
                 i = np.arange(k + 1, len(c))
-                apart = knots[i + low] - knots[i]  # none: a B-spline that vanishes everywhere
+                apart = knots[i + low] - knots[i]  # 0 for a B-spline that vanishes everywhere
                 c = np.concatenate([np.zeros(k + 1), low * (c[i] - c[i - 1]) / np.where(apart > 0.0, apart, np.inf)])
         rows = zip(taylor.T.tolist(), starts.tolist(), width.tolist(), strict=True)
         return tuple(AffineStretch(Power(tuple(row)), start=start, width=w) for row, start, w in rows)
 
 
 def b_splines(knots: Array, index: Indices, x: Array, degree: int) -> Array:
-    """B-splines of a degree that do not vanish between knots[index] and the next, at x (n,); (degree + 1, n)."""
+    """Values (degree + 1, n) at x (n,) of the B-splines that do not vanish from knots[index] to the next knot, (n,)."""
     values = np.ones((1, len(x)))
     for d in range(1, degree + 1):
         offset = np.arange(d)[:, None]
@@ -94,19 +97,20 @@ def b_splines(knots: Array, index: Indices, x: Array, degree: int) -> Array:
 
 @dataclass(frozen=True)
 class Ends:
-    """Levels at which a spline rests at its ends, S' = S'' = 0."""
+    """Levels, mm or rad, at which a spline rests at its ends, S' = S'' = 0."""
 
     start: float
     end: float
 
 
 def through(x: Array, s: Array, ends: Ends | None) -> tuple[AffineStretch, ...]:
-    """Spline with its sites at x (m + 1,) and the values s there; with a period s[-1] is s[0]."""
+    """Spline through values s (m + 1,) at sites x (m + 1,), as m polynomials; without `ends` periodic, s[-1] = s[0]."""
     basis = Basis(x, ends is None)
     inner = slice(1, -1) if ends else slice(0, -1)
     span, rows = basis.rows(x[inner])
     matrix = np.zeros((len(span), basis.size))
     np.add.at(matrix, (np.arange(len(span)), basis.columns(span)), rows)
+    # coefficients at an end at rest are its level; the others solve for the inner values
     fixed = np.full(basis.size, np.nan)
     if ends:
         fixed[:_AT_REST], fixed[-_AT_REST:] = ends.start, ends.end

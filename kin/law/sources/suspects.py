@@ -1,4 +1,4 @@
-"""Rows of a table that stand out, and noise beyond its digits, by the mean square of the jerk that they call for."""
+"""Rows of a table that stand out, and noise beyond its digits, by the mean square of the jerk that they cause."""
 
 from __future__ import annotations
 
@@ -15,29 +15,31 @@ if TYPE_CHECKING:
     from kin.law.sources.least_jerk import Least
     from kin.law.sources.tabled import Tabled
 
-_FALLS = 2.0  # times less the mean square is without a row that is remarked on
-_SURE, _SURE_OF_MANY, _MANY = 3.0, 1.1, 16  # and without one that is certain: in short strokes, and of so many rows
-_LEAST_ROWS, _SURE_OF_FEW = 5, 6.0  # that a stroke spans where a bad one shows, and how many times less then
-_OFF = 3.0  # readings at least, by which a certain row is off what the others suggest
-_ABOUT = 2  # rows to either side: about a row
-_CALMER = 10.0  # times less the mean square about a certain row is without it
-_SHARP = 0.5  # of the mean square that is left: where so much of it lies about a row, the law itself is sharp there
-_LIKELY = 0.08  # of it that falls at least where the other rows stay touched, of rows that are tried
-_MOST_TRIED, _PAIRED, _MOST_SOLVED = 6, 3, 3  # rows of the greatest multipliers, of those with a neighbour, and solved
+_FALLS = 2.0  # least factor by which the mean square falls without a row that is remarked on
+# Such factors for a certain row: in short strokes, and in strokes of the third number of rows or more.
+_SURE, _SURE_OF_MANY, _MANY = 3.0, 1.1, 16
+_LEAST_ROWS, _SURE_OF_FEW = 5, 6.0  # rows of the shortest stroke in which a bad one shows, and the factor there
+_OFF = 3.0  # readings: least distance of a certain row from the curve through the others
+_ABOUT = 2  # rows to either side that count as about a row
+_CALMER = 10.0  # least factor by which the mean square about a certain row falls without it
+_SHARP = 0.5  # of the mean square that is left: where more of it lies about a row, the law itself is sharp there
+_LIKELY = 0.08  # of the mean square: least fall, with the other rows still touched, of rows that are tried
+# Numbers of rows: those of the greatest multipliers, those paired with a neighbour, those solved for.
+_MOST_TRIED, _PAIRED, _MOST_SOLVED = 6, 3, 3
 _TOGETHER = 2  # rows from one of a pair to the other at most
-_LADDER = 4.0  # from one reading to the next
-_TENFOLD = 10.0
+_LADDER = 4.0  # factor from one reading to the next
+_TENFOLD = 10.0  # fall of the mean square that marks noise
 _ROUNDING = 1.0 + 1e-9
-_COARSEST = 0.02  # of the stroke
+_COARSEST = 0.02  # of the stroke: the greatest reading that is tried
 
 
 class Suspect(NamedTuple):
     """Rows that look wrong.
 
-    rows      their indices
+    rows      their indices in the table as laid out
     falls     factor by which the mean square jerk falls without them
     expected  values, mm or rad, of the curve through the other rows at their angles
-    certain   whether nothing but an error explains them
+    certain   whether only an error explains them
     """
 
     rows: tuple[int, ...]
@@ -47,9 +49,12 @@ class Suspect(NamedTuple):
 
 
 def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
-    """The motion within the rows' readings, and how many times as great readings let its mean square fall tenfold.
+    """The motion within the rows' readings, None for a constant, and the factor of readings that tells noise.
 
-    The mean square falls from reading to reading: between two where it is less than tenfold there is no such step.
+    With readings greater by that factor, the greatest such power of 4, the mean square of the jerk is a tenth or less
+    of that of the power before; None where there is none. The mean square falls from reading to reading: between two
+    where it falls less than tenfold there is no such step. Raises UnsolvedError where rounding stands in the way,
+    CrowdedError for a search that would take minutes.
     """
     most = _COARSEST * rows.stroke / float(rows.reading.max())
     count = max(0, math.floor(math.log(most, _LADDER))) if most > 1.0 else 0
@@ -63,7 +68,7 @@ def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
         return 0.0 if step is None else step.square
 
     def tenfold(low: int, high: int) -> int:
-        """The greatest reading up to `high` that is such a step; `low` for none above it."""
+        """The greatest power up to `high` that is such a step; `low` where none above it is."""
         if square(low, middle := (low + high) // 2) < _TENFOLD * square(high, high):
             return low
         if high - low == 1:
@@ -73,7 +78,7 @@ def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
         return step if step > middle else tenfold(low, middle)
 
     square(count, count)
-    square(count // 2, count)  # on the way, from which fewer steps lead down where rows scatter
+    square(count // 2, count)  # a start from which fewer steps lead down where rows scatter
     step = tenfold(0, count) if count else 0
     return steps[0], _LADDER**step if step else None
 
@@ -81,8 +86,8 @@ def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
 def suspect(rows: Tabled, plain: Least, *, noisy: bool) -> Suspect | None:
     """The row, or two neighbouring rows, without which the mean square jerk falls most; None where no row stands out.
 
-    To stand out, the fall must be to half or less, or certain. `noisy` says that the rows scatter more than they are
-    rounded: then a single row must show as great a fall as one in a short stroke.
+    The fall must be to half or less, or certain. `plain` is the motion within the rows' readings. `noisy` tells that
+    the rows scatter more than they are rounded: then any row must show as great a fall as one in a short stroke.
     """
     best = None
     for places in _likely(rows, plain):
@@ -97,13 +102,13 @@ def suspect(rows: Tabled, plain: Least, *, noisy: bool) -> Suspect | None:
         certain = falls >= sure and _certain(rows, plain, without, places)
         better = best is None or (certain, falls) > (best.certain, best.falls)
         named = list({int(rows.lines[place]): place for place in reversed(places) if rows.lines[place]}.values())
-        if named and (certain or falls >= _FALLS) and better:  # rows with which the rest of a turn is filled have none
+        if named and (certain or falls >= _FALLS) and better:  # rows that fill a turn have no line
             best = Suspect(tuple(named), falls, tuple(without.curve(rows.x[named]).tolist()), certain)
     return best
 
 
 def _sure(rows: Tabled, places: Sequence[int]) -> float:
-    """How many times less the mean square must be without rows that are certain: more in a stroke of few rows."""
+    """Least factor by which the mean square must fall without certain rows; greater in a stroke of few rows."""
     span = min(spanned(rows, place) for place in places)
     if span < _LEAST_ROWS:
         return math.inf
@@ -111,9 +116,9 @@ def _sure(rows: Tabled, places: Sequence[int]) -> float:
 
 
 def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int]) -> bool:
-    """Whether rows are off by more than their digits, and are no part of a law that is sharp there."""
-    which = list(places)
-    off = np.abs(rows.s[which] - without.curve(rows.x[which])) / rows.reading[which]
+    """Whether rows at `places` are off by more than their digits, and are no part of a law that is sharp there."""
+    index = list(places)
+    off = np.abs(rows.s[index] - without.curve(rows.x[index])) / rows.reading[index]
     if off.max() < _OFF:
         return False
     before, after = (max(_about(rows, nearest, place) for place in places) for nearest in (plain, without))
@@ -121,7 +126,7 @@ def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int]) 
 
 
 def _about(rows: Tabled, nearest: Least, place: int) -> float:
-    """Integral of the jerk's square about a row."""
+    """Integral of the jerk's square over two rows to either side of a row."""
     n = len(rows.x)
     ends = place - _ABOUT, place + _ABOUT
     if rows.period:
@@ -132,7 +137,7 @@ def _about(rows: Tabled, nearest: Least, place: int) -> float:
 
 
 def _without(rows: Tabled, plain: Least, places: Sequence[int], falls: float) -> Least | None:
-    """The motion without some rows, looked for as long as its mean square may be so many times less."""
+    """The motion without some rows; the search ends once its mean square cannot be `falls` times less."""
     bounds = rows.bounds()
     gone, keep = np.isin(bounds.row, places), ~np.isin(plain.row, places)
     bounds = bounds._replace(lo=np.where(gone, -np.inf, bounds.lo), hi=np.where(gone, np.inf, bounds.hi))
@@ -141,7 +146,7 @@ def _without(rows: Tabled, plain: Least, places: Sequence[int], falls: float) ->
 
 
 def _likely(rows: Tabled, plain: Least) -> list[tuple[int, ...]]:
-    """Places of single rows, then of pairs, that much of the mean square rests on, those of most first.
+    """Indices of single rows, then of pairs, by which much of the mean square is caused, the greatest first.
 
     A motion over two halves has each row twice.
     """
@@ -168,15 +173,15 @@ def _likely(rows: Tabled, plain: Least) -> list[tuple[int, ...]]:
 
 
 def _together(rows: Tabled, plain: Least, i: int, j: int) -> bool:
-    """Whether two rows that are touched have at most one other between them."""
+    """Whether the touched rows i and j have at most one other row between them."""
     n, apart = len(rows.x), abs(int(plain.row[i]) - int(plain.row[j]))
     return 0 < min(apart, n - apart if rows.period else n) <= _TOGETHER
 
 
 def spanned(rows: Tabled, place: int) -> int:
-    """Number of rows in the stroke, a monotone run of values, to which a row belongs, the row itself among them.
+    """Number of rows in the stroke, a monotone run of values, to which the row of index `place` belongs, with it.
 
-    Of a row between two strokes of opposite sense, a peak, it is the number of rows in the shorter of both.
+    For a row between two strokes of opposite sense, a peak, it is that of the shorter stroke.
     """
     n = len(rows.s)
     sides = []

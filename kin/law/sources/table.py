@@ -1,4 +1,4 @@
-"""A motion from a table: that of least mean square jerk whose distance from each row is at most the row's reading."""
+"""A motion from a table: the motion of least mean square jerk within the reading of each row."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ if TYPE_CHECKING:
 
 Suspects: TypeAlias = Literal["refuse", "keep"]
 
-_LEAST_LOADS = 2
-_GAP = 1.5  # of the widest step of a load
-_ZERO = 2.0  # readings, within which the least value of a motion is meant to be 0
-_SAME = 1e-6  # of a reading
-_FAR = 0.01  # of the stroke: a distance of rows above that is remarked on
-_PINS = 3  # times that a motion above its least level is brought down to it, where it was lowest
-_TOUCHES = 1e-9  # of the stroke: by so much it may stay above
-_CALM = 120  # knots of a smooth curve, from which the distances of rows that scatter are taken
-_MOST_ADVISED = 0.25  # of the stroke: a reading above that leaves little of a motion
-_ABOUT = 0.01  # of a reading: by so much the motion without dwells, which is but compared with, may be too low
-_QUARTER = 0.25  # of the angle: rows that cover less were hardly meant to
-_NEARLY = 1e-3  # of a last angle
-_UNITS_BY_END = {2.0 * math.pi: "radians", 1.0: "turns", 100.0: "percent"}  # last angles, and of what they are
+_LEAST_LOADS = 2  # rows of a load
+_GAP = 1.5  # of the widest step of a load: a wider one at its end is a gap
+_ZERO = 2.0  # readings: a least value of a motion within them is taken as 0
+_SAME = 1e-6  # of a reading: distances that differ by less are equal
+_FAR = 0.01  # of the stroke: a greater distance of rows is remarked on
+_PINS = 3  # rounds in which a motion above its least level is brought down to it at its lowest place
+_TOUCHES = 1e-9  # of the stroke: the height above the level that may stay
+_CALM = 120  # knots of the smooth curve from which the distances of scattered rows are taken
+_MOST_ADVISED = 0.25  # of the stroke: a greater reading leaves little of a motion
+_ABOUT = 0.01  # of a reading: by how much the motion without dwells, used for comparison alone, may be too low
+_QUARTER = 0.25  # of the angle: rows that cover less are likely to be in another unit
+_NEARLY = 1e-3  # of a last angle: accuracy of its comparison
+_UNITS_BY_END = {2.0 * math.pi: "radians", 1.0: "turns", 100.0: "percent"}  # last angles of a turn, and their units
 
 
 def from_table(
@@ -54,16 +54,17 @@ def from_table(
     suspects: Suspects = "refuse",
     field: str = "motion.table",
 ) -> Motion:
-    """The motion of least mean square jerk within `reading` of every row: a quintic spline, C4 but at dwells.
+    """Motion of least mean square jerk within `reading`, mm or rad, of each row: a quintic spline, C4 except at dwells.
 
-    With `around` 1 it repeats after `total` rad, and is nowhere below its least level; what the rows leave out of a
-    turn is filled as `rest` has it. With -1 it goes on upside down, and with None it rests at both ends; both begin at
-    0. Rows that are equal over 10 degrees are a dwell, exactly level on its inner part. How far the rows are from the
-    motion, and what is to be remarked on them, is in its `kept`.
+    With `around` 1 it repeats after `total` rad, and is nowhere below its least level; `rest` fills the part of a turn
+    that the rows leave out. With -1 it goes on upside down, and with None it rests at both ends; both begin at 0. Rows
+    that are equal over 10 degrees are a dwell, exactly level on its inner part. `kept` of the motion has its greatest
+    distance from the rows, and remarks on them.
 
-    Raises TableError, with the line, for rows that do not close within their readings, for doubled angles, and, where
-    `suspects` are refused, for a row, or two, without which the mean square is less than half. Raises IntentError for
-    many rows that scatter far beyond their readings.
+    Raises TableError, with the line, for rows that do not close within their readings, numbers that are not finite,
+    angles that do not rise or cover more than `total`, and, with `suspects` "refuse", for one or two rows that only an
+    error explains. Raises IntentError for a reading not above 0 or as great as the stroke, too few rows, rows that do
+    not fill the angle, a `rest` that does not suit, and rows that scatter far beyond their readings.
     """
     if not (math.isfinite(reading) and reading > 0):
         raise IntentError(f"the reading error must be above 0, not {reading:.6g}", f"{field}.reading")
@@ -107,7 +108,7 @@ def _motion(
     theta = np.mod(rows.theta, total) if around == 1 else rows.theta
     off = np.abs(motion.derivatives(theta, 0)[0] - rows.s)
     distance = float(off.max())
-    worst = int(np.argmax(off >= distance - _SAME * reading))  # the first of those that rounding alone tells apart
+    worst = int(np.argmax(off >= distance - _SAME * reading))  # the first of those that differ by rounding alone
     if distance > _FAR * layout.stroke:
         share = 100.0 * distance / layout.stroke
         text = f"the motion leaves its rows by up to {layout.tell(distance, 3)}, {share:.2g} % of the stroke"
@@ -116,11 +117,12 @@ def _motion(
 
 
 def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Motion:
-    """The motion with its dwells over [0, total], 0 where the rows have it."""
+    """The motion with its dwells over [0, total], rad; from 0 on unless it repeats."""
     level = _least_level(layout, plain) if around == 1 else None
     limit = None if level is None else LowerLimit(level, BELOW * layout.stroke)
     bounds = layout.bounds(1.0, level)
     equal = runs(layout, level)
+    # the lowest place of a motion above its least level becomes a bound at that level
     for _ in range(_PINS):
         near = plain
         if limit is not None and equal:
@@ -147,7 +149,7 @@ def _laid(layout: Tabled, plain: Least, total: float, around: int | None) -> Mot
 
 
 def _solved(space: FunctionSpace, bounds: Bounds, near: Least, limit: LowerLimit | None) -> Least:
-    """The motion within bounds that is no constant."""
+    """The motion within bounds; raises UnsolvedError where a constant keeps them."""
     solution = least(space, bounds, near.touch, limit)
     if solution is None:
         raise UnsolvedError
@@ -157,8 +159,8 @@ def _solved(space: FunctionSpace, bounds: Bounds, near: Least, limit: LowerLimit
 def _least_level(layout: Tabled, plain: Least) -> float | None:
     """Lower limit of a motion over a turn, which it attains, mm or rad; None where the table sets none.
 
-    A table that is lowest in a dwell has that level, or 0 where that is within its reading, as has any other table that
-    is 0 within it. So has one whose motion is lowest at about 0, between two rows.
+    It is 0 where the lowest row is 0 within its reading, else the level of a dwell that is lowest. It is 0 too where
+    the lowest row is positive, but the motion is lowest at about 0 between two rows.
     """
     lowest = int(np.argmin(layout.s))
     level, reading = float(layout.s[lowest]), float(layout.reading[lowest])
@@ -170,7 +172,7 @@ def _least_level(layout: Tabled, plain: Least) -> float | None:
 
 
 def _pieces(dwells: Sequence[Run], moving: Sequence[Moving], turn: float) -> tuple[list[float], list[Stretch]]:
-    """Knots and functions of dwells and of what is between them: round a turn, or from the first to the last one."""
+    """Knots and functions of dwells and of the motions between them: round a `turn`, or from first to last for 0."""
     knots: list[float] = []
     functions: list[Stretch] = []
     for i, run in enumerate(dwells):
@@ -185,9 +187,9 @@ def _pieces(dwells: Sequence[Run], moving: Sequence[Moving], turn: float) -> tup
 
 
 def _functions(curve: Curve, level: float) -> list[Stretch]:
-    """Polynomials of a curve's spans as stretches.
+    """Polynomials of a curve's pieces as stretches.
 
-    Before a rest at `level` the last one is expanded about its end, so that it is exactly at rest there.
+    The last one of a curve without a period is expanded about its end, so that it is exactly at rest there, at `level`.
     """
     rows, starts = curve.coefficients.T.tolist(), curve.starts.tolist()
     if not curve.period:
@@ -199,7 +201,7 @@ def _functions(curve: Curve, level: float) -> list[Stretch]:
 
 
 def _demand_stroke(layout: Tabled, reading: float, field: str) -> None:
-    """Refuse a reading within which nothing of a motion is left."""
+    """Raise IntentError for a reading that leaves no motion of rows that differ."""
     if layout.stroke > 1e-9 * float(np.abs(layout.s).max(initial=0.0)):
         small = f"the rows differ by {layout.tell(layout.stroke)} in all, less than their reading error leaves open"
         problem = f"{small}: {layout.tell(reading)} to either side"
@@ -207,7 +209,7 @@ def _demand_stroke(layout: Tabled, reading: float, field: str) -> None:
 
 
 def _scatter_advice(layout: Tabled, reading: float) -> str:
-    """Say that rows scatter, and with what reading a smooth curve through means of successive rows would do."""
+    """Words for rows that scatter, with the reading that a smooth curve through means of successive rows needs."""
     count = len(layout.x)
     groups = np.array_split(np.arange(count), min(_CALM, count))
     x, s = (np.array([column[group].mean() for group in groups]) for column in (layout.x, layout.s))
@@ -220,7 +222,7 @@ def _scatter_advice(layout: Tabled, reading: float) -> str:
 
 
 def _standing(layout: Tabled, standing: Suspect) -> str:
-    """Say which rows stand out, and what is expected there."""
+    """Words for the rows that stand out, and the values expected there."""
     (first, *more), (expected, *others) = standing.rows, standing.expected
     digits = 7
     sentence = f"the row stands out: it is {layout.tell(float(layout.s[first]), digits)}, about "
@@ -232,7 +234,7 @@ def _standing(layout: Tabled, standing: Suspect) -> str:
 
 
 def _angles(rows: Samples, total: float) -> list[TableRemark]:
-    """Where the angles are hardly degrees, or a part of the turn."""
+    """Remark on angles that are hardly degrees, or cover little of the turn; [] without one."""
     over = abs(float(rows.theta[-1] - rows.theta[0]))
     if over >= (1.0 - _NEARLY) * total:
         return []
@@ -248,9 +250,10 @@ def _angles(rows: Samples, total: float) -> list[TableRemark]:
 
 
 def straightened(rows: Samples, reading: float) -> Samples:
-    """The rows without those that lie within `reading` of straight lines between the others.
+    """The rows without those that lie within `reading`, in their unit, of straight lines between the rows that stay.
 
-    The cone of J. Sklansky and V. Gonzalez (Pattern Recognition 12, 1980): a line goes on while the rows passed let it.
+    The cone of J. Sklansky and V. Gonzalez (Pattern Recognition 12, 1980): a line goes on while all rows passed allow
+    it.
     """
     x, s = rows.theta.tolist(), rows.s.tolist()
     kept, low, high = [0], -math.inf, math.inf
@@ -263,15 +266,16 @@ def straightened(rows: Samples, reading: float) -> Samples:
             step, low, high = x[i] - x[i - 1], -math.inf, math.inf
             slope = (s[i] - s[i - 1]) / step
         low, high = max(low, slope - reading / step), min(high, slope + reading / step)
-    which = np.array([*kept, len(x) - 1] if len(x) > 1 else kept)
-    return rows._replace(theta=rows.theta[which], s=rows.s[which], lines=rows.lines[which])
+    index = np.array([*kept, len(x) - 1] if len(x) > 1 else kept)
+    return rows._replace(theta=rows.theta[index], s=rows.s[index], lines=rows.lines[index])
 
 
 def periodic(rows: Samples, total: float, field: str, unit: str) -> Samples:
-    """Rows of a load that repeats itself after `total` rad, without one that closes it; `unit` is for messages.
+    """Rows of a load that repeats after `total` rad, without a last row that closes it; `unit` is for messages.
 
-    TableError, with the line, for angles that do not rise, for a last row a turn later that is not the first one's
-    again, and where more is left out behind the last row than between any two, and the ends differ.
+    Raises TableError, with the line, for numbers that are not finite, angles that do not rise or cover more than
+    `total`, a last row a turn later that differs from the first, and ends that differ beside a gap wider than between
+    any two rows. Raises IntentError for fewer than two rows.
     """
     rows = demand_rows(rows, total, field, _LEAST_LOADS, "load")
     over, line = float(rows.theta[-1] - rows.theta[0]), int(rows.lines[-1])

@@ -18,20 +18,20 @@ if TYPE_CHECKING:
 
 Rest: TypeAlias = Literal["dwell", "cycle", "mirror"]
 
-_UNITS = {1.0: " mm", 25.4: " in", 0.0254: " thou", math.radians(1.0): " deg"}  # as tables have them
-_ADVISED = {0.0254: (25.4, " in")}  # units that recipes have not, and what they have in their place
-_KEPT = 1.0 - 1e-3  # of a reading: what a motion keeps within it, so that its zero may move by rounding
-_LEAST_ROWS = 4
-_GAP = 1.5  # of the widest step: what is more is no row's
-_LEAST_READING = 1e-6  # of a row's, of one that two rows bound
-_WHOLE = 1e-6  # of a cycle: so nearly must a whole number of them fill the turn
-_SAME = 1e-9  # of the stroke: rows that differ by less are one
-_MOST_FILLED = 400  # rows with which the rest of a turn is filled
-BELOW = 1e-10  # of the stroke: by so much a motion may be below its least level
+_UNITS = {1.0: " mm", 25.4: " in", 0.0254: " thou", math.radians(1.0): " deg"}  # units of tables
+_ADVISED = {0.0254: (25.4, " in")}  # units that recipes do not have, and those that stand for them
+_KEPT = 1.0 - 1e-3  # of a reading: the part that a motion may use, so that its zero may move by rounding
+_LEAST_ROWS = 4  # of a motion
+_GAP = 1.5  # of the widest step: a wider one at the end is a part of the turn without rows
+_LEAST_READING = 1e-6  # of a row's reading: the least one where two rows bound one angle
+_WHOLE = 1e-6  # of a cycle: accuracy with which a whole number of cycles must fill the turn
+_SAME = 1e-9  # of the stroke: rows that differ by less are equal
+_MOST_FILLED = 400  # rows that fill the rest of a turn
+BELOW = 1e-10  # of the stroke: the depth that a motion may have below its least level
 
 
 class TableError(IntentError):
-    """A table that is no motion; `line` is the line of the file at fault."""
+    """A table that gives no motion; `line` is the faulty line of the file, `problem` the message without it."""
 
     def __init__(self, message: str, field: str, line: int, at: float | None = None) -> None:
         super().__init__(f"line {line}: {message}", field, at)
@@ -40,10 +40,10 @@ class TableError(IntentError):
 
 @dataclass(frozen=True)
 class Tabled:
-    """Rows of a motion: rising angles, displacements, reading errors and lines (0: of no row), (n,) each.
+    """Rows of a motion: rising angles x, rad, displacements s and reading errors, mm or rad, and lines, (n,) each.
 
-    The motion repeats after `period`, or, where that is 0, rests at the ends of `space`. `fixed` are the places of rows
-    that are met exactly. One unit of the file is `unit` mm or rad.
+    A row with which a turn is filled has the line 0. The motion repeats after `period`, or, where that is 0, rests at
+    the ends of `space`. `fixed` are the indices of rows that are met exactly. One unit of the file is `unit` mm or rad.
     """
 
     x: Array
@@ -66,11 +66,11 @@ class Tabled:
         return float(np.ptp(levels))
 
     def tell(self, value: float, digits: int = 6) -> str:
-        """A displacement in the table's own unit, as a message has it."""
+        """Text of a displacement `value`, mm or rad, in the table's own unit, to a number of digits."""
         return in_unit(value, self.unit, digits)
 
     def bounds(self, share: float = 1.0, least_level: float | None = None) -> Bounds:
-        """Bounds of a motion, with readings that are so many times as great; none below its least level."""
+        """Bounds of a motion with readings `share` times as great; lower bounds are no less than `least_level`."""
         within = share * self.reading * _KEPT
         within[list(self.fixed)] = 0.0
         lo, hi = self.s - within, self.s + within
@@ -79,7 +79,7 @@ class Tabled:
         return Bounds(self.x, lo, hi, share * self.reading, np.arange(len(self.x)))
 
     def between(self, bounds: Bounds, space: FunctionSpace) -> Bounds:
-        """Bounds that lie strictly inside the space `space`, shifted by a period where the space runs over its end."""
+        """Those of `bounds` that lie strictly inside `space`, shifted by a period where the space runs over the end."""
         parts = []
         for turn in (-1, 0, 1) if self.period else (0,):
             x = bounds.x + turn * self.period
@@ -93,23 +93,24 @@ class Tabled:
 
 
 def in_unit(value: float, unit: float, digits: int = 6) -> str:
-    """Text of a displacement in a unit of so many mm or rad, with the unit's name."""
+    """Text of a displacement `value`, mm or rad, in a unit of `unit` mm or rad, with the unit's name if it has one."""
     return f"{value / unit:.{digits}g}{_UNITS.get(unit, '')}"
 
 
 def advised(reading: float, unit: float) -> str:
-    """A reading error of two digits, not below this one, in a unit that a recipe may have."""
+    """Text of a reading error of two digits, not below `reading`, mm or rad, in a unit that a recipe may have."""
     unit, word = _ADVISED.get(unit, (unit, _UNITS.get(unit, "")))
     digit = 10.0 ** (math.floor(math.log10(reading / unit)) - 1)
     return f"{math.ceil(reading / unit / digit - 1e-9) * digit:.6g}{word}"
 
 
 def tabled(rows: Samples, reading: float, total: float, around: int | None, *, rest: Rest | None, field: str) -> Tabled:
-    """Lay rows out over [0, total], or the turn; TableError, with the line, for rows that can be no motion.
+    """Lay rows with a reading error, mm or rad, out over [0, total], rad, or round the turn.
 
-    With `around` -1 the motion goes on upside down, over twice the angle; with None it rests at both ends. What rows
-    leave out of a turn is filled as `rest` has it, and is a dwell where it is None and the ends agree. Raises
-    IntentError for a `rest` of a motion that does not repeat, for too few rows and for an angle they do not fill.
+    With `around` -1 the motion goes on upside down, over twice the angle; with None it rests at both ends. `rest` fills
+    the part of a turn without rows; it is a dwell where `rest` is None and the ends agree. Raises TableError, with the
+    line, for numbers that are not finite, angles that do not rise or cover more than `total`, and ends that do not
+    agree. Raises IntentError for a `rest` that does not suit, for too few rows and for an angle that they do not fill.
     """
     rows = demand_rows(rows, total, field)
     within = reading + rows.slack * _slopes(rows)
@@ -138,14 +139,17 @@ def tabled(rows: Samples, reading: float, total: float, around: int | None, *, r
 
 
 def _slopes(rows: Samples) -> Array:
-    """Greatest slope beside each row."""
+    """Greatest absolute slope (n,) beside each row."""
     slope = np.abs(np.diff(rows.s) / np.diff(rows.theta))
     greatest: Array = np.maximum(np.append(slope, slope[-1]), np.append(slope[0], slope))
     return greatest
 
 
 def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: str) -> Tabled:
-    """Rows of a motion that repeats, without one that closes it, and with what they leave out."""
+    """Rows of a motion that repeats, without a last row that closes it, and with rows in the rest of the turn.
+
+    `within` (n,) are the reading errors.
+    """
     over, line = float(rows.theta[-1] - rows.theta[0]), int(rows.lines[-1])
     apart, allowed = abs(float(rows.s[-1] - rows.s[0])), float(within[0] + within[-1])
     space = FunctionSpace(float(rows.theta[0]), float(rows.theta[0]) + total)
@@ -156,7 +160,7 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
             remedy = f"give this row the displacement of the first one, or reading: {advised(0.5 * apart, rows.unit)}"
             raise TableError(f"{problem}; {remedy}", field, line)
         s, readings = rows.s[:-1].copy(), within[:-1].copy()
-        if apart:  # one angle, that both rows bound
+        if apart:  # both rows bound the motion at one angle
             low, high = (rows.s + sign * within for sign in (-1.0, 1.0))
             least, most = max(low[0], low[-1]), min(high[0], high[-1])
             s[0], readings[0] = 0.5 * (least + most), max(0.5 * (most - least), _LEAST_READING * within[0])
@@ -185,7 +189,10 @@ def _demand_no_rest(rest: Rest | None, field: str) -> None:
 
 
 def _rest(rows: Samples, total: float, rest: Rest, field: str) -> tuple[Array, Array, Indices]:
-    """Angles and displacements with which the rest of a turn is filled, and the rows whose reading each has."""
+    """Angles and displacements (m,) that fill the rest of a turn, and the indices (m,) of rows with their readings.
+
+    Raises IntentError for a `rest` that does not fill the turn.
+    """
     first, last = float(rows.theta[0]), float(rows.theta[-1])
     over, n = last - first, len(rows.s)
     left = total - over
@@ -205,7 +212,7 @@ def _rest(rows: Samples, total: float, rest: Rest, field: str) -> tuple[Array, A
 
 
 def _cycle(rows: Samples, total: float, field: str) -> tuple[Array, Array, Indices]:
-    """The rows again and again; the last one may be the first one of the next cycle, or a step before it."""
+    """The rows repeated; the last one may be the first of the next cycle, or a step before it."""
     over = float(rows.theta[-1] - rows.theta[0])
     lengths = over, over + float(np.median(np.diff(rows.theta)))
     whole = [abs(total / length - round(total / length)) <= _WHOLE for length in lengths]
@@ -224,10 +231,11 @@ def _cycle(rows: Samples, total: float, field: str) -> tuple[Array, Array, Indic
 def demand_rows(
     rows: Samples, total: float, field: str, least: int = _LEAST_ROWS, quantity: str = "displacement"
 ) -> Samples:
-    """Rows, rising, without such as are written twice.
+    """Rows in rising order of angles, falling ones reversed, without rows written twice.
 
-    Raises TableError, with the line, for numbers that are not finite, other angles that do not rise, and more than
-    `total`, rad; IntentError for fewer than `least` rows.
+    Raises TableError, with the line, for numbers that are not finite, angles that neither rise nor fall, and angles
+    over more than `total`, rad; IntentError for fewer than `least` rows. `quantity` is the second column's name in
+    messages.
     """
     for column, what in ((rows.theta, "the angle"), (rows.s, f"the {quantity}")):
         bad = np.flatnonzero(~np.isfinite(column))

@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from kin.law.formula.formula import Formula
 
 
-_LOOKS = 65
+_LOOKS = 65  # places of a piece at which the formula must have a value
 
 
 def from_formula(
     formula: Formula, total: float = 2 * math.pi, *, scale: float = 1.0, around: int | None = 1, field: str = "formula"
 ) -> Motion:
-    """Make S = scale times a formula in t (radians) over [0, total].
+    """Make S = scale times a formula in t, rad, over [0, total]; `around` is 1 if the motion repeats (`Motion`).
 
-    Raises IntentError, with the angle, where the formula has no value or S, S', S'' no bound. How it closes is said
-    by `Motion.joints`.
+    Raises IntentError, at `field` and with the angle, where the formula has no value or S, S', S'' no bound. Jumps over
+    the end are no errors here: `Motion.joints` has them.
     """
     knots, functions = pieces_of(formula, 0.0, total, field, formula.variables[0])
     return joined(knots, [moved(f, scale=scale) for f in functions] if scale != 1 else functions, around)
@@ -35,7 +35,11 @@ def from_formula(
 def pieces_of(
     formula: Formula, begin: float, end: float, field: str, variable: str
 ) -> tuple[list[float], list[Stretch]]:
-    """Knots and stretches of a formula without its switches, each finite with two derivatives, or IntentError."""
+    """Knots from `begin` to `end`, and stretches of a formula between them, without switches.
+
+    Raises IntentError, at `field`, where the formula or one of its first two derivatives does not exist or has no
+    bound; `variable` is for messages, an angle in rad if it is t.
+    """
 
     def place(x: float) -> str:
         return f"{math.degrees(x):.6g} degrees" if variable == "t" else f"{variable} = {x:.6g}"
@@ -59,6 +63,6 @@ def pieces_of(
 
 
 def _plain(part: Expression, angle: float) -> Stretch:
-    """The expression, or the constant that it is if it does not depend on its variable from `angle` on."""
+    """The expression, or a constant if it does not depend on its variable from `angle` on."""
     value = part.constant_value(angle)
     return part if value is None else Constant(value)
