@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Give the command its options."""
+    """Add the arguments of `camgeo budget` to its parser."""
     parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file, with a section `budget`")
     text = "drawing or solid of the cam, or one of each disc: parts are simulated on its contour"
     parser.add_argument("files", nargs="*", type=name_of, metavar="FILE", help=text)
@@ -21,7 +21,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Work out one budget: 0 kept, 1 not kept or a wrong cam, 2 a wrong recipe, 3 the surroundings."""
+    """Work out one budget and print it; the exit status: 0 kept, 1 not kept, 3 where the recipe cannot be read.
+
+    Raises RecipeErrors for a wrong recipe, CallError for files that do not hold the cam's contours.
+    """
     from camgeo.capabilities.budget.library import budget
     from camgeo.capabilities.budget.text import table
     from camgeo.recipe.loading import load

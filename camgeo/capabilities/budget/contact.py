@@ -3,7 +3,8 @@
 No influence coefficient is used here. The metal stays in its own axes, and its displacements are applied inversely to
 the guide: the touch moves on a displaced line, or about a displaced pivot, until it meets the metal. The metal is
 displaced against the bore, then turned with the cam on the shaft, then displaced with the shaft. All arrays are (parts,
-angles), or broadcast to that.
+angles), or broadcast to that. Points, displacements and directions are complex numbers, x + iy; lengths are mm, angles
+rad.
 """
 
 from __future__ import annotations
@@ -24,38 +25,39 @@ if TYPE_CHECKING:
 
 
 class LostError(CamgeoError, ValueError):
-    """Made metal has no contact near the intended place, as where it is undercut."""
+    """A made part that cannot be simulated: no contact or closed loop near the intended place, or no usable contour."""
 
 
 class Metal(Protocol):
-    """Metal of the cam that a follower's touch meets, at each shaft angle, in the cam's axes, mm.
+    """Metal of the cam that a follower's touch meets, at each shaft angle, in the cam's axes.
 
-    All results are (parts, angles). The methods raise LostError where there is no contact near the intended place.
+    All results are (parts, angles). `radius` is that of a round touch. The methods raise LostError where there is no
+    contact near the intended place.
     """
 
     def reach(self, normal: Complexes) -> Array:
-        """Support function: greatest x.normal of the metal, mm, at which a flat face of that unit normal touches."""
+        """Distance from the shaft, mm, along its unit `normal`, of a flat face that touches: the support function."""
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """Distance, mm, from `middle` along the unit direction `way` to the centre of a round touch on the metal."""
+        """Distance from `middle`, mm, along the unit direction `way` to the centre of a round touch on the metal."""
 
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
-        """Unit direction from a pivot to the centre of a round touch on the metal, at the end of an arm of a length."""
+        """Unit direction from a pivot to the centre of a round touch on the metal, at the end of an arm of `length`."""
 
     def face_normal(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """Unit normal of a flat face on the metal, nearer the shaft than its parallel through a pivot by `nearer`."""
+        """Outward unit normal of a flat face `nearer` mm nearer the shaft than its parallel through a pivot."""
 
 
 @dataclass(frozen=True, eq=False)
 class SizeErrors:
-    """Errors of the sizes at one contact, made less meant: mm, rad, and complex displacements in mm.
+    """Errors of the sizes at one contact, made less intended, each (parts, 1), or (parts, n) at n shaft angles.
 
-    Each is (parts, 1), or (parts, n) at n shaft angles.
     `turned` is the turn of the metal on the shaft, `bore` the displacement of the metal in the cam's axes. `shaft` and
     `pivot` are displacements in the ground, x along the travel or from the shaft to the pivot. `grown` is the growth of
-    touch and metal along the normal. `offset` and `guide` are the offset of the stem's line and its tilt about the
-    middle of the guide. `face` is the tilt of a face about the stem's axis or the pivot, and of an arm; `length` the
-    error of the arm's length; `datum` the error of the place from which the contact's own position counts.
+    touch and metal along the normal. `offset` is the error of the offset of the stem's line, `guide` its tilt about the
+    middle of the guide. `face` is the tilt of a face about its crossing with the stem's axis or about the pivot, and of
+    an arm about the pivot. `length` is the error of the arm's length, `datum` that of the position from which the
+    contact's own counts.
     """
 
     turned: Array
@@ -72,10 +74,11 @@ class SizeErrors:
 
 @dataclass(frozen=True, eq=False)
 class ContactPlace:
-    """Contact at shaft angles (n,), rad: its record, the metal, and its intended position `own` (n,), mm or rad.
+    """A contact on its metal at shaft angles (n,), and its intended position `own` (n,) on its guide, mm or rad.
 
-    `first` is the x axis of the follower's frame, `eccentric` the eccentricity of its stem, mm, and `middle` the
-    distance of the guide's middle from the foot of the perpendicular from the shaft, mm.
+    `first` (n,) is the x axis of the follower's frame in the cam's axes, a unit direction. `eccentric` is the
+    eccentricity of a stem, `middle` the distance of its guide's middle from the foot of the perpendicular from the
+    shaft on the line of travel.
     """
 
     contact: Contact[Guide, Touch]
@@ -88,7 +91,7 @@ class ContactPlace:
 
 
 def positions(place: ContactPlace, off: SizeErrors) -> Array:
-    """Positions of the follower by one contact, mm or rad, (parts, angles).
+    """Positions of the follower by one contact, from its own zero, mm or rad, (parts, angles).
 
     Raises LostError where the made metal has no contact near the intended place.
     """
@@ -97,7 +100,7 @@ def positions(place: ContactPlace, off: SizeErrors) -> Array:
     back = np.exp(-1j * off.turned)
 
     def within(point: Complexes) -> Complexes:
-        """A point of the ground in the axes of the metal."""
+        """A point of the ground in the axes of the displaced metal."""
         inside: Complexes = back * (point - off.shaft * place.first) - off.bore
         return inside
 
@@ -106,6 +109,7 @@ def positions(place: ContactPlace, off: SizeErrors) -> Array:
         own = _own_on_arm(place, contact.guide, off, pivot, axis * back)
     else:
         middle = place.first * (place.middle + 1j * (place.eccentric + off.offset))
+        # from the foot of the perpendicular to the intended middle, along this contact's line
         ahead = (np.conj(axis) * place.first * (place.middle + 1j * place.eccentric)).real
         own = ahead + _own_on_stem(place, off, within(middle), axis * back * np.exp(1j * off.guide))
     return contact.position(own - off.datum)
@@ -131,5 +135,6 @@ def _own_on_arm(place: ContactPlace, guide: Oscillating, off: SizeErrors, pivot:
     else:
         arm = place.metal.arm(pivot, guide.arm + off.length, touch.radius + off.grown)
         turn = hand * np.angle(-arm * np.conj(axis))
+    # the turn nearest the intended position, which an angle fixes but for whole turns
     own: Array = place.own + np.remainder(turn - hand * off.face - place.own + math.pi, TURN) - math.pi
     return own

@@ -9,14 +9,15 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
 PROFILE, BORE, ANGLE, GUIDE = "profile", "bore", "angle", "guide"
-CONJUGATE, LINKAGE = "two discs", "linkage"
+CONJUGATE, LINKAGE = "two discs", "linkage"  # traits
 
 
 class Dimension(NamedTuple):
-    """A dimension: words for what it is, and whether it is an angle.
+    """A dimension that a budget may give a tolerance.
 
-    `applies` tells from the traits of a cam whether it has the dimension. `radius` is whether the tolerance is the
-    radius of a circle within which something may stand, in any direction.
+    `about` describes it in words. `applies` takes the traits of a cam and returns whether the cam has the dimension.
+    `angle` is whether it is an angle, else it is a length. `radius` is whether its tolerance is the radius of a circle
+    within which a point may stand, else it is plus and minus.
     """
 
     about: str
@@ -26,7 +27,11 @@ class Dimension(NamedTuple):
 
 
 def traits(offers: AbstractSet[str], discs: int, linkage: str) -> frozenset[str]:
-    """Traits that select the dimensions of a budget: what the cam offers, two discs, or the kind of its linkage."""
+    """Traits that select the dimensions of a budget.
+
+    For a linkage of a kind `linkage` they are LINKAGE and that kind. Where that is empty, they are the words `offers`
+    of the cam's arrangement, such as roller, stem or arm, and CONJUGATE for more than one disc.
+    """
     if linkage:
         return frozenset({LINKAGE, linkage})
     return frozenset(offers) | ({CONJUGATE} if discs > 1 else frozenset())
@@ -97,7 +102,7 @@ DIMENSIONS = {
 
 
 def dimension_names(traits: AbstractSet[str]) -> tuple[str, ...]:
-    """Words of the dimensions of a cam, in order."""
+    """Words of the dimensions that a cam of these traits has, in the order of `DIMENSIONS`."""
     return tuple(
         name
         for name, dimension in DIMENSIONS.items()

@@ -1,4 +1,7 @@
-"""The exact contour under a touch: one equation in the contour's parameter, solved by Newton's method for all parts."""
+"""The exact contour under a touch: one equation in the contour's parameter, solved by Newton's method for all parts.
+
+Points, normals and directions are complex numbers, x + iy, in the cam's axes, mm.
+"""
 
 from __future__ import annotations
 
@@ -16,19 +19,21 @@ if TYPE_CHECKING:
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Complexes
 
-    # of point, tangent, speed and turn: the residual and its derivative by the parameter
+    # (point, unit tangent, speed, turn) at contour parameters -> (residual, its derivative by the parameter); speed is
+    # mm along the tangent, turn rad of the tangent, per unit of the parameter
     Residual = Callable[[Complexes, Complexes, Array, Array], tuple[Array, Array]]
 
 SETTLED = 1e-11  # mm, or rad: residual at which a contact is found
 MOST_STEPS = 50  # of Newton's method; five are usual
-LONGEST = 0.1  # rad of a parameter by which it steps at most
+LONGEST = 0.1  # greatest step of the parameter, rad, so that the search stays near the intended contact
 
 
 @dataclass(frozen=True, eq=False)
 class ExactMetal:
-    """Metal bounded by the exact contour, on its `side`, at n shaft angles; `parameter` (n,) are the intended contacts.
+    """Metal bounded by an exact contour `curve`, under a touch at n shaft angles.
 
-    A contact is sought by Newton's method from its intended parameter alone.
+    `side` is 1 for metal inside the contour, -1 outside. `parameter` (n,) has the contour's parameters of the intended
+    contacts, from which Newton's method starts.
     """
 
     curve: Curve
@@ -36,7 +41,7 @@ class ExactMetal:
     parameter: Array
 
     def reach(self, normal: Complexes) -> Array:
-        """Support function of the metal along unit normals, mm, (parts, angles).
+        """Distance from the shaft to a flat face on the metal along its unit `normal`, mm, (parts, angles).
 
         Raises LostError where no contact is found near the intended one.
         """
@@ -49,7 +54,7 @@ class ExactMetal:
         return reach
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """Distance along the unit direction `way` from `middle` to the centre of a round touch, mm, (parts, angles).
+        """Distance from `middle` along the unit direction `way` to the centre of a round touch, mm, (parts, angles).
 
         Raises LostError where no contact is found near the intended one.
         """
@@ -65,10 +70,12 @@ class ExactMetal:
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
         """Unit direction from a pivot to the centre of a round touch on the metal, (parts, angles).
 
-        Raises LostError where no contact is found near the intended one.
+        `length` is that of the arm, `radius` that of the touch, mm. Raises LostError where no contact is found near the
+        intended one.
         """
 
         def residual(point: Complexes, tangent: Complexes, speed: Array, turn: Array) -> tuple[Array, Array]:
+            # (|arm|^2 - length^2)/2 is 0 on the arm's circle; over the length it is in mm
             arm = self._centre(point, tangent, radius) - pivot
             slope = (speed + self.side * radius * turn) * (np.conj(arm) * tangent).real
             return 0.5 * (np.abs(arm) ** 2 - length**2) / length, slope / length
@@ -78,13 +85,14 @@ class ExactMetal:
         return arm / np.abs(arm)
 
     def face_normal(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """Unit normal of a flat face on an arm that touches the metal, (parts, angles).
+        """Outward unit normal of a flat face on an arm that touches the metal, (parts, angles).
 
         The face is `nearer` mm nearer the shaft than its parallel through the pivot. Raises LostError where no contact
         is found near the intended one.
         """
 
         def residual(point: Complexes, tangent: Complexes, _: Array, turn: Array) -> tuple[Array, Array]:
+            # along the normal, the point of contact is `nearer` mm nearer the shaft than the pivot
             arm = point - pivot
             return (np.conj(-1j * tangent) * arm).real + nearer, turn * (np.conj(tangent) * arm).real
 
@@ -92,11 +100,12 @@ class ExactMetal:
         return -1j * tangent
 
     def _centre(self, point: Complexes, tangent: Complexes, radius: Array) -> Complexes:
+        """Centre of a round touch at a point of the contour."""
         centre: Complexes = point - 1j * self.side * radius * tangent
         return centre
 
     def _touched(self, shape: tuple[int, ...], residual: Residual) -> tuple[Complexes, Complexes]:
-        """Point, mm, and unit tangent of the contour where a residual is 0, complex, (parts, angles) each.
+        """Point, mm, and unit tangent of the contour where a residual is 0, each of a `shape` (parts, angles).
 
         Raises LostError where no contact is found near the intended one.
         """

@@ -1,8 +1,9 @@
 """Contact of a touch with the contour of a file, by points so close together that the curve between them adds nothing.
 
-All corners are among the points, and each point bounds the position of the touch by itself. A touch that comes from
-outside is stopped by the point that holds it farthest out; in the opening of a ring, where it comes from within, by the
-point that holds it nearest the shaft. A knife edge would fall between points: the chords hold it.
+Points, normals and directions are complex numbers, x + iy, in the cam's axes, mm. All corners are among the points, and
+each point bounds the position of the touch by itself. A touch that comes from outside is stopped by the point that
+holds it farthest out; in the opening of a ring, where it comes from within, by the point that holds it nearest the
+shaft. A knife edge would fall between points: the chords hold it.
 """
 
 from __future__ import annotations
@@ -25,20 +26,22 @@ if TYPE_CHECKING:
     from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.numeric.arrays import Array, Complexes, Indices
 
-ACCURACY = 1e-6  # mm: what a touch would sink between two points
+ACCURACY = 1e-6  # mm: depth to which a touch may sink into the metal between two points
 FEWEST = 8  # points on either side of the place of contact that are looked at, at least
-MOST_POINTS = 2_000_000  # of a contour
+MOST_POINTS = 2_000_000  # of a contour, which bounds memory
 
 
 def points_of(contour: Contour, radius: float) -> Complexes:
-    """Points (k,) along a contour, complex, mm, with every corner, for a touch of a radius, infinite for a flat face.
+    """Points (k,) along a contour in order, mm, with every corner.
 
-    Raises LostError where that takes more than two million points.
+    `radius` is that of the touch, mm, infinite for a flat face; for a knife edge it is that of its path. Raises
+    LostError where more than two million points are needed.
     """
     arcs, _ = contour.as_arcs(0.1 * ACCURACY)
+    # sag between points d apart: d^2/8 times the sum of the curvatures of touch and contour
     apart = np.sqrt(8.0 * ACCURACY / (1.0 / radius + np.abs(arcs.curvature) + 1e-12))
     parts = np.ceil(arcs.length / apart)
-    # a line bounds nothing between its ends but by a round touch
+    # between the ends of a straight line no point holds a flat face farther out
     parts = (
         np.maximum(parts, 1.0) if np.isfinite(radius) else np.where(arcs.curvature == 0.0, 1.0, np.maximum(parts, 1.0))
     )
@@ -52,9 +55,11 @@ def points_of(contour: Contour, radius: float) -> Complexes:
 def read_metal(
     contact: Contact[Guide, Touch], side: Side, contour: Contour, intended: Complexes, wander: float
 ) -> ReadMetal:
-    """The metal of a contour under a contact, as points: for a knife edge EdgeMetal, else ReadMetal.
+    """The metal of a contour under a contact, as points: EdgeMetal for a knife edge, else ReadMetal.
 
-    Raises LostError where the contour takes more than two million points.
+    `side` is 1 for metal inside the contour, -1 outside. `intended` (n,) are the intended points of contact, mm, and
+    `wander` is how far from them contacts are looked for at first, mm. Raises LostError where the contour takes more
+    than two million points.
     """
     guide, touch = contact.guide, contact.touch
     hand = guide.side if isinstance(guide, Oscillating) else 1
@@ -68,10 +73,11 @@ def read_metal(
 
 @dataclass(frozen=True, eq=False)
 class ReadMetal:
-    """Points (k,) of a contour in order, at shaft angles (n,), at which it is meant to be touched near `intended` (n,).
+    """Metal of a file as points (k,) along its contour, under a touch that should bear near `intended` (n,).
 
-    The metal lies on its `side`; `hand` is the side of an arm. `wander` is how far along the contour a contact is
-    looked for at first, mm: farther where it is found at an end of that.
+    `side` is 1 for metal inside the contour, -1 outside; `hand` is the side of an arm's guide, 1 for a stem. `wander`
+    is the distance from the intended point, mm, within which a contact is looked for at first; the search is widened
+    while the point that holds the touch is the first or the last of those looked at.
     """
 
     points: Complexes
@@ -81,7 +87,7 @@ class ReadMetal:
     wander: float
 
     def reach(self, normal: Complexes) -> Array:
-        """Support function of the metal along unit normals, mm, (parts, angles), by the points near the contact."""
+        """Distance from the shaft to a flat face on the metal along its unit `normal`, mm, (parts, angles)."""
 
         def bound(within: Indices, n: Complexes) -> Array:
             bound: Array = (np.conj(n) * self.points[within]).real
@@ -90,7 +96,7 @@ class ReadMetal:
         return self._held(bound, (normal,))
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """Distance along the unit direction `way` from `middle` to the centre of a round touch, mm, (parts, angles).
+        """Distance from `middle` along the unit direction `way` to the centre of a round touch, mm, (parts, angles).
 
         Raises LostError where the touch meets no point near the contact.
         """
@@ -106,10 +112,12 @@ class ReadMetal:
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
         """Unit direction from a pivot to the centre of a round touch on the metal, (parts, angles).
 
-        Raises LostError where the touch meets no point near the contact.
+        `length` is that of the arm, `radius` that of the touch, mm. Raises LostError where the touch meets no point
+        near the contact.
         """
 
         def bound(within: Indices, a: Complexes, arm: Array, r: Array, start: Complexes) -> Array:
+            # cosine rule in the triangle of pivot, point and centre of the touch
             distance = np.abs(self.points[within] - a)
             with np.errstate(invalid="ignore"):
                 opening = np.arccos((distance**2 + arm**2 - r**2) / (2.0 * distance * arm))
@@ -119,33 +127,38 @@ class ReadMetal:
         return self._swung(bound, pivot, length, radius)
 
     def face_normal(self, pivot: Complexes, nearer: Array) -> Complexes:
-        """Unit normal of a flat face on an arm that touches the metal, (parts, angles).
+        """Outward unit normal of a flat face on an arm that touches the metal, (parts, angles).
 
         The face is `nearer` mm nearer the shaft than its parallel through the pivot. Raises LostError where no point
         near the contact can touch it.
         """
 
         def bound(within: Indices, axis: Complexes, near: Array, start: Complexes) -> Array:
+            # angle at the pivot between a point and the normal of the face through it
             opening = np.arccos(-near / np.abs(self.points[within] - axis))
             return self._turn(self.points[within], axis, start) + opening
 
         return self._swung(bound, pivot, nearer)
 
     def _turn(self, points: Complexes, pivot: Complexes, start: Complexes) -> Array:
-        """Angles by which points lie beyond the direction `start` from a pivot, in the sense of the arm."""
+        """Angles, rad, from the direction `start` to the points, seen from a pivot, above 0 away from the shaft."""
         turn: Array = self.hand * np.angle((points - pivot) * np.conj(start))
         return turn
 
     def _swung(self, bound: Callable[..., Array], pivot: Complexes, *sizes: Array) -> Complexes:
-        """Unit direction from a pivot to the touch, (parts, angles): the intended one, turned until points stop it."""
+        """Unit direction (parts, angles) that a swinging touch has on the metal.
+
+        It is the direction from a pivot to the intended contact, turned by the greatest angle that a point bounds.
+        """
         start = (self.intended - pivot) / np.abs(self.intended - pivot)
         swung: Complexes = start * np.exp(1j * self.hand * self._held(bound, (pivot, *sizes, start)))
         return swung
 
     def _held(self, bound: Callable[..., Array], rows: Sequence[NDArray[Any]]) -> Array:
-        """Position (parts, angles) at which the follower touches: the greatest bound by a point, in a ring the least.
+        """Position (parts, angles) at which the touch bears: the greatest bound by a point, or the least in a ring.
 
-        `bound` gives the bounds (parts, k) by the points of k indices, for parts whose rows are (parts, 1).
+        `bound` takes indices of k points and the `rows` at one angle, (parts, 1) each. It returns the position at which
+        each point holds the touch, (parts, k), nan where the point cannot touch it.
         """
         shape = np.broadcast_shapes(*(row.shape for row in rows), self.intended.shape)
         whole = [np.broadcast_to(row, shape) for row in rows]
@@ -155,6 +168,7 @@ class ReadMetal:
         return held
 
     def _nearby(self, bound: Callable[..., Array], rows: Sequence[NDArray[Any]], intended: complex) -> Array:
+        """Position (parts,) at which the touch bears at one angle, from `rows` (parts, 1); raises LostError."""
         count, distances = len(self.points), np.abs(self.points - intended)
         place = int(distances.argmin())
         few = self._few(place, self.wander + 2.0 * float(distances[place]))
@@ -172,7 +186,10 @@ class ReadMetal:
         return held
 
     def _few(self, place: int, wander: float) -> int:
-        """Number of points that cover `wander` mm of the contour on either side of `place`, at the closer spacing."""
+        """Number of points on either side of the index `place` whose last ones are both `wander` mm off or farther.
+
+        It is FEWEST times a power of 2; where that reaches all points, these are all looked at.
+        """
         count = len(self.points)
         few = FEWEST
         while 2 * few + 1 < count:
@@ -187,12 +204,12 @@ class ReadMetal:
 class EdgeMetal(ReadMetal):
     """Metal of a file under a knife edge, which touches where its path crosses a chord between two points.
 
-    The `radius` of its methods is what the metal has grown by along its normals, mm.
+    The `radius` in its methods is how far the metal has grown along its normals, mm.
     """
 
     @cached_property
     def _normals(self) -> Complexes:
-        """Normals out of the metal at the points (k,): across the middle of both chords there."""
+        """Unit normals (k,) out of the metal at the points, bisecting those of the two chords that meet there."""
         chords = np.roll(self.points, -1) - self.points
         tangents = chords / np.abs(chords)
         tangents = tangents + np.roll(tangents, 1)
@@ -200,7 +217,7 @@ class EdgeMetal(ReadMetal):
         return normals
 
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
-        """Distance along the unit direction `way` from `middle` to the knife edge, mm, (parts, angles).
+        """Distance from `middle` along the unit direction `way` to the knife edge, mm, (parts, angles).
 
         Raises LostError where its path crosses no chord near the contact.
         """
@@ -214,7 +231,7 @@ class EdgeMetal(ReadMetal):
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
         """Unit direction from a pivot to the knife edge, (parts, angles).
 
-        Raises LostError where its path crosses no chord near the contact.
+        `length` is that of the arm, mm. Raises LostError where its path crosses no chord near the contact.
         """
 
         def bound(within: Indices, a: Complexes, arm: Array, r: Array, start: Complexes) -> Array:
@@ -225,7 +242,7 @@ class EdgeMetal(ReadMetal):
         return self._swung(bound, pivot, length, radius)
 
     def _chords(self, within: Indices, grown: Array) -> tuple[Complexes, Complexes]:
-        """Ends (parts, k) of the chords that begin at points, of metal that has grown by amounts (parts, 1)."""
+        """Both ends (parts, k) of the chords that begin at k points, of metal that has grown by `grown` (parts, 1)."""
         first, second = (self.points[i] + grown * self._normals[i] for i in (within, (within + 1) % len(self.points)))
         return first, second
 
@@ -233,7 +250,8 @@ class EdgeMetal(ReadMetal):
 def _crossings(first_off: Array, second_off: Array, first: Array, second: Array) -> Array:
     """Values (parts, k) interpolated on chords where the path crosses them; nan for chords that it does not cross.
 
-    `first_off` and `second_off` tell how far a chord's two ends are off the path, `first` and `second` are the values.
+    `first_off` and `second_off` are the signed distances of a chord's ends from the path, `first` and `second` the
+    values at these ends.
     """
     crosses = (first_off > 0.0) != (second_off > 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):

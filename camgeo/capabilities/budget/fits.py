@@ -15,15 +15,15 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-UPPER_ENDS = (3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0)  # of the ranges of sizes, mm
-MICROMETRE = 1e-3
+UPPER_ENDS = (3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0)  # of the ranges of sizes, inclusive, mm
+MICROMETRE = 1e-3  # in mm
 
 
 def _mirrored(*limits: float) -> tuple[tuple[float, float], ...]:
     return tuple((-limit, limit) for limit in limits)
 
 
-# lower and upper limit of size over each range, micrometres
+# lower and upper deviation from the nominal size in each range, micrometres
 HOLES: Mapping[str, tuple[tuple[float, float], ...]] = {
     "H7": ((0, 10), (0, 12), (0, 15), (0, 18), (0, 21), (0, 25), (0, 30), (0, 35)),
 }
@@ -39,27 +39,34 @@ KEYWAYS: Mapping[str, tuple[tuple[float, float], ...]] = {
 
 
 class Clearance(NamedTuple):
-    """Least and greatest clearance of a fit, mm on the diameter or width; below 0 it is an interference."""
+    """Least and greatest clearance of a fit, mm of diameter or width; a clearance below 0 is an interference."""
 
     least: float
     most: float
 
 
 def clearance(hole: str, shaft: str, diameter: float) -> Clearance:
-    """Clearance of a bore and a shaft by their classes, mm; raises ValueError for a diameter above 120 mm."""
+    """Clearance between a bore of a class `hole` (H7) and a shaft of a class `shaft` (h6, g6, k6), mm.
+
+    Raises ValueError for a diameter, mm, that is not above 0 and at most 120, KeyError for another class.
+    """
     low, high = _limits(HOLES[hole], diameter)
     least, most = _limits(SHAFTS[shaft], diameter)
     return Clearance(low - most, high - least)
 
 
 def key_clearance(keyway: str, width: float) -> Clearance:
-    """Clearance of a key h9 in a keyway of a class, mm; raises ValueError for a width above 120 mm."""
+    """Clearance of a key h9 in a keyway of a class JS9 or P9, mm.
+
+    Raises ValueError for a width, mm, that is not above 0 and at most 120, KeyError for another class.
+    """
     low, high = _limits(KEYWAYS[keyway], width)
-    key = _limits(KEYWAYS["JS9"], width)  # the width of the tolerance is that of h9
+    key = _limits(KEYWAYS["JS9"], width)  # as wide as h9, whose upper limit is 0
     return Clearance(low, high + key[1] - key[0])
 
 
 def _limits(ranges: tuple[tuple[float, float], ...], size: float) -> tuple[float, float]:
+    """Lower and upper deviation of a size, mm; raises ValueError outside the table."""
     if not 0.0 < size <= UPPER_ENDS[-1]:
         raise ValueError(f"the table of fits reaches to {UPPER_ENDS[-1]:g} mm")
     low, high = ranges[bisect_left(UPPER_ENDS, size)]
@@ -68,7 +75,11 @@ def _limits(ranges: tuple[tuple[float, float], ...], size: float) -> tuple[float
 
 @dataclass(frozen=True)
 class ShaftFit:
-    """Fit of the cam on its shaft: radial play of the bore, mm, and half the play of the key, rad, None without one."""
+    """Greatest play of a cam on its shaft.
+
+    `bore` is how far the cam's axis may stand off the shaft's, mm. `angle` is how far the cam may turn to either side
+    of the key's middle, rad; None without a key.
+    """
 
     bore: float
     angle: float | None
@@ -77,13 +88,15 @@ class ShaftFit:
 def fit_of(
     diameter: float, hole: str, shaft: str, keyways: tuple[str, str] | None = None, width: float | None = None
 ) -> ShaftFit:
-    """Greatest play of a cam on a shaft: that of the bore on its radius, of the key to either side of its middle.
+    """Greatest play of a cam on a shaft, 0 where a fit is always tight.
 
-    `keyways` are the classes of the hub's and the shaft's keyway of a `width`, mm; a fit that may be tight has no play.
-    Raises ValueError above 120 mm.
+    `hole` and `shaft` are the tolerance classes at a `diameter`, mm. `keyways` are the classes of the hub's and the
+    shaft's keyway of a `width`, mm; without them, or without a width, the angle is None. Raises ValueError for a
+    diameter or a width that is not above 0 and at most 120 mm.
     """
     radial = 0.5 * max(clearance(hole, shaft, diameter).most, 0.0)
     if keyways is None or width is None:
         return ShaftFit(radial, None)
     play = sum(max(key_clearance(keyway, width).most, 0.0) for keyway in keyways)
+    # half the play, at half the diameter from the axis
     return ShaftFit(radial, play / diameter)

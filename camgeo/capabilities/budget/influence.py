@@ -2,8 +2,9 @@
 
 The metal of the cam stays as it is: no dimension makes a new design. A contribution is the effect of one made size
 alone: two rollers made to one drawing are two contributions. Where the machine is set at one angle, errors count from
-there. The profile's error is independent at each angle, so that the error at an angle and the one at the setting both
-contribute.
+there. The profile's error is independent at each angle, so that its errors at an angle and at the setting both
+contribute. An influence is the change of the motion, mm or rad, per mm or rad of a size. In shapes m is the number of
+contacts, n that of shaft angles, c that of contributions; k is 1 for a size and 2 for the components of a displacement.
 """
 
 from __future__ import annotations
@@ -32,11 +33,10 @@ COMPONENTS = (1.0, 1j)  # of a displacement in any direction
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """Influence of one made size: `rows` (m, k, n) at m contacts, in mm or rad of the motion per mm or rad of the size.
+    """Influence of one made size of the dimension `name`: `rows` (m, k, n).
 
-    With k = 1 the tolerance is plus and minus, with k = 2 it is the radius of a circle about the two components; it is
-    None where it is to be found. `constant` marks the profile's error where the machine is set, which is one at all
-    angles.
+    `tolerance` is plus and minus for a size, the radius of a circle for a displacement, mm or rad; None where it is to
+    be found. `constant` marks the profile's error at the angle where the machine is set: the same at all angles.
     """
 
     name: str
@@ -49,8 +49,8 @@ class Contribution:
 class Output:
     """A figure of the motion: the position by one contact, the middle of two positions, or the play between them.
 
-    `weights` (c, n) are the greatest changes of the figure by each of c contributions at n shaft angles. They are at
-    least 0, in mm or rad of the motion per mm or rad of the tolerance.
+    `weights` (c, n) are the greatest changes of the figure by each contribution, not below 0, mm or rad of the motion
+    per mm or rad of the tolerance.
     """
 
     name: str
@@ -59,10 +59,10 @@ class Output:
 
 @dataclass(frozen=True, eq=False)
 class Influence:
-    """All contributions at shaft angles (n,), rad; `contacts` names what the follower, or the frame, bears on.
+    """All contributions at the shaft angles `shaft` (n,), rad, and the names of the contacts.
 
-    Of two contacts `upper` is the index of the one that bounds the position from above, and `play` (n,) the nominal
-    play between them, mm or rad.
+    Of two contacts `upper` is the index of the contact that bounds the position from above, and `play` (n,) the nominal
+    play between both, mm or rad. Both are None for one contact; `play` is None for velocities.
     """
 
     shaft: Array
@@ -73,11 +73,11 @@ class Influence:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Words of the dimensions, each once."""
+        """Words of the dimensions, each once, in the order of the contributions."""
         return tuple(dict.fromkeys(contribution.name for contribution in self.contributions))
 
     def outputs(self) -> tuple[Output, ...]:
-        """The position by each contact."""
+        """The position by each contact, in the order of `contacts`."""
         return tuple(Output(name, self._weights(itemgetter(i))) for i, name in enumerate(self.contacts))
 
     def middle(self) -> Output | None:
@@ -92,17 +92,18 @@ class Influence:
         return Output("play", self._weights(lambda rows: rows[upper] - rows[1 - upper]))
 
     def _weights(self, figure: Callable[[Array], Array]) -> Array:
+        """Greatest changes (c, n) of a figure, which takes rows (m, k, n) to (k, n), by each contribution."""
         rows = (figure(contribution.rows) for contribution in self.contributions)
+        # a displacement changes the figure most along the vector of its two components
         return np.stack([np.sqrt((row**2).sum(axis=0)) for row in rows])
 
 
 class SizeInfluences(NamedTuple):
     """Influences of a cam's made sizes, by the words of its dimensions.
 
-    `rows` gives, for each made size of a word, its influence (m, k, n) in mm or rad of the motion per mm or rad of the
-    size: k = 1 for a size, 2 for the components of a displacement. `contacts` has the names of the m contacts. Of two,
-    `upper` is the index of the one that bounds the position from above, and `play` (n,) the nominal play between them,
-    mm or rad; both are None for one contact.
+    `rows` takes the word of a dimension and gives the influence (m, k, n) of each of its made sizes. `contacts` has the
+    names of the m contacts. Of two, `upper` is the index of the contact that bounds the position from above, and `play`
+    (n,) the nominal play between both, mm or rad; both are None for one contact.
     """
 
     rows: Callable[[str], list[Array]]
@@ -114,11 +115,12 @@ class SizeInfluences(NamedTuple):
 def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Influence:
     """Influences of the dimensions of a budget at shaft angles (n,), rad.
 
-    With a zero each influence is less its value there. The profile's errors there and at other angles are independent,
-    so each of its influences gives two contributions, one of them constant. Raises PlaceError for a linkage that does
-    not turn right round.
+    Where the budget states the angle `zero` at which the machine is set, each influence is less its value there. The
+    profile's errors there and at other angles are independent, so each of its influences gives two contributions, one
+    of them constant. Raises PlaceError for a linkage that does not turn right round, ValueError for dyads.
     """
     zero = budget.zero
+    # the angle at which the machine is set comes last
     places = shaft if zero is None else np.append(shaft, zero)
     if recipe.linkage:
         cam = _linkage_influences(design, places)
@@ -143,9 +145,12 @@ def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> I
 def velocities(influence: Influence, waves: int) -> Influence:
     """Influences on the velocity by the shaft angle, from those on the motion at even angles over a whole turn.
 
-    A size that is off by t changes the velocity by t dw/dphi. The profile's error t sin(n phi + any) of n `waves`
-    changes it by at most t hypot(dw/dphi, n w): its two components.
+    `waves` is the number of periods per turn of the profile's error. The influences are mm or rad of the motion per rad
+    of the shaft and per mm or rad of the size; the nominal play is left out. A size that is off by t changes the
+    velocity by t dw/dphi, w its influence and phi the shaft angle. A profile that is off by t sin(j phi + phase), j the
+    waves, changes it by at most t hypot(dw/dphi, j w); its rows are these two components.
     """
+    # central differences, round the turn
     step = float(influence.shaft[1] - influence.shaft[0])
     contributions = []
     for contribution in influence.contributions:
@@ -164,9 +169,10 @@ def velocities(influence: Influence, waves: int) -> Influence:
 class HeldFollower:
     """The m contacts of a follower and where they bear at n shaft angles.
 
-    `guide` is the distance, mm, from the middle of a stem's guide to the foot of the perpendicular from the shaft. The
-    methods give the rows (m, k, n) of each made size. `change` tells how much the position by a contact changes, in mm
-    or rad per mm or rad of the size.
+    `guide` is the distance, mm, from the middle of a stem's guide to the foot of the perpendicular from the shaft on
+    the line of travel; `discs` is the number of discs. The methods return a list of influences (m, k, n), one for each
+    made size. Their parameter `change` takes a bearing to the change (n,) of the position by that contact, in mm or rad
+    per mm or rad of the size.
     """
 
     contacts: tuple[Contact[Guide, Touch], ...]
@@ -176,21 +182,21 @@ class HeldFollower:
 
     @property
     def axis(self) -> Complexes:
-        """The x axis of the frame (n,): along the travel of the first contact, or from the shaft to the pivot."""
+        """Unit x axis (n,) of the frame, complex, in the cam's axes: along the first travel, or to the pivot."""
         return self.bearings[0].axis
 
     @property
     def middle(self) -> Complexes:
-        """Middle of a stem's guide, in the cam's axes (n,)."""
+        """Middle of a stem's guide (n,), complex, in the cam's axes, mm."""
         offset = (np.conj(self.axis) * self.bearings[0].anchor).imag
         return self.axis * (self.guide + 1j * offset)
 
     def shared(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """Influence of a dimension that all contacts share: one entry (m, 1, n), `change` at each contact."""
+        """Influence of a size that all contacts share: one entry (m, 1, n)."""
         return [np.stack([change(bearing)[None] for bearing in self.bearings])]
 
     def each(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """Influence of a size that each contact has for itself: m entries (m, 1, n), each 0 at the other contacts."""
+        """Influences of a size that each contact has for itself: m entries (m, 1, n), each 0 at the other contacts."""
         return [rows for i in range(len(self.bearings)) for rows in self.only(i, change)]
 
     def only(self, index: int, change: Callable[[Bearing], Array]) -> list[Array]:
@@ -198,38 +204,40 @@ class HeldFollower:
         return [self._alone(index, change(self.bearings[index])[None])]
 
     def first(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """Influence of a size of the first touch: one entry (m, 1, n). On a single disc all contacts have it."""
+        """Influence of a size of the first touch, which all contacts share on a single disc: one entry (m, 1, n)."""
         return self.only(0, change) if self.discs > 1 else self.shared(change)
 
     def shifted(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:
         """Influence of a displacement in any direction that acts at every contact: one entry (m, 2, n).
 
-        `change` of a contact and a unit direction, complex, is the change (n,) of the position by that displacement.
+        `change` takes a bearing and a unit direction, complex, to the change (n,) of the position per mm that way.
         """
         return [np.stack([self._components(bearing, change) for bearing in self.bearings])]
 
     def bored(self, change: Callable[[Bearing, complex], Array]) -> list[Array]:
-        """Influence of a displacement of each disc in any direction: an entry (m, 2, n) for each disc."""
+        """Influences of a displacement of each disc in any direction: one entry (m, 2, n) for each disc."""
         if self.discs == 1:
             return self.shifted(change)
         return [self._alone(i, self._components(bearing, change)) for i, bearing in enumerate(self.bearings)]
 
     def faced(self, change: Callable[[Bearing], Array]) -> list[Array]:
-        """Influence of a size of each face, entries (m, 1, n): one for each of two on an arm, else one for all."""
+        """Influences of a size of each face, (m, 1, n): two entries for two faces on one arm, else one for all."""
         on_one_arm = len(self.contacts) > 1 and self.contacts[0].apart != 0.0
         return (self.each if on_one_arm else self.shared)(change)
 
     def _components(self, bearing: Bearing, change: Callable[[Bearing, complex], Array]) -> Array:
+        """Changes (2, n) of the position by a contact, for the two components of a displacement."""
         return np.stack([change(bearing, component) for component in COMPONENTS])
 
     def _alone(self, index: int, rows: Array) -> Array:
+        """Influence (m, k, n) of a size with `rows` (k, n) at one contact, and 0 at the others."""
         whole = np.zeros((len(self.bearings), *rows.shape))
         whole[index] = rows
         return whole
 
 
 def _follower_influences(design: Design, shaft: Array, guide: float) -> SizeInfluences:
-    """Influences on a follower; `guide` is the distance of its guide's middle from the perpendicular's foot, mm."""
+    """Influences on a follower at shaft angles (n,); `guide` is that of `HeldFollower`."""
     from kin.follower.influence import bearing
 
     follower = design.follower
@@ -241,17 +249,18 @@ def _follower_influences(design: Design, shaft: Array, guide: float) -> SizeInfl
         return SizeInfluences(lambda name: FOLLOWER[name](held), ("follower",), None, None)
     names = tuple(contact.surface or f"contact {i}" for i, contact in enumerate(follower.contacts, 1))
     (upper,) = (i for i, bearing in enumerate(bearings) if bearing.upper)
-    # a gauge as wide as its flank stands off the other flank by what it is wider
+    # the gauge of the upper flank is wider than the running roller by their play along the normal
     wider = follower.contacts[upper].touch.radius - follower.running(follower.contacts[upper]).radius
     play = -wider * bearings[upper].grown
     if design.exact.preload is not None:
+        # a preload presses both contacts into the metal: a play below 0
         overlaps = zip(bearings, design.exact.preload.overlaps, strict=True)
         play = play - np.sum([overlap * np.abs(bearing.grown) for bearing, overlap in overlaps], axis=0)
     return SizeInfluences(lambda name: FOLLOWER[name](held), names, upper, play)
 
 
 def _datum(bearing: Bearing) -> Array:
-    """Change of the position per mm or rad of a greater `datum` of the contact (`Contact`)."""
+    """Change (n,) of the position per mm or rad by which the contact's own position counts from a greater `datum`."""
     return np.full(bearing.gain.shape, -float(bearing.sense))
 
 
@@ -288,10 +297,11 @@ FRAME_CONTACTS = ("+y and -x", "-y and +x")  # faces of a square frame in its ax
 
 
 def _linkage_influences(design: Design, shaft: Array) -> SizeInfluences:
-    """Influences on the output of a linkage, whose frame bears with two faces, or with the two that are opposite.
+    """Influences on the output of a linkage, whose frame bears with two faces, or with the two opposite to them.
 
-    Either pair of opposite faces leaves play by itself. As errors are added by their size, those of the two contacts
-    that are named tell what both pairs leave together.
+    Each pair of opposite faces has its own play. Since influences are added by their magnitudes, those of the two
+    `FRAME_CONTACTS` give the play of both pairs together. Raises PlaceError for a linkage that does not turn right
+    round, ValueError for dyads.
     """
     from kin.linkage.influence import frame_bearing
 
@@ -305,7 +315,7 @@ def _linkage_influences(design: Design, shaft: Array) -> SizeInfluences:
 
 
 def _both(row: Array) -> Array:
-    """Influence (2, k, n) of a dimension that moves both contacts alike: (n,), or (k, n) by its components."""
+    """Influence (2, k, n) of a size that moves both contacts alike, by `row` (n,), or (k, n) by its components."""
     return np.stack([np.atleast_2d(row)] * 2)
 
 
@@ -315,7 +325,7 @@ def _in_any_direction(change: Callable[[complex], Array]) -> Array:
 
 
 def _at_each(first: Array, second: Array) -> Array:
-    """Influence (2, 1, n) of a dimension that moves the first contact by (n,), the second by (n,)."""
+    """Influence (2, 1, n) of a size that moves the two contacts by `first` (n,) and `second` (n,)."""
     return np.stack([first, second])[:, None]
 
 
@@ -326,7 +336,10 @@ def _faces(frame: FrameBearing) -> list[Array]:
 
 
 def _breadths(frame: FrameBearing) -> list[Array]:
-    """Influences of the frame's two breadths: +x of the x faces holds the joint; of the y faces their middle does."""
+    """Influences of the frame's two breadths, two entries (2, 1, n).
+
+    The joint counts from the face +x, so that only contact at -x moves it; in y it counts from the middle of the faces.
+    """
     x, half = frame.output(along=1.0), frame.output(across=0.5)
     return [_at_each(x, 0.0 * x), _at_each(-half, half)]
 

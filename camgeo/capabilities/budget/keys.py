@@ -33,11 +33,12 @@ if TYPE_CHECKING:
     from camgeo.schema.yaml_source import Node
 
 FREE, NO_ZERO = "free", "none"
-RUNS, MOST_RUNS = 10_000, 1_000_000
-MOST_SEED = 2**63 - 1
-MOST_WAVES = 1000
-MOST_EXPONENT = 10  # of costs; what is known of machining lies between 0.5 and 3
+RUNS, MOST_RUNS = 10_000, 1_000_000  # half a second for a roller cam, and 50
+MOST_SEED = 2**63 - 1  # greatest signed integer of 64 bits
+MOST_WAVES = 1000  # a bound against slips
+MOST_EXPONENT = 10  # of costs; known ones of machining lie between 0.5 and 3
 MOST_OFF = 45  # degrees of an angle's tolerance: a bound against slips
+# fields of `cam` that shape the contour and have no tolerance of their own
 SHAPES = (
     "base_radius",
     "motion",
@@ -55,16 +56,17 @@ SHAPES = (
 
 @dataclass(frozen=True)
 class Budget:
-    """The recipe's budget of errors: lengths in mm, angles in rad.
+    """The recipe's budget of errors; lengths in mm, angles in rad.
 
     `permitted` is the greatest error of the follower or of the linkage's output, mm or rad. `tolerances` are plus and
-    minus, by the words of the dimensions; None marks a free dimension, whose tolerance is to be found. `cost` c weighs
-    the free ones: a tolerance costs c/tolerance^`exponent`. `zero` is the shaft angle, rad, at which the machine is
-    set, None without one. `play` is the greatest permitted play of a follower that is held from both sides. `guide` is
-    the distance from the middle of a stem's guide to the foot of the perpendicular from the shaft on the line of
-    travel. `fit` is the play that the fits of bore and key add to the tolerances. `sums` says which sum must stay
-    within `permitted`. `waves` is the number of waves per turn of the profile's error, None where it is not stated.
-    `runs` made parts are simulated, 0 for none, by random numbers from `seed`.
+    minus, with the words of their dimensions; None marks a free dimension, whose tolerance is to be found. `cost` has c
+    by the words of the free dimensions: a tolerance costs c/tolerance^`exponent`. `zero` is the shaft angle, rad, at
+    which the machine is set, None without one. `play` is the greatest permitted play of a follower that is held from
+    both sides, mm or rad, None for any. `guide` is the distance from the middle of a stem's guide to the foot of the
+    perpendicular from the shaft on the line of travel. `fit` is the play of bore and key by their fits, which
+    `tolerances` hold too. `sums` says which sum must stay within `permitted`. `waves` is the number of waves per turn
+    of the profile's error, None where it is not stated. `runs` made parts are simulated, 0 for none, by random numbers
+    from `seed`.
     """
 
     permitted: float
@@ -82,11 +84,11 @@ class Budget:
 
     @property
     def to_be_found(self) -> tuple[str, ...]:
-        """Words of the dimensions whose tolerances are to be found."""
+        """Words of the free dimensions, in the order of `tolerances`."""
         return tuple(name for name, tolerance in self.tolerances if tolerance is None)
 
     def split(self, tolerances: Sequence[tuple[str, float]]) -> Budget:
-        """The budget with tolerances in the place of the free ones."""
+        """The budget with `tolerances`, pairs of a word and mm or rad, for its free dimensions, and without costs."""
         chosen = dict(tolerances)
         stated = tuple((name, chosen.get(name, tolerance)) for name, tolerance in self.tolerances)
         return replace(self, tolerances=stated, cost=())
@@ -96,6 +98,7 @@ class Budget:
 
 
 def _tolerance(name: str) -> Field:
+    """Field of a dimension's tolerance."""
     if DIMENSIONS[name].angle:
         return Field(name, Kind.ANGLE, DIMENSIONS[name].about, at_least=0, at_most=MOST_OFF)
     return Field(name, Kind.LENGTH, DIMENSIONS[name].about, at_least=0, at_most=MOST)
@@ -107,26 +110,26 @@ def _traits(reader: Reader) -> frozenset[str]:
 
 
 def _refuse(reader: Reader, name: str, node: Mapping, path: str) -> None:
-    """Note a word that is no dimension of this cam, and say which it has."""
-    there, mark = dimension_names(_traits(reader)), keys(node)[name].mark
+    """Note the fault of a word that is no dimension of this cam, with the words that it takes."""
+    known, mark = dimension_names(_traits(reader)), keys(node)[name].mark
     first = name.removeprefix("cam.").partition(".")[0].partition("[")[0]
     if first in SHAPES:
         reader.fault(mark, path, "shapes the contour, which is made by it", None, "give profile: what that may be off")
         return
     if name in DIMENSIONS:
-        remedy = f"those of this cam are {either(there, 'and')}"
+        remedy = f"those of this cam are {either(known, 'and')}"
         reader.fault(mark, path, "this cam has no such dimension", None, remedy)
         return
-    reader.fault(mark, path, "unknown dimension", None, suggestion(name, there) or f"give {either(there)}")
+    reader.fault(mark, path, "unknown dimension", None, suggestion(name, known) or f"give {either(known)}")
 
 
 def _read_tolerances(reader: Reader, field: Field, node: Node, path: str) -> dict[str, float | None] | None:
-    """Read the tolerances by the words of their dimensions, mm or rad; None for `free`."""
+    """Read the tolerances by the words of their dimensions, mm or rad, None for `free`; None for no mapping."""
     return _read_by_word(reader, field, node, path, _tolerance, free=True)
 
 
 def _read_cost(reader: Reader, field: Field, node: Node, path: str) -> dict[str, float | None] | None:
-    """Read the costs by the words of the dimensions whose tolerances are to be found."""
+    """Read the costs by the words of their dimensions; None for no mapping."""
     return _read_by_word(
         reader, field, node, path, lambda name: Field(name, Kind.NUMBER, "its cost", above=0, at_most=MOST), free=False
     )
@@ -135,15 +138,19 @@ def _read_cost(reader: Reader, field: Field, node: Node, path: str) -> dict[str,
 def _read_by_word(
     reader: Reader, field: Field, node: Node, path: str, value_field: Callable[[str], Field], *, free: bool
 ) -> dict[str, float | None] | None:
-    """Read a mapping from words of this cam's dimensions to values, None for `free` where that is a value."""
+    """Read a mapping from words of this cam's dimensions to values, None for `free` where `free` is permitted.
+
+    `value_field` gives the field by which the value of a word is read. Faults are noted, and values with faults left
+    out; the result is None where the node is no mapping.
+    """
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
         return None
-    there = dimension_names(_traits(reader))
+    known = dimension_names(_traits(reader))
     values: dict[str, float | None] = {}
     for name, value in entries(node).items():
         below = join(path, name)
-        if name not in there:
+        if name not in known:
             _refuse(reader, name, node, below)
         elif free and isinstance(value, Scalar) and value.text == FREE:
             values[name] = None
@@ -153,7 +160,7 @@ def _read_by_word(
 
 
 def _read_zero(reader: Reader, _field: Field, node: Node, path: str) -> float | str | None:
-    """Read the shaft angle at which a machine is set, rad, or `none`."""
+    """Read the shaft angle at which a machine is set, rad, or the word `none`; None where a fault was noted."""
     if isinstance(node, Scalar) and node.text == NO_ZERO:
         return NO_ZERO
     return read_numeric(reader, _ZERO_ANGLE, node, path)
@@ -227,7 +234,7 @@ BUDGET = FieldTable(
 
 
 def fields() -> tuple[Field, ...]:
-    """The key at a recipe's top level."""
+    """The field `budget` of a recipe's top level."""
     return (Field("budget", Kind.TABLE, "what each dimension may be off", default="none", table=BUDGET),)
 
 
@@ -235,14 +242,14 @@ def fields() -> tuple[Field, ...]:
 
 
 def check_budget(values: Values, reader: Reader) -> None:
-    """Note the faults between the fields of a budget, and with the cam, the part and the linkage."""
+    """Note the faults between the fields of a budget, and those with other sections of the recipe."""
     if "budget" not in values:
         return
     budget = values["budget"]
     tolerances = budget.get("tolerances", {})
     if values.get("linkage", {}).get("dyads"):
-        what, remedy = "the influence of dyads is not known", "leave budget or linkage.dyads out"
-        reader.fault_at("budget", what, None, remedy)
+        problem, remedy = "the influence of dyads is not known", "leave budget or linkage.dyads out"
+        reader.fault_at("budget", problem, None, remedy)
     _check_costs(budget, tolerances, reader)
     _check_guide(budget, tolerances, reader)
     _check_play(values, reader)
@@ -273,12 +280,13 @@ def _check_costs(budget: Values, tolerances: Values, reader: Reader) -> None:
 
 
 def _check_guide(budget: Values, tolerances: Values, reader: Reader) -> None:
+    """Note a tolerance of the guide's direction without the guide's place, and the place without the tolerance."""
     if GUIDE in tolerances and GUIDE not in budget and f"budget.{GUIDE}" not in reader.marks:
-        what, remedy = "the guide's place is not known", f"give budget.{GUIDE}: from the shaft to its middle"
-        reader.fault_at(f"budget.tolerances.{GUIDE}", what, None, remedy)
+        problem, remedy = "the guide's place is not known", f"give budget.{GUIDE}: from the shaft to its middle"
+        reader.fault_at(f"budget.tolerances.{GUIDE}", problem, None, remedy)
     elif GUIDE in budget and GUIDE not in tolerances:
-        what, remedy = f"without tolerances.{GUIDE} it has no use", "leave it out"
-        reader.fault_at(f"budget.{GUIDE}", what, None, remedy)
+        problem, remedy = f"without tolerances.{GUIDE} it has no use", "leave it out"
+        reader.fault_at(f"budget.{GUIDE}", problem, None, remedy)
 
 
 def _check_play(values: Values, reader: Reader) -> None:
@@ -291,22 +299,23 @@ def _check_play(values: Values, reader: Reader) -> None:
 
 
 def _check_made(values: Values, reader: Reader) -> None:
-    """Note a profile that is not half the zone that the measured points are held to."""
+    """Note a tolerance of the profile that is not half of `made.profile`, the zone for measured points."""
     profile, zone = values["budget"].get("tolerances", {}).get(PROFILE), values.get("made", {}).get("profile")
     if profile is None or zone is None or math.isclose(2.0 * profile, zone, rel_tol=1e-9):
         return
     own, line = join("budget.tolerances", PROFILE), reader.marks["made.profile"][0]
-    what = f"not half of made.profile, {zone / reader.mm:.9g} in line {line}, which is a zone"
+    problem = f"not half of made.profile, {zone / reader.mm:.9g} in line {line}, which is a zone"
     remedy = f"give {0.5 * zone / reader.mm:.9g}, or made.profile {2.0 * profile / reader.mm:.9g}"
-    reader.fault_at(own, what, f"{profile / reader.mm:.9g}", remedy)
+    reader.fault_at(own, problem, f"{profile / reader.mm:.9g}", remedy)
 
 
 def _check_fit(values: Values, reader: Reader) -> None:
-    """Note a fit of a bore without a tolerance class or beyond the table, and a key without a fit or a keyway.
+    """Note a fit with a bore of no tolerance class or beyond the table, and a key without a fit or a keyway.
 
-    Tolerances that the fit or the key would count twice are noted too.
+    A tolerance that the fit or the key states already is noted too.
     """
     budget, part = values["budget"], values.get("part", {})
+    # the fit needs a bore with a tolerance class
     tolerances, bore = budget.get("tolerances", {}), part.get("bore")
     hole = bore.get("fit") if isinstance(bore, dict) else None
     if "fit" not in budget:
@@ -320,12 +329,13 @@ def _check_fit(values: Values, reader: Reader) -> None:
         return
     if bore["diameter"] > UPPER_ENDS[-1]:
         most = f"{UPPER_ENDS[-1] / reader.mm:.6g} {reader.units}"
-        what, remedy = f"the table of fits reaches to {most}", f"leave it out, and give tolerances.{BORE}"
-        reader.fault_at("budget.fit", what, f"{bore['diameter'] / reader.mm:.6g}", remedy)
+        problem, remedy = f"the table of fits reaches to {most}", f"leave it out, and give tolerances.{BORE}"
+        reader.fault_at("budget.fit", problem, f"{bore['diameter'] / reader.mm:.6g}", remedy)
         return
     if BORE in tolerances:
         remedy = "leave it out, or budget.fit"
         reader.fault_at(f"budget.tolerances.{BORE}", "the fit says it already", None, remedy)
+    # the key needs a keyway
     if "key" not in budget:
         return
     if "part.keyway" not in reader.marks:
@@ -339,7 +349,7 @@ def _check_fit(values: Values, reader: Reader) -> None:
 
 
 def build_budget(values: Values) -> Budget | None:
-    """Make the budget of values without a fault; None for a recipe without `budget`."""
+    """The budget of checked values; None for a recipe without `budget`."""
     if "budget" not in values:
         return None
     budget = values["budget"]
@@ -363,7 +373,7 @@ def build_budget(values: Values) -> Budget | None:
 
 
 def _fit(budget: Values, part: Values) -> ShaftFit | None:
-    """The play that the fits of bore and key leave; None where no fit is stated."""
+    """The greatest play by the fits of bore and key; None where no fit is stated."""
     if "fit" not in budget:
         return None
     bore, key = part["bore"], budget.get("key")

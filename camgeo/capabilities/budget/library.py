@@ -22,10 +22,11 @@ if TYPE_CHECKING:
 def budget(recipe: Recipe, *files: str | PathLike[str]) -> dict[str, Any]:
     """The budget of a recipe as plain data, in the recipe's unit and degrees; docs/budget.md names its keys.
 
-    Parts are made by chance within its tolerances, `runs` of them, and looked at by contact on the exact contour, or on
-    that of `files`, one of each disc. `ok` is whether the budget is kept. Raises RecipeErrors for a recipe without a
-    budget, for one whose tolerances leave nothing for a free dimension, and for a linkage that does not turn; CallError
-    for files that do not hold all contours of the cam.
+    Made parts are simulated with random sizes within the tolerances, on the exact contour or on that of `files`, one of
+    each disc; with `runs` 0 the key `parts` is missing and the files are not read. `ok` is whether the budget is kept.
+    Raises RecipeErrors for a recipe without a budget, for a cam that does not exist, for tolerances that leave nothing
+    for a free dimension, and for a linkage that does not turn; CallError for files that do not hold all contours of the
+    cam.
     """
     stated = recipe.of(Budget)
     if stated is None:
@@ -34,15 +35,18 @@ def budget(recipe: Recipe, *files: str | PathLike[str]) -> dict[str, Any]:
     design = designed(recipe)
     if design.driven is not None and not design.driven.turns:
         raise recipe.error("linkage", "the mechanism does not turn, and its output has no error", None, "see check")
-    result = outcome(recipe, design, stated)
-    entry = section(recipe, result)
+    budgeted = outcome(recipe, design, stated)
+    entry = section(recipe, budgeted)
     if stated.runs:
-        entry["parts"] = _parts(recipe, design, result, [Path(file) for file in files])
+        entry["parts"] = _parts(recipe, design, budgeted, [Path(file) for file in files])
     return {"recipe": recipe.name, "units": recipe.units, "ok": entry["kept"], **entry}
 
 
 def _parts(recipe: Recipe, design: Design, result: BudgetOutcome, files: list[Path]) -> dict[str, Any]:
-    """Report entry of the simulation of made parts; `runs` 0 with the reason `why` where a part has no contact."""
+    """Report entry of the simulation of made parts; where it is not possible `runs` is 0, and `why` the reason.
+
+    Raises CallError for files that do not hold all contours of the cam.
+    """
     from camgeo.capabilities.budget.contact import LostError
     from camgeo.capabilities.budget.parts import sample_angles, simulate
 
@@ -56,6 +60,7 @@ def _parts(recipe: Recipe, design: Design, result: BudgetOutcome, files: list[Pa
         parts = simulate(recipe, design, result.budget, shaft, read)
     except LostError as error:
         return {"runs": 0, "why": str(error)}
+    # statistics in the unit of the report, one row for each contact and angle
     scale, unit = motion_unit(recipe)
     rows: list[dict[str, Any]] = [
         {

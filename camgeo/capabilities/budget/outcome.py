@@ -31,10 +31,11 @@ SUMS: tuple[Sum, ...] = tuple(POWERS)
 class BudgetOutcome:
     """Budget of a design at even shaft angles: influences of its dimensions, greatest sums, and free tolerances.
 
-    `budget` has tolerances for all its dimensions, those found among them. `left` (n,) is what is left at each angle
-    for the only free dimension, mm or rad, None where several or none are free. `splits` has, by the kind of sum, the
-    tolerances of least cost of several free dimensions.
-    `play` is the least and the greatest play, mm or rad, of a follower held from both sides.
+    `budget` has tolerances for all its dimensions, `free` the words of those that were to be found; one that moves
+    nothing gets 0. `sums` has the greatest sum by its kind. `left` (n,) is the greatest tolerance of the only free
+    dimension at each angle, mm or rad; None where none is free or costs are stated. `splits` has the tolerances of
+    least cost by the kind of sum; None without costs. `play` is the least and the greatest play, mm or rad, of a
+    follower held from both sides; None for others.
     """
 
     budget: Budget
@@ -47,12 +48,12 @@ class BudgetOutcome:
 
     @property
     def worst_output(self) -> Output:
-        """The position by the contact at which the worst case is greatest."""
+        """Influences on the position by the contact at which the worst case is greatest."""
         return next(output for output in self.influence.outputs() if output.name == self.sums["worst"].contact)
 
     @property
     def kept(self) -> bool:
-        """Whether the sum that the recipe chose stays within what is permitted, and the play within its own."""
+        """Whether the greatest sum, of the kind that the budget states, and the greatest play keep their limits."""
         budget = self.budget
         kept = self.sums[budget.sums].value <= budget.permitted * (1.0 + ROUNDING)
         return kept and (budget.play is None or self.play is None or self.play[1] <= budget.play * (1.0 + ROUNDING))
@@ -61,7 +62,8 @@ class BudgetOutcome:
 def outcome(recipe: Recipe, design: Design, budget: Budget) -> BudgetOutcome:
     """Work out the budget of a design.
 
-    Raises RecipeErrors where nothing is left for a free dimension, PlaceError for a linkage that does not turn.
+    Raises RecipeErrors where nothing is left for a free dimension, PlaceError for a linkage that does not turn right
+    round, ArithmeticError where the search for the tolerances of least cost does not end.
     """
     try:
         return _outcome(recipe, design, budget)
@@ -89,6 +91,7 @@ def _outcome(recipe: Recipe, design: Design, budget: Budget) -> BudgetOutcome:
 
 
 def _play(rows: Influence, kind: Sum) -> tuple[float, float] | None:
+    """Least and greatest play over the angles, mm or rad; None for a follower that is not held from both sides."""
     between = rows.play_between()
     if between is None or rows.play is None:
         return None
@@ -97,9 +100,10 @@ def _play(rows: Influence, kind: Sum) -> tuple[float, float] | None:
 
 
 def _taken(recipe: Recipe, budget: Budget, error: TakenError) -> RecipeErrors:
-    """RecipeErrors for a budget in which the stated dimensions leave nothing, at the dimension that takes most."""
+    """The error of a budget whose stated dimensions leave nothing, at the field of the dimension that takes most."""
     scale, unit = motion_unit(recipe)
     taken, permitted = scale * error.taken, scale * budget.permitted
+    # the word may be quoted in the path; a tolerance by a fit has no field of its own
     paths = (f"budget.tolerances.{error.name}", f"budget.tolerances.{error.name!r}")
     elsewhere = "budget.tolerances" if budget.fit is None else "budget.fit"
     path = next((path for path in paths if path in recipe.marks), elsewhere)
@@ -112,17 +116,17 @@ def _taken(recipe: Recipe, budget: Budget, error: TakenError) -> RecipeErrors:
 
 
 def error_unit(recipe: Recipe) -> str:
-    """Unit of errors of the motion: deg where follower or output turns, else mm, also for a recipe in inches."""
+    """Unit of errors of the motion: deg where follower or output turns, else mm, even for a recipe in inches."""
     if recipe.linkage is not None:
         return "mm" if output_slides(recipe.linkage) else "deg"
     return recipe.cam.arrangement.unit
 
 
 def motion_unit(recipe: Recipe) -> tuple[float, str]:
-    """Factor from mm or rad of an error of the motion to its unit in the report, and that unit."""
+    """Factor from mm or rad of an error of the motion to its unit in the report, and that unit: mm, in or deg."""
     return report_unit(recipe, error_unit(recipe))
 
 
 def size_unit(recipe: Recipe, name: str) -> tuple[float, str]:
-    """Factor from mm or rad of a dimension's tolerance to its unit in the report, and that unit."""
+    """Factor from mm or rad of a dimension's tolerance to its unit in the report, and that unit: mm, in or deg."""
     return report_unit(recipe, "deg" if DIMENSIONS[name].angle else "mm")

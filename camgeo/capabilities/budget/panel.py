@@ -13,16 +13,17 @@ from camgeo.report.page.tables import html_table, named_row, number, place_butto
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-WIDE, HIGH, LEFT, FOOT = 720, 220, 44, 22  # of the picture, and what its scales take on the left and below
-TURN = 360
+WIDE, HIGH, LEFT, FOOT = 720, 220, 44, 22  # size of the picture, and of its scales on the left and below, px
+TURN = 360  # degrees
 HUES = (210, 18, 140, 275, 45, 330, 180, 90)  # degrees of colour, in the order of the dimensions
 
 
 def panel(report: dict[str, Any]) -> str:
-    """HTML section of the page on the budget of errors; empty where the report has no budget."""
+    """HTML section on the budget of errors, from a report as plain data; empty where the report has no budget."""
     entry = report.get("budget")
     if entry is None:
         return ""
+    # two tables: the sums with their limit, and a row for each dimension
     unit, permitted = escape(entry["unit"]), number(entry["permitted"])
     sums = [
         named_row(
@@ -51,11 +52,12 @@ def panel(report: dict[str, Any]) -> str:
 
 
 def _shares(entry: dict[str, Any]) -> str:
-    """The worst case over the turn as areas, one dimension on the other, under a line for what is permitted."""
+    """HTML of the worst case over the turn: dimensions as stacked areas, the permitted error as a dashed line."""
     turn = entry["over_turn"]
     angles = np.array([*turn["at_deg"], turn["at_deg"][0] + TURN])
     rows = {name: np.array([*values, values[0]]) for name, values in turn["worst"].items()}
     whole = np.sum([*rows.values()], axis=0)
+    # the scale ends 8 % above the greatest sum, or above the permitted error unless the areas would be too low to read
     top = 1.08 * max(float(whole.max()), entry["permitted"] if entry["permitted"] < 3.0 * whole.max() else 0.0)
 
     def across(angle: Sequence[float]) -> list[float]:
@@ -64,6 +66,7 @@ def _shares(entry: dict[str, Any]) -> str:
     def upright(value: Sequence[float]) -> list[float]:
         return [(HIGH - FOOT) * (1.0 - v / top) for v in value]
 
+    # areas from below, with a legend; more dimensions than hues repeat them lighter
     below, shapes, names = np.zeros(len(angles)), [], []
     for i, (name, row) in enumerate(rows.items()):
         fill = f"hsl({HUES[i % len(HUES)]} 55% {58 if i < len(HUES) else 72}%)"
@@ -76,6 +79,7 @@ def _shares(entry: dict[str, Any]) -> str:
     (line,) = upright([entry["permitted"]])
     if line >= 0.0:
         shapes.append(f'<path d="M{LEFT} {line:.1f}H{WIDE}" stroke="var(--bad)" stroke-dasharray="5 4" fill="none"/>')
+    # scales: error on the left, shaft angle below
     scale = [(0.0, "0"), (top / 1.08, f"{top / 1.08:.3g}")]
     texts = [f'<text x="{LEFT - 6}" y="{upright([v])[0] + 4:.1f}" text-anchor="end">{t}</text>' for v, t in scale]
     texts += [

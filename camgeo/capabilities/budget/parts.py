@@ -1,7 +1,8 @@
-"""Made parts by chance, each size within its limits, and how far the follower or the output of each is off, by contact.
+"""Made parts with random sizes within their limits, and the error of each part's follower or output, by contact.
 
-Sizes are even within plus and minus, radii full and in any direction; the profile of a part is another one at each
-angle, the same about the contact. The influences are not used here: that both agree is a check of both.
+Sizes are uniform within plus and minus; displacements have the full radius in a random direction. The profile's error
+is independent at each angle, and the same all about the contact. The errors follow from no influences: these only
+foresee their standard deviations, so that the two check each other.
 """
 
 from __future__ import annotations
@@ -34,16 +35,17 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array, Complexes
 
-EVEN = 36  # even angles of a turn at which parts are looked at, besides the worst ones
+EVEN = 36  # even angles of a turn at which parts are simulated, besides the worst ones
 STEP = 1e-5  # rad, by which the frame is turned to see how fast its loop opens
-AT_ONCE = 2000  # parts, which bounds memory
-ERRORS = 4.0  # standard errors by which a deviation may differ from the one foreseen
+AT_ONCE = 2000  # parts simulated together, which bounds memory
+ERRORS = 4.0  # standard errors by which a standard deviation may differ from the foreseen one
 
 
 class Spread(NamedTuple):
-    """Errors of the parts by one contact at a shaft angle, rad: mean, standard deviation, and greatest, mm or rad.
+    """Statistics of the parts' errors by one contact at the shaft angle `at`, rad; errors are mm or rad.
 
-    `foreseen` is the standard deviation by the influences, `error` the standard error of the simulated one.
+    `mean` is their mean, `deviation` their standard deviation, `greatest` the greatest absolute error. `foreseen` is
+    the standard deviation by the influences, `error` the standard error of `deviation`.
     """
 
     contact: str
@@ -56,14 +58,15 @@ class Spread(NamedTuple):
 
     @property
     def agrees(self) -> bool:
-        """Whether the deviation is within four standard errors of the one foreseen."""
+        """Whether the standard deviation is within four standard errors of the foreseen one."""
         return abs(self.deviation - self.foreseen) <= ERRORS * self.error
 
 
 class Parts(NamedTuple):
-    """Result of a simulation of made parts: statistics of the errors at each angle, by contact.
+    """Result of a simulation of `runs` parts with random numbers from `seed`.
 
-    `within` is the share of parts whose errors stay within what is permitted at every angle looked at.
+    `spreads` has the statistics of the errors: all angles of the first contact, then of the next. `within` is the
+    fraction of parts whose errors stay within the permitted one by every contact, at every simulated angle.
     """
 
     runs: int
@@ -73,21 +76,24 @@ class Parts(NamedTuple):
 
     @property
     def worst(self) -> Spread:
-        """The row, by contact and angle, with the greatest standard deviation foreseen by the influences."""
+        """The statistics with the greatest foreseen standard deviation."""
         return max(self.spreads, key=lambda spread: spread.foreseen)
 
 
 def sample_angles(worst: Sequence[float]) -> Array:
-    """Shaft angles at which parts are looked at, rad: even ones, and the worst."""
+    """Shaft angles (n,), rad, rising, at which parts are simulated: even ones of a turn, and the angles `worst`."""
     return np.unique(np.append(equal_steps(EVEN), worst))
 
 
 def simulate(
     recipe: Recipe, design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None = None
 ) -> Parts:
-    """Make parts by chance at shaft angles (n,), on the exact contours or on those `read` from a file, by surface.
+    """Simulate `budget.runs` (at least 1) parts of random sizes at shaft angles (n,), rad.
 
-    Raises LostError where a part has no contact near the intended place, and for a contour that is missing or too long.
+    The parts have the exact contours or, by the names of their surfaces, those `read` from files; trimmed contours are
+    arcs. With an angle `zero` in the budget the errors count from there. Raises LostError where a part has no contact
+    near the intended place or its loop does not close, and for a contour that is missing or too long; PlaceError for a
+    linkage that does not turn right round.
     """
     rng = np.random.default_rng(budget.seed)
     rows = influence(recipe, design, budget, shaft)
@@ -107,9 +113,11 @@ def errors_by_contact(
 ) -> Callable[[Sizes], Array]:
     """Function that gives the errors of the motion, (contacts, parts, n), mm or rad, from errors of the sizes.
 
-    The errors are at the shaft angles `shaft`, rad, then at the angle at which the machine is set, if any. `read` has
-    contours read from files, by surface; without it the contours are exact. The call raises LostError for a contour
-    that is missing or too long, the function where a made part has no contact near the intended place.
+    The n angles are `shaft`, rad, then the angle at which the machine is set, if any; the errors do not count from
+    there. `read` has contours read from files, by the names of their surfaces; without it the contours are exact, or
+    arcs where undercut is trimmed. The call raises LostError for a contour that is missing or too long, PlaceError for
+    a linkage that does not turn right round. The function raises LostError where a made part has no contact near the
+    intended place or its loop does not close.
     """
     if not design.contours:
         raise LostError("parts are not simulated, as no contour is made")
@@ -120,7 +128,7 @@ def errors_by_contact(
 
 
 def angles_at(budget: Budget, shaft: Array) -> Array:
-    """The shaft angles (n,), rad, and after them the one at which the machine is set, if any."""
+    """The shaft angles (n,), rad, and behind them the angle at which the machine is set, if any."""
     return shaft if budget.zero is None else np.append(shaft, budget.zero)
 
 
@@ -131,6 +139,7 @@ def _spreads(rows: Influence, errors: Array) -> list[Spread]:
         foreseen = spread(rows, output)
         own = errors[contact]
         mean, deviation = own.mean(axis=0), own.std(axis=0)
+        # standard error of a standard deviation s of N values: sqrt((m4 - s^4)/(4 N))/s, m4 the fourth central moment
         fourth = ((own - mean) ** 4).mean(axis=0)
         with np.errstate(divide="ignore", invalid="ignore"):
             error = np.sqrt(np.maximum(fourth - deviation**4, 0.0) / (4.0 * len(own))) / deviation
@@ -142,34 +151,37 @@ def _spreads(rows: Influence, errors: Array) -> list[Spread]:
 
 
 class Sizes(Protocol):
-    """Errors of the sizes of made parts: (parts, 1), and (parts, angles) for the error of the profile."""
+    """Errors of the sizes of made parts, (parts, 1); of the profile (parts, angles).
+
+    Each call gives the errors of another made size, even for the same word.
+    """
 
     def size(self, name: str) -> Array:
-        """Error of a size, mm or rad, by the word of its dimension; each call gives that of another made size."""
+        """Error of a size, mm or rad, by the word of its dimension."""
 
     def radius(self, name: str) -> Complexes:
-        """Displacement, mm, complex, by the word of its dimension; each call gives that of another made size."""
+        """Displacement, complex, mm, by the word of its dimension."""
 
 
 class RandomSizes:
-    """Sizes of parts drawn at random: each call of `size` or `radius` draws the errors of another made size."""
+    """Random errors of the sizes of parts: each call of `size` or `radius` draws those of another made size."""
 
     def __init__(self, rng: np.random.Generator, budget: Budget, count: int, angles: int) -> None:
-        """Prepare random errors for `count` parts at `angles` shaft angles, within the budget's tolerances."""
+        """Prepare random errors for `count` parts, of the profile at each of `angles` shaft angles."""
         self._rng, self._count, self._angles = rng, count, angles
         self._tolerances = dict(budget.tolerances)
 
     def size(self, name: str) -> Array:
-        """Random error of a size, mm or rad, uniform within its tolerance; 0 for a size without one.
+        """Error of a size, mm or rad, uniform within its tolerance, 0 for a size without one.
 
-        The shape is (parts, 1), and (parts, angles) for the error of the profile.
+        The shape is (parts, 1), for the profile (parts, angles).
         """
         tolerance = self._tolerances.get(name) or 0.0
         shape = (self._count, self._angles if name == PROFILE else 1)
         return tolerance * self._rng.uniform(-1.0, 1.0, shape) if tolerance else np.zeros(shape)
 
     def radius(self, name: str) -> Complexes:
-        """Displacement (parts, 1), mm, complex: the full radius in a random direction; 0 without a tolerance."""
+        """Displacement (parts, 1), complex, mm: the full radius in a random direction, 0 without a tolerance."""
         tolerance, shape = self._tolerances.get(name) or 0.0, (self._count, 1)
         turned = self._rng.uniform(0.0, TURN, shape) if tolerance else np.zeros(shape)
         displacement: Complexes = tolerance * np.exp(1j * turned)
@@ -182,20 +194,25 @@ class RandomSizes:
 def _follower_errors(
     design: Design, budget: Budget, angles: Array, read: Mapping[str, Contour] | None
 ) -> Callable[[Sizes], Array]:
+    """Function that gives the errors of a follower, (contacts, parts, n), mm or rad, at the angles (n,)."""
     places = contact_places(design, budget, angles, read)
     nominal = design.motion.travel(angles, 0)[0]
     count, discs = len(places), design.follower.arrangement.discs
     on_one_arm = count > 1 and places[0].contact.apart != 0.0
 
     def errors(sizes: Sizes) -> Array:
-        each = errors_at_contacts(sizes, count, discs, on_one_arm=on_one_arm)
-        return np.stack([positions(place, off) - nominal for place, off in zip(places, each, strict=True)])
+        by_contact = errors_at_contacts(sizes, count, discs, on_one_arm=on_one_arm)
+        return np.stack([positions(place, off) - nominal for place, off in zip(places, by_contact, strict=True)])
 
     return errors
 
 
 def errors_at_contacts(sizes: Sizes, count: int, discs: int, *, on_one_arm: bool) -> list[SizeErrors]:
-    """Errors of the sizes at each of `count` contacts; an error that contacts share is drawn once."""
+    """Errors of the sizes at each of `count` contacts, in their order.
+
+    An error that contacts share is drawn once: the bore's and the first touch's where there is one disc (`discs`), and
+    the squareness of faces that are not `on_one_arm`.
+    """
     size, radius = sizes.size, sizes.radius
     turned, shaft, pivot = size("angle"), radius("shaft"), radius("pivot") + size("follower.arm.pivot")
     offset, guide = size("follower.offset"), size("guide")
@@ -224,12 +241,13 @@ def errors_at_contacts(sizes: Sizes, count: int, discs: int, *, on_one_arm: bool
 def contact_places(
     design: Design, budget: Budget, shaft: Array, read: Mapping[str, Contour] | None
 ) -> list[ContactPlace]:
-    """Each contact of a follower at shaft angles (n,), rad, on exact metal or on the contours `read`, by surface.
+    """Each contact of a follower on its metal at shaft angles (n,), rad, in the order of the contacts.
 
-    Raises LostError where a contour takes more than two million points.
+    The metal is exact, or that of the contours `read`, by the names of their surfaces. Raises LostError where a read
+    contour takes more than two million points.
     """
     contacts, preload = design.follower.contacts, design.exact.preload
-    if preload is not None:  # their errors are those beside what each overlaps the metal by
+    if preload is not None:  # touches reduced by their overlaps just fit the metal
         contacts = tuple(map(eased_contact, contacts, preload.overlaps))
     position = design.motion.travel(shaft, 1)
     parameters = list(design.motion.parameters(shaft, shaft).values())
@@ -242,7 +260,7 @@ def contact_places(
             metal: Metal = read_metal(contact, surface.side, read[contact.surface], intended, _wander(budget, intended))
         elif i < len(parameters):
             metal = ExactMetal(surface.curve, surface.side, parameters[i])
-        else:  # opposite on one surface, or on one of its own, whose parameter is the shaft angle
+        else:  # the angle of the guide on the first contact's surface, else the shaft angle
             turned = contact.turned if contact.surface == contacts[0].surface else 0.0
             metal = ExactMetal(surface.curve, surface.side, shaft + turned)
         own = contact.own(position[0])
@@ -253,7 +271,7 @@ def contact_places(
 def _wander(budget: Budget, intended: Complexes) -> float:
     """Estimate of how far a contact moves along the contour, mm: the sum of all tolerances of the budget.
 
-    Those of angles count times the greatest distance of an intended contact from the shaft.
+    Tolerances of angles, rad, count times the greatest distance of an intended contact from the shaft.
     """
     size = float(np.abs(intended).max())
     return sum((tolerance or 0.0) * (size if DIMENSIONS[name].angle else 1.0) for name, tolerance in budget.tolerances)
@@ -270,22 +288,24 @@ def _linkage_errors(
 ) -> Callable[[Sizes], Array]:
     """Function that gives the errors of a linkage's output, (2, parts, n), mm or rad, by either pair of faces.
 
-    They follow from the support function of the metal, with each loop closed anew; where one does not close near its
-    intended place the function raises LostError.
+    They follow from the support function of the metal, with the loop of each part closed anew. The function raises
+    LostError where a loop does not close near its intended place.
     """
     if design.driven is None:
         raise ValueError("there is no linkage")
     mechanism = design.driven.mechanism
     loop, breadth, lift = mechanism.linkage, mechanism.breadth, mechanism.lift
     contour = None if read is None else read[""]
-    # the metal of a file overlaps the faces by a preload
+    # contours of files overlap the faces by the preload; the lift is that without it
     overlap = 0.0 if contour is None or design.exact.preload is None else design.exact.preload.overlaps[0]
     relative = mechanism.relative(angles)
     motion = mechanism.at(relative, 0)
     frame, nominal = motion.frame[0], motion.output[0]
-    coupler = motion.solved.linkage.slide.c[0] - breadth + motion.faces[1][0]  # from the frame's side to the joint
+    # from the frame's face +x to the joint, by X = w + r3 - S1
+    coupler = motion.solved.linkage.slide.c[0] - breadth + motion.faces[1][0]
 
     def errors(sizes: Sizes) -> Array:
+        # errors of the sizes that both pairs of faces share
         size, radius = sizes.size, sizes.radius
         turned, bore, moved = size("angle"), radius(BORE), radius("shaft")
         wider, higher, squared = size("breadth"), size("breadth"), size("face")
@@ -294,7 +314,7 @@ def _linkage_errors(
         longer, joint = size("linkage.coupler"), size("linkage.joint_offset")
 
         def support(direction: Array) -> Array:
-            """Distance from the shaft, mm, of the made cam's tangent across a direction in the cam's axes as meant."""
+            """Distance from the shaft, mm, of the made cam's tangent across `direction`, rad in the intended axes."""
             inner = direction - turned
             flat = np.mod(inner, TURN).ravel()
             own = (lift.derivatives(flat, 0)[0] if contour is None else contour.support(flat).q).reshape(inner.shape)
@@ -302,11 +322,12 @@ def _linkage_errors(
             return reach
 
         def output(sense: int) -> Array:
-            """Output where the frame bears with its faces +y and -x (1), or with those opposite (-1)."""
+            """Output where the frame bears with its faces +y and -x (`sense` 1), or with the opposite two (-1)."""
             near, far = size(PROFILE), size(PROFILE)
 
             def off(change: Array) -> tuple[Array, Array]:
-                """Distance from closing, mm, and output where the frame stands further by a change, rad."""
+                """Distance by which the loop is open, mm, and output where the frame is turned by `change`, rad."""
+                # place of the mid-line by the y face, then of the joint along it by the x face
                 direction = relative + change
                 y_face = support(direction + (1 - sense) * QUARTER) + near
                 middle = sense * (y_face - 0.5 * (breadth + higher))
@@ -329,8 +350,8 @@ def _linkage_errors(
 def _closed(off: Callable[[Array], tuple[Array, Array]], start: Array) -> Array:
     """Output of linkages (parts, angles), mm or rad, where their loops close.
 
-    `off` gives the distance from closing, mm, and the output, for changes of the frame's angle, rad; the search begins
-    at the changes `start`. Raises LostError where a loop does not close near there.
+    `off` gives the distance by which the loops are open, mm, and the output, for changes of the frame's angle, rad. The
+    search begins at the changes `start`, with the slope there. Raises LostError where a loop does not close near there.
     """
     change = start
     slope = (off(change + STEP)[0] - off(change - STEP)[0]) / (2.0 * STEP)

@@ -35,7 +35,7 @@ FIGURES = {
 
 
 def _outcome(recipe: Recipe, design: Design) -> BudgetOutcome | None:
-    """The outcome of a recipe's budget; None without one, and of a linkage that does not turn."""
+    """The outcome of a recipe's budget; None without a budget, and for a linkage that does not turn."""
     from camgeo.capabilities.budget.outcome import outcome
 
     budget = recipe.of(Budget)
@@ -48,11 +48,11 @@ def _measure(
 ) -> Mapping[str, Measured]:
     from camgeo.capabilities.budget.outcome import error_unit
 
-    result, unit = _outcome(recipe, design), error_unit(recipe)
-    if result is None:
+    budgeted, unit = _outcome(recipe, design), error_unit(recipe)
+    if budgeted is None:
         why = "budget is not given" if recipe.of(Budget) is None else "the mechanism does not turn"
         return {name: Measured(None, "mm", detail=why) for name in names}
-    sums = {WORST: result.sums["worst"], RSS: result.sums["rss"]}
+    sums = {WORST: budgeted.sums["worst"], RSS: budgeted.sums["rss"]}
     scale = math.degrees(1.0) if unit == "deg" else 1.0
     return {name: Measured(scale * sums[name].value, unit, degrees(sums[name].at)) for name in names}
 
@@ -61,8 +61,8 @@ def _examine(recipe: Recipe, design: Design, _files: Sequence[FileResult], clock
     from camgeo.capabilities.budget.section import section
 
     with clock.stage("budget"):
-        result = _outcome(recipe, design)
-        return Results() if result is None else Results({"budget": section(recipe, result)})
+        budgeted = _outcome(recipe, design)
+        return Results() if budgeted is None else Results({"budget": section(recipe, budgeted)})
 
 
 def _panel(report: dict[str, Any]) -> str:
@@ -74,24 +74,27 @@ def _panel(report: dict[str, Any]) -> str:
 def _plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
     """Plot of both sums of errors over the turn at the worst contact, with the permitted error.
 
-    Empty without a budget.
+    Empty without a budget, and for a linkage that does not turn.
     """
     from camgeo.capabilities.budget.outcome import motion_unit
     from camgeo.capabilities.budget.section import sums_over_turn
     from camgeo.report.page.curves import Plot, Series
     from camgeo.report.page.followers import SHAFT
 
-    result = _outcome(recipe, design)
-    if result is None:
+    budgeted = _outcome(recipe, design)
+    if budgeted is None:
         return ()
-    sums, (scale, unit) = sums_over_turn(recipe, result, SHAFT), motion_unit(recipe)
+    sums, (scale, unit) = sums_over_turn(recipe, budgeted, SHAFT), motion_unit(recipe)
     rows = (Series("worst", sums["worst"]), Series("rss", sums["rss"]))
-    limits = ((scale * result.budget.permitted, "permitted"),)
+    limits = ((scale * budgeted.budget.permitted, "permitted"),)
     return (Plot("Budget", unit, rows, limits=limits, axis="error", holds=(0.0,)),)
 
 
 def _profile(recipe: Recipe) -> tuple[str, float] | None:
-    """Key and width, mm, of the contour's tolerance zone, twice the plus and minus; None where it is to be found."""
+    """Field and width, mm, of the contour's tolerance zone: twice the profile's plus and minus.
+
+    None where the recipe does not state it.
+    """
     budget = recipe.of(Budget)
     stated = None if budget is None else dict(budget.tolerances).get(PROFILE)
     return None if stated is None else (f"budget.tolerances.{PROFILE}", 2.0 * stated)

@@ -26,8 +26,9 @@ LEFT_STEP = 10  # degrees from one angle of what is left to the next
 
 
 def section(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
-    """Entry `budget` of a report: lengths in the recipe's unit, angles in degrees."""
+    """Entry `budget` of a report as plain data: lengths in the recipe's unit, angles in degrees."""
     budget, (scale, unit) = outcome.budget, motion_unit(recipe)
+    # what each budget has; further keys below need a field of the budget or a second contact
     entry: dict[str, Any] = {
         "permitted": scale * budget.permitted,
         "unit": unit,
@@ -76,7 +77,7 @@ def _rate(recipe: Recipe, rate: Worst) -> dict[str, Any]:
 
 
 def _greatest(recipe: Recipe, outcome: BudgetOutcome, output: Output) -> dict[str, float]:
-    """The greatest sums of one output over the angles."""
+    """The greatest sums of one output over the angles, by kind, in the motion's unit of the report."""
     scale, _ = motion_unit(recipe)
     return {kind: scale * float(total(outcome.influence, output, kind).max()) for kind in SUMS}
 
@@ -84,7 +85,7 @@ def _greatest(recipe: Recipe, outcome: BudgetOutcome, output: Output) -> dict[st
 def _dimension(recipe: Recipe, outcome: BudgetOutcome, name: str, tolerance: float | None) -> dict[str, Any]:
     """Row of the report on one dimension: its tolerance, its influence at the worst angle, and its greatest influence.
 
-    Influences are in the motion's unit by the dimension's unit; `share` is the dimension's part of the worst sum.
+    Influences are in the motion's unit by the dimension's unit; `share` is the dimension's fraction of the worst case.
     """
     rows, sum_ = outcome.influence, outcome.sums["worst"]
     place = int(np.argmin(np.abs(rows.shaft - sum_.at)))
@@ -126,7 +127,7 @@ def _split(recipe: Recipe, split: Split) -> dict[str, Any]:
 
 
 def _over_turn(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
-    """Part of each dimension in the worst case every `SHARES_STEP` degrees, at the worst contact, in mm or degrees."""
+    """What each dimension adds to the worst case, in the report's unit, by the worst contact, every 5 degrees."""
     rows, (scale, _) = outcome.influence, motion_unit(recipe)
     step = max(len(rows.shaft) * SHARES_STEP // 360, 1)
     added = by_name(rows, powers(rows, outcome.worst_output, "worst")[:, ::step])
@@ -137,8 +138,8 @@ def _over_turn(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
 def sums_over_turn(recipe: Recipe, outcome: BudgetOutcome, shaft: Array) -> dict[Sum, Array]:
     """Worst case and root of the sum of squares (n,) at shaft angles (n,), rad, by kind.
 
-    They are in degrees or the recipe's unit of length, at the contact that is worst of all, linear between the angles
-    of the outcome.
+    They are in degrees or the recipe's unit of length, by the contact at which the worst case is greatest, and
+    interpolated linearly between the angles of the outcome.
     """
     rows, (scale, _) = outcome.influence, motion_unit(recipe)
     sums = {kind: total(rows, outcome.worst_output, kind) for kind in SUMS}

@@ -1,4 +1,4 @@
-"""A split of tolerances to start from."""
+"""Starter recipe with a budget."""
 
 from __future__ import annotations
 

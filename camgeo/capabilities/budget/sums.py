@@ -1,4 +1,7 @@
-"""Sums of errors over the shaft angle, in the worst case and as the root of the sum of squares, and their shares."""
+"""Sums of errors over the shaft angle, in the worst case and as the root of the sum of squares, and their shares.
+
+In shapes c is the number of contributions and n that of shaft angles.
+"""
 
 from __future__ import annotations
 
@@ -14,18 +17,21 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 Sum: TypeAlias = Literal["worst", "rss"]
-POWERS: Mapping[Sum, int] = {"worst": 1, "rss": 2}
+POWERS: Mapping[Sum, int] = {"worst": 1, "rss": 2}  # q: a sum is (sum of addends^q)^(1/q)
 
 
 def powers(influence: Influence, output: Output, sum_: Sum) -> Array:
-    """Addends (c, n) of the contributions at each angle: influence times tolerance, or its square; 0 for a free one."""
+    """Influence times tolerance of each contribution at each angle, (c, n); under "rss" its square.
+
+    It is 0 for a free dimension.
+    """
     tolerances = np.array([contribution.tolerance or 0.0 for contribution in influence.contributions])
     added: Array = (output.weights * tolerances[:, None]) ** POWERS[sum_]
     return added
 
 
 def total(influence: Influence, output: Output, sum_: Sum) -> Array:
-    """The sum of errors at each angle, (n,), mm or rad of the motion: the worst case, or the root sum of squares."""
+    """The sum of errors at each angle (n,), mm or rad of the motion: worst case, or root of the sum of squares."""
     added: Array = powers(influence, output, sum_).sum(axis=0) ** (1.0 / POWERS[sum_])
     return added
 
@@ -33,17 +39,18 @@ def total(influence: Influence, output: Output, sum_: Sum) -> Array:
 def spread(influence: Influence, output: Output) -> Array:
     """Standard deviation of the error at each angle (n,), mm or rad of the motion.
 
-    Sizes are taken as spread evenly within their tolerances t, displacements as of the full radius r in any direction.
-    With influences w it is sqrt(sum (w t)^2/3 + sum (w r)^2/2).
+    It is sqrt(sum (w t)^2/3 + sum (w r)^2/2) by the influences w. Sizes are taken as uniform within their tolerances t;
+    displacements have the full radius r in a random direction.
     """
     squares = powers(influence, output, "rss")
+    # a contribution of one component is a size, of two a displacement
     parts = [3.0 if contribution.rows.shape[1] == 1 else 2.0 for contribution in influence.contributions]
     deviation: Array = np.sqrt((squares / np.array(parts)[:, None]).sum(axis=0))
     return deviation
 
 
 def by_name(influence: Influence, rows: Array) -> dict[str, Array]:
-    """Rows (c, n) of contributions added up by the words of their dimensions, each (n,)."""
+    """Sum (n,) of the `rows` (c, n) of each dimension's contributions, by the word of the dimension."""
     names = [contribution.name for contribution in influence.contributions]
     return {name: rows[[i for i, own in enumerate(names) if own == name]].sum(axis=0) for name in influence.names}
 
@@ -51,8 +58,8 @@ def by_name(influence: Influence, rows: Array) -> dict[str, Array]:
 class Worst(NamedTuple):
     """The greatest sum of errors over all angles and contacts: `value`, mm or rad of the motion.
 
-    `at` is its shaft angle, rad, and `contact` the name of its contact. `shares` has each dimension's part of the sum,
-    or of the sum of squares; the parts add up to 1.
+    `at` is its shaft angle, rad, and `contact` the name of its contact. `shares` has the fraction of the sum, or of the
+    sum of squares, that each dimension makes; all are 0 where the sum is 0.
     """
 
     value: float
@@ -62,7 +69,7 @@ class Worst(NamedTuple):
 
 
 def worst(influence: Influence, sum_: Sum) -> Worst:
-    """The greatest sum over the angles and contacts, and the dimensions' shares of it, all 0 where the sum is 0."""
+    """The greatest sum over the angles and contacts, and the share of each dimension in it."""
     outputs = influence.outputs()
     sums = np.stack([total(influence, output, sum_) for output in outputs])
     contact, place = np.unravel_index(int(np.argmax(sums)), sums.shape)

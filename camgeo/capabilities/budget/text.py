@@ -16,7 +16,7 @@ HEAD = ("dimension", "plus and minus", "influence", "share")
 
 
 def table(recipe: Recipe, entry: dict[str, Any]) -> str:
-    """Lines of text on a budget, from the plain data of `library.budget`."""
+    """Text of several lines on a budget, from the plain data `entry` that `library.budget` returns."""
     unit, kind = entry["unit"], entry["sum"]
     chosen, other = entry[kind], "rss" if kind == "worst" else "worst"
     verdict = f"{recipe.name}: {entry['permitted']:.6g} {unit} {'kept' if entry['kept'] else 'NOT KEPT'}"
@@ -35,13 +35,13 @@ def table(recipe: Recipe, entry: dict[str, Any]) -> str:
         lines.append(f"  play from {play['min']:.4g} to {play['max']:.4g} {unit}{limit}")
     if "velocity" in entry:
         rates = entry["velocity"]
-        both = " and ".join(f"by {TITLES[kind]} {_place(rates[kind])}" for kind in SUMS)
-        lines.append(f"  velocity, with {rates['waves']} waves of the profile: {both}")
+        sums = " and ".join(f"by {TITLES[kind]} {_place(rates[kind])}" for kind in SUMS)
+        lines.append(f"  velocity, with {rates['waves']} waves of the profile: {sums}")
     return "\n".join([*lines, *_simulated(entry.get("parts"))])
 
 
 def _row(row: dict[str, Any]) -> tuple[str, ...]:
-    """Cells of a dimension; a tolerance that was free is rounded to the safe side."""
+    """Cells of a dimension, in the order of `HEAD`; a tolerance that was free is rounded down."""
     free = row["free"] and row["tolerance"] > 0.0
     size = downward(row["tolerance"]) if free else f"{row['tolerance']:.6g}"
     return (
@@ -53,6 +53,7 @@ def _row(row: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _simulated(parts: dict[str, Any] | None) -> list[str]:
+    """Lines on the simulated parts; none without a simulation."""
     if parts is None:
         return []
     if "why" in parts:
@@ -69,4 +70,5 @@ def _simulated(parts: dict[str, Any] | None) -> list[str]:
 
 
 def _place(sum_: dict[str, Any]) -> str:
+    """Value of a sum, with its unit, and the shaft angle."""
     return f"{sum_['value']:.4g} {sum_['unit']} at {sum_['at_deg']:.4g} deg"
