@@ -5,7 +5,7 @@ P1 - P2 = F is what the cam must give. With the levers h of `kin.follower.contac
 a stiffness k along the normal is K = k h^2 along the travel.
 
 In a guide with friction P1 - P2 = F + rub (|R_near| + |R_far|), R the reactions of its ends to both contacts together.
-What the contacts yield stays the same: P1/K1 + P2/K2 is the room that the metal lacks.
+What the contacts yield together stays the same: P1/K1 + P2/K2 is the travel by which the metal is too wide for them.
 """
 
 from __future__ import annotations
@@ -36,17 +36,17 @@ class Elastic(NamedTuple):
 
     @property
     def loses_first(self) -> Array:
-        """Force F below 0 (n,) from which on downwards contact 1 is lost and contact 2 bears alone."""
+        """Force F below 0 (n,) below which contact 1 is lost and contact 2 bears alone."""
         force: Array = -self.preload * (1.0 + self.second / self.first)
         return force
 
     @property
     def together(self) -> Array:
-        """Share of the stiffness along the travel that is left while both contacts bear (n,): 1, as nothing rubs."""
+        """Share of the stiffness along the travel that is left while both contacts bear (n,): 1 without friction."""
         return np.ones_like(self.preload)
 
     def apart(self, gap: Array) -> Elastic:
-        """Give the pair on metal that leaves a wider `gap` (n,) along the travel: the preload falls, at most to 0."""
+        """The pair on metal narrower by `gap` (n,), mm or rad along the travel: the preload falls, at most to 0."""
         compliance = 1.0 / self.first + 1.0 / self.second
         return self._replace(preload=np.maximum(self.preload - gap / compliance, 0.0))
 
@@ -66,8 +66,8 @@ class Elastic(NamedTuple):
 class Guided(NamedTuple):
     """Two contacts under preload on a stem that rubs in its guide, at n places.
 
-    elastic  both without friction
-    ends     what 1 N of P of each contact bears on the near end of the guide and the far one, N (2, 2, n)
+    elastic  both contacts without friction
+    ends     reactions of the guide's near and far end to 1 N of P of either contact, N (2, 2, n): contact, end
     rub      coefficient of friction, above 0 where the stem moves as contact 1 pushes, 0 at rest (n,)
     """
 
@@ -77,9 +77,9 @@ class Guided(NamedTuple):
 
     @property
     def alone(self) -> Array:
-        """Force along the travel per unit of P of contact 1 and of 2 (2, n), bearing alone, less guide friction.
+        """Force along the travel, less guide friction, by the P of contact 1 and of contact 2 (2, n) that bears alone.
 
-        It is a number: 1 without friction. At 0 or below the stem jams.
+        This ratio is 1 without friction. At 0 or below the stem jams.
         """
         rubbing = self.rub * np.abs(self.ends).sum(axis=1)
         shares: Array = np.array([1.0 - rubbing[0], 1.0 + rubbing[1]])
@@ -131,12 +131,12 @@ def preloaded(levers: tuple[Array, Array], overlaps: tuple[float, float], stiffn
     """Two contacts under the preload that follows from their overlaps with the metal, the follower unloaded.
 
     levers     h1, h2 (n,) of `kin.follower.contact_lines`
-    overlaps   o1, o2 along the normals of the contacts
-    stiffness  k1, k2 along the normals
+    overlaps   o1, o2 along the normals of the contacts, mm
+    stiffness  k1, k2 along the normals, N/mm
 
     The follower yields until both contacts press alike. Its travel lacks x = o1/h1 + o2/h2. The preload is P = x/(1/K1
     + 1/K2), K = k h^2.
     """
-    room = overlaps[0] / levers[0] + overlaps[1] / levers[1]
+    overlap = overlaps[0] / levers[0] + overlaps[1] / levers[1]
     first, second = (k * lever**2 for k, lever in zip(stiffness, levers, strict=True))
-    return Elastic(room / (1.0 / first + 1.0 / second), first, second)
+    return Elastic(overlap / (1.0 / first + 1.0 / second), first, second)

@@ -1,4 +1,4 @@
-"""One turn of a follower train that may lose contact: what is noted of it on the way, and the sum of that."""
+"""One turn of a follower train that may lose contact: its record event by event, and the figures of the whole turn."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ _MOST_NEAR = 24  # samples beside which an extreme is looked for at once
 
 
 class Turn(NamedTuple):
-    """One turn: greatest and least contact force with shaft angles, meetings, and what was lost of contact.
+    """One turn: greatest and least contact force, N or N m, impacts, and loss of contact; shaft angles are in rad.
 
     `least` is 0 where contact was lost. `impacts` counts the meetings with a face, `velocity` (m/s or rad/s) is the
-    greatest at one, and `free` the shaft angle spent without contact, radians. `bore` are the faces that did.
+    greatest of them, 0 without any. `free` is the shaft angle spent without contact. `bore` are the faces, LOWER and
+    UPPER, that bore the follower.
     """
 
     greatest: float
@@ -51,7 +52,7 @@ class ContactSamples:
     knots: Array
 
     def until(self, stretch: int, time: float) -> ContactSamples:
-        """The samples up to a time on a stretch, that time among them."""
+        """The samples up to a time on a stretch, rad since its start, with any sample at that time."""
         later = (self.stretch > stretch) | ((self.stretch == stretch) & (self.time > time))
         count = int(np.argmax(later)) if later.any() else len(later)
         return ContactSamples(self.stretch[:count], self.time[:count], self.level[:count], self.knots)
@@ -82,7 +83,10 @@ class Log:
         span_of: Callable[[int], Span],
         hit: tuple[int, float] | None = None,
     ) -> None:
-        """Note the extremes of a contact's force, up to its end in (stretch, time)."""
+        """Note the extremes of the force of a contact, LOWER or UPPER, over its samples.
+
+        `span_of(stretch)` gives the force between samples. Contact ends at `hit`, stretch and time, or goes on.
+        """
         end = float(samples.phi(-1) if hit is None else samples.knots[hit[0]] + hit[1])
         self.reached = end
         self._bore.add(contact)
@@ -106,7 +110,7 @@ class Log:
         step = np.diff(level)
         before = np.append(0.0, np.where(joined, step, 0.0))  # how much a sample is above the one before
         after = np.append(np.where(joined, -step, 0.0), 0.0)
-        # a parabola is an eighth of what its samples lie apart above them, at most
+        # the top of a parabola is above its highest sample by an eighth of their difference at most
         known = sign * (self._greatest if sign > 0.0 else self._least)[0]
         apart = np.maximum(before, after)
         near = np.flatnonzero((before >= 0.0) & (after >= 0.0) & (level + 0.5 * apart > known) & (apart > 0.0))

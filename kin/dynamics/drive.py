@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 
 AIM = 1e-14  # of a fitted acceleration, as a share of the greatest
-_ROUNDING = 1e-15  # of the greatest position: what an acceleration may hold of it, as that of a circle R - q does
-TOLERANCE = 1e-10  # what is accepted where halving helps no more
+_ROUNDING = 1e-15  # of the greatest position: rounding of it in an acceleration, as of a circle R - q
+TOLERANCE = 1e-10  # share of the greatest acceleration that is accepted where halving helps no more
 _TAIL = 3  # coefficients that must have died away
 _FIRST = 12  # stretches, at least: none is wider than 30 degrees
 _GAIN = 0.1  # a halving that leaves more of the last coefficients than this has come to rounding
@@ -38,7 +38,7 @@ _CLOSE = 1e-9  # rad: breaks that are closer are one
 
 
 class DriveError(CamgeoError, ValueError):
-    """A motion that no series follows; `at` is the shaft angle, radians."""
+    """A motion that no series follows; `at` is the shaft angle, radians, near which it does not."""
 
     def __init__(self, message: str, angle: float) -> None:
         super().__init__(f"{message} near {math.degrees(angle) % 360.0:.6g} degrees")
@@ -68,11 +68,11 @@ class Drive:
         return 0.5 * np.diff(self.knots)
 
     def find(self, phi: float) -> int:
-        """Stretch of a shaft angle in [0, 2 pi]; at a knot the one that begins there."""
+        """Index of the stretch of a shaft angle in [0, 2 pi]; at a knot the stretch that begins there."""
         return min(max(int(np.searchsorted(self.knots, phi, side="right")) - 1, 0), len(self) - 1)
 
     def split(self, parts: Indices) -> Drive:
-        """Cut each stretch into `parts` (m,) equal ones; for shaft speeds close to one another that is done once."""
+        """Cut each stretch into `parts` (m,) equal ones; a second call with the same parts gives the same drive."""
         if parts.max(initial=1) == 1:
             return self
         key = parts.tobytes()
@@ -107,11 +107,12 @@ class Drive:
 def drives(
     motions: Sequence[Excitation], also: Sequence[float] | Array = (), tolerance: float = TOLERANCE
 ) -> list[Drive]:
-    """Fit motions on common knots: all their breaks, the angles `also`, and what the tolerance needs in between.
+    """Fit motions on common knots, a drive each: all their breaks, the angles `also`, rad, and halvings in between.
 
     Stretches are halved until the last coefficients of every acceleration are below AIM times the greatest in its
-    motion, or come to rounding below `tolerance` times it; DriveError is raised where they do not.
+    motion, or stop falling below `tolerance` times it. Raises DriveError where they do not.
     """
+    # first stretches: between the knots, none wider than a twelfth of a turn
     ends = np.concatenate([*(np.mod(motion.breaks, TURN) for motion in motions), np.mod(np.asarray(also), TURN)])
     ends = distinct(np.concatenate([[0.0, TURN], ends]))
     ends = ends[np.append(np.diff(ends) > _CLOSE, True)]
@@ -130,6 +131,7 @@ def drives(
             scale[i] = max(scale[i], float(size[1]), float(size[0]) * _ROUNDING / AIM)
             series.append(fitted(rows))
             tail[i] = np.abs(series[i][2, :, -_TAIL:]).max(axis=1)
+        # a stretch is done if the tail of every motion is small, or has stopped falling at rounding
         least = np.maximum(scale, np.finfo(float).tiny)[:, None]
         open_ = ((tail > AIM * least) & ((tail > tolerance * least) | (tail < _GAIN * before))).any(axis=0)
         done.append((low[~open_], [part[:, ~open_] for part in series]))

@@ -1,4 +1,4 @@
-"""When contact ends: how far it is from that along one stretch, and the first instant at which it does.
+"""When contact ends: the force of a contact along one stretch, and the first instant at which the contact ends.
 
 Along a stretch everything is a Chebyshev series and a free motion. Windows of samples show where the state may end;
 the instant itself is found with plain floats, since a turn may hold thousands.
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 FREE, LOWER, UPPER = 0, 1, -1
 
-_GRID = 17  # places of a closer look, of which each round keeps an eighth
-_ROUNDS = 15  # after which what is left of two steps is lost in rounding
+_GRID = 17  # places of a closer look; each round keeps an eighth of the interval
+_ROUNDS = 15  # after which the interval is lost in rounding
 _FIRST, _MOST = 64, 4096  # samples of a window
 _COARSE = 32  # steps in what is left of a stretch, at least
 _EPS = float(np.finfo(float).eps)
@@ -41,13 +41,13 @@ class SpentError(CamgeoError):
 
 @dataclass()
 class Work:
-    """Places looked at so far, and the most that may be; a search for one instant counts as CALL."""
+    """Count of the places looked at so far, and the most that are permitted; each search costs CALL places more."""
 
     most: int
     places: int = 0
 
     def take(self, places: int) -> None:
-        """Count so many places, and CALL for the search itself. Raises SpentError beyond the most."""
+        """Count a number of places, and CALL for the search itself. Raises SpentError beyond the most."""
         self._count(places + CALL)
 
     def stride(self) -> None:
@@ -61,10 +61,7 @@ class Work:
 
 
 class Span(Protocol):
-    """One state of contact along one stretch: its level is above 0 while it lasts. Times count from the knot.
-
-    A level below `limit`, a little below 0, has ended; above it that may be rounding.
-    """
+    """One state of contact along one stretch: its level is above 0 while it lasts. Times count from the knot, rad."""
 
     @property
     def limit(self) -> float:
@@ -84,14 +81,17 @@ class Span(Protocol):
 
 
 class Driven(NamedTuple):
-    """Chebyshev series on a stretch of half width `half`, rad: of p (DEGREE + 1,), or of p and p' (2, DEGREE + 1)."""
+    """Chebyshev series (DEGREE + 1,) of a driven figure on a stretch of half width `half`, rad."""
 
     series: Array
     half: float
 
 
 class Pressed:
-    """The contact force on one face: one series of its driven part, weights of z and v in its free part."""
+    """The contact force on one face along a stretch, a Span: a series of its driven part, and a free motion.
+
+    `weights` are the factors of z and z' of the free motion in the force.
+    """
 
     def __init__(self, driven: Driven, free: Free, weights: tuple[float, float], limit: float) -> None:
         self.limit = limit
@@ -101,16 +101,16 @@ class Pressed:
 
     def at(self, time: Array) -> Array:
         """Contact force (n,), N or N m, at times (n,) from the knot, rad."""
-        cosine, other = self._free.oscillator.basis(time - self._free.since)
+        cosine, sine = self._free.oscillator.basis(time - self._free.since)
         first, second = self._factors
-        value: Array = together(self._series[None], time / self._half - 1.0)[0] + first * cosine + second * other
+        value: Array = together(self._series[None], time / self._half - 1.0)[0] + first * cosine + second * sine
         return value
 
     def once(self, time: float) -> float:
         """Contact force, N or N m, at one time from the knot, rad."""
-        cosine, other = self._free.oscillator.basis_at(time - self._free.since)
+        cosine, sine = self._free.oscillator.basis_at(time - self._free.since)
         first, second = self._factors
-        return value(self._plain, time / self._half - 1.0) + first * cosine + second * other
+        return value(self._plain, time / self._half - 1.0) + first * cosine + second * sine
 
 
 def windows(begin: float, end: float, fine: float, step: float) -> Iterator[Array]:
@@ -130,9 +130,9 @@ def windows(begin: float, end: float, fine: float, step: float) -> Iterator[Arra
 
 
 def first(span: Span, time: Array, level: Array, work: Work) -> float | None:
-    """First time at which a state has ended, found from samples of it (n,) at times (n,); None if it never is.
+    """First time, rad, at which a state has ended, from its levels (n,) at times (n,), rad; None if it lasts till then.
 
-    A state that begins where it ends at once has lasted for no time: the first sample may be the answer.
+    It is the first of the times where the state has ended there already.
     """
     ended = np.flatnonzero(level < span.limit)
     until = int(ended[0]) if len(ended) else len(level)
@@ -161,7 +161,7 @@ def dips(level: Array) -> NDArray[np.intp]:
 
 
 def _dip(span: Span, low: float, high: float, work: Work) -> float | None:
-    """A time between two at which a state has ended; None where the dip between them is not that deep."""
+    """A time between `low` and `high`, rad, at which a state has ended; None where its level dips less deep."""
     for _ in range(_ROUNDS):
         time = np.linspace(low, high, _GRID)
         work.take(_GRID)
@@ -219,7 +219,7 @@ def _interpolated(places: tuple[float, float, float], levels: tuple[float, float
 
 
 def top(span: Span, low: float, high: float, sign: float, work: Work) -> tuple[float, float]:
-    """Greatest level times sign between two times, and its time, by closer and closer looks."""
+    """The level between two times, rad, whose product with `sign` is greatest, and its time, by closer looks."""
     for _ in range(_ROUNDS):
         time = np.linspace(low, high, _GRID)
         work.take(_GRID)

@@ -1,7 +1,7 @@
 """The motions that drive a follower train: as intended, or as a file's contour gives them by contact.
 
 Every motion is in SI, metres or radians, and pushes towards greater positions. A follower that is held from two sides
-has two: the one that pushes it up, and the one that keeps it below, see `kin.dynamics.impacts`.
+has two motions: of the face that pushes it up, and of the face that keeps it below.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Intended:
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles, rad, at which the acceleration or a derivative of it may jump."""
+        """Shaft angles (m,), rad, at which the acceleration or a derivative of it may jump."""
         return self.follower.motion.breaks
 
     def rows(self, phi: Array) -> Array:
@@ -70,9 +70,9 @@ class OfMechanism:
 
 
 def intended_faces(follower: Follower, play: float | None) -> Faces:
-    """Drives of the intended motion: one face under a spring where `play` is None, else two, `play` apart.
+    """Faces of the intended motion: one under a spring where `play` is None, else two, `play` apart, m or rad.
 
-    Play is in metres or radians. With a spring a double follower rests on its first face or roller.
+    With a spring a double follower rests on its first face or roller.
     """
     motion: Excitation = Intended(follower)
     if play is None:
@@ -82,12 +82,11 @@ def intended_faces(follower: Follower, play: float | None) -> Faces:
 
 
 def measured_faces(follower: Follower, contour: Contour, play: float | None) -> Faces:
-    """Drives of the motion, m or rad, that a file's contour gives by contact: one where `play` is None, else two.
+    """Faces of the motion that a file's contour gives by contact: one under a spring where `play` is None, else two.
 
-    Play is in metres or radians.
-    Flat faces feel every piece as it is; under a roller splines are arcs. With play both sides are the contour's own:
-    what it is too large takes from the play. ContactError where the follower finds no contact, ValueError for play
-    with a follower that has one contact.
+    `play`, m or rad, is that of the intended contour: a contour that is too large takes from it. Flat faces follow
+    every piece as it is; under a roller splines are arcs. Raises ContactError where the follower finds no contact,
+    ValueError for play with a follower of one contact.
     """
     contacts = follower.contacts
     if play is not None and len(contacts) == 1:

@@ -35,7 +35,11 @@ class Depth(NamedTuple):
 
 
 class Path:
-    """A place and its rate on a stretch, series (2, DEGREE + 1); `ahead` is how far into it the times' zero lies."""
+    """A place, m or rad, and its rate on a stretch of half width `half`, rad, by series (2, DEGREE + 1).
+
+    Times count from `ahead`, rad, behind the start of the stretch. `size`, `rate`, `bend` and `bend_rate` bound the
+    place and three derivatives by radian of shaft.
+    """
 
     def __init__(self, series: Array, half: float, ahead: float = 0.0) -> None:
         rate = series[1]
@@ -47,17 +51,18 @@ class Path:
         self.bend_rate = float(np.abs(bend @ DERIVATIVE.T).sum()) / half
 
     def at(self, time: float) -> Depth:
-        """Place and two derivatives at a time, rad of shaft."""
+        """Place and two derivatives by radian of shaft at a time, rad."""
         x = (time + self._ahead) / self.half - 1.0
         place, rate, bend = (self._series @ np.cos(math.acos(min(max(x, -1.0), 1.0)) * ORDERS)).tolist()
         return Depth(place, rate, bend)
 
 
 class Flight:
-    """A train in flight along one stretch; `contact` is k and c of either face, `gap` the distance between them.
+    """A train in flight along one stretch; `contact` is k and c of either face, `gap` the distance between the faces.
 
-    A force above -`limit` counts as contact. A flight is far longer than what a stiff contact is pressed in by: `limit`
-    is moved down by its rounding.
+    k and c are in N/m or N m/rad, c for rates by radian of shaft. `path` and `free` make up z over the lower face. A
+    force above -`limit` counts as contact; `limit` is moved down by the rounding of the flight, which is far longer
+    than a stiff contact's depth.
     """
 
     def __init__(self, path: Path, free: Free, contact: tuple[float, float], gap: Path | None, limit: float) -> None:
@@ -79,9 +84,9 @@ class Flight:
         self._limit = limit - _ROUNDING * _EPS * (k * (place + 2.0 * path.half * abs(free.v)) + c * rate)
 
     def landed(self, begin: float, end: float, work: Work) -> float | None:
-        """First time from `begin` on at which a face bears; None if that is not before `end`.
+        """First time from `begin` on, rad from the knot, at which a face bears; None if that is not before `end`.
 
-        A flight that begins where a face bears has lasted for no time.
+        It is `begin` where a face bears already. Raises SpentError beyond the places that `work` permits.
         """
         if self._level(begin) < self._limit:
             return begin
@@ -100,7 +105,7 @@ class Flight:
         return None
 
     def face(self, time: float) -> int:
-        """Face, LOWER or UPPER, whose contact force is the greater at a time."""
+        """Face, LOWER or UPPER, whose contact force is the greater at a time, rad from the knot."""
         depths = self._depths(time)
         return LOWER if len(depths) == 1 or self._force(depths[0]) > self._force(depths[1]) else UPPER
 
@@ -121,14 +126,14 @@ class Flight:
         return -max(self._force(depth) for depth in self._depths(time))
 
     def _stride(self, time: float) -> tuple[float, bool]:
-        """How long surely no face bears, and whether within _AHEAD times that the nearest one's force only grows."""
-        room = -self._limit / self._contact[0]
+        """Time, rad, for which no face can bear, and whether the nearest's force only grows in _AHEAD times that."""
+        allowed = -self._limit / self._contact[0]
         shortest, single = math.inf, False
         for depth, bends in zip(self._depths(time), self._bends, strict=True):
             pressed = depth.place + self._lag * depth.rate, depth.rate + self._lag * depth.bend
             # that a face bears takes both figures above 0: the one that stays below for longer counts
             stride, rate, bend = max(
-                (_below(room - place, rate, bend), rate, bend)
+                (_below(allowed - place, rate, bend), rate, bend)
                 for (place, rate), bend in zip((depth[:2], pressed), bends, strict=True)
             )
             if stride < shortest:
@@ -137,7 +142,7 @@ class Flight:
 
 
 def _below(room: float, rate: float, bend: float) -> float:
-    """How long rate t + bend t^2/2 stays below `room`, which is not at all where that is below 0."""
+    """Time t up to which rate t + bend t^2/2 stays below `room`: 0 where `room` is below 0, inf where always."""
     if room < 0.0:
         return 0.0
     root = math.sqrt(rate * rate + 2.0 * bend * room)

@@ -46,7 +46,10 @@ _Event = tuple[int, int, float, Array]  # the state that begins, stretch and tim
 
 
 class ContactState(NamedTuple):
-    """Contact, and z and z' over the face that bears; over the lower face where none does. By radian of shaft."""
+    """Contact, FREE, LOWER or UPPER, and z, m or rad, and z' by radian of shaft, over the face that bears.
+
+    In free flight they are over the lower face.
+    """
 
     contact: int
     z: float
@@ -55,9 +58,10 @@ class ContactState(NamedTuple):
 
 @dataclass(frozen=True)
 class Course:
-    """Turns in order from the start, the state at the end of the last, and whether that repeats the one before.
+    """Turns in order from the start, the state at the end of the last, and whether that turn repeats the one before.
 
-    `stopped` says where and why a course was given up before that, else it is None; `places` is how many it took.
+    `stopped` is a text of where and why the course was given up, None where it was not; `places` is the number of
+    places looked at.
     """
 
     turns: tuple[Turn, ...]
@@ -78,16 +82,18 @@ def course(
 ) -> Course:
     """Follow a train over at most `turns` turns, until one repeats the one before.
 
-    `faces` are the drives below and above, on common knots, in SI; without one above the preload alone keeps the train
-    down. It begins at rest, x' = 0, at shaft angle 0: on the lower face with its spring as at rest, or halfway between
-    the faces. Raises DynamicsError where the faces leave no play. Where a turn has more than 20 000 changes of contact,
-    or `most` places have been looked at, the course ends with the last whole turn, which may be none.
+    `faces` are the drives below and above, on common knots, in SI; without a face above the preload alone keeps the
+    train down. Without a `start` it begins at rest, x' = 0, at shaft angle 0: on the lower face with its spring as at
+    rest, or halfway between the faces. Where a turn has more than 20 000 changes of contact, or `most` places have been
+    looked at, the course ends with the last whole turn, which may be none. Raises DynamicsError where the faces leave
+    no play and for a speed `rpm` that is not above 0, StiffnessError for damping so strong that the response needs too
+    many parts.
     """
     return _Course(train.at(rpm), faces, most).run(turns, start)
 
 
 def least_gap(lower: Drive, upper: Drive) -> tuple[float, float]:
-    """Least distance from the lower to the upper face, at the best of nine angles a stretch, and where."""
+    """Least distance, m or rad, from lower to upper face among nine angles a stretch, and its shaft angle, rad."""
     x = np.linspace(-1.0, 1.0, 9)
     gap = together(upper.position - lower.position, x)
     stretch, place = np.unravel_index(np.argmin(gap), gap.shape)
@@ -181,14 +187,14 @@ class _Course:
             time = phi - float(drive.knots[place])
 
     def _relative_to_face(self, current: Array, before: int, after: int, phi: float) -> Array:
-        """The state over the face that counts after an event."""
+        """The state (2,) over the face of the contact that begins, from that over the face of the contact before."""
         if UPPER not in (before, after):
             return current
         gap = self._gaps(np.array([phi]))[:, 0]
         return current - gap if after == UPPER else current + gap
 
     def _gaps(self, phi: Array) -> Array:
-        """Upper less lower face, and its rate, (2, n), at phi (n,). Raises DynamicsError without an upper one."""
+        """Upper less lower face, and its rate, (2, n), at phi (n,). Raises DynamicsError without an upper face."""
         if self.gap is None:
             raise DynamicsError("there is no upper face")
         at = np.clip(np.searchsorted(self.lower.knots, phi, side="right") - 1, 0, len(self.lower) - 1)
@@ -196,7 +202,7 @@ class _Course:
         return np.stack([evaluated(self.gap[:, row], at, x) for row in (0, 1)])
 
     def _pressed_face(self, contact: int, place: int, free: Free) -> Pressed:
-        """A face that bears on one stretch."""
+        """The force of a face that bears on one stretch."""
         half = float(self.responses[contact].half[place])
         k, c = self.contact
         series = self.forces[contact].series[place]
@@ -241,7 +247,7 @@ class _Course:
                 return current
 
     def _before_ringing(self, here: Response, place: int, count: int, before: Array) -> tuple[Array, int]:
-        """States (2, m) at the starts of the next `count` stretches, and how many come before one that rings long."""
+        """States (2, m), filled in for the next `count` stretches, and how many of these come before long swings."""
         starts = np.zeros((2, len(here)))
         starts[:, place : place + count] = here.starts(before, place, count)
         fine = here.swings(starts, np.arange(place, place + count))[1]
@@ -274,7 +280,10 @@ class _Course:
         return here.moved(place, free, end)
 
     def _next_in(self, contact: int, starts: Array, place: int, count: int, log: Log) -> _Event | None:
-        """Look along whole stretches at once, from the states (2, m) at their starts: the next event in them."""
+        """The next event in `count` whole stretches from `place` on, looked along at once; None without any.
+
+        `starts` (2, m) are the states at their starts.
+        """
         here = self.responses[contact]
         at = here.samples(starts, np.arange(place, place + count))
         self.work.take(len(at.time))
@@ -298,7 +307,10 @@ class _Course:
         return None
 
     def _far(self, starts: Array, samples: ResponsePlaces, log: Log) -> _Event | None:
-        """Fly along whole stretches; those on which a face may be met between two samples are looked along alone."""
+        """The first meeting with a face in flight along whole stretches; None without any.
+
+        Only stretches on which a face may be met between two samples are looked along.
+        """
         here = self.responses[FREE]
         knots = here.drive.knots
         first_, last = int(samples.stretch[0]), int(samples.stretch[-1])
@@ -330,7 +342,7 @@ class _Course:
 
     @cached_property
     def _driven_bends(self) -> Array:
-        """What `_bends` are without free motion."""
+        """Part (m,) of `_bends` that is not of the free motion."""
         here = self.responses[FREE]
         bounds: Array = np.abs(here.v @ DERIVATIVE.T).sum(axis=1) / here.half
         if self.gap is not None:

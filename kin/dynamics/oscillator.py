@@ -77,16 +77,16 @@ class Oscillator:
 
     @property
     def weights(self) -> tuple[float, float]:
-        """Numbers p and q, per unit of time, by which the two motions of `basis`, one and other, make the propagator.
+        """Numbers p and q, per unit of time, by which the two motions C and S of `basis` make the propagator.
 
-        It is zz = one + p other, zv = other, vz = -r^2 other, vv = one - q other.
+        It is zz = C + p S, zv = S, vz = -r^2 S, vv = C - q S.
         """
         if self.swings:
             return self.decay, self.decay
         return self.decay + self.split, self._gentle if self.split else self.decay
 
     def basis(self, time: Array) -> tuple[Array, Array]:
-        """Values (n,) of two motions at times (n,), 0 or above; every free motion is a linear combination of both.
+        """Values (n,) of two motions C and S at times (n,), 0 or above, of which every free motion is a combination.
 
         Underdamped, e^(-at) cos bt and e^(-at) sin(bt)/b; else e^(-(a + b) t) and e^(-at) sinh(bt)/b; b is `split`.
         """
@@ -100,7 +100,7 @@ class Oscillator:
         return np.exp(-(a + b) * time), np.exp(-self._gentle * time) * time * share
 
     def basis_at(self, time: float) -> tuple[float, float]:
-        """Values at one time, 0 or above, of the two motions of `basis`, as plain floats: searches call it often."""
+        """Values of the motions C and S of `basis` at one time, 0 or above, as plain floats: searches call it often."""
         a, b = self.decay, self.split
         if self.swings:
             fade, phase = math.exp(-a * time), b * time
@@ -110,13 +110,13 @@ class Oscillator:
         return math.exp(-(a + b) * time), math.exp(-self._gentle * time) * time * share
 
     def propagator(self, time: Array) -> Propagator:
-        """Propagator over times (n,), 0 or above: the matrix that takes a state to the one that much later."""
-        cosine, other = self.basis(time)
+        """Propagator over times (n,), 0 or above: the matrix that takes a state to the state after that time."""
+        cosine, sine = self.basis(time)
         p, q = self.weights
-        return Propagator(cosine + p * other, other, -self.square * other, cosine - q * other)
+        return Propagator(cosine + p * sine, sine, -self.square * sine, cosine - q * sine)
 
     def factors(self, states: Array, z: float, v: float) -> tuple[Array, Array]:
-        """Factors (n,) of the two motions of `basis` in z times place and v times rate, from states (2, n)."""
+        """Factors (n,) of C and S of `basis` in the figure z * place + v * rate of free motions from states (2, n)."""
         p, q = self.weights
         place, rate = states
         return z * place + v * rate, z * (p * place + rate) - v * (self.square * place + q * rate)
@@ -138,7 +138,7 @@ class Oscillator:
     def amplification(self) -> float:
         """Greatest |r^2 z| that a force of modulus at most 1 can ever drive up: the integral of |r^2 kernel|.
 
-        coth(pi a/2b) for one that swings, infinite without damping; 1 for one that does not.
+        It is coth(pi a/(2 b)) for an oscillator that swings, infinite without damping, and 1 for any other.
         """
         if not self.swings:
             return 1.0
@@ -154,7 +154,9 @@ class Oscillator:
         return math.hypot(left, 2.0 * math.exp(-0.5 * self.decay * TURN) * _sine_of_half_turns(self.split))
 
     def periodic(self, gained: Array) -> Array:
-        """State y (2,) that returns after a turn: (1 - Phi) y = `gained` (2,), the state that a turn from rest ends in.
+        """State y (2,) that returns after a turn: (1 - Phi) y = `gained` (2,), the end of a turn that begins at rest.
+
+        Phi is the propagator over a turn.
 
         Raises ValueError where `detuning` is 0.
         """
@@ -172,7 +174,7 @@ class Oscillator:
 
 @dataclass(frozen=True)
 class Free:
-    """The free motion from a state (z, v) at the time `since`: a sum of the two of `Oscillator.basis`."""
+    """The free motion from a state (z, v) at the time `since`: a sum of the motions C and S of `Oscillator.basis`."""
 
     oscillator: Oscillator
     since: float
@@ -180,18 +182,18 @@ class Free:
     v: float
 
     def summed(self, z: float, v: float) -> tuple[float, float]:
-        """Factors of the two motions in z * place + v * velocity."""
+        """Factors of C and S in the figure z * place + v * rate."""
         p, q = self.oscillator.weights
-        other = z * (p * self.z + self.v) + v * (-self.oscillator.square * self.z - q * self.v)
-        return z * self.z + v * self.v, other
+        sine_factor = z * (p * self.z + self.v) + v * (-self.oscillator.square * self.z - q * self.v)
+        return z * self.z + v * self.v, sine_factor
 
     def after(self, time: float) -> tuple[float, float]:
-        """State (z, z') a time after the start, 0 or above."""
-        cosine, other = self.oscillator.basis_at(time - self.since)
+        """State (z, z') at a time, counted as `since` is and no earlier."""
+        cosine, sine = self.oscillator.basis_at(time - self.since)
         (a, b), (c, d) = self.summed(1.0, 0.0), self.summed(0.0, 1.0)
-        return a * cosine + b * other, c * cosine + d * other
+        return a * cosine + b * sine, c * cosine + d * sine
 
 
 def _sine_of_half_turns(x: float) -> float:
-    """sin(pi x), exact in the reduction."""
+    """sin(pi x), with x reduced by whole turns without rounding."""
     return math.sin(math.pi * (x - 2.0 * round(0.5 * x)))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _NEAR = 0.03  # of the range: samples a quarter of a radian apart miss less of a peak
 _MOST_NEAR = 256
-_GRID, _ROUNDS = 17, 4  # places between two neighbours, of which each round keeps an eighth; then a parabola is good
+_GRID, _ROUNDS = 17, 4  # places between two neighbours; each round keeps an eighth, and after the last a parabola does
 _FOR_VALUE = 3  # rounds after which its height is good to 1e-11 of a swing, if not its place
 _AT_ONCE = 400_000  # samples, which bounds the memory
 
@@ -36,7 +36,7 @@ class PeaksOverTurn(NamedTuple):
 class ResponseFigure:
     """A figure w0 z + w1 z' + q over a response, q a polynomial on each stretch.
 
-    `series` (m, DEGREE + 1) is that of w0 p + w1 p' + q, `z` and `v` are w0 and w1, which the free motion takes.
+    `series` (m, DEGREE + 1) is the driven part w0 p + w1 p' + q; `z` and `v` are w0 and w1, for the free motion.
     """
 
     response: Response
@@ -46,7 +46,7 @@ class ResponseFigure:
 
     @staticmethod
     def of(response: Response, z: float, v: float, more: Array | float = 0.0) -> ResponseFigure:
-        """Make the figure z * z + v * z' + more, `more` (m, DEGREE + 1) a series or a constant."""
+        """Make the figure w0 z + w1 z' + q, w0 `z` and w1 `v`; q is `more`, a series (m, DEGREE + 1) or constant."""
         series = z * response.p + v * response.v
         if isinstance(more, float):
             series[:, 0] += more
@@ -58,16 +58,16 @@ class ResponseFigure:
         """Values (n,) of the figure at the samples, from the states (2, m) at the starts of all stretches."""
         response, stretch = self.response, samples.stretch
         first, second = self._free(starts)
-        cosine, other = response.oscillator.basis(samples.time)
+        cosine, sine = response.oscillator.basis(samples.time)
         x = samples.time / response.half[stretch] - 1.0
-        value: Array = evaluated(self.series, stretch, x) + first[stretch] * cosine + second[stretch] * other
+        value: Array = evaluated(self.series, stretch, x) + first[stretch] * cosine + second[stretch] * sine
         return value
 
     def together(self, starts: Array, x: Array, polynomials: Array) -> Array:
         """Values (m, n) at the same x (n,) in [-1, 1] of all m stretches; `polynomials` (DEGREE + 1, n) of these x."""
         first, second = self._free(starts)
-        cosine, other = self.response.oscillator.basis(self.response.half[:, None] * (1.0 + x))
-        values: Array = self.series @ polynomials + first[:, None] * cosine + second[:, None] * other
+        cosine, sine = self.response.oscillator.basis(self.response.half[:, None] * (1.0 + x))
+        values: Array = self.series @ polynomials + first[:, None] * cosine + second[:, None] * sine
         return values
 
     def _free(self, starts: Array) -> tuple[Array, Array]:
@@ -75,10 +75,10 @@ class ResponseFigure:
         return self.response.oscillator.factors(starts - self.response.ends[0].T, self.z, self.v)
 
     def peaks(self, starts: Array, stretches: Indices) -> PeaksOverTurn:
-        """Extremes over the given stretches, ends included, from the states at their starts.
+        """Extremes over the given stretches (n,), ends included, from the states (2, m) at the starts of all stretches.
 
-        Found by sampling every swing, and closer and closer between the neighbours of each sample that may be the
-        highest.
+        They are found by sampling every swing, and closer and closer between the neighbours of each sample that may be
+        the highest.
         """
         parts: list[tuple[ResponsePlaces, Array]] = []
         for chosen in np.array_split(stretches, max(1, len(stretches) * 64 // _AT_ONCE)):
@@ -89,13 +89,17 @@ class ResponseFigure:
         return PeaksOverTurn(*self._highest(starts, parts, 1.0), *self._highest(starts, parts, -1.0))
 
     def least(self, starts: Array, samples: ResponsePlaces) -> float:
-        """Least value at samples (n,) in time order that show every swing, and between neighbours."""
+        """Least value at and between samples (n,) in time order, which must show every swing.
+
+        `starts` (2, m) are the states at the starts of all stretches.
+        """
         return self._highest(starts, [(samples, self.at(starts, samples))], -1.0, _FOR_VALUE)[0]
 
     def _highest(
         self, starts: Array, parts: list[tuple[ResponsePlaces, Array]], sign: float, rounds: int = _ROUNDS
     ) -> tuple[float, float]:
-        """Greatest value times sign, and where."""
+        """The value whose product with `sign` is greatest, and its shaft angle, rad."""
+        # samples close to the best that are no lower than both neighbours may hold the peak between these
         best = max(float((sign * values).max()) for _, values in parts)
         spread = best + max(float((-sign * values).max()) for _, values in parts)
         least = best - _NEAR * spread
@@ -127,7 +131,10 @@ def narrowed(
     sign: float,
     rounds: int = _ROUNDS,
 ) -> tuple[Array, Array]:
-    """Greatest value times sign between two times in each stretch (n,), and its time: (n,), (n,)."""
+    """Values (n,) whose product with `sign` is greatest between two times (n,) on stretches (n,), and their times.
+
+    Times are rad since the start of the stretch.
+    """
     low, high = between
     grid, rows = np.linspace(0.0, 1.0, _GRID), np.arange(len(stretch))
     best, where = np.empty(len(stretch)), low
@@ -148,7 +155,10 @@ def narrowed(
 
 
 def beside(stretch: Indices, places: Indices) -> tuple[Indices, Indices]:
-    """The samples before and after the given ones, or themselves at the ends of a stretch; `stretch` of each sample."""
+    """Indices (k,) of the samples before and after `places` (k,), or of these themselves at the ends of a stretch.
+
+    `stretch` (n,) is the stretch of each sample.
+    """
     before, after = np.maximum(places - 1, 0), np.minimum(places + 1, len(stretch) - 1)
     before = np.where(stretch[before] == stretch[places], before, places)
     after = np.where(stretch[after] == stretch[places], after, places)

@@ -46,11 +46,11 @@ _SILENT = 1e-11  # a free motion below this share of all else is not sampled for
 
 
 class StiffnessError(CamgeoError, ValueError):
-    """A response that needs more parts than can be held: so strong a damping that one root lies far below the other."""
+    """A response that needs too many parts: damping so strong that one rate of decay lies far below the other."""
 
 
 class ResponsePlaces(NamedTuple):
-    """Places in time order: stretch (n,) and time since its start (n,)."""
+    """Places in time order: stretch (n,) and time since its start (n,), rad of shaft."""
 
     stretch: Indices
     time: Array
@@ -58,7 +58,7 @@ class ResponsePlaces(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Forcing:
-    """g = -s'' - kappa s - f; kappa the preload spring's own square frequency, f its force by the mass."""
+    """g = -s'' - kappa s - f: `kappa` is k_p/(m W^2) by the preload spring's rate, `constant` f = F/(m W^2)."""
 
     kappa: float = 0.0
     constant: float = 0.0
@@ -96,7 +96,7 @@ class Response:
 
     @cached_property
     def _steps(self) -> tuple[Array, Array, Array]:
-        """Per stretch: p, p' at its start (m, 2) and at its end (m, 2), and the matrix of the free motion (m, 4)."""
+        """Per stretch: p and p' at its start (m, 2) and end (m, 2), and the propagator of the free motion (m, 4)."""
         at_start = np.stack([self.p @ AT_START, self.v @ AT_START], axis=1)
         at_end = np.stack([self.p.sum(axis=1), self.v.sum(axis=1)], axis=1)
         matrix = np.stack(self.oscillator.propagator(np.diff(self.drive.knots)), axis=1)
@@ -108,14 +108,14 @@ class Response:
         return self._steps[:2]
 
     def starts(self, state: Array, first: int, count: int) -> Array:
-        """States (2, count) at the starts of stretches first, first + 1, ..., from that at the end of the one before.
+        """States (2, count) at the starts of the stretches `first`, `first` + 1, ..., behind the drive's jumps there.
 
-        `state` (2,) is taken before the jump of the drive's velocity at the first of them.
+        `state` (2,) is that at the end of the stretch before, ahead of the jump at the first.
         """
         return self._run(state, first, count)[0]
 
     def end(self, state: Array, first: int, count: int) -> Array:
-        """State (2,) at the end of `count` stretches, from that before the first."""
+        """State (2,) at the end of `count` stretches from `first` on; `state` (2,) is ahead of the first jump."""
         return self._run(state, first, count)[1]
 
     def _run(self, state: Array, first: int, count: int) -> tuple[Array, Array]:
@@ -131,7 +131,7 @@ class Response:
         return np.array(states).T.reshape(2, -1), np.array([z, v])
 
     def free(self, stretch: int, time: float, state: Array) -> Free:
-        """The free motion on a stretch from the state (2,) at a time since its start."""
+        """The free motion on a stretch from the state (2,) at a time, rad since its start."""
         p, v = self._driven(stretch, time)
         return Free(self.oscillator, time, float(state[0]) - p, float(state[1]) - v)
 
@@ -140,7 +140,7 @@ class Response:
         return value(self.p[stretch].tolist(), x), value(self.v[stretch].tolist(), x)
 
     def moved(self, stretch: int, free: Free, time: float) -> Array:
-        """State (z, z') (2,) at a time since the start of a stretch: free motion plus p."""
+        """State (z, z') (2,) at a time, rad since the start of a stretch: free motion plus p."""
         p, v = self._driven(stretch, time)
         z, rate = free.after(time)
         return np.array([p + z, v + rate])
@@ -148,8 +148,8 @@ class Response:
     def periodic(self) -> Array:
         """State (2,) at the end of the turn that a turn brings back to itself; ValueError at exact resonance.
 
-        The second pass starts where free motion is small already, so that its phase, good to r eps, is not what limits
-        the result.
+        The second pass starts where free motion is small already, so that its phase, good to r eps, does not limit the
+        result.
         """
         state = np.zeros(2)
         for _ in range(_PASSES):
@@ -157,10 +157,10 @@ class Response:
         return state
 
     def lasting(self, bound: Array, stretches: Indices) -> Array:
-        """Time (n,), rad of shaft, after which a free motion of size `bound` (n,) has faded to nothing beside p.
+        """Time (n,), rad, after which a free motion of size `bound` (n,) on stretches (n,) has faded below notice.
 
-        It is 0 on stretches where p is not the slow solution, and inf without damping. "Nothing" is a fixed share of
-        the greatest p, plus the greatest bound, of all the stretches passed.
+        That is a fixed share of the greatest p plus the greatest bound of these stretches. The time is 0 where p is not
+        the slow solution, and inf without damping.
         """
         size = _SILENT * (np.abs(self.p[stretches]).sum(axis=1).max(initial=0.0) + bound.max(initial=0.0))
         alive = self.slow[stretches] & (bound > size)
@@ -182,7 +182,7 @@ class Response:
         return lasting, fine
 
     def samples(self, starts: Array, stretches: Indices) -> ResponsePlaces:
-        """Places that show every swing of z on the given stretches, ends included, from the states at all starts."""
+        """Places that show every swing of z on stretches (n,), ends included; `starts` (2, m) are all states."""
         width = 2.0 * self.half[stretches]
         lasting, fine = self.swings(starts, stretches)
         each = fine + _SAMPLES
@@ -201,6 +201,7 @@ def response(oscillator: Oscillator, drive: Drive, forcing: Forcing) -> Response
 
     Raises StiffnessError where that takes more than 100 000 parts.
     """
+    # the slow solution loses no digits where a stretch is long against the free motion and g is of low degree
     half = drive.half
     series = forcing.series(drive)
     noise = _NOISE * float(np.abs(series).max(initial=0.0))
@@ -232,7 +233,7 @@ _EYE = np.eye(DEGREE + 1)
 
 
 def _slow(oscillator: Oscillator, g: Array, half: Array) -> tuple[Array, Array]:
-    """Polynomial solution p and p' of the forces g (k, n); half widths (k,)."""
+    """Series (k, DEGREE + 1) of the slow solution p and of p' for the forces g (k, DEGREE + 1); half widths (k,)."""
     first = (2.0 * oscillator.decay / oscillator.square / half)[:, None, None]
     second = (1.0 / oscillator.square / half**2)[:, None, None]
     matrix = _EYE + first * DERIVATIVE + second * (DERIVATIVE @ DERIVATIVE)
@@ -242,7 +243,10 @@ def _slow(oscillator: Oscillator, g: Array, half: Array) -> tuple[Array, Array]:
 
 
 def _from_rest(oscillator: Oscillator, g: Array, half: Array, owner: Indices) -> tuple[Array, Array]:
-    """Solution p and p', both 0 at the start, of the forces g (k, n); half widths (k,), alike for one owner (k,)."""
+    """Series of the solution p and of p', both 0 at the start, for the forces g, (k, DEGREE + 1) each.
+
+    `half` (k,) are half widths, alike for the parts of one `owner` (k,), rising, whose matrix they share.
+    """
     once, twice = INTEGRAL, INTEGRAL @ INTEGRAL
     first = np.flatnonzero(np.diff(owner, prepend=-1))
     scale = half[first]

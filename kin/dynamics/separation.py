@@ -44,12 +44,12 @@ class FloatSpeed:
     """Shaft speed from which on contact is lost (float).
 
     rpm       least speed at which the contact force of the steady state falls to 0; None where that is not reached
-              while the natural frequency is above half the shaft's
-    at        shaft angle at which contact is lost there, radians
-    rigid_rpm the same for a follower without compliance; None where it never floats, and where the motion has corners
-    between   where the search was given up: a speed up to which contact holds, and one that floats, or None where none
-              was found
-    places    how many places were looked at
+              while the natural frequency is above half the shaft's, and where the search was given up
+    at        shaft angle at which contact is lost there, radians; None without `rpm`
+    rigid_rpm the same speed for a follower without compliance; None where it never floats or the motion has corners
+    between   where the search was given up, else None: a speed, rpm, up to which contact holds, and a speed that
+              floats, None where none was found
+    places    number of places looked at
     """
 
     rpm: float | None
@@ -60,10 +60,12 @@ class FloatSpeed:
 
 
 def float_speed(train: Train, drive: Drive, *, most: int = MOST_WORK) -> FloatSpeed:
-    """Find the speed at which float begins, to 1e-11 of itself; without preload or damping raises DynamicsError.
+    """Find the speed at which float begins, to 1e-11 of itself.
 
-    (Without damping every speed at which a harmonic of the drive resonates floats, and these have no least one.) A
-    search that has looked at `most` places ends, with the speeds between which float begins.
+    A search that has looked at `most` places ends, with the speeds between which float begins. Raises DynamicsError
+    without preload, without damping (every speed at which a harmonic of the drive resonates floats then, and these have
+    no least) and where the preload spring is slack over a part of the turn; StiffnessError for damping so strong that
+    the response needs too many parts.
     """
     if train.preload <= 0.0:
         raise DynamicsError("without preload contact is lost at any speed")
@@ -84,7 +86,7 @@ def float_speed(train: Train, drive: Drive, *, most: int = MOST_WORK) -> FloatSp
 
 
 class _Search:
-    """`holds` is a speed up to which contact holds, `floats` the least known one that floats."""
+    """Search for the least speed that floats: contact holds up to `holds`, and is lost at `floats`, None if unknown."""
 
     def __init__(self, train: Train, drive: Drive, work: Work) -> None:
         self.train, self.drive, self.work = train, drive, work
@@ -162,7 +164,7 @@ class _Search:
 
 
 def _floats(train: Train, drive: Drive, rpm: float) -> float | None:
-    """A speed above another that floats; None where none is found."""
+    """A speed above `rpm` that floats; None where none is found."""
     work, last = Work(MOST_WORK // 6), _last(train)
     try:
         while rpm < last:
@@ -175,7 +177,7 @@ def _floats(train: Train, drive: Drive, rpm: float) -> float | None:
 
 
 def _floats_below(train: Train, drive: Drive, holds: float, floats: float) -> float:
-    """A speed that floats, no greater than `floats`: by halving, at resonances alone, as if all above it floated."""
+    """A speed that floats, no greater than `floats`: by halving, as if all speeds above it floated at resonances."""
     work, low = Work(MOST_WORK // 6), holds
     try:
         while floats > _STRIDE * low:
@@ -212,7 +214,7 @@ def _rigid_float_rpm(train: Train, drive: Drive) -> float | None:
 
 
 def _last(train: Train) -> float:
-    """Speed, turns a minute, beyond which none is sought."""
+    """Speed, turns a minute, up to which the search goes."""
     return train.natural / _LEAST_RATIO * 60.0 / TURN
 
 

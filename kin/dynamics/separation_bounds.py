@@ -55,7 +55,10 @@ _CURVED = ORDERS**2 * (ORDERS**2 - 1.0) / 3.0  # greatest second derivative of e
 
 
 class Look:
-    """Steady state of a train at one shaft speed, with proved lower bounds of its contact force."""
+    """Steady state of a train at one shaft speed, with proved lower bounds of its contact force, N or N m.
+
+    Symbols q, h and b, and the kicks, are those of the module; the response has m stretches.
+    """
 
     def __init__(self, train: Train, drive: Drive, rpm: float, work: Work) -> None:
         self.train, self.rpm, self.work = train, rpm, work
@@ -151,7 +154,7 @@ class Look:
         return lowest
 
     def moments(self, decay: float) -> Array:
-        """Sums (3, m) of size * age^k, k = 0, 1, 2, of all kicks up to the start of each stretch, that one's included.
+        """Sums (3, m) of size * age^k, k = 0, 1, 2, of all kicks up to and at the start of each stretch; ages in rad.
 
         Their sizes fade by `decay` per rad. A kick on a stretch itself has the age of the stretch, and has not faded
         before its end.
@@ -182,7 +185,7 @@ class Look:
 
     @cached_property
     def turn(self) -> Array:
-        """Sums (m,) of the sizes of the last turn's kicks, as they have faded at each stretch."""
+        """Sums (m,) of the sizes of the last turn's kicks, as faded at the start of each stretch."""
         turn: Array = -math.expm1(-TURN * self.fading) * self.ages[0]
         return turn
 
@@ -241,12 +244,12 @@ class Look:
 
     @cached_property
     def reached(self) -> float:
-        """Least contact force over the turn, N or N m, which is reached."""
+        """Least contact force over the turn, N or N m, by samples and closer looks: a force that is reached."""
         windows = np.flatnonzero(self.lowest.ravel() <= self._forces.min())
         return self._figure.least(self.states, self._samples(windows))
 
     def _samples(self, windows: Indices) -> ResponsePlaces:
-        """Places on windows (n,), rising, of all stretches in their order, each with a swing to either side."""
+        """Places on windows (n,), rising numbers over all stretches, with a little more to either side."""
         stretch, part = np.divmod(windows, PARTS)
         begins = np.flatnonzero(np.diff(windows, prepend=-2) != 1)
         begins = np.union1d(begins, np.flatnonzero(np.diff(stretch, prepend=-1)))

@@ -44,15 +44,21 @@ MOST_DAMPING = 10.0  # times critical: beyond, the damper is the drive and the m
 
 
 class DynamicsError(CamgeoError, ValueError):
-    """A figure that no follower train has, or a result that this train has not at this speed.
-
-    The message says which.
-    """
+    """A figure that no follower train has, or a result that a train does not have at a speed; its text names it."""
 
 
 @dataclass(frozen=True)
 class Train:
-    """A follower train, in SI: see the module. Raises DynamicsError for figures that no train has."""
+    """A follower train, in SI; the figures of a follower that swings are about its pivot.
+
+    mass       kg or kg m^2, above 0
+    damping    of contact or train, N s/m or N m s/rad, at most MOST_DAMPING times critical
+    stiffness  of contact or train, N/m or N m/rad, above 0
+    preload    force of the preload spring at s = 0, N or N m
+    rate       of the preload spring, N/m or N m/rad
+
+    Raises DynamicsError for figures out of these bounds, below 0 or not finite.
+    """
 
     mass: float
     damping: float
@@ -86,7 +92,7 @@ class Train:
         return self.natural / speed(rpm)
 
     def at(self, rpm: float) -> Running:
-        """The train at a shaft speed above 0, revolutions a minute; DynamicsError for another."""
+        """The train at a shaft speed, revolutions a minute; DynamicsError for one that is not finite and above 0."""
         if not (math.isfinite(rpm) and rpm > 0.0):
             raise DynamicsError(f"the shaft speed must be above 0, not {rpm!r} rpm")
         return Running(self, rpm)
@@ -131,20 +137,23 @@ class Running:
         return Oscillator(0.0, self.train.rate / self.inertia)
 
     def response(self, drive: Drive) -> Response:
-        """Response z, as if in contact all round, with one face that follows the drive."""
+        """Response z, m or rad, as if in contact all round, with a face that follows the drive.
+
+        Raises StiffnessError for damping so strong that the response needs too many parts.
+        """
         return response(self.bound, drive, self.forcing)
 
     def force(self, response: Response, side: int = 1) -> ResponseFigure:
-        """Contact force of a response over the drive's face; `side` -1 for a face that pushes downward."""
+        """Contact force, N or N m, of a response over the drive's face; `side` is -1 for a face that pushes down."""
         k, c = self.train.stiffness, self.train.damping * self.speed
         return ResponseFigure.of(response, -side * k, -side * c)
 
     def transfer(self, count: int) -> Complexes:
-        """Contact force by the cam's position, N/m or N m/rad, complex: of waves 0 to count // 2 a turn, in contact."""
+        """Contact force by the cam's position in contact, complex, N/m or N m/rad, for 0 to count // 2 waves a turn."""
         train, waves = self.train, self.speed * np.arange(count // 2 + 1)
         link = train.stiffness + 1j * train.damping * waves
-        rest = train.rate - train.mass * waves**2
-        transfer: Complexes = link * rest / (link + rest)
+        mass_and_spring = train.rate - train.mass * waves**2
+        transfer: Complexes = link * mass_and_spring / (link + mass_and_spring)
         return transfer
 
     def static(self, position: float) -> float:
@@ -166,9 +175,9 @@ class Steady:
     """Steady state, which repeats every turn, on the assumption that contact holds; a force below 0 refutes that.
 
     force       extremes of the contact force, N or N m, with shaft angles, rad
-    residual    vibration in each of the dwells passed to `steady`
+    residual    vibration in each of the dwells given to `steady`, in their order
     state       z and z' at shaft angle 0, before any jump there
-    response    for values in between
+    response    z over the whole turn
     """
 
     force: PeaksOverTurn
@@ -195,11 +204,12 @@ class Steady:
 
 
 def steady(train: Train, drive: Drive, rpm: float, rests: Sequence[tuple[float, float]] = ()) -> Steady:
-    """Find the steady state of a train in contact, exactly; `rests` are dwells (from, to) in radians.
+    """Find the steady state of a train in contact, exactly; `rests` are dwells (from, to), radians of shaft.
 
-    The ends of rests should be knots of the drive (`drives(..., also=...)`). Raises DynamicsError at resonance without
-    damping, where there is no steady state, and for a train that is so stiff, and damped so little, that its swings are
-    too many to look at.
+    The ends of rests should be knots of the drive (`drives(..., also=...)`). Raises DynamicsError for a speed `rpm`
+    that is not above 0, at resonance without damping, where there is no steady state, and for a train so stiff, and
+    damped so little, that its swings are too many to look at; StiffnessError for damping so strong that the response
+    needs too many parts.
     """
     running = train.at(rpm)
     response = running.response(drive)
@@ -233,7 +243,7 @@ def periodic(running: Running, response: Response) -> Array:
 
 
 def _no_steady_state(running: Running, natural: float, damped: float) -> str:
-    """Say why none is found: resonance, or a natural frequency so high or so low that rounding hides the next one."""
+    """Text of why no steady state is found: resonance, or a natural frequency too high or too low for doubles."""
     ratio, speed = f"the natural frequency is {damped:.9g} times the shaft's", f"{running.rpm:.9g} rpm"
     if natural > _MOST_NATURAL:
         return (
