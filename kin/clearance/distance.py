@@ -161,8 +161,8 @@ class Encounter:
     @cached_property
     def discs_apart(self) -> Array:
         """Lower bound of D at the middles (m,), mm: distance of the discs about both, negative if they overlap."""
-        (centre, radius), (other, reach) = self.first.disc, self.second.disc
-        gap = _placed(other[None], self.motion)[:, 0] - centre
+        (centre, radius), (second_centre, reach) = self.first.disc, self.second.disc
+        gap = _placed(second_centre[None], self.motion)[:, 0] - centre
         return np.hypot(gap[:, 0], gap[:, 1]) - radius - reach
 
     def near(self, size: Array, half: Array) -> Pairs:

@@ -174,6 +174,7 @@ class Sampled:
 
         `spread` is half times the greatest second derivative of the cubics within the interval.
         """
+        # cubics by value and slope at both samples (Hermite), x from 0 to 1 over the step k
         width = TURN / self.steps
         turns = np.floor(phi / TURN)
         u = (phi - turns * TURN) / width

@@ -92,6 +92,7 @@ class Beziers:
         values at its two ends, found by de Boor's scheme with an argument of its own at every level.
         """
         n = control.shape[0]
+        # spans of some width, and the d + 1 control points of each
         spans = np.flatnonzero(knots[degree:n] < knots[degree + 1 : n + 1]) + degree
         a, b = knots[spans], knots[spans + 1]
         homogeneous = np.concatenate([control * weight[:, None], weight[:, None]], axis=1)

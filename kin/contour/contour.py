@@ -89,7 +89,7 @@ class Contour(Pieces):
 
     @staticmethod
     def from_bulges(vertices: Array, bulges: Array) -> Contour:
-        """Return lines and arcs from vertex to vertex (n, 2) and back, with bulges (n,).
+        """Return lines and arcs from vertex to vertex (n, 2), mm, and back to the first, with bulges (n,).
 
         A bulge is tan(sweep/4) of the piece that starts at its vertex: 0 of a line, positive counter-clockwise.
         """
@@ -390,6 +390,7 @@ def paired(ranges: NormalRanges, theta: Array) -> list[tuple[Indices, Indices]]:
     ring = np.concatenate([theta, theta + TURN])
     first = np.searchsorted(ring, ranges.low, side="left")
     count = np.minimum(np.searchsorted(ring, ranges.low + ranges.width, side="right") - first, theta.size)
+    # ranges in batches of so many pairs
     used = np.flatnonzero(count > 0)
     total = np.cumsum(count[used])
     batches = []

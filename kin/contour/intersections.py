@@ -53,10 +53,10 @@ def crossings(contour: Contour) -> Crossings:
     levels = boxes(chain)
     for i, j in overlapping(levels, levels, mirrored=True):
         shared = common_points(chain, chain, i, j)
-        first, other = i[shared.pair], j[shared.pair]
-        apart = before[other] + shared.second - before[first] - shared.first
+        first, second = i[shared.pair], j[shared.pair]
+        apart = before[second] + shared.second - before[first] - shared.first
         loop = np.minimum(apart, before[-1] - apart) > SHORTEST_LOOP
-        crossings.append((shared.point[loop], np.stack([owner[first[loop]], owner[other[loop]]], axis=1)))
+        crossings.append((shared.point[loop], np.stack([owner[first[loop]], owner[second[loop]]], axis=1)))
         if sum(len(p) for p, _ in crossings) > ENOUGH:
             break
     return distinct(crossings)
@@ -161,6 +161,7 @@ def overlapping(first: Levels, second: Levels, *, mirrored: bool) -> Iterator[tu
     top = max(len(first), len(second)) - 1
     i, j = np.indices((len(first[-1][0]), len(second[-1][0]))).reshape(2, -1)
     stack = [(top, i, j)]
+    # pairs of boxes whose descendants are still to be paired; a lower tree waits at its top
     while stack:
         level, i, j = stack.pop()
         if len(i) > PAIRS_AT_ONCE:

@@ -50,11 +50,11 @@ def _beside(arcs: Arcs, chain: Arcs, reach: float) -> tuple[float, Array]:
     grown = [(low - reach, high + reach) for low, high in boxes(arcs)]
     best, place = np.inf, arcs.start[0]
     for i, j in overlapping(grown, boxes(chain), mirrored=False):
-        first, other = arcs.take(i), chain.take(j)
-        away = first.points(0.5 * first.length) - other.points(0.5 * other.length)
-        near = np.hypot(away[:, 0], away[:, 1]) - 0.5 * (first.length + other.length) < min(best, reach)
+        first, second = arcs.take(i), chain.take(j)
+        away = first.points(0.5 * first.length) - second.points(0.5 * second.length)
+        near = np.hypot(away[:, 0], away[:, 1]) - 0.5 * (first.length + second.length) < min(best, reach)
         if near.any():
-            apart = gaps(first.take(near), other.take(near))
+            apart = gaps(first.take(near), second.take(near))
             k = int(np.argmin(apart.distance))
             if apart.distance[k] < best:
                 best, place = float(apart.distance[k]), apart.first[k]

@@ -273,5 +273,5 @@ class Pieces:
 
 
 def wrapped(angle: Array) -> Array:
-    """Angles, rad, brought to [-pi, pi) by whole turns."""
+    """Angles, rad, of any shape, brought to [-pi, pi) by whole turns."""
     return np.mod(angle + np.pi, TURN) - np.pi

@@ -102,7 +102,7 @@ class Region:
 
     @cached_property
     def inner_point(self) -> Array:
-        """The deepest point (2,) of a grid of 24 by 24 over the region."""
+        """The deepest point (2,) of a grid of 24 by 24 over the region: inside, unless the region is very thin."""
         low, high = self.chain.start.min(axis=0), self.chain.start.max(axis=0)
         share = (np.arange(GRID) + 0.5) / GRID
         x, y = np.meshgrid(*(low[k] + share * (high[k] - low[k]) for k in (0, 1)))

@@ -108,9 +108,9 @@ class Contact(Generic[G_co, T_co]):
     """One touch of a follower, which at shaft angle phi is where its guide stands at phi + turned.
 
     Its own position is datum - apart + sense * the follower's position: a sense of 1 pushes the follower towards
-    greater positions, -1 towards lesser ones. `datum` is foot, rest or level; `apart` is the distance of each of two
-    contacts on one guide from its middle; both in mm or rad. `surface` is the name of the surface that is touched,
-    empty where the cam has one.
+    greater positions, -1 towards lesser ones. `datum` is its own position at the follower's zero (foot, rest or level
+    in a recipe), from which `apart` is taken where two contacts share a guide; both in mm or rad. `surface` is the name
+    of the surface that is touched, empty where the cam has one.
     """
 
     guide: G_co

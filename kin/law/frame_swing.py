@@ -193,6 +193,7 @@ class _Lifted:
         """Shaft angles (n,) surely not above those of relative angles `lower` (n,), and not below those of `upper`."""
         theta, way = np.concatenate([lower, upper]), np.repeat([-1.0, 1.0], len(lower))
         phi, end = self._shaft(theta), np.where(way < 0.0, self.begin, self.end)
+        # steps outwards are doubled until the proved relative angle there is beyond theta, or the stretch ends
         step = _ULPS * np.spacing(np.maximum(np.abs(phi), 1.0))
         for _ in range(_DOUBLINGS):
             beyond = np.clip(phi + way * step, self.begin, self.end)

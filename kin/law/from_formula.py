@@ -36,7 +36,7 @@ _HINTS = (
 
 
 def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0), scale: float = 1.0) -> Lift:
-    """Make p = scale times a formula in t, rad, mm, about the shaft at `pivot`, mm (Aygahoglu and Saka 2023, eq. 7).
+    """Make p, mm, scale times a formula in t, rad, about the shaft at `pivot`, mm (Aygahoglu and Saka 2023, eq. 7).
 
     Raises IntentError, each with angle and figure, where the formula has no value or p, p', p'' no bound; where it does
     not close, p(t + 2 pi) = p(t); where it has too many waves to be worked out; and where abs, min, max or another

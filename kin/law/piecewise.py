@@ -319,6 +319,7 @@ class Piecewise:
 
         A group is all first harmonics, the stretches of one kind, or one function moved in several ways.
         """
+        # stretches by kind, or by the function itself; first harmonics apart
         by_stretch: dict[Stretch | tuple[str, int], list[int]] = {}
         owner = np.zeros(len(self.functions), dtype=np.intp)
         parts, arcs = np.zeros((3, owner.size)), []
@@ -329,6 +330,7 @@ class Piecewise:
             else:
                 bare = _bare(function)
                 by_stretch.setdefault(bare.kind if isinstance(bare, Alike) else bare, []).append(i)
+        # numbers and ways are columns over all stretches, so that an index of stretches picks them
         groups: list[_Group | _Alike | _Round] = []
         for number, members in enumerate(by_stretch.values()):
             owner[members] = number

@@ -48,7 +48,7 @@ class IntentError(CamgeoError, ValueError):
 class Peaks:
     """Largest absolute velocity, acceleration and jerk of a law, for unit stroke over unit interval from rest to rest.
 
-    `jerk` is infinite where the acceleration steps, at the ends too.
+    `acceleration` is infinite where the velocity steps, `jerk` where velocity or acceleration does, at the ends too.
     """
 
     velocity: float

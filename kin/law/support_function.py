@@ -351,6 +351,7 @@ def lift_constant_breadth(base_radius: float, programme: Motion, field: str = "m
             field,
             180.0,
         )
+    # the motion above the base circle, then taken off the breadth half a turn later
     halves: list[Stretch] = []
     for offset, sense, begin in ((base_radius, 1.0, 0.0), (breadth - base_radius, -1.0, math.pi)):
         halves += [_raised(f, offset, sense, begin) for f in programme.motion.functions]

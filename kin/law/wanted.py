@@ -173,6 +173,7 @@ class _Search:
         top = np.flatnonzero((size >= before) & (size >= after) & ((size > before) | (size > after)))
         if not len(top):
             top = np.array([int(np.argmax(size))])
+        # golden sections between the neighbours of each local maximum of |error| on the grid
         period = 2 * self.wanted.delta
         low = np.where(top > 0, tau[top - 1], tau[-1] - period)
         high = np.where(top + 1 < len(tau), tau[(top + 1) % len(tau)], tau[0] + period)
@@ -198,6 +199,7 @@ class _Search:
         Of neighbours alike in sign the greater stays; of too many the two least neighbours are dropped. Round the
         circle an odd number alternates, as the sign changes with t + delta.
         """
+        # the error changes its sign with t + delta: all extremes are folded to one half period
         delta = self.wanted.delta
         halves = np.floor(extremes.t / delta)
         folded, sign = extremes.t - halves * delta, np.where(halves % 2 == 0, 1.0, -1.0) * np.sign(extremes.error)
@@ -245,6 +247,7 @@ class _Search:
         while not np.isfinite(error).all():
             coefficients = 0.5 * coefficients
             error, t = self._sampled_error(coefficients)
+        # each step solves the problem made linear at the grid's places
         for _ in range(_STEPS):
             places = _Extremes(self.grid, t, error)
             step = self._best_change(places, self.jacobian(coefficients, places))

@@ -220,6 +220,7 @@ class _Programme(NamedTuple):
         rows: list[Array] = []
         right: list[float] = []
         start, used = 0, size
+        # of each side: the sum of its weights, and its crossings
         for family, card in zip(self.families, self.cards, strict=True):
             columns = slice(start, start + len(family.chosen))
             start = columns.stop
@@ -238,14 +239,15 @@ class _Programme(NamedTuple):
                         used += 1
                     rows.append(row)
                     right.append(lift / family.lift)
+        # the acceleration at the nose is that of the known side, or the same on both sides; scaled to about 1
         noses = [(family.accelerations(slice(1))[0] * family.half**2, family.half) for family in self.families]
         if self.nose is not None or len(self.families) > 1:
             row = np.zeros(size + slack)
             row[: len(noses[0][0])] = noses[0][0]
             level = self.nose
             if level is None:
-                (_, half), (second, other) = noses
-                row[size - len(second) : size] = -second * (half / other) ** 2
+                (_, half), (second, second_half) = noses
+                row[size - len(second) : size] = -second * (half / second_half) ** 2
             biggest = float(np.abs(row).max())
             rows.append(row / biggest)
             right.append(0.0 if level is None else level * noses[0][1] ** 2 / biggest)
@@ -299,6 +301,7 @@ def _solved(
     bound = max(side.peak for side in alone) * (1.0 + _CLOSE)
     if len(sides) == 1 or best.peak <= bound:
         return best.solved
+    # the accelerations between which the common one is looked for
     ends = [side.nose for side in alone]
     if math.isinf(best.peak):
         reach = _common_noses(lift, sides, most, 0.0)

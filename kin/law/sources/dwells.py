@@ -74,6 +74,7 @@ def runs(rows: Tabled, least_level: float | None) -> list[Run]:
         first, last = rows.space.rest
         x = np.concatenate([[rows.space.begin], x, [rows.space.end]])
         s = np.concatenate([[first], s, [last]])
+    # edges of the runs of rows that are equal to the next one, from a row on that is not
     n = len(x)
     same = np.append(np.diff(s) == 0.0, bool(rows.period and s[-1] == s[0]))
     if same.all():
@@ -90,6 +91,7 @@ def runs(rows: Tabled, least_level: float | None) -> list[Run]:
     if least_level is not None and level_runs:
         lowest = min(run.level for run in level_runs)
         level_runs = [run._replace(level=least_level) if run.level == lowest == s.min() else run for run in level_runs]
+    # an end at rest is a run, if of no width
     if rows.space.rest:
         if not level_runs or level_runs[0].begin > rows.space.begin:
             level_runs.insert(0, Run(rows.space.begin, rows.space.begin, float(s[0]), 0.0))

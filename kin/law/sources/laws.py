@@ -197,6 +197,7 @@ def split(law: Law, share: float, field: str = "law") -> Law:
         )
     if share == 0.5:
         return law
+    # the first half stretched about (0, 0), the second about (1, 1)
     before, after = 2 * share, 2 * (1 - share)
     knots, functions = [0.0], []
     pieces = list(zip(law.motion.functions, pairwise(law.motion.knots.tolist()), strict=True))

@@ -146,8 +146,8 @@ def lobe_of(
     pieces: list[tuple[float, float, Stretch]] = []
     for turns in (-1.0, 0.0, 1.0):
         shift = middle + turns * total
-        rest = _Stretch(after, total - before, Constant(0.0))
-        for part in (*stretches, rest):
+        standing = _Stretch(after, total - before, Constant(0.0))
+        for part in (*stretches, standing):
             low, high = max(part.begin + shift, 0.0), min(part.end + shift, total)
             if high - low > _NOTHING:
                 pieces.append((low, high, part.moved(shift)))
@@ -185,10 +185,10 @@ def _rising(side: LobeSide) -> list[_Stretch]:
     if ramp is None:
         return [_Stretch(-half, 0.0, side.flank, side.scale, half)]
     first, second = ramp.parts
-    begin, rest = -half - second, FROM_REST * ramp.height
-    steady = Power((rest, ramp.height - rest))
+    begin, reached = -half - second, FROM_REST * ramp.height
+    steady = Power((reached, ramp.height - reached))
     return [
-        _Stretch(begin - first, begin, FromRest(), rest, first),
+        _Stretch(begin - first, begin, FromRest(), reached, first),
         _Stretch(begin, -half, steady, 1.0, second),
         _Stretch(-half, 0.0, RampedFlank(ramp.height, ramp.velocity * half, side.flank), 1.0, half),
     ]

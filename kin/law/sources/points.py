@@ -37,7 +37,7 @@ def from_points(
 
     Each of `dwells` gives the angles, rad, of a point and of the next one (beyond `total` over the end), both of one
     displacement: between them S rests, and S' = S'' = 0 at its ends. Without any, and `around` 1, the spline is
-    periodic; with `around` -1 or None it is laid as `kin.law.sources.ring.laid` does.
+    periodic; with -1 it is fitted over two halves, the second one upside down; with None it rests at both ends.
 
     Raises IntentError for too few or too many points, numbers that are not finite, angles that do not rise, that lie
     outside [0, total] or do not fill it where the motion does not repeat, a repeating motion that does not close, and a

@@ -28,7 +28,7 @@ _START = 1e-12  # of a formula's greatest value: a value at u = 0 below this is 
 
 @dataclass(frozen=True)
 class JointState:
-    """Velocity, acceleration and jerk at a joint, per rad, rad^2, rad^3."""
+    """Velocity, acceleration and jerk at a joint, in mm or rad per rad, rad^2 and rad^3."""
 
     v: float = 0.0
     a: float = 0.0

@@ -49,7 +49,7 @@ class Suspect(NamedTuple):
 
 
 def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
-    """The motion within the rows' readings, None for a constant, and the factor of readings that tells noise.
+    """The motion within the rows' readings, None for a constant, and the factor of readings that shows noise.
 
     With readings greater by that factor, the greatest such power of 4, the mean square of the jerk is a tenth or less
     of that of the power before; None where there is none. The mean square falls from reading to reading: between two

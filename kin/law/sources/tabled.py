@@ -241,6 +241,7 @@ def demand_rows(
         bad = np.flatnonzero(~np.isfinite(column))
         if len(bad):
             raise TableError(f"{what} is not finite", field, int(rows.lines[bad[0]]))
+    # falling angles are turned round, equal rows dropped
     if len(rows.theta) > 1 and (np.diff(rows.theta) < 0.0).all():
         rows = rows.part(slice(None, None, -1))
     twice = (np.diff(rows.theta) == 0.0) & (np.diff(rows.s) == 0.0)
