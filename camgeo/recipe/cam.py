@@ -36,10 +36,11 @@ def check_cam(cam: Values, reader: Reader) -> None:
 
 
 def check_tappet(values: Values, reader: Reader) -> None:
-    """Note keys that do not go with a round tappet, and give its follower the width at the lobe's far edge.
+    """Note keys that do not go with a round tappet, and set the follower's `width` to a chord of its face.
 
-    The line of contact runs across the lobe. All of it lies on a face `diameter` across, with its axis `axial_offset`
-    beside the lobe's middle, if it lies on the chord at the lobe's farther edge.
+    The line of contact runs across the lobe's thickness. The tappet's axis is `axial_offset` beside the lobe's middle,
+    so the lobe's farther edge is `beyond` the axis by the offset and half the thickness, mm. The whole line lies on the
+    round face if its end there does: the chord at that distance is the width.
     """
     follower, path = values.get("cam", {}).get("follower", {}), "cam.follower"
     if "axial_offset" in follower and f"{path}.diameter" not in reader.marks:
@@ -59,5 +60,5 @@ def check_tappet(values: Values, reader: Reader) -> None:
 
 
 def build_cam(cam: Values, mm: float) -> Cam:
-    """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
+    """Build the cam from values of a recipe without faults; `mm` is the recipe's unit of length, mm."""
     return FAMILIES[cam["kind"]].build(cam, mm)

@@ -1,4 +1,4 @@
-"""Two discs on one shaft: what their recipes cannot have beside them."""
+"""Two conjugate discs on one shaft: features of a part that they exclude."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def is_pair(values: Values) -> bool:
 
 
 def check_discs(values: Values, reader: Reader) -> None:
-    """Note what does not go with conjugate discs."""
+    """Note features of the part that conjugate discs cannot have; silent for other cams."""
     if not is_pair(values):
         return
     part = values.get("part", {})

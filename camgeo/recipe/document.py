@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 class Document:
     """A recipe as written: the `path` it was read from, and its `text`.
 
-    `marks` are the places of the fields given, `kinds` those of its mappings that have one. `unplaced` names in errors
-    a text that stands in no file and so has no lines to refer to; empty for a file.
+    `marks` has line and column of each field given, by the field's path; `kinds` the words of the kinds of cam and
+    linkage. `unplaced` names in errors a text that stands in no file and so has no lines to refer to; empty for a file.
     """
 
     path: Path
@@ -35,13 +35,14 @@ class Document:
 
     @property
     def tables(self) -> tuple[str, ...]:
-        """Paths of the fields that name a table, which is read from the recipe's folder."""
+        """Paths of the fields that give a table, as rows or by a file whose path is relative to the recipe's folder."""
         return tuple(path for path in self.marks if path.endswith(".table"))
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the recipe's text to a file, in place of what is there.
 
-        Raises SurroundingsError where the file system refuses, CallError for a path that no file can have.
+        Raises SurroundingsError where the file system refuses, CallError for a path that no file can have, TypeError
+        for what is no path.
         """
         file = path_of("path", path)
         try:
@@ -50,23 +51,26 @@ class Document:
             raise SurroundingsError(f"cannot be written: {error.strerror or error}", file) from error
 
     def locate(self, path: str) -> tuple[int, int]:
-        """Line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
+        """Line and column, from 1, of a field such as `cam.motion[1].law`, or of its nearest parent that is given.
+
+        Raises TypeError for a path that is no str.
+        """
         demand_type("path", path, str, "a str")
         while path and path not in self.marks:
             path = path[: max(path.rfind("."), path.rfind("["), 0)]
         return self.marks.get(path, (1, 1))
 
     def error(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
-        """Error of a later stage about a field, with the field's place in the file."""
+        """Error about the field `path`, with its line and column: what is wrong, the value as shown, and a remedy."""
         line, column = self.locate(path)
         error = RecipeError(str(self.path), line, column, path, problem, value, remedy)
         return RecipeErrors([error.without_place(self.unplaced) if self.unplaced else error])
 
     def text_with(self, values: collections.abc.Mapping[str, float]) -> str:
-        """The recipe's text with other numbers by their paths.
+        """The recipe's text with the numbers at these paths replaced, in the recipe's units; all else stays.
 
-        Raises CallError for a path at which no number stands, for one whose number an alias shares with other fields,
-        and for a number that is not finite; TypeError for what is no mapping from paths to numbers.
+        Raises CallError for a path at which no number stands, for a number that an alias shares with other fields, and
+        for a number that is not finite; TypeError for what is no mapping from paths to numbers.
         """
         from camgeo.schema.edit import with_values
 
@@ -77,11 +81,15 @@ class Document:
         return with_values(self.text, numbers)
 
     def source(self) -> Source:
-        """The text as a tree of nodes."""
+        """The text as a tree of nodes; raises RecipeErrors for a text that is no YAML."""
         return Source.of(self.text, str(self.path))
 
     def changed(self, values: collections.abc.Mapping[str, Value]) -> str:
-        """The text with other values by their paths; raises RecipeErrors where a path leads nowhere."""
+        """The text with the values at these paths set, or added where a field is not given yet; all else stays.
+
+        Raises RecipeErrors where a path leads nowhere, for a value that no recipe may hold, and for a place that an
+        alias shares; TypeError for a path that is no str.
+        """
         from camgeo.schema.change import set_value
 
         text = self.text

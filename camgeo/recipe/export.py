@@ -29,10 +29,13 @@ Length: TypeAlias = Literal["mm", "inch"]
 class FileRequest:
     """One file to write.
 
-    `kind` is its format, `as_` the form; `tolerance` (mm) replaces the export's own; `compensation` is that of a part
-    that differs from the nominal one. `variant` names the capability whose option makes the file something else than
-    the cam, empty for the cam. `units` is the file's own unit, None for the format's (`unit_for`).
-    `options` are the further options of its format by name, lengths in mm and angles in rad.
+    kind          word of its format, such as dxf
+    as_           word of its form, such as arcs; None for a format without forms
+    tolerance     in place of the export's, mm; None for that
+    compensation  for a part that differs from the nominal one; None for the nominal part
+    variant       name of the capability whose option makes the file something else than the cam; empty for the cam
+    units         unit that the recipe gives for the file; None for the usual unit (`unit_for`)
+    options       further options of its format by name, lengths in mm and angles in rad
     """
 
     kind: str
@@ -45,7 +48,7 @@ class FileRequest:
 
     @property
     def own(self) -> dict[str, Any]:
-        """Further options of its format, by their names."""
+        """Further options of its format, by name."""
         return dict(self.options)
 
     @property
@@ -55,12 +58,12 @@ class FileRequest:
 
     @property
     def form(self) -> FileForm:
-        """Record of the form that the key `as` chooses of the format, such as arcs or a spline."""
+        """Record of the form that the key `as` chooses, such as arcs or a spline, or of the format's only form."""
         return self.format.form(self.as_)
 
     @property
     def holds_other_bodies(self) -> bool:
-        """Whether one file holds other bodies beside the cam."""
+        """Whether the file holds other bodies beside the cam."""
         return bool(self.variant) and not self.format.by_disc
 
     @property
@@ -69,17 +72,18 @@ class FileRequest:
         return self.kind if self.as_ is None else f"{self.kind} as {self.as_}"
 
     def unit_for(self, units: Length) -> Length:
-        """Unit of the file in a recipe in `units`: the file's own, else mm for a solid, else the recipe's."""
+        """Unit of the file in a recipe in `units`: the unit given for it, else mm for a solid, else the recipe's."""
         return self.units or ("mm" if self.format.solid else units)
 
     def filename(self, name: str, requests: collections.abc.Sequence[FileRequest]) -> str:
-        """Name of the file among all `requests` of recipe `name`; later requests do not change it.
+        """Name of the file among all `requests` of the recipe `name`; later requests do not change it.
 
-        The first of a kind is `<name>.<kind>`, another is `<name>-<as>.<kind>`. After one of the
-        same form it is `<name>-<as>-<option>.<kind>` by the options that its format names, such as `R12` of DXF, with
-        `-kerf` and the like for a part that is not nominal, and `-inch` or `-mm` for a unit of its own; a part altered
-        by a capability is always tagged. For all bodies of a mechanism it is the first: `<name>-cam.stl`,
-        `<name>-parts.3mf` or `<name>-assembly.glb`. A plain solid after one that is not is `<name>-nominal.<kind>`.
+        The first file of a format is `<name>.<kind>`, a further one `<name>-<as>.<kind>`. After a file of the same form
+        it is `<name>-<as>-<option>.<kind>` by the options that its format names, such as `R12` of DXF, with the keys of
+        a compensation, such as `-kerf`, and with `-inch` or `-mm` where the unit is given. A part altered by a
+        capability always has the key. Of all bodies of a mechanism the first file is named: `<name>-cam.stl`,
+        `<name>-parts.3mf` or `<name>-assembly.glb`. A file without any of these, after a compensated file or one with a
+        unit under the plain name, is `<name>-nominal.<kind>`.
         """
         earlier = requests[: requests.index(self)] if self in requests else requests
         same_kind = [request for request in earlier if request.kind == self.kind]
@@ -101,9 +105,9 @@ class FileRequest:
         return f"{'-'.join(parts)}.{self.own.get('suffix', self.format.ending)}"
 
     def filenames(self, name: str, requests: collections.abc.Sequence[FileRequest], discs: int = 1) -> tuple[str, ...]:
-        """Names of the files of a cam with that many discs: one for all, or one for each disc.
+        """Names of the files of a cam with `discs` discs: one file for all, or one for each disc.
 
-        `name` is that of the recipe, `requests` are all of it, by which names of two files of one format differ.
+        `name` is the recipe's name, `requests` are all its requests, among which names must differ.
         """
         whole = self.filename(name, requests)
         if discs == 1 or not self.format.by_disc:
@@ -112,27 +116,27 @@ class FileRequest:
 
 
 def disc_filename(filename: str, disc: int) -> str:
-    """Name of the file of one disc, counted from 0, by that of the cam: `<name>-1.dxf` for `<name>.dxf`."""
+    """Name of the file of one disc, counted from 0: `<name>-1.dxf` is the first for the cam's `<name>.dxf`."""
     stem, dot, suffix = filename.rpartition(".")
     return f"{stem}-{disc + 1}{dot}{suffix}"
 
 
 @dataclass(frozen=True)
 class Export:
-    """The files, and the greatest distance (mm) between a file's contour and the exact one."""
+    """The requested files, and their `tolerance`, the greatest distance between a contour and the exact one, mm."""
 
     tolerance: float
     files: tuple[FileRequest, ...]
 
     @property
     def overlays(self) -> tuple[str, ...]:
-        """Overlays that pages show on the mechanism, each once."""
+        """Names of the overlays that pages show on the mechanism, each once."""
         names = (name for request in self.files for name in request.own.get("overlays", ()))
         return tuple(dict.fromkeys(names))
 
 
 class Options(collections.abc.Mapping[str, FieldTable]):
-    """Table of the options of each format, those of capabilities first."""
+    """Table of options by format: options of capabilities first, then the format's own."""
 
     def __init__(
         self, formats: collections.abc.Mapping[str, Format], more: collections.abc.Sequence[Variant | Alteration]
@@ -141,14 +145,14 @@ class Options(collections.abc.Mapping[str, FieldTable]):
         self._more = more
 
     def __getitem__(self, name: str) -> FieldTable:
-        """Table of a format; raises KeyError where there is no such format."""
+        """Table of the options of the format `name`; raises KeyError for an unknown format."""
         record = self._formats[name]
         return FieldTable(
             (*(extension.option for extension in self._more if extension.offered(record)), *record.options.fields)
         )
 
     def __contains__(self, name: object) -> bool:
-        """Whether there is such a format; no table is made."""
+        """Whether a format is known; no table is made."""
         return name in self._formats
 
     def __iter__(self) -> collections.abc.Iterator[str]:
@@ -161,7 +165,10 @@ class Options(collections.abc.Mapping[str, FieldTable]):
 
 
 def read_files(options: Options, reader: Reader, field: Field, node: Node, path: str) -> list[Values]:
-    """Read the list of files of these formats; each with its `kind`. A faulty one is left out."""
+    """Read the list of files: values of each with its format `kind` and its `path` in the recipe.
+
+    A faulty file is noted and left out.
+    """
     files = []
     for i, item in enumerate(reader.items(field, node, path, MOST_FILES)):
         below = join(path, i)
@@ -183,7 +190,10 @@ def read_files(options: Options, reader: Reader, field: Field, node: Node, path:
 
 
 def _format(node: Node) -> tuple[Scalar | None, Node | None]:
-    """Format and options of an entry of the list of files: `dxf`, or `{dxf: {...}}`; None for what is neither."""
+    """Format and options of an entry of the list of files: `dxf`, without options, or `{dxf: {...}}`.
+
+    The format is None for an entry that is neither.
+    """
     if isinstance(node, Scalar):
         return (None if is_empty(node) else node), None
     if isinstance(node, Mapping) and len(node.entries) == 1:
@@ -208,9 +218,10 @@ def export_of(
     more: collections.abc.Sequence[Variant | Alteration] = (),
     unfit: collections.abc.Collection[str] = (),
 ) -> Field:
-    """Field of the files that are written, in these formats.
+    """Key `export` of recipes whose files are in these formats, with an `example` and a `default` list for texts.
 
-    `more` adds options of capabilities to those of formats; `unfit` are formats known only for the remedy in an error.
+    `more` adds options of capabilities to the options of formats. `unfit` are formats that are read only so that an
+    error can advise about them; texts do not list them.
     """
     options = Options(formats, more)
     form = OwnForm(
@@ -239,13 +250,13 @@ EXPORT = export_of(FORMATS)
 
 
 def _variants() -> dict[str, Variant]:
-    """Variants by their capability, of the records that are loaded: the others have no value in a file."""
+    """Variants by their capability, of the loaded capabilities; a recipe that uses another would have loaded it."""
     records = {name: registry.capability(name).variant for name in registry.names_loaded()}
     return {name: record for name, record in records.items() if record is not None}
 
 
 def check_files(values: Values, reader: Reader) -> None:
-    """Note faults between the requested files, and what they lack."""
+    """Note requested files that lack a field of the recipe, that their format refuses, or that share a name."""
     files: list[Values] = values.get("export", {}).get("files", [])
     listed = requests(files)
     names = [request.filename("NAME", listed) for request in listed]
@@ -274,7 +285,7 @@ SHARED = frozenset({"as", "tolerance", "units", *(item.name for item in COMPENSA
 
 
 def requests(files: list[Values]) -> tuple[FileRequest, ...]:
-    """Build the requests of the files from values of a recipe in which no fault was noted."""
+    """Build the requests of files from values of a recipe without faults."""
     return tuple(_request(file["kind"], file) for file in files)
 
 
@@ -286,12 +297,12 @@ def _request(kind: str, file: Values) -> FileRequest:
         values.get("as"),
         values.get("tolerance"),
         build_compensation(file),
-        next((name for name, other in _variants().items() if other.chosen(file)), ""),
+        next((name for name, record_of_variant in _variants().items() if record_of_variant.chosen(file)), ""),
         values.get("units"),
         tuple((name, values[name]) for name in record.options.keys if name in values and name not in SHARED),
     )
 
 
 def build_export(values: Values) -> Export:
-    """Build the export from values of a recipe in which no fault was noted."""
+    """Build the export from values of a recipe without faults; a single dxf where no files are given."""
     return Export(values.get("tolerance", TOLERANCE), requests(values.get("files", [{"kind": "dxf"}])))

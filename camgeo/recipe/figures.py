@@ -20,10 +20,11 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True, eq=False)
 class Need:
-    """Something that a figure needs besides the cam and its files, named by `words`.
+    """Something that a recipe must have for a figure, named by `words` in errors.
 
-    `there` says whether a recipe has it, by the offers of its cam and the paths of the fields given, the words of its
-    files among them (`words_of`). `part` is whether the part counts as well, by its material or its thickness.
+    `there` is given the offers of the cam, and the paths of the fields that the recipe gives with the words of its
+    files, such as `parts: all`; it returns whether the recipe has the need. `part` is whether the figure also depends
+    on the part, by its material or thickness.
     """
 
     words: str
@@ -32,12 +33,12 @@ class Need:
 
 
 def _offered(*names: str) -> Callable[[AbstractSet[str], AbstractSet[str]], bool]:
-    """Whether a cam offers one of these."""
+    """Function for `Need.there`: whether the cam offers one of these names."""
     return lambda offers, _: not offers.isdisjoint(names)
 
 
 def _given(*paths: str) -> Callable[[AbstractSet[str], AbstractSet[str]], bool]:
-    """Whether one of these fields is given."""
+    """Function for `Need.there`: whether one of these fields is given."""
     return lambda _, fields: not fields.isdisjoint(paths)
 
 
@@ -94,7 +95,7 @@ _RETURN = Field(
 
 
 def lift_key(usual: float) -> tuple[Field]:
-    """Key of a limit by which a figure is taken at another lift than its usual one, mm."""
+    """The key `at_lift` of a limit, by which a figure is taken at another lift than its `usual` lift, mm."""
     about = "lift at which it is taken, from the lowest"
     return (Field("at_lift", Kind.LENGTH, about, default=f"{usual:g} mm", at_least=0, at_most=MOST),)
 
@@ -103,14 +104,20 @@ def lift_key(usual: float) -> tuple[Field]:
 class DesignFigure:
     """One figure of a design.
 
-    `kind` is the kind of its values: degrees for an angle, the recipe's unit for a length, and for a motion either, as
-    the follower or the last link swings or slides. `best` says which values a ranking puts first, `needs` what the
-    figure is taken from. `per` ends its unit's name. `of` says whether the exact design has it, each file, or each run
-    of a capability. `swept` is whether a sweep knows it, `dear` whether designs are given it only where it ranks or
-    limits. `eased_by` is what makes it less: a smaller `motion` alone, or a larger cam (`size`) too; empty: neither.
-    `keys` are those of its limits in a recipe besides the bounds. `at_lift` is the lift, mm, at which it is taken
-    unless a limit says another; such limits may stand in a list. It is None of a figure of no lift. `after` is the
-    core's figure behind which it stands.
+    about     what it is, in words
+    kind      kind of its values: degrees for an angle, the recipe's unit for a length; for a motion either, as the
+              follower or the last link swings or slides
+    best      which values a ranking puts first
+    needs     what a recipe must have for it
+    per       ending of its unit's name, such as /rad
+    of        whether the exact design has it, each file, or each run of a capability
+    swept     whether a sweep knows it
+    dear      whether it is costly, and so measured only where it ranks or limits
+    eased_by  what makes it less: a smaller `motion` alone, or a larger cam (`size`) too; empty: neither
+    keys      keys of its limits in a recipe besides the bounds
+    at_lift   lift, mm, at which it is taken unless a limit gives another; such limits may stand in a list; None for a
+              figure that belongs to no lift
+    after     name of the core's figure behind which it is listed
     """
 
     about: str
@@ -137,7 +144,7 @@ def _peak(about: str, per: str, needs: Need = NOTHING) -> DesignFigure:
 
 
 def _of_size(about: str, kind: Kind, needs: Need, *, dear: bool = True) -> DesignFigure:
-    """Figure that a larger cam makes less."""
+    """Figure that a smaller motion or a larger cam makes less."""
     return DesignFigure(about, kind, "least", needs, dear=dear, eased_by="size")
 
 
@@ -229,7 +236,7 @@ _CORE: dict[str, DesignFigure] = {
         "kg mm",
         dear=True,
     ),
-    # at 0.050 and 0.006 in, and of all of it
+    # lobes: at a lift of 0.050 in, of 0.006 in, and over the whole lobe
     DURATION: _of_lobe("crank degrees for which the lift is above one of 1.27 mm", Kind.ANGLE, "most", 1.27),
     LOBE_CENTRE: _of_lobe("cam angle midway between the crossings of 1.27 mm of lift", Kind.ANGLE, "most", 1.27),
     RAMP_VELOCITY: _of_lobe("velocity at a lift of 0.1524 mm, a cam degree", Kind.LENGTH, "least", 0.1524, "/deg"),

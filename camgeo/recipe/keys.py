@@ -1,4 +1,4 @@
-"""The keys of a recipe; its values are read here, and faults between them noted."""
+"""The keys of a recipe; its values are read here, and faults between them are noted."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     from camgeo.schema.reader import Reader, Values
 
-MOST_ANGLES = 1_000_000  # of a turn at which files are judged
-UNITS = {"mm": 1.0, "inch": 25.4}  # of length, in mm
+MOST_ANGLES = 1_000_000  # shaft angles of a turn at which files may be judged
+UNITS = {"mm": 1.0, "inch": 25.4}  # units of length, mm
 
 CORE = FieldTable(
     (
@@ -102,7 +102,7 @@ _KEYS: Gathered[Field] = Gathered(
 
 
 def recipe_table(capabilities: Collection[str] | None = None) -> FieldTable:
-    """Table of a recipe's keys: the core's and those of some capabilities, or of all."""
+    """Table of a recipe's keys: the core's, and the keys of the named capabilities, or of all for None."""
     return _table(registry.names_with_record() if capabilities is None else tuple(capabilities))
 
 
@@ -121,7 +121,7 @@ def _table(capabilities: tuple[str, ...]) -> FieldTable:
 
 
 def _with_fields(table: FieldTable, path: list[str], more: Collection[Field]) -> FieldTable:
-    """The table with more fields in the mapping at a path of it."""
+    """The table with more fields in the mapping at a path below it."""
     if not path:
         return replace(table, fields=(*table.fields, *more))
     first, *rest = path
@@ -130,10 +130,11 @@ def _with_fields(table: FieldTable, path: list[str], more: Collection[Field]) ->
 
 
 def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
-    """Read the whole recipe, the keys of these capabilities among it, and note the faults between its fields.
+    """Read the whole recipe with the keys of these capabilities, and note faults between its fields.
 
-    Keys that decide how others are read come first, wherever they stand: the unit, and the kinds of cam and linkage,
-    which say whether the follower swings and whether the output of the linkage slides.
+    Values come back by key, lengths in mm, angles in the form of their field; `mm` is the recipe's unit, mm. They are
+    empty for what is no mapping. Keys that decide how others are read come first, wherever they stand: the unit, and
+    the kinds of cam and linkage, by which follower and output swing or slide.
     """
     root = reader.source.root
     reader.survey(root, "")
@@ -144,12 +145,14 @@ def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
     units = top.get("units")
     if isinstance(units, Scalar) and units.text in UNITS:
         reader.units, reader.mm = units.text, UNITS[units.text]
+    # kinds of cam and linkage; the output of a linkage is that of its last dyad
     linkage = top.get("linkage")
     reader.kinds = {"cam": kind_of(top.get("cam"), CAMS), "linkage": kind_of(linkage, LINKAGES)}
     output_kind = reader.kinds["linkage"]
     dyads = entries(linkage).get("dyads") if isinstance(linkage, Mapping) else None
     if isinstance(dyads, Sequence) and dyads.items:
         output_kind = kind_of(dyads.items[-1], DYADS)
+    # kinds of values that are angles in this recipe
     if (family := FAMILIES.get(reader.kinds["cam"])) is not None:
         arrangement = family.of(top["cam"])
         own = (
@@ -173,7 +176,8 @@ def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
 def _check(values: Values, reader: Reader) -> None:
     """Note faults between fields that need no geometry.
 
-    Each check uses the values that were read; it is silent where one is missing or faulty, as that is noted already.
+    Each check uses the values that were read, and is silent where a value is missing or faulty, as that is noted
+    already.
     """
     check_tappet(values, reader)
     check_cam(values.get("cam", {}), reader)

@@ -20,17 +20,18 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
-MOST_LIFTS = 20  # at which a recipe bounds one figure
+MOST_LIFTS = 20  # lifts at which a recipe may bound one figure
 
 
 @dataclass(frozen=True)
 class Limit:
     """Bounds of a figure, as reported: angles in degrees, lengths in mm, rates per radian of shaft angle.
 
-    `rpm` is the speed, turns a minute, at which a figure in time is bounded, None for the speed that the recipe gives.
-    `at_lift` is the lift, mm, at which a lobe's is taken, None for its usual one. `key` is the recipe's key of the
-    upper bound below `limits`, empty for the figure's own; `place` the entry of the figure's
-    list, such as duration[1], empty where it has none.
+    `at_least` or `at_most` is None where there is no such bound. `rpm` is the speed, turns a minute, at which a figure
+    in time is bounded, None for the recipe's speed. `at_lift` is the lift, mm, at which a figure of a lobe is taken,
+    None for its usual lift. `key` is the path below `limits` of the upper bound where that is not the figure's own,
+    such as pressure-angle.on_return, else empty. `place` is the limit's entry in a list of limits of the figure, such
+    as duration[1], else empty.
     """
 
     figure: str
@@ -43,17 +44,17 @@ class Limit:
 
     @property
     def lift(self) -> float:
-        """Lift, mm, at which the figure of a lobe is bounded."""
+        """Lift, mm, at which the figure of a lobe is bounded; 0 for other figures."""
         return (FIGURES[self.figure].at_lift or 0.0) if self.at_lift is None else self.at_lift
 
     def field(self, sense: str) -> str:
-        """Path of the recipe's field of a bound, `at_least` or `at_most`."""
+        """Path of the recipe's field of a bound; `sense` is at_least or at_most."""
         own = f"{self.place or self.figure}.{sense}"
         return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{own}"
 
 
 def bounds(figure: DesignFigure) -> FieldTable:
-    """Table of the bounds of a figure, without the further keys that some have in a recipe's own limits."""
+    """Table of the keys at_least and at_most of a figure, without the keys that only a recipe's own limits have."""
     return FieldTable(
         tuple(
             Field(name, Kind.NUMBER, about, at_least=-(MOST**2), at_most=MOST**2, unit=figure.kind)
@@ -63,13 +64,13 @@ def bounds(figure: DesignFigure) -> FieldTable:
 
 
 def own_bounds(name: str) -> FieldTable:
-    """Table of the bounds of a figure in a recipe's own `limits`."""
+    """Table of the keys of a figure in a recipe's own `limits`; raises KeyError for a name of no figure."""
     figure = FIGURES[name]
     return FieldTable((*bounds(figure).fields, *figure.keys))
 
 
 def limits_form(*, swept: bool) -> OwnForm[Reader]:
-    """Form of limits by figures: a recipe's own, or a sweep's, which has `swept` figures and bounds alone."""
+    """Form of limits by figures: a recipe's own, or with `swept` a sweep's, which has fewer figures and only bounds."""
     return OwnForm(
         "limits",
         "a mapping from figures to bounds, such as {transmission-angle: {at_least: 40}}",
@@ -79,7 +80,7 @@ def limits_form(*, swept: bool) -> OwnForm[Reader]:
 
 
 def _read_limits(swept: bool, reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Read limits by the figures that they bound; lengths in mm, angles in degrees."""
+    """Read limits by the figures that they bound: lengths in mm, angles in degrees; None for what is no mapping."""
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
         return None
@@ -107,7 +108,7 @@ def _bounded(swept: bool, name: str) -> Field:
 
 
 def _read_limit(swept: bool, reader: Reader, name: str, node: Node, path: str) -> list[Values]:
-    """Read the bounds of one figure: one limit, or those of the rise and of the return; none where there is a fault."""
+    """Read the bounds of one figure: one limit, or with on_return a limit of rise and of return; none after a fault."""
     faults = len(reader.errors)
     values = reader.field(_bounded(swept, name), node, path)
     if values is None or len(reader.errors) > faults:
@@ -126,10 +127,10 @@ def _read_limit(swept: bool, reader: Reader, name: str, node: Node, path: str) -
     if "at_least" in values:
         reader.fault_at(f"{path}.at_least", "cannot be combined with on_return", None, "leave one of the two out")
         return []
-    both = ((ON_RISE, "at_most", bounds_given.get("at_most")), (ON_RETURN, "on_return", on_return))
+    parts = ((ON_RISE, "at_most", bounds_given.get("at_most")), (ON_RETURN, "on_return", on_return))
     return [
         {"figure": figure, "at": path, "at_most": most, "key": f"{name}.{bound}"}
-        for figure, bound, most in both
+        for figure, bound, most in parts
         if most is not None
     ]
 
@@ -154,18 +155,18 @@ LIMITS = Field(
 
 
 def _given(reader: Reader) -> set[str]:
-    """Paths of the fields that the recipe being read gives, for `Need.there`."""
+    """Paths of the fields that the recipe being read gives, and the words of its files."""
     return {*reader.marks, *words_of(reader.source.root)}
 
 
 def figures_of(reader: Reader) -> tuple[str, ...]:
-    """Names of the figures of the recipe being read."""
+    """Names of the figures that the recipe being read has."""
     paths = _given(reader)
     return tuple(name for name, figure in FIGURES.items() if figure.needs.there(reader.offers, paths))
 
 
 def check_limits(limits: list[Values], reader: Reader) -> None:
-    """Note limits of figures that the recipe does not have, and two limits of one bound."""
+    """Note limits of figures that the recipe does not have, and two limits of one bound; `limits` as they were read."""
     paths, bounded = _given(reader), dict[tuple[str, str, float | None], str]()
     for limit in limits:
         name, figure = limit["figure"], FIGURES[limit["figure"]]
@@ -175,12 +176,12 @@ def check_limits(limits: list[Values], reader: Reader) -> None:
                 general, path = sorted((bounded[bound_id], limit["at"]), key=len)
                 reason = "at the same lift" if "place" in limit else "with on_return"
                 reader.fault_at(path, f"{general} {reason} bounds it too", None, "leave one of the two out")
-        # a key of a limit stands for the field that it takes the place of: rpm for that of the train
+        # a key of a limit counts as the field that it replaces: rpm as dynamics.rpm
         defaults = {item.default for item in figure.keys if item.name in limit}
         if not figure.needs.there(reader.offers, paths | defaults):
             remedy = f"the figures of this recipe are {either(figures_of(reader), 'and')}"
             path, subject = limit["at"], name
-            if "key" in limit:  # one that a key of another figure gives
+            if "key" in limit:  # the bound on_return of another figure
                 path, subject, remedy = (
                     f"{path}.on_return",
                     "on_return",
@@ -190,6 +191,6 @@ def check_limits(limits: list[Values], reader: Reader) -> None:
 
 
 def build_limits(limits: list[Values]) -> tuple[Limit, ...]:
-    """Build the limits from values of a recipe in which no fault was noted."""
+    """Build the limits from values of a recipe without faults."""
     values = ({name: value for name, value in limit.items() if name != "at"} for limit in limits)
     return tuple(Limit(**limit) for limit in values)

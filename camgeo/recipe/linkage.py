@@ -22,26 +22,26 @@ if TYPE_CHECKING:
     from camgeo.schema.yaml_source import Node
 
 
-MOST_TRACES = 20
+MOST_TRACES = 20  # points that a recipe may trace
 Links = TypeVar("Links", bound="kin.linkage.four_bar.Linkage | kin.linkage.dyad.Dyad")
 
 
 class TracedPoint(NamedTuple):
-    """A point (x, y), mm, in the axes of a link: coupler, output, or the output link of `dyads[k]`."""
+    """A point (x, y), mm, in the axes of the link `on`: coupler, output, or dyads[k] for that dyad's output link."""
 
     on: str
     point: tuple[float, float]
 
     def name(self, mm: float) -> str:
-        """Name of the path, coordinates in units of `mm` mm."""
+        """Name of the point's path, with coordinates in a unit of `mm` mm."""
         x, y = (f"{value / mm:.6g}" for value in self.point)
         return f"path of {self.on} [{x}, {y}]"
 
 
 class Linkage(NamedTuple):
-    """The links of a recipe: the kind, the loop that the frame drives, and the dyads hung on it, the output's last.
+    """The links of a recipe: the word of their kind, the `loop` that the frame drives, and the dyads in their order.
 
-    `traces` are points whose paths are shown.
+    The output link is the last dyad's, or the loop's without dyads. `traces` are points whose paths are shown.
     """
 
     kind: str
@@ -50,7 +50,7 @@ class Linkage(NamedTuple):
     traces: tuple[TracedPoint, ...] = ()
 
     def shaped(self, cam: Cam) -> Cam:
-        """The cam with the links that shape it where a recipe gives the swing of the frame."""
+        """The cam with the links by which it follows from the frame's swing; itself for another kind of linkage."""
         from kin.linkage.four_bar import InvertedSliderCrank
         from kin.linkage.loop import side_of
 
@@ -61,9 +61,9 @@ class Linkage(NamedTuple):
 
 
 def with_other_lengths(linkage: Linkage, loop: int, factor: float) -> Iterator[tuple[str, float, Linkage]]:
-    """Path, length and linkage with each link of a loop in turn multiplied by a factor, to six digits.
+    """For each length of a loop, that length times `factor`: path below `linkage`, new length, mm, and the linkage.
 
-    Loop 0 is the linkage's own, k that of its k-th dyad.
+    Loop 0 is the linkage's own, loop k its k-th dyad. Lengths are rounded to six digits; a length of 0 is passed over.
     """
     if loop == 0:
         for name, size, changed in _with_other(linkage.loop, factor):
@@ -71,29 +71,34 @@ def with_other_lengths(linkage: Linkage, loop: int, factor: float) -> Iterator[t
         return
     dyads = linkage.dyads
     for name, size, dyad in _with_other(dyads[loop - 1], factor):
-        others = (*dyads[: loop - 1], dyad, *dyads[loop:])
-        yield f"dyads[{loop - 1}].{name}", size, linkage._replace(dyads=others)
+        changed_dyads = (*dyads[: loop - 1], dyad, *dyads[loop:])
+        yield f"dyads[{loop - 1}].{name}", size, linkage._replace(dyads=changed_dyads)
 
 
 def _with_other(part: Links, factor: float) -> Iterator[tuple[str, float, Links]]:
+    """Name, such as links[0], new length and changed part, for each length of a loop or dyad times a factor."""
     for name in part.lengths:
         key, _, index = name.partition("[")
         own = getattr(part, key)
         size = float(f"{factor * (own[int(index[0])] if index else own):.6g}")
         if size > 0.0:
-            pair = tuple(size if str(i) == index[0] else other for i, other in enumerate(own)) if index else ()
+            pair = tuple(size if str(i) == index[0] else length for i, length in enumerate(own)) if index else ()
             changes: dict[str, Any] = {key: pair or size}
             yield name, size, replace(part, **changes)
 
 
 def output_slides(linkage: Linkage) -> bool:
-    """Whether the output of a linkage, that of its last dyad if there is one, is a length and not an angle."""
+    """Whether the output of a linkage, by its last dyad if it has dyads, is a length and not an angle."""
     return (linkage.dyads[-1] if linkage.dyads else linkage.loop).unit == "mm"
 
 
 @dataclass(frozen=True)
 class DwellLimits:
-    """Dwells of the output: its range `band`, rad, or mm where it slides, and the least length to be checked, rad."""
+    """Dwells of a linkage's output: within a dwell the output stays in a range `band`, rad, or mm where it slides.
+
+    `at_least` is the least length that the longest dwell must have, rad of the angle `over`, the shaft's or the
+    relative angle of cam and frame; None without a check.
+    """
 
     band: float
     at_least: float | None = None
@@ -101,7 +106,7 @@ class DwellLimits:
 
 
 def read_dyads(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Read the list of dyads, each by the table of its kind, or None where one is faulty."""
+    """Read the list of dyads, each by the table of its kind; None where a dyad is faulty."""
     dyad = Field("", Kind.OWN, "", form=_DYAD)
     items = reader.items(field, node, path, MOST_DYADS)
     values = [reader.one_of(dyad, item, join(path, i)) for i, item in enumerate(items)]
@@ -193,7 +198,7 @@ _LINK = re.compile(r"coupler|output|dyads\[[0-9]+\]")
 
 
 def _read_link(reader: Reader, field: Field, node: Node, path: str) -> str | None:
-    """Read the name of a moving link."""
+    """Read the name of a moving link; None after a fault."""
     if isinstance(node, Scalar) and _LINK.fullmatch(node.text):
         return node.text
     reader.fault(node.mark, path, "no moving link", describe(node), reader.wanted(field))
@@ -201,7 +206,7 @@ def _read_link(reader: Reader, field: Field, node: Node, path: str) -> str | Non
 
 
 def read_traces(reader: Reader, field: Field, node: Node, path: str) -> list[TracedPoint] | None:
-    """Read the list of points to be traced, or None where one is faulty."""
+    """Read the list of points to be traced; None where a point is faulty."""
     item = Field("", Kind.TABLE, "", table=_TRACE)
     values = [
         reader.field(item, point_node, join(path, i))
@@ -299,7 +304,7 @@ LINKAGES: dict[str, FieldTable] = {
 }
 
 
-TURNING = ("inverted-slider-crank",)  # whose frame may be given a swing: the lift follows from it
+TURNING = ("inverted-slider-crank",)  # kinds of linkage whose frame may be given a swing, from which the lift follows
 SLIDING = ("slider-crank", "rrp")  # kinds of linkage and of dyad whose output is a length
 
 
@@ -357,7 +362,7 @@ def check_linkage(values: Values, reader: Reader) -> None:
 
 
 def build_linkage(linkage: Values) -> Linkage:
-    """Build the linkage from values of a recipe in which no fault was noted."""
+    """Build the linkage from values of a recipe without faults."""
     from kin.linkage.dyad import RPR, RRP, RRR
     from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 

@@ -24,7 +24,7 @@ def load(path: str | PathLike[str]) -> Recipe:
 
 
 def load_order(path: str | PathLike[str]) -> Order:
-    """Read a recipe of whichever kind the file holds, of one cam or of a kind that a capability reads.
+    """Read a recipe from a file: of one cam, or of another kind that a capability reads.
 
     Raises RecipeErrors with all its faults, also where the file does not exist.
     """
@@ -34,8 +34,8 @@ def load_order(path: str | PathLike[str]) -> Order:
 def load_order_text(text: str, path: str, unplaced: str = "") -> Order:
     """Read a recipe of any kind from a text. Raises RecipeErrors with all its faults.
 
-    `path` names it in errors, and the folder of `path` has the files that it names; `unplaced` names in errors a text
-    that stands in no file and so has no lines to refer to.
+    `path` names the recipe in errors, and files that the recipe names are in the folder of `path`. `unplaced` names in
+    errors a text that stands in no file and so has no lines to refer to.
     """
     with without_places(unplaced):
         return replace(_order(text.encode("utf-8", "surrogatepass"), path), unplaced=unplaced)

@@ -17,10 +17,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Manufacture:
-    """Milling, in mm, mm a minute, turns a minute and radians; what only a program needs may be None.
+    """How the contour is milled: mm and rad. Fields that only a milling program needs may be None.
 
-    `allowance` is left by all passes but a last one at full depth. `unreached` is the greatest depth of metal that may
-    remain where the cutter does not reach.
+    cutter        diameter of the cutter
+    feed, plunge  along the contour and downwards, mm a minute
+    spindle       turns a minute
+    depth_of_cut  greatest depth of a pass
+    safe_height   above the stock, for fast moves
+    lead_in       radius of the arcs of lead-in and lead-out; None for the cutter's radius
+    allowance     metal left all round by all passes before a last one at full depth; None without such a pass
+    start         direction in which the cutter is farthest out where it reaches the contour
+    holes         whether round openings larger than the cutter are milled too
+    unreached     greatest depth of metal that may remain where the cutter does not reach
+    layer         whether a DXF shows the path of the cutter's centre
     """
 
     cutter: float
@@ -53,8 +62,8 @@ class Compensation:
     """Compensation of a file's part: `kerf` (a cut's whole width) and `clearance` in mm, `shrinkage` as a share.
 
     A cut along the drawn lines takes half its width from the part, so the metal is drawn larger by that; clearance is
-    taken from it all round. A part that shrinks is drawn larger by 1/(1 - shrinkage) about the shaft. `altered` has the
-    alterations of capabilities.
+    taken from the metal all round. A part that shrinks is drawn larger by 1/(1 - shrinkage) about the shaft. `altered`
+    has the changes that capabilities make to the contour, with their keys and values.
     """
 
     kerf: float = 0.0
@@ -64,7 +73,7 @@ class Compensation:
 
     @property
     def out(self) -> float:
-        """Outward movement of the metal's edges, mm, before the part is scaled."""
+        """Outward movement of the metal's edges, mm, before the part is scaled; below 0 inward."""
         return 0.5 * self.kerf - self.clearance
 
     @property
@@ -74,12 +83,12 @@ class Compensation:
 
     @property
     def tags(self) -> str:
-        """The compensation in the name of a file: `kerf`, `clearance-shrinkage`."""
+        """Keys of the compensation as they stand in the name of a file, such as `clearance-shrinkage`."""
         own = [name for name in ("kerf", "clearance", "shrinkage") if getattr(self, name)]
         return "-".join([*own, *(altered.key for altered in self.altered)])
 
     def words(self, mm: float) -> str:
-        """The compensation in words, lengths in units of `mm` mm: `kerf 0.2, shrinkage 0.5 percent`."""
+        """The compensation in words, such as `kerf 0.2, shrinkage 0.5 percent`, with lengths in a unit of `mm` mm."""
         parts = [f"{name} {value / mm:.9g}" for name in ("kerf", "clearance") if (value := getattr(self, name))]
         if self.shrinkage:
             parts.append(f"shrinkage {100.0 * self.shrinkage:.9g} percent")
@@ -87,9 +96,9 @@ class Compensation:
         return ", ".join(parts)
 
     def entry(self, mm: float) -> dict[str, float]:
-        """Compensation for a report: lengths in units of `mm` mm, the shrinkage in percent.
+        """Compensation for a report, by key: lengths in a unit of `mm` mm, the shrinkage in percent.
 
-        Besides what the file gives, `outward` is the movement of the edges, and `scale` the factor of the drawing.
+        Besides the given keys, `outward` is the movement of the edges and `scale` the factor of the drawing, if finite.
         """
         amounts = {name: getattr(self, name) / mm for name in ("kerf", "clearance") if getattr(self, name)}
         if self.shrinkage:
@@ -100,7 +109,7 @@ class Compensation:
 
 
 MOST_RPM = 1_000_000
-COARSEST, FINEST = 10.0, 1e-3  # degrees between rows of a grinder's table: one with finer ones is too large to read
+COARSEST, FINEST = 10.0, 1e-3  # degrees between rows of a grinder's table: with finer steps it is too large to read
 
 
 MANUFACTURE = FieldTable(
@@ -158,7 +167,7 @@ COMPENSATION = (
 
 
 def check_cutter(reader: Reader) -> None:
-    """Note milling without a cutter; grinding has its wheel alone."""
+    """Note keys of milling without a cutter; a grinding wheel needs none."""
     milled = any(f"manufacture.{field.name}" in reader.marks for field in MANUFACTURE.fields if field.name != "wheel")
     if milled and "manufacture.cutter" not in reader.marks:
         field = MANUFACTURE.field("cutter")
@@ -167,7 +176,7 @@ def check_cutter(reader: Reader) -> None:
 
 
 def check_allowance(milling: Values, reader: Reader) -> None:
-    """Note an allowance too large for a last pass of the cutter."""
+    """Note an allowance of a quarter of the cutter's diameter or more; `milling` are the values of `manufacture`."""
     if {"allowance", "cutter"} <= milling.keys() and milling["allowance"] >= 0.25 * milling["cutter"]:
         remedy = f"give less than {0.25 * milling['cutter'] / reader.mm:.6g} {reader.units}"
         value = f"{milling['allowance'] / reader.mm:.6g} {reader.units}"
@@ -175,14 +184,14 @@ def check_allowance(milling: Values, reader: Reader) -> None:
 
 
 def build_manufacture(values: Values) -> tuple[Manufacture | None, float | None]:
-    """Milling and radius of the grinding wheel, mm, each None where it is not given."""
+    """Milling, and the radius of the grinding wheel, mm, from values of `manufacture`; each None where not given."""
     milling = {name: value for name, value in values.items() if name != "wheel"}
     wheel = values.get("wheel")
     return Manufacture(**milling) if milling else None, None if wheel is None else 0.5 * wheel
 
 
 def build_compensation(file: Values) -> Compensation | None:
-    """Compensation of a file; None without one."""
+    """Compensation of a file from its values, with the shrinkage in percent; None for a nominal file."""
     own = {name: file[name] for name in ("kerf", "clearance", "shrinkage") if name in file}
     if "shrinkage" in own:
         own["shrinkage"] /= 100.0
@@ -195,6 +204,6 @@ def build_compensation(file: Values) -> Compensation | None:
 
 
 def alterations() -> dict[str, Alteration]:
-    """Alterations by their capability, of the records that are loaded: the others have no value in a file."""
+    """Alterations by their capability, of the loaded capabilities; a recipe that uses another would have loaded it."""
     records = {name: registry.capability(name).alteration for name in registry.names_loaded()}
     return {name: record for name, record in records.items() if record is not None}

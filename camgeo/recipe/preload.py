@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
 
 PATH = "cam.preload"
-SIDES = 2.0  # of a contour, each of which may be off by the tolerance
+SIDES = 2.0  # contacts on opposite sides of a contour, each of which may be off by the tolerance
 
 
 def check_preload(values: Values, reader: Reader) -> None:
-    """Note keys that do not go with a preload, and tolerances that may take all of the interference."""
+    """Note keys that do not go with a preload by interference, and a tolerance that may take all of it."""
     cam = values.get("cam", {})
     preload = cam.get("preload")
     if preload is None:
@@ -35,7 +35,7 @@ def check_preload(values: Values, reader: Reader) -> None:
 
 
 def _check_tolerances(values: Values, reader: Reader, interference: float) -> None:
-    """Note a tolerance that may take all of a file's interference."""
+    """Note the first file whose tolerance may take all of the interference, mm, on both sides together."""
     export = values.get("export", {})
     for file in export.get("files", [{"kind": "dxf", "path": ""}]):
         tolerance = file.get("tolerance", export.get("tolerance", TOLERANCE))

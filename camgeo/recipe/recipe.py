@@ -1,8 +1,8 @@
 """A recipe, checked and converted: lengths in mm, angles in radians.
 
-Values are plain, so that recipes can be compared, hashed and pickled. Formulas stay text; their values
-are in the recipe's units, and `scale` (mm per unit) turns those into mm. Each topic has its keys, checks
-and values in a file of its own beside this one.
+Values are plain, so that recipes can be compared, hashed and pickled. Formulas stay text; their values are in the
+recipe's units, which a factor beside them, mm per unit, turns into mm. Each topic has its keys, checks and values in a
+file of its own beside this one.
 """
 
 from __future__ import annotations
@@ -53,11 +53,11 @@ ANGLES = 3600  # of a turn at which files are judged
 
 @dataclass(frozen=True)
 class Verify:
-    """Judgement of files: number of shaft angles, and the greatest errors permitted, None for the implied ones.
+    """Judgement of files: number of shaft angles in a turn, and the greatest errors permitted.
 
-    `motion_error` (mm, or rad where the follower swings) is that of follower or frame against the cam, `output_error`
-    (rad, or mm where it slides) that of the linkage's output. Openings that the part does not name are faults of a
-    file unless `openings` is "ignore".
+    `motion_error` is the error of the follower's or frame's position, mm, or rad where it swings; `output_error` the
+    error of the linkage's output, rad, or mm where it slides. None stands for the error that the tolerance implies.
+    Openings that the part does not name are faults of a file unless `openings` is "ignore".
     """
 
     angles: int
@@ -67,7 +67,7 @@ class Verify:
 
 
 class Angle(NamedTuple):
-    """An angle that stands for a word of the recipe, such as `least`: the path of its field, and degrees."""
+    """An angle chosen in place of a word of the recipe, such as `least`: the path of the field, and degrees."""
 
     path: str
     degrees: float
@@ -77,8 +77,8 @@ class Angle(NamedTuple):
 class ChosenAngles:
     """Angles of a motion chosen for `over: least` and `dwell: rest`.
 
-    `kind` is the key of the segment with the least angle. `bound` are the checks that fail at the next shorter angle,
-    `again` the longer angles, degrees, that were tried and fail too.
+    `kind` is the key, such as rise, of the segment with the least angle. `bound` are names of the checks that fail at
+    the next shorter angle, `again` are longer angles, degrees, that were tried and fail too.
     """
 
     kind: str
@@ -90,7 +90,10 @@ class ChosenAngles:
 
 @dataclass(frozen=True)
 class Order(Document):
-    """A recipe of any kind; `mm` is the length of its unit, mm, `root` the key of its kind (`Root`)."""
+    """A recipe of any kind; `mm` is the length of its unit, mm, `root` the key that makes its kind, such as cam.
+
+    `rotation` is the sense in which the shaft turns, seen as drawn.
+    """
 
     root: ClassVar[str]
 
@@ -107,7 +110,7 @@ class Order(Document):
 
     @property
     def parts(self) -> tuple[Path, ...]:
-        """Files of the recipes that this one is made of, each once; none for a cam."""
+        """Files of the recipes that this recipe is made of, each once; none for a cam."""
         return ()
 
     @property
@@ -116,18 +119,18 @@ class Order(Document):
         return False
 
     def field_of(self, request: FileRequest | None) -> str:
-        """Path of a request's field; that of the list for a request that is not in it."""
+        """Path of a request in the recipe, such as export.files[0]; export.files for None or a request not in it."""
         files = self.export.files
         return f"export.files[{files.index(request)}]" if request in files else "export.files"
 
     def using(self, *options: str) -> Self:
-        """The recipe, made to use the capabilities of these options; raises CallError where it has no cam."""
+        """The recipe itself; raises CallError for any option, as options need a recipe of one cam."""
         if options:
             raise CallError(f"{options[0]} looks at files of one cam: leave it out for a {self.root}")
         return self
 
     def filenames(self, request: FileRequest) -> tuple[str, ...]:
-        """Names of the files that a request makes: one, or one for each disc of a cam."""
+        """Names of the files that a request makes, one for a recipe without a cam."""
         return (request.filename(self.name, self.export.files),)
 
     def request_of(self, filename: str) -> FileRequest | None:
@@ -139,9 +142,9 @@ class Order(Document):
 class Recipe(Order):
     """A recipe of a cam, checked as far as no geometry is needed.
 
-    `wheel` is the radius of the grinding wheel, mm, None where none is given. `capabilities` has the names of
-    those that it uses, each with the value made of its keys, or None. `settled` has the angles chosen for a motion that
-    the recipe leaves open, None where it gives all.
+    `wheel` is the radius of the grinding wheel, mm, None where none is given. `capabilities` has the names of the
+    capabilities that the recipe uses, each with the value made of its keys, None without keys. `settled` has the angles
+    chosen for a motion that the recipe leaves open, None where it gives all angles.
     """
 
     root = CAM
@@ -162,35 +165,35 @@ class Recipe(Order):
 
     @property
     def rpm(self) -> float | None:
-        """Speed of the shaft, turns a minute; None where no capability gives it."""
+        """Speed of the shaft, turns a minute; None where the recipe gives none."""
         speeds = (capability.speed(self) for capability in registry.in_order(self.uses))
         return next((rpm for rpm in speeds if rpm is not None), None)
 
     @property
     def profile(self) -> float | None:
-        """Width, mm, of the tolerance zone of the made contour; None where no capability gives it."""
+        """Width, mm, of the tolerance zone of the made contour; None where the recipe gives none."""
         return None if self.zone is None else self.zone[1]
 
     @property
     def zone(self) -> tuple[str, float] | None:
-        """Field of the tolerance zone of the made contour, and the zone's width, mm; None without one."""
+        """Path of the field of the made contour's tolerance zone, and the zone's width, mm; None without a zone."""
         zones = (capability.profile(self) for capability in registry.in_order(self.uses))
         return next((zone for zone in zones if zone is not None), None)
 
     def of(self, kind: type[T]) -> T | None:
-        """The value of this class that a capability made of its keys; None where the recipe has none."""
+        """The value of the class `kind` that a capability made of its keys; None where the recipe has none."""
         return next((value for _, value in self.capabilities if isinstance(value, kind)), None)
 
     def without(self, *names: str) -> Recipe:
-        """The recipe without these capabilities; its text and its places stay."""
+        """The recipe without the capabilities of these names; its text and marks stay."""
         return replace(self, capabilities=tuple(item for item in self.capabilities if item[0] not in names))
 
     def using(self, *options: str) -> Recipe:
-        """The recipe, made to use these capabilities too, of whose keys it gives none."""
+        """The recipe with further capabilities in use, by their names, without values."""
         return replace(self, capabilities=(*self.capabilities, *((option, None) for option in options)))
 
     def with_value(self, value: object) -> Recipe:
-        """The recipe with another value in place of the one of its class; raises ValueError without one."""
+        """The recipe with a capability's value replaced by one of the same class; ValueError where it has none."""
         if self.of(type(value)) is None:
             raise ValueError(f"{self.name}: no {type(value).__name__}")
         capabilities = (
@@ -209,9 +212,10 @@ class Recipe(Order):
     def replace(self, path: str | collections.abc.Mapping[str, Value], value: Value = None, /) -> Recipe:
         """The recipe with another value at a path such as `cam.base_radius`, or with several, by a mapping.
 
-        Values are in the recipe's units, as its text has them; where a path has none yet, the field is added. All else
-        in the text stays, comments included. Raises RecipeErrors for a path that leads nowhere, and
-        where the new recipe has faults; TypeError for a path that is no text.
+        Values are in the recipe's units, as in its text; a field that is not given yet is added. All else in the text
+        stays, comments included. Raises RecipeErrors for a path that leads nowhere, a value that no recipe may hold, a
+        place that an alias shares, and where the new recipe has faults; TypeError for a path that is no str, and for a
+        value beside a mapping.
         """
         demand_type("path", path, (str, collections.abc.Mapping), "a str or a mapping from such")
         if not isinstance(path, str) and value is not None:
@@ -220,7 +224,10 @@ class Recipe(Order):
         return load_text(text, self.path, f"{self.path} (replaced)")
 
     def sized(self) -> Recipe:
-        """The recipe with the values chosen for `sizing`, `least` and `rest` written out; itself without these keys."""
+        """The recipe with the values chosen for `sizing`, `least` and `rest` written out; itself without these keys.
+
+        Raises RecipeErrors where an alias shares one of their places.
+        """
         from camgeo.schema.change import replace_entry, set_value
 
         angles = {} if self.settled is None else dict((self.settled.least, self.settled.rest))
@@ -235,11 +242,11 @@ class Recipe(Order):
         return load_text(document.text, self.path, f"{self.path} (sized)") if self.cam.sizes or angles else self
 
     def in_units(self, units: Length) -> Recipe:
-        """The recipe with its lengths reported in another unit; the cam stays."""
+        """The recipe with another unit of lengths in reports and files; all values stay, in mm."""
         return replace(self, units=units, mm=UNITS[units])
 
     def in_units_of(self, request: FileRequest) -> Recipe:
-        """The recipe with its lengths reported in the unit of a file."""
+        """The recipe with the unit of a requested file."""
         return self.in_units(request.unit_for(self.units))
 
     @property
@@ -248,13 +255,15 @@ class Recipe(Order):
         return self.cam.undercut == "trim"
 
     def filenames(self, request: FileRequest) -> tuple[str, ...]:
-        """Names of the files of a request that hold the cam: one, or one for each of its discs."""
+        """Names of the files of a request that hold the cam: one, or one for each disc."""
         return request.filenames(self.name, self.export.files, self.cam.arrangement.discs)
 
     def unstated_unit(self, path: Path) -> float | None:
-        """Length in mm of the unit in which a file's numbers are read, where its format states none; None for others.
+        """Length, mm, of the unit in which the numbers of a file without a stated unit are read; None for other files.
 
-        Files of that kind are lists of points of a curve, tables of curve points for a drive, and files of this recipe.
+        It is the unit of the request of this name, else the recipe's. Files without a stated unit are lists of points
+        of a curve, tables of curve points for a drive, and requested files of a format that states none. Raises
+        ValueError for a suffix of no format, OSError where a table cannot be read.
         """
         from kin.read.curve_points import is_curve_points
         from kin.read.formats import format_of
@@ -268,10 +277,10 @@ class Recipe(Order):
 
 
 def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
-    """Read a recipe from bytes; `path` names it in errors and gives its default name.
+    """Read a recipe from bytes; raises RecipeErrors with all its faults.
 
-    `unplaced` names in errors bytes that stand in no file and so have no lines to refer to. Raises RecipeErrors with
-    all faults of the recipe.
+    `path` names the recipe in errors and gives its default name; `unplaced` names in errors bytes that stand in no file
+    and so have no lines to refer to.
     """
     with without_places(unplaced):
         return replace(of_source(read_source(data, str(path)), path), unplaced=unplaced)
@@ -279,9 +288,9 @@ def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
 
 @contextmanager
 def without_places(name: str) -> Iterator[None]:
-    """Context whose errors show `name` in place of line numbers, for a text that stands in no file.
+    """Context in which RecipeErrors show `name` in place of a file's line, for a text that stands in no file.
 
-    With an empty name errors stay as they are.
+    With an empty name the errors stay as they are.
     """
     try:
         yield
@@ -290,15 +299,15 @@ def without_places(name: str) -> Iterator[None]:
 
 
 def root_key(source: Source) -> str:
-    """Key of the kind of recipe of a text; that of a cam where it has none."""
+    """Top key that makes the kind of a recipe; `cam` where the text has no such key."""
     top = entries(source.root) if isinstance(source.root, Mapping) else {}
     return next((key for key in roots.folders() if key in top), CAM)
 
 
 def intended_root(source: Source) -> str:
-    """Key of the kind of recipe of a text, also where that key is misspelt and there is no cam.
+    """Top key that makes the kind of a recipe, also where it is misspelt in a text without a cam.
 
-    `cam` where no key of the text resembles that of another kind.
+    `cam` where no top key resembles the key of another kind.
     """
     top = entries(source.root) if isinstance(source.root, Mapping) else {}
     key = root_key(source)
@@ -310,13 +319,16 @@ def intended_root(source: Source) -> str:
 
 
 def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
-    """Recipe of a parsed text; raises RecipeErrors with all its faults."""
+    """Recipe of a cam from a parsed text; raises RecipeErrors with all its faults, and for another kind of recipe.
+
+    `path` names the recipe in errors and gives its default name.
+    """
     if (key := root_key(source)) != CAM:
         mark = keys(source.root)[key].mark if isinstance(source.root, Mapping) else source.root.mark
         remedy = f"export, check and verify take it; give any other command {roots.root(key).instead}"
         raise RecipeErrors([RecipeError(str(path), *mark, key, f"a {key} is no cam", None, remedy)])
     reader, values = _read(source, registry.by_words(words_of(source.root)))
-    if reader.errors:  # so that suggestions know all keys, and keys in other tables are found
+    if reader.errors:  # read again with all capabilities: an unknown key may be one of theirs, or close to one
         reader, values = _read(source, registry.names_with_record())
     if "name" not in reader.marks:
         stem = Path(path).stem
@@ -338,7 +350,7 @@ def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values
 
 
 def file_bytes(path: str | PathLike[str]) -> bytes:
-    """Bytes of a recipe's file, of one that is too large the first `MAX_BYTES` + 1.
+    """Bytes of a recipe's file, at most the first `MAX_BYTES` + 1, by which a larger file is known.
 
     Raises RecipeErrors for an empty name, and for a file that does not exist or cannot be read.
     """
@@ -353,14 +365,14 @@ def file_bytes(path: str | PathLike[str]) -> bytes:
 def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recipe:
     """Read a recipe from a text. Raises RecipeErrors with all its faults.
 
-    `path` names it in errors and gives its default name; `unplaced` names in errors a text that stands in no file and
-    so has no lines to refer to.
+    `path` names the recipe in errors and gives its default name; `unplaced` names in errors a text that stands in no
+    file and so has no lines to refer to.
     """
     return read(text.encode("utf-8", "surrogatepass"), path, unplaced)
 
 
 def _build(values: Values, document: Document, words: set[str]) -> Recipe:
-    """Recipe of values without fault; `words` are those by which it uses capabilities."""
+    """Recipe of values without faults; `words` are its words that may use capabilities."""
     capabilities = tuple((name, registry.capability(name).build(values)) for name in _used(document, words))
     values = _of_core(values, [name for name, _ in capabilities])
     milling, wheel = build_manufacture(values.get("manufacture", {}))
@@ -387,7 +399,7 @@ def _build(values: Values, document: Document, words: set[str]) -> Recipe:
 
 
 def _used(document: Document, words: set[str]) -> tuple[str, ...]:
-    """Names of the capabilities that a recipe uses: by its words, or by a key of theirs in another table."""
+    """Names of the capabilities that a recipe uses: by its words, or by their keys in tables of the core."""
     named = registry.by_words(words)
     below = [
         name
@@ -407,7 +419,7 @@ def _of_core(values: Values, capabilities: list[str]) -> Values:
 
 
 def _without_names(values: Values, path: list[str], names: set[str]) -> Values:
-    """The values without some names in the mapping at a path of them."""
+    """The values without some names in their mapping at a path."""
     if not path:
         return {name: value for name, value in values.items() if name not in names}
     first, *rest = path

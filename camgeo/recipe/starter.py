@@ -27,11 +27,11 @@ Given: TypeAlias = dict[str, "str | Given"]  # the text of a field, or the field
 
 @dataclass(frozen=True)
 class Starter:
-    """A title, the kind of cam, the fields of the cam that are given, and those of the top level besides.
+    """A recipe to begin with: its title, the kind of cam, the given fields of the cam, and `more` fields beside it.
 
-    `unfit` are fields of the follower, the part or the top level that do not go with the others, and are left out.
-    `after` is the core's starter after which a capability's is listed, `root` the key of a recipe of another kind,
-    which has no cam.
+    `unfit` are fields of the follower, the part or the top level that do not go with the given ones; they are left out
+    of the text. `after` names the core's starter behind which a capability's is listed. `root` is the top key of the
+    recipe's kind; only `cam` has a cam.
     """
 
     title: str
@@ -64,7 +64,7 @@ def _disc(title: str, base: str, stroke: str, follower: Given) -> Starter:
 
 _UNGROOVED = tuple(each.name for each in FEATURES if each.grooved is not None and each.grooved.unless is None)
 _SHAFT: Given = {"shaft": "[10, 4]"}
-# Figures 9a and 13a of AS 2023: what their outputs do around 3 pi/2 and pi no plain four-bar can
+# Figures 9a and 13a of AS 2023: the outputs dwell near 3 pi/2 and pi, as no plain four-bar's does
 DWELLING = "25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t)"
 FOUR_BAR: Given = {
     "linkage": {"kind": "four-bar", "ground": "80", "coupler": "70", "rocker": "105"},
@@ -258,12 +258,12 @@ _REST: Given = {
 
 
 def starters_for(kind: str) -> tuple[str, ...]:
-    """Names of the starters of a kind of cam, such as disc; none for another word."""
+    """Names of the starters of a kind of cam, such as disc; empty for a word that is no kind."""
     return tuple(name for name, entry in STARTERS.items() if entry.root == CAM and entry.kind == kind)
 
 
 def starter(kind: str) -> str:
-    """Text of a starter; raises ValueError for a name that is none of STARTERS."""
+    """Text of the starter named `kind`; raises ValueError for a name that is none of STARTERS."""
     if kind not in STARTERS:
         known = f"there is {either(starters_for(kind) or tuple(STARTERS), 'and')}"
         hint = known if starters_for(kind) else suggestion(kind, STARTERS) or known
@@ -275,7 +275,7 @@ def starter(kind: str) -> str:
 
 
 def _recipe(name: str, chosen: Starter) -> FieldTable:
-    """Table of a starter's recipe, with its kinds of cam and linkage; without a linkage, without its keys."""
+    """Table of a starter's recipe, with the keys of its kinds of cam and linkage; no keys of a linkage without one."""
     linkage = chosen.more.get("linkage")
     kinds = {"cam": _with_forms(_kind_table("the kind of cam", CAMS, chosen.kind), chosen)}
     if isinstance(linkage, dict):
@@ -322,7 +322,7 @@ def _kind_table(about: str, tables: Mapping[str, FieldTable], kind: str) -> Fiel
 
 
 def _lines(table: FieldTable, values: Given, indent: str) -> Iterator[str]:
-    """Lines of a table's fields: those given, the others as comments, alternatives in one line."""
+    """Lines of a table's fields: given ones with their values, others as comments, rival alternatives in one line."""
     rivals = tuple(name for name, _ in table.alternatives if name not in values)
     chosen = tuple(name for name, _ in table.alternatives if name in values)
     for item in table.fields:

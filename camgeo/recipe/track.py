@@ -1,4 +1,4 @@
-"""Tracks: a ring, whose opening is followed from within, or a groove; what their recipes need, and cannot have."""
+"""Tracks: a ring, whose opening is followed from within, or a groove; what their recipes need and exclude."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
 
 OF_A_DISC = ("bore", *(feature.name for feature in FEATURES if not feature.of_ring))
 """Keys of a part that a ring cannot have."""
-SAME = 1e-12  # share by which a cutter may be wider than the groove through rounding
+SAME = 1e-12  # share by which rounding may make a cutter wider than the groove
 
 
 def check_track(values: Values, reader: Reader) -> None:
-    """Note an outline without what it goes round, and what does not go with a ring or a groove."""
+    """Note what a ring or a groove lacks or excludes, and `part.outer` of another cam."""
     cam = values.get("cam")
     if is_ring(values):
         _check_ring(reader)
@@ -38,6 +38,7 @@ def is_groove(cam: Values) -> bool:
 
 
 def _check_ring(reader: Reader) -> None:
+    """Note a ring without an outline, and parts that belong to a disc."""
     if "part.outer" not in reader.marks:
         remedy = "give part.outer, or leave track out"
         reader.fault_at("cam.track", "a ring needs part.outer, the diameter of its outline", "internal", remedy)
@@ -47,6 +48,7 @@ def _check_ring(reader: Reader) -> None:
 
 
 def _check_groove(values: Values, reader: Reader) -> None:
+    """Note what does not go with a groove in its cam, its part, its cutter and its files."""
     cam, part, depth = values["cam"], values.get("part", {}), "cam.track.groove.depth"
     groove = cam["track"].get("groove", {})
     follower = cam.get("follower", {}).get("kind", "roller")
@@ -82,7 +84,7 @@ def _check_groove(values: Values, reader: Reader) -> None:
 
 
 def _check_cutter(values: Values, clearance: float, reader: Reader) -> None:
-    """Note a cutter that does not go into the groove."""
+    """Note a cutter wider than the groove, the roller's diameter and its clearance, mm."""
     radius, cutter = values["cam"].get("follower", {}).get("radius"), values.get("manufacture", {}).get("cutter")
     if radius is None or cutter is None:
         return

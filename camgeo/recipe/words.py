@@ -11,7 +11,10 @@ if TYPE_CHECKING:
 
 
 def words_of(root: Node) -> set[str]:
-    """Words by which a recipe uses capabilities (`Label.words`): its keys, formats and options of its files."""
+    """Words by which a recipe may use capabilities: its top keys, and formats of its files with options `key: word`.
+
+    They are compared with the `words` of labels.
+    """
     top = entries(root) if isinstance(root, Mapping) else {}
     export = top.get("export")
     files = entries(export).get("files") if isinstance(export, Mapping) else None
