@@ -4,9 +4,9 @@ Bodies are stacks of slabs: regions with holes, between two heights. Two slabs a
 their heights overlap. D is the distance between the two regions, below 0 where they overlap (`kin.clearance.distance`).
 
 The least of D over the turn is found by halving intervals of the shaft angle. Over an interval of half width h about
-phi,  D >= D(phi) - L h,  L the bound of the rate of D there. An interval is closed when that is no more than the
-accuracy below the least D found; what is left is halved. The least of the bounds of all closed intervals is below D at
-every angle, however narrow the window in which two bodies meet: nothing rests on how the turn was sampled. Pairs of
+phi,  D >= D(phi) - L h,  L the bound of the rate of D there. An interval is closed when that bound is no more than the
+accuracy below the least D found; other intervals are halved. The least of the bounds of all closed intervals is below D
+at every angle, however narrow the window in which two bodies meet: nothing rests on how the turn was sampled. Pairs of
 features that cannot be the nearest within an interval are left out in all parts of it.
 
 The bound holds for the motions and contours as stated, up to rounding (about 1e-9 mm) and 1e-5 mm where a contour has

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = ["DEPTH_SHARE", "Encounter", "GapSamples", "Pairs", "Relative", "distances", "fastest", "rates", "see"]
 
-ROUNDS = 40  # halvings of a piece searched for its deepest point: its bound is then a 2^41st of it below its middle
+ROUNDS = 40  # halvings of a piece searched for its deepest point: parts of 2^-40 of it are below rounding
 DEPTH_SHARE = 0.02  # precision of a depth, as a part of it
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PlaneMotion", "PoseCourse", "Sampled", "Still", "Turning", "alike"]
 
-FEWEST = 8  # samples of a turn, below which an interpolation says nothing
+FEWEST = 8  # samples of a turn: with fewer an interpolation has no meaning
 CLOSED = 1e-6  # mm and rad, by which the last sample may differ from the first, but for whole turns
 
 

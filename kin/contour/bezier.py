@@ -29,7 +29,7 @@ SIGNLESS = 1e-13
 # Halvings after which a piece that still turns too far is a cusp smaller than rounding.
 CUSP_HALVINGS = 48
 GAUSS_NODES = 16
-# Beyond so many halvings only the neighbourhood of a cusp is left, 2^-30 of the parameter.
+# Halvings after which only the neighbourhood of a cusp is left, 2^-30 of the parameter.
 LENGTH_HALVINGS = 30
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 MOST_HALVINGS = 24
 # Rounding of the proof's own terms, in units of the curve's extent.
 ROUNDING = 64.0 * np.finfo(float).eps
-# An arc may turn by so much at most, so that its distance from the curve is the same seen from either.
+# Greatest turn of an arc: up to it the distance of the curve from the arc is also that of the arc from the curve.
 MOST_TURN = np.pi / 2.0
 
 
@@ -52,7 +52,7 @@ def arcs_along(beziers: Beziers, tolerance: float) -> tuple[Arcs, Indices]:
         pair = pair_of(part)
         middle = (low + high) / 2.0
         good = pair.bound <= tolerance
-        tiny = ~good & (np.hypot(*np.ptp(part.control, axis=1).T) <= tolerance)  # what is left about a cusp
+        tiny = ~good & (np.hypot(*np.ptp(part.control, axis=1).T) <= tolerance)  # the neighbourhood of a cusp
         runs += [pair.first.take(good), pair.second.take(good), chords(part.take(tiny))]
         rows += [row[good], row[good], row[tiny]]
         places += [low[good], middle[good], low[tiny]]

@@ -37,7 +37,7 @@ def _slopes(points: Array, chords: Array) -> Array:
     right = 3.0 * (np.roll(d, 1, axis=0) / before[:, None] + d / chords[:, None])
     low, middle, high = 1.0 / before, 2.0 * (1.0 / before + 1.0 / chords), 1.0 / chords
     count = len(points)
-    # unknown 0 is taken to the right: columns 0 and 1 are the plain right side, column 2 what unknown 0 adds
+    # unknown 0 is taken to the right: columns 0 and 1 are the plain right side, column 2 the share of unknown 0
     sides = np.zeros((count, 3))
     sides[:, :2] = right
     sides[1, 2] -= low[1]

@@ -32,7 +32,7 @@ MOST_SHARE = 2e-11
 ARC_SHARE = 1e-12
 # Of the extent: the distance within which the rough arcs stand for a spline; they only sort near places from far ones.
 ROUGH_SHARE = 1e-4
-# How many times finer than asked for the arcs at hand may be to serve instead.
+# Factor by which the arcs at hand may be finer than a tolerance and still serve for it.
 ALIKE = 4.0
 # Rounding of a tangent's angle, in units of the machine's precision times extent over chord.
 ANGLE_ROUNDING = 16.0
@@ -40,9 +40,9 @@ ANGLE_ROUNDING = 16.0
 NORMAL_ROUNDING = 1e-12
 # Directions, besides the pieces' own, between which a dented contour is searched for lines that touch it twice.
 PROBES = 720
-# How far within an interval between two directions, as a part of it, the contact is looked at to see whether it leaps.
+# Of an interval between two directions: the distance from its ends at which the contacts are compared.
 INSET = 1e-6
-# Of the angles between which the farthest point leaps: more than a number has bits.
+# Halvings of the interval in which the farthest piece changes: more than a number has bits.
 HALVINGS = 60
 
 

@@ -227,7 +227,7 @@ def common_points(first: Arcs, second: Arcs, i: Indices, j: Indices) -> Shared:
         foot = v * (w / size**2)[:, None]
         slope, height = dot(m, along), k * dot(foot, foot) + 2.0 * dot(m, foot) + c
         far = -(slope + np.copysign(np.sqrt(slope**2 - k * height), slope))
-        # of  k x^2 + 2 slope x + height = 0  the one root divides by what the other multiplies
+        # the roots of  k x^2 + 2 slope x + height = 0  without cancellation: height/far and far/k
         steps = np.stack([height / far, np.where(k == 0.0, np.nan, far / k)])
         crossing = a.start + foot + steps[:, :, None] * along
     # Pieces that cover each other have no crossing, but an end or the middle of one lies on the other.

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 RUN = 8  # pieces under one chord, and chords under one of the next level
 BLOCK = 1024  # points at a time
-FEW_PAIRS = 1024  # of a point and a piece: each is looked at
-MOST_PAIRS = 200_000  # of a point and a run; where more remain, fewer points are taken at a time
-# Of the greatest coordinate: by so much bounds are widened, so that every piece equally near is looked at.
+FEW_PAIRS = 1024  # pairs of a point and a piece: up to these all are measured
+MOST_PAIRS = 200_000  # pairs of a point and a run; where more remain, fewer points are taken at a time
+# Of the greatest coordinate: the amount by which bounds are widened, so that every equally near piece is measured.
 ROUNDING = 1e-13
 
 

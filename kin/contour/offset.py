@@ -57,7 +57,7 @@ def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
         chain.curvature / (1.0 - chain.curvature * distance),
         stretched[kept],
     )
-    # [begin, end] of each moved piece, as arc lengths, is what its joints leave of it
+    # [begin, end] of each moved piece, as arc lengths, is the part that its joints leave
     begin, end = np.zeros(len(kept)), moved.length.copy()
     following = np.roll(np.arange(len(kept)), -1)
     leave, enter = moved.ends, moved.start[following]

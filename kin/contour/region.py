@@ -27,7 +27,7 @@ SPLINE_TOLERANCE = 1e-5  # mm, at which arcs stand in for a spline
 MOST_TURN = 0.25  # rad, greatest turn of a piece
 PARTS = 8  # a piece is no longer than the region's extent over this
 SMOOTH = 0.02  # rad; a joint that turns by less is no corner but widens the normals of both its pieces
-STRAIGHT = 1e6  # a radius of so many times a piece's length: its centre is of no use
+STRAIGHT = 1e6  # times a piece's length: a radius from which on its centre is of no use
 GRID = 24  # points along each side of the grid on which a point inside is looked for
 
 

@@ -1,4 +1,4 @@
-"""Proved bounds of functions over stretches, by halving what is not decided yet."""
+"""Proved bounds of functions over stretches, by halving cells that are not decided yet."""
 
 from __future__ import annotations
 
@@ -37,6 +37,7 @@ def undecided(
     """
     top = max(limits)
 
+    # masks of the cells that keep the limits for certain, and of those that break one
     def settled(lower: Array, upper: Array) -> tuple[Mask, Mask]:
         low, high = function(BallJet.variable(lower, upper, top + 2)).bounds()
         yes, no = _within(low, high, limits)
@@ -89,7 +90,7 @@ def unbounded(function: Stretch, begin: float, end: float, order: int) -> float 
 
 
 def _halve(settled: Callable[[Array, Array], tuple[Mask, Mask]], begin: float, end: float) -> float | None:
-    """Halve cells until `settled` says yes to all: None; else the middle of a cell where it says no or does not end."""
+    """Halve cells until `settled` proves all of them: None; else the middle of a cell that is false or stays open."""
     ends = np.linspace(begin, end, _CELLS + 1)
     lower, upper = ends[:-1], ends[1:]
     for _ in range(_HALVINGS):

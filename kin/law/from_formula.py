@@ -92,7 +92,7 @@ def _waves(formula: Formula) -> float:
     are counted as well.
     """
     t = np.mod(np.arange(1, _PLACES + 1) * (math.sqrt(5) - 1) * math.pi, _TURN)
-    with np.errstate(all="ignore"):  # what is not finite is refused where it can be named
+    with np.errstate(all="ignore"):  # numbers that are not finite are refused by the next checks
         p = formula.jet(t, 5).derivatives()
         g, slope, bend = p[1:4] + p[3:6]
         rate = math.sqrt(float(np.mean(slope**2))) / (math.sqrt(float(np.mean(g**2))) or 1.0) or 1.0
@@ -119,7 +119,7 @@ def _demand_period(formula: Formula, switches: Array, scale: float) -> None:
 
 
 def _demand_finite(piece: Expression, begin: float, end: float) -> None:
-    """Prove that p, p' and p'' are finite over a stretch, by halving what cannot be bounded yet."""
+    """Raise IntentError unless p, p' and p'' are proved finite over a stretch."""
     piece.jet(np.linspace(begin, end, 65), 2)  # raises where there is no value
     at = unbounded(piece, begin, end, 2)
     if at is not None:

@@ -237,7 +237,7 @@ def _demand_joined(law: Piecewise, field: str) -> None:
 
 
 def about(function: Stretch, pivot: tuple[float, float], scale: float = 1.0) -> Stretch:
-    """Give scale times a support function, then taken about the shaft at `pivot`, mm."""
+    """Give scale times a support function, as seen from the shaft at `pivot`, mm."""
     x, y = pivot
     if isinstance(function, Circle):
         return Circle(function.radius * scale, function.x * scale - x, function.y * scale - y)
@@ -307,7 +307,7 @@ def lift_reuleaux(
         centres += centres
         knots = list(accumulate((*own, *own[:-1]), initial=-0.5 * own[0]))
     else:
-        # normals within `half` of i pi/n: about the corner there, or about the one opposite
+        # normals within `half` of i pi/n: about the corner there, or about the opposite corner
         places = ((2 * i if i % 2 == 0 else 2 * (i + sides)) * half for i in range(2 * sides))
         centres = [_polar(size / (2 * math.cos(half)), place) for place in places]
         knots = [(2 * i - 1) * half for i in range(2 * sides)]

@@ -2,7 +2,7 @@
 
 Equal sub-expressions are one instruction, run once. Constant sub-expressions are folded as they are met, with a bound
 of their error: a ball jet encloses the formula as it is written, `0.1` and `pi` and `sqrt(2)/7` included. Only an
-exponent is the double nearest to what is written.
+exponent is rounded to the nearest double.
 """
 
 from __future__ import annotations

@@ -40,7 +40,7 @@ _MOST_WORK = 5e10
 _FEW = 1000  # bounds that are looked at together; of more a search begins with these and adds those that are missed
 _DIPS, _HELD = 60, 0.1  # most rounds of bounds at dips, and the share of the tolerance that these bounds allow
 _GAUSS = np.polynomial.legendre.leggauss(3)  # exact for squares of quadratic pieces
-_BACK = np.array([[2], [1], [0]])  # B-splines on a piece, counted back from the one that begins there
+_BACK = np.array([[2], [1], [0]])  # B-splines on a piece, counted back from the last one, which begins there
 _BLOCK = 24  # B-splines of one block of equations with its separators, from three times as many on
 _ROW, _COLUMN = np.repeat(np.arange(3), 3), np.tile(np.arange(3), 3)
 

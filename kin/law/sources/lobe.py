@@ -213,7 +213,7 @@ def demand_ramp(lift: float, ramp: Ramp, field: str) -> None:
 
 
 def _demand_left(half: float, ramp: Ramp, total: float, field: str) -> None:
-    """Raise IntentError for a ramp longer than what is left of the turn."""
+    """Raise IntentError for a ramp longer than the rest of the half turn beyond `half`."""
     left = total / 2 - half
     if not ramp.over < left:
         least = math.radians(ramp.over / left * ramp.velocity)

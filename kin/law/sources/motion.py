@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _JOIN = 1e-9  # of the greatest derivative: a smaller difference over the seam is rounding
 _CLOSED = 1e-11  # of the greatest of S, S', S'': a jump of S or S' below this is rounding, as for a lift
 _LOOKS = 64  # places at which the size of a derivative is looked at, besides the knots
-_INSIDE = (np.arange(8) + 0.5) / 8  # such places in each part, as shares of it
+_INSIDE = (np.arange(8) + 0.5) / 8  # such places in each part, as shares of its width
 _SEAM_ORDER = 6  # derivatives that agree where a function runs on over the seam
 
 
@@ -220,7 +220,8 @@ def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | N
 def opposed(half: Motion) -> Motion:
     """Motion over the whole turn that goes on from `half`, S over half a turn, mm, as S(total) - S(t - total).
 
-    K.-L. Shu and L.-I. Wu 2012, eq. 4. Raises IntentError where S or S' jumps, over the ends too: S'(total) = -S'(0).
+    K.-L. Shu and L.-I. Wu 2012, eq. 4. Raises IntentError where S or S' jumps; for a half with `around` -1 that
+    includes its ends, where S'(total) must be -S'(0).
     """
     half.demand_joined("motion", "mm")
     end, knots = float(half.at_end(0)[0]), half.motion.knots.tolist()

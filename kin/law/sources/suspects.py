@@ -86,8 +86,9 @@ def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
 def suspect(rows: Tabled, plain: Least, *, noisy: bool) -> Suspect | None:
     """The row, or two neighbouring rows, without which the mean square jerk falls most; None where no row stands out.
 
-    The fall must be to half or less, or certain. `plain` is the motion within the rows' readings. `noisy` tells that
-    the rows scatter more than they are rounded: then any row must show as great a fall as one in a short stroke.
+    Without it the mean square must be half or less, or the row must be certain to be wrong. `plain` is the motion
+    within the rows' readings. `noisy` tells that the rows scatter more than they are rounded: then any row must show as
+    great a fall as one in a short stroke.
     """
     best = None
     for places in _likely(rows, plain):
