@@ -255,6 +255,7 @@ def least_pair(
     from camgeo.cams import least_size
     from camgeo.curve import moving_frame
 
+    # the distance of the contacts suffices where some foot keeps the limits of both discs
     a, b = 1.0 / math.tan(rising), 1.0 / math.tan(falling)
     rows = np.array(_pair_rows(motion, rising, falling))
     if offset is None:  # least where two limits of one disc meet

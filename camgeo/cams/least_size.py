@@ -190,6 +190,8 @@ def _half_planes(
     ahead, behind = (rising, falling) if side > 0 else (falling, rising)
 
     def planes(tau: Series, break_side: Side = 1) -> list[tuple[Series, Series, Series]]:
+        # tan alpha = side (L (1 + side S') - C cos psi)/(C sin psi), psi = rest + S, within both limits: linear in the
+        # shaft's place (C cos rest, C sin rest)
         s = motion.on(tau, break_side)
         pace = (s.derivative() * float(side) + 1.0) * length
         s = cut(s, pace.order)
@@ -200,6 +202,7 @@ def _half_planes(
         ]
         if apart is None:
             return rows
+        # the shaft seen along the second arm is turned by the angle between both arms, and mirrored
         x, y = math.cos(apart), math.sin(apart)
         return [(u * x + v * y, u * y - v * x, c) for u, v, c in rows]
 

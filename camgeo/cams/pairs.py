@@ -221,6 +221,7 @@ class PairCam(Cam):
             motion = route.motion.motion(math.pi / self.lam, "law", None)
             return transmission.from_law(self.lam, self.mu, self.arm, motion, self.swing_of, share=share)
         if isinstance(route, WantedRoute):
+            # the nearest series is that of arms of length 1: D grows as the square of the length
             series, square = _nearest(self.lam, self.mu, self.swing_of, route, share)[0], self.arm * self.arm
             cos, sin = ({j: square * c for j, c in part.items()} for part in (series.cos, series.sin))
             return transmission.from_delta(self.lam, self.mu, self.arm, cos, sin)

@@ -28,7 +28,8 @@ class Surface:
     curve     the surface, parallel to `base` at `radius`, mm, 0 for flat faces
     side      1 for metal inside the surface, which then lies inside `base`; -1 for metal outside, as in a ring
     pressure  angle between the contact's normal and the follower's path, rad (n,), at parameters of the curve (n,);
-              above 0 where the cam drives a rise, but of two rollers on one arm its size alone
+              above 0 where the cam drives a rise under a round touch, or where a face is tilted or offset ahead; of
+              two rollers on one arm its size alone
     place     place of contact along a flat face, mm (n,), at parameters (n,); None for a round touch or two on one arm
     series    figures over the shaft angle whose extremes are proved: slope, the tangent of the pressure angle;
               contact, the place on a flat face, mm; spin, turns of the roller per turn of the shaft

@@ -121,6 +121,7 @@ def _highest(figure: ShaftFigure, stretches: Array, *senses: int) -> list[Extrem
     seen = _Seen(*(np.concatenate(parts, axis=-1) for parts in zip(*map(first.times, senses), strict=True)))
     best, place, size = dict.fromkeys(senses, -np.inf), dict.fromkeys(senses, float(low[0])), dict.fromkeys(senses, 0.0)
     extremes: dict[int, Extreme] = {}
+    # values at ends and tops, bounds over the intervals, and a division of those that the bounds leave open
     for level in range(LEVELS):
         tops, rows = _with_tops(figure, seen)
         reach = _most(seen, rows)

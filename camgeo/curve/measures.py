@@ -260,6 +260,7 @@ def polar_parameters(curve: Curve, angles: Array) -> Array:
     least = least_support(curve)
     if not least.value > least.excess:
         raise StarError("a ray from the shaft may cross the contour more than once or not at all", least.at)
+    # the knots on both sides of each ray, then the root of the distance beside the ray between them
     knots, polar = _polar_knots(curve)
     rays = np.mod(angles - polar[0], 2.0 * np.pi) + polar[0]
     cell = np.clip(np.searchsorted(polar, rays, side="right") - 1, 0, len(polar) - 2)

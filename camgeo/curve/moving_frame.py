@@ -55,7 +55,7 @@ class Displacement:
     def of(motion: Motion) -> Displacement:
         """Displacement of a motion over a whole turn or an equal part of one.
 
-        Raises IntentError unless S and S' join at its ends, ValueError for a motion over another angle.
+        Raises IntentError unless S and S' join all round, ValueError for a motion over another angle.
         """
         repeats = round(TURN / motion.total)
         if not (motion.around == 1 and repeats >= 1 and abs(repeats * motion.total - TURN) <= 1e-9):

@@ -84,6 +84,7 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     and number of arcs grow as tolerance^(-1/3). Raises ToleranceError where the tolerance is below rounding, needs too
     many arcs, or is not reached; CurveError where the curve runs backwards.
     """
+    # arcs with free joints first, then biarcs where those are missing or more than expected
     size = curve.size
     bent = any(curve.radius(stretch) is None for run in curve.runs for stretch in run.stretches)
     check_precision(size, tolerance, FLOOR if bent else 1.0)
@@ -113,6 +114,7 @@ def _between_extrema(curve: Curve, tolerance: float, limit: float) -> list[_Stre
     bent = [stretch for stretch in stretches if curve.radius(stretch) is None]
     densities = Density.of(curve, np.array(bent).reshape(-1, 2), arc_density)
     check_count(RATIO * sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
+    # the sign of the curvature's slope on all grids at once, by which bent stretches are divided
     frames = curve.sample(np.concatenate([np.zeros(0), *(density.t[1:-1] for density in densities)]))
     slope = frames.turn_slope * frames.speed - frames.turn * frames.speed_slope
     ends = np.cumsum([density.t.size - 2 for density in densities])
@@ -296,6 +298,7 @@ def _unknown_circle(curve: Curve, density: Density, inner: Array, limit: float) 
     It is a circular arc if the arcs leave in the curve's direction, arrive in it to within rounding, and are proved up
     to `limit`, mm. `inner` (m - 2, 2) are the curve's tangents on the inner grid.
     """
+    # the tangent must turn one way; arcs that turn equally, from the curve's tangent at each node
     first, last = curve.span(density.t[:1], density.t[-1:])
     along = np.concatenate([first.tangent, inner, last.tangent])
     step = np.arctan2(cross(along[:-1], along[1:]), np.sum(along[:-1] * along[1:], axis=1))
@@ -332,6 +335,8 @@ def _biarcs(curve: Curve, low: Array, high: Array, slip: float) -> _Biarcs:
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         ratio = np.abs(b.curvature_slope / a.curvature_slope) ** (1.0 / 6.0)
     ratio = np.where(np.isfinite(ratio), np.clip(ratio, 1.0 / MOST_RATIO, MOST_RATIO), 1.0)
+    # tangents of the lengths r d and d, r the ratio, end r d + d apart, and the joint divides that as r to 1: d is the
+    # root of a quadratic equation
     chord = b.point - a.point
     along = np.sum(chord * (ratio[:, None] * a.tangent + b.tangent), axis=1)
     square = np.sum(chord * chord, axis=1)

@@ -127,6 +127,7 @@ def span_density(curve: Curve, stretches: Array) -> SpanDensity:
     c, 1/mm^5, is the coefficient of the nearest cubic's miss. The integral is the least number of spans at a tolerance
     of 1 mm, to leading order. Where the curve stands still the density is taken as 0.
     """
+    # equal steps of each cell of the curve, cut off at the stretch's ends, and the midpoint rule over them
     cells, edges = curve.cells, []
     for low, high in stretches:
         first = int(np.searchsorted(cells.low, low, side="right")) - 1

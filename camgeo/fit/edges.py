@@ -100,6 +100,7 @@ def place_edges(frame: Frame, run: SmoothRun, nodes: Array, away: Array) -> Plac
     away[-1] = away[0]
     if not run.closed:
         away[[0, -1]] = 0.0
+    # a vertex moves with its node along the tangent, at the speed of the parallel curve
     normal, heading = frame.normal, frame.tangent
     pace = frame.speed + away * frame.turn
     vertices = frame.point + away[:, None] * normal

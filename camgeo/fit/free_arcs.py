@@ -293,6 +293,7 @@ def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: f
     rows[:, 0, 0:3] = np.column_stack([lever * bend0 - lean0 - kink, -ones, lever])
     rows[:, 0, 3:6] = np.column_stack([lever * bend1 + lean1 - kink, ones, lever])
     rows[:, 0, 7] = -arcs.miss / half
+    # w and x of the two extremes of each arc
     w = np.sum(peaks.foot**2, axis=2) / (arcs.length**2)[:, None]
     x = np.sum(peaks.foot * chain.tangent[:, None], axis=2) - ahead[:, None] * w
     rows[:, 1:, 0] = x * bend0[:, None] - (1.0 - w) * lean0[:, None]
@@ -330,6 +331,7 @@ def _close(layout: _Layout, joints: _Joints, frame: Frame, enough: float) -> _Ar
     left, right = layout.left, layout.left + 1
     free = np.where(layout.ends, 0.0, 1.0)
     arcs = _arcs(layout, joints, frame)
+    # each arc's miss is taken off by its two joints, each by its share of the arc's whole effect
     for _ in range(CLOSING):
         if not float(np.abs(arcs.miss).max()) > enough:
             break

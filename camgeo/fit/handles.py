@@ -216,6 +216,7 @@ def _improve_handles(near: _Near, handles: Array, third: Array, out: float) -> t
         tried = np.clip(handles * np.exp(-step), SHORTEST * third, LONGEST * third)
         gap_, gain_ = gaps_and_gain(tried)
         size_ = (gap_ * gap_).sum(axis=1)
+        # steps that lessen the error are kept, and damped less the next time
         better = size_ < size
         row = better[:, None]
         handles, gap, gain = np.where(row, tried, handles), np.where(row, gap_, gap), np.where(row, gain_, gain)

@@ -260,6 +260,7 @@ def _improve(part: _Part, samples: Sagittas, allowed: float, noise: float) -> bo
 
     Sagittas have a rounding error of `noise`, mm, which levelling does not remove.
     """
+    # loads grow as the square of the length: the sum of the roots of their shares is the number of edges needed
     load = samples.load
     shares = float(np.sqrt(np.maximum(load, 0.0) / allowed).sum())
     best = max(part.least, math.ceil(shares - 1e-9))
@@ -370,6 +371,7 @@ def _level(curve: Curve, run: SmoothRun, nodes: Array, sense: float, tolerance: 
     heights more alike is shortened.
     """
     sides = np.full(nodes.size, sense)
+    # full steps from the most even nodes so far, shorter ones after a step that made the loads less even
     best, spread, move, pace = nodes, math.inf, np.zeros_like(nodes), 1.0
     for _ in range(LEVELLINGS):
         seen = sagittas(

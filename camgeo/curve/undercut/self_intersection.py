@@ -51,6 +51,7 @@ def _short_paths(curve: Curve, knots: Array) -> tuple[NDArray[np.intp], Array]:
 
     Panels are halved until both halves together agree with the whole; their own error is far below the difference.
     """
+    # one panel between neighbouring knots; stretches with short paths are integrated
     count = knots.shape[0]
     low, high = knots[:, :-1].ravel(), knots[:, 1:].ravel()
     owner = np.repeat(np.arange(count), knots.shape[1] - 1)
@@ -164,6 +165,7 @@ def newton_crossings(curve: Curve, pairs: Array, size: float) -> Array:
     The shorter way round lies between t and s. A pair counts as a crossing where both points agree within rounding of
     `size`, mm, and the curve runs forward at both.
     """
+    # t and s in the order in which the way between them is the shorter one
     period = curve.shape.period
     low, high = pairs.min(axis=1), pairs.max(axis=1)
     wraps = high - low > 0.5 * period

@@ -259,6 +259,7 @@ def _nodes(curve: Curve, reasons: Causes, count: int) -> Array:
         steps = math.ceil(math.log(max(2.0 * coarse / first, 1.0)) / math.log(GROWTH)) + 1
         return np.asarray(parameter + side * first * GROWTH ** np.arange(steps, dtype=np.float64))
 
+    # nodes within a reversal and ever farther apart on both sides of it, and likewise beside both ends of a neck
     for reversal in reasons.reversals:
         width = reversal.end - reversal.start
         parts.append(np.linspace(reversal.start, reversal.end, 9))
@@ -303,6 +304,7 @@ def _guesses(curve: Curve, reasons: Causes) -> Array:
         if curve.runs[0].low + (min(neck.first, neck.second) - curve.runs[0].low) % curve.shape.period > last:
             continue
         ends = curve.sample(np.array([neck.first, neck.second]))
+        # sides that part as circles are a roller's diameter apart at the distance `reach` along the curve
         opening = -float(ends.curvature.sum())
         if opening > 0.0:
             reach = math.sqrt(4.0 * max(follower_radius(curve) - neck.half, 0.0) / opening)
@@ -433,6 +435,7 @@ def kept_runs(curve: Curve, remainder: Remains) -> tuple[SmoothRun, ...]:
         if high - low <= 1e-12 * period:
             raise UndercutError(f"what is left of the contour near parameter {low:.9g} is lost in rounding", low)
         runs.append(SmoothRun(low, high, tuple(inside.tolist()), closed=False))
+    # runs begin within the curve's own first period
     shift = period if runs[0].low >= curve.runs[0].low + period else 0.0
     if shift:
         runs = [
