@@ -40,7 +40,7 @@ def reason_without(record: Format) -> str:
 
 
 def _judged_by(library: str) -> OfFile:
-    """Predicate whether a library judges a file; a file of all bodies is left out."""
+    """Predicate: whether a library judges a file; files with other bodies than the cam are left out."""
 
     def judged(_: CheckFacts, file: FileRequest) -> bool:
         return library in libraries(file.format) and not file.holds_other_bodies
@@ -49,15 +49,15 @@ def _judged_by(library: str) -> OfFile:
 
 
 def own_export(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Remedy: the file that the recipe itself makes."""
+    """Remedy in words: the file that the recipe itself makes."""
     return "the file that `camgeo export` writes from this recipe"
 
 
 def wider(check: Entry, report: Entry, recipe: Recipe) -> str:
     """Remedy in words: a greater tolerance, or the file that the recipe itself makes.
 
-    The tolerance is the measured distance plus 0.2 of the file's own, for the errors of both polygons. Where nothing
-    was measured the recipe's file alone is named.
+    The tolerance is the measured distance plus 0.2 of the file's tolerance, for the errors of both polygons. Without a
+    measured distance or a tolerance the recipe's file alone is named.
     """
     export = own_export(check, report, recipe)
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check["file"]), None)

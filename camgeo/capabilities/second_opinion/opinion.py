@@ -53,8 +53,8 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 MOST_NAMED = 5  # faults named in a message
-MOST_TRIANGLES = 200_000  # trimesh and manifold3d take seconds beyond
-SHARE = 0.1  # of the tolerance, within which exact contour and file become polygons
+MOST_TRIANGLES = 200_000  # with more, trimesh and manifold3d take many seconds
+SHARE = 0.1  # of the tolerance: distance of the polygons from the exact contour and from that of the file
 NOTHING = "there is nothing to measure, or to hold it against"
 UNMADE = "a check of the exact contour fails"
 LIBRARIES = ("shapely", "trimesh", "scipy.sparse", "networkx", "lxml", "manifold3d")
@@ -65,7 +65,7 @@ class _Skip(Exception):  # noqa: N818 - no error: a row that is left out, with t
 
 
 def demand_libraries(recipe: Recipe) -> None:
-    """Import the libraries; raises SurroundingsError, with the command that installs it, where one is missing."""
+    """Import the libraries; raises SurroundingsError, with the command that installs them, where one is missing."""
     from importlib import import_module
 
     from kin.read.home import prepare_home
@@ -81,10 +81,10 @@ def demand_libraries(recipe: Recipe) -> None:
 
 
 def look(recipe: Recipe, design: Design, files: Sequence[FileResult], checks: Sequence[Check], clock: Clock) -> Results:
-    """Checks by other libraries of `files`, which were judged with `checks`, and what is left out.
+    """Checks of `files` by other libraries, and in `skipped` the files and single checks left out, with the reasons.
 
-    A whole file is left out, or one check of it, each with the reason. A file that kin refuses to read is left out too:
-    kin refuses files whose reading would have no bound.
+    `checks` are those of kin on the same files. A file that kin refuses to read is left out, since kin refuses files
+    whose reading would have no bound. Without an exact contour all files are left out.
     """
     if not design.contours:
         return Results(skipped=[(f"second opinion[{file.path.name}]", UNMADE) for file in files])
@@ -103,6 +103,7 @@ def look(recipe: Recipe, design: Design, files: Sequence[FileResult], checks: Se
         if why:
             skipped.append((f"second opinion[{name}]", why))
             continue
+        # each library gives the checks that are declared for this file
         due = [row.name for row in SECOND_OPINIONS if row.of_file is not None and row.of_file(scene, file.request)]
         with clock.stage("second opinion"):
             for libraries, judge in JUDGES:
@@ -120,7 +121,7 @@ def look(recipe: Recipe, design: Design, files: Sequence[FileResult], checks: Se
 
 
 def _audit(_: Job, file: FileResult) -> list[Check]:
-    """Check of ezdxf's auditor on a DXF: the number of faults that it reports, also of those that it would mend."""
+    """Check by ezdxf's auditor on a DXF: the number of faults that it reports, those that it would mend included."""
     from kin.read.drawing.dxf import damage_reported, parsed
 
     try:
@@ -160,7 +161,7 @@ def _compare_contours(job: Job, file: FileResult) -> list[Check]:
 
 
 def _compare_polygons(fit: Fits, contour: Contour, tolerance: float) -> list[Check]:
-    """Checks of a contour as read against the fit of the exact one, by shapely."""
+    """Checks by shapely of a contour as read against a polygon of the exact one; raises ToleranceError, ValueError."""
     import shapely
 
     exact = fit.within("polyline", SHARE * tolerance)
@@ -169,6 +170,7 @@ def _compare_polygons(fit: Fits, contour: Contour, tolerance: float) -> list[Che
     drawn = polygon_of(contour, SHARE * tolerance)
     shape, nominal = shapely.Polygon(drawn), shapely.Polygon(exact.vertices)
     area, length = float(nominal.area), float(nominal.length)
+    # area: twice the tolerance all round; distance: the tolerance, and the errors of both polygons
     reason = "" if shape.is_valid else str(shapely.is_valid_reason(shape))
     error = abs(float(shape.area) - area)
     areas = f"{float(shape.area):.9g} mm^2, of the exact contour {area:.9g}"
@@ -184,11 +186,12 @@ def _compare_polygons(fit: Fits, contour: Contour, tolerance: float) -> list[Che
 def polygon_of(contour: Contour, tolerance: float) -> Array:
     """Vertices (n, 2) of a polygon within `tolerance` mm of a contour: splines as arcs, arcs as equal chords.
 
-    Half of the tolerance is for each. Raises ValueError where more than MOST_PIECES chords are needed.
+    Half of the tolerance is for each. Raises ValueError where more than MOST_PIECES chords are needed, or where
+    rounding exceeds the tolerance.
     """
     arcs, _ = contour.as_arcs(0.5 * tolerance) if contour.beziers.count else contour.as_arcs()
     bent = np.abs(arcs.curvature)
-    # the sagitta of a chord over a length s of an arc is at most s^2 kappa/8, and no more than the arc's diameter
+    # the sagitta of a chord over a length s of an arc is at most s^2 kappa/8; no chord spans more than 1 rad
     parts = np.ceil(arcs.length * np.sqrt(bent / (4.0 * tolerance)))
     parts = np.maximum(parts, np.ceil(arcs.length * bent))
     if not parts.sum() <= MOST_PIECES:
@@ -198,7 +201,7 @@ def polygon_of(contour: Contour, tolerance: float) -> Array:
 
 
 class _Distance(NamedTuple):
-    """Distance from a polygon, mm, of a point at x, y."""
+    """Distance from a polygon of the point x, y; all mm."""
 
     distance: float
     x: float
@@ -206,9 +209,9 @@ class _Distance(NamedTuple):
 
 
 def _farthest(points: Array, polygon: Array) -> _Distance:
-    """Greatest distance, with its point, from the edges of `polygon` (m, 2) to a closed polygon `points` (n, 2), mm.
+    """Greatest distance of a closed polygon `points` (n, 2) from the edges of `polygon` (m, 2), with its point, mm.
 
-    Measured at the vertices and at the middles of the edges of `points`.
+    It is measured at the vertices and at the middles of the edges of `points`.
     """
     import shapely
 
@@ -223,7 +226,11 @@ def _farthest(points: Array, polygon: Array) -> _Distance:
 
 
 def _judge_mesh(job: Job, file: FileResult) -> list[Check]:
-    """Checks of trimesh on a mesh: watertight, winding, bodies and volume; and the status by manifold3d."""
+    """Checks by trimesh on a mesh, watertight, winding, bodies and volume, and the status by manifold3d.
+
+    A mesh that trimesh does not read has one failed check. Raises _Skip for a file that cannot be read or has too many
+    triangles.
+    """
     import trimesh
 
     from kin.read.files import read_meshes
@@ -267,13 +274,15 @@ def _no_fault(name: str, holds: bool, why: str) -> Check:
 def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN401 - trimesh has no types
     """Checks of the volume by trimesh against the exact one, for each disc that has a contour and a thickness.
 
-    There are none without a unit or tolerance, or where the mesh of several discs has another number of bodies.
+    The list is empty for a file without a unit or a tolerance, or where a mesh of several discs has another number of
+    bodies than discs.
     """
     from kin.judge.volume import layers_volume_check, volume_check
 
     mm, tolerance = file.units, file.tolerance
     parts = _discs_of(job, file)
     bodies = [read]
+    # bodies of several discs are told apart by their lowest z
     if len(parts) > 1:
         bodies = sorted(read.split(only_watertight=False), key=lambda body: body.bounds[0][2])
     if mm is None or tolerance is None or len(bodies) != len(parts):
@@ -293,7 +302,7 @@ def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN4
 
 
 def _discs_of(job: Job, file: FileResult) -> tuple[PartIntent, ...]:
-    """Intents of the discs that a file holds: the one of a file of one disc, else all of the shaft."""
+    """Intents of the discs that a file holds: one for a file of one disc, else all."""
     job, _ = job.of_file(file.request)
     parts = shaft_of_file(job.recipe, job.design, file.request.kind).parts
     return parts if file.disc is None else (parts[file.disc],)
