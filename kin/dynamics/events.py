@@ -116,7 +116,7 @@ class Pressed:
 def windows(begin: float, end: float, fine: float, step: float) -> Iterator[Array]:
     """Times from `begin` to `end`, rad, in growing arrays; each begins with the last but one time of the array before.
 
-    They are `step` apart until `fine`, and then by a part of what is left.
+    They are at most `step` apart until `fine`, rad, and then 1/32 of the whole time.
     """
     count, now, before = _FIRST, begin, np.empty(0)
     coarse = (end - begin) / _COARSE
@@ -130,9 +130,9 @@ def windows(begin: float, end: float, fine: float, step: float) -> Iterator[Arra
 
 
 def first(span: Span, time: Array, level: Array, work: Work) -> float | None:
-    """First time, rad, at which a state has ended, from its levels (n,) at times (n,), rad; None if it lasts till then.
+    """First time, rad, at which a state has ended, from its levels (n,) at times (n,), rad; None if it outlasts them.
 
-    It is the first of the times where the state has ended there already.
+    It is the first of the times where the state has ended already there.
     """
     ended = np.flatnonzero(level < span.limit)
     until = int(ended[0]) if len(ended) else len(level)
@@ -148,7 +148,7 @@ def first(span: Span, time: Array, level: Array, work: Work) -> float | None:
 
 
 def dips(level: Array) -> NDArray[np.intp]:
-    """Indices of samples that are lowest among their neighbours, and beside which the level may dip below 0.
+    """Indices (k,) of samples (n,) that are lowest among their neighbours, and beside which the level may dip below 0.
 
     The dip may be as deep again as the sample is below its neighbours; a smooth one is a quarter as deep at most.
     """
@@ -179,7 +179,7 @@ def _dip(span: Span, low: float, high: float, work: Work) -> float | None:
 def crossing(
     level: Callable[[float], float], low: float, high: float, limit: float, work: Work, *, width: float = 2.0 * _EPS
 ) -> float:
-    """Time between two others at which a level falls below `limit`: later end of a bracket of relative width `width`.
+    """Time between `low` and `high` at which a level falls below `limit`: later end of a bracket of relative `width`.
 
     Chandrupatla's method, Adv. Eng. Softw. 28, 1997: inverse interpolation where it is safe, else halving. A level that
     is below the limit at the start gives the start.

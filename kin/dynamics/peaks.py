@@ -120,8 +120,8 @@ class ResponseFigure:
             stretch, low, high = (np.array(column) for column in zip(*brackets, strict=True))
             tops, times = narrowed(lambda at: self.at(starts, at), stretch, (low, high), sign, rounds)
             peaks += zip(tops.tolist(), stretch.tolist(), times.tolist(), strict=True)
-        value, which, time = max(peaks, key=lambda candidate: sign * candidate[0])
-        return value, float(self.response.drive.knots[which]) + time
+        value, stretch_of_value, time = max(peaks, key=lambda candidate: sign * candidate[0])
+        return value, float(self.response.drive.knots[stretch_of_value]) + time
 
 
 def narrowed(
@@ -133,7 +133,8 @@ def narrowed(
 ) -> tuple[Array, Array]:
     """Values (n,) whose product with `sign` is greatest between two times (n,) on stretches (n,), and their times.
 
-    Times are rad since the start of the stretch.
+    `value(places)` gives the values at places. Times are rad since the start of the stretch; each of the rounds keeps
+    an eighth of the interval.
     """
     low, high = between
     grid, rows = np.linspace(0.0, 1.0, _GRID), np.arange(len(stretch))

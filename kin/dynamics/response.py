@@ -175,7 +175,7 @@ class Response:
         return _STEP / self.oscillator.fast if self.oscillator.fast > 0.0 else np.inf
 
     def swings(self, starts: Array, stretches: Indices) -> tuple[Array, Indices]:
-        """Time (n,) for which free motion is sampled on the given stretches, and how many samples (n,) that takes."""
+        """Time (n,), rad, for which free motion is sampled on stretches (n,), and how many samples (n,) that takes."""
         bound = self.oscillator.bound((starts - self._steps[0].T)[:, stretches])
         lasting = np.minimum(self.lasting(bound, stretches), 2.0 * self.half[stretches])
         fine = np.where(lasting > 0.0, np.ceil(lasting / self.step) + 1.0, 0.0).astype(np.intp)
@@ -185,9 +185,9 @@ class Response:
         """Places that show every swing of z on stretches (n,), ends included; `starts` (2, m) are all states."""
         width = 2.0 * self.half[stretches]
         lasting, fine = self.swings(starts, stretches)
-        each = fine + _SAMPLES
-        owner = np.repeat(np.arange(len(stretches)), each)
-        number = np.arange(len(owner)) - np.repeat(np.cumsum(each) - each, each)
+        counts = fine + _SAMPLES
+        owner = np.repeat(np.arange(len(stretches)), counts)
+        number = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
         time = width[owner] * number / (_SAMPLES - 1)
         if fine.any():
             swinging = lasting[owner] * (number - _SAMPLES + 1) / (fine[owner] + 1.0)

@@ -74,8 +74,8 @@ class Look:
         q, rate, left = self._particular(running.forcing.series(response.drive))
         slow = response.slow[:, None]
         self._q, self._rate = np.where(slow, response.p, q), np.where(slow, response.v, rate)
-        each = self._size(np.array([[0.0], [1.0]]))[0]
-        self.inner = np.where(response.slow, 0.0, left * each)
+        size_of_rate = self._size(np.array([[0.0], [1.0]]))[0]
+        self.inner = np.where(response.slow, 0.0, left * size_of_rate)
 
     def _particular(self, g: Array) -> tuple[Array, Array, Array]:
         """Series of a q that a push g moves, those of q' (m, DEGREE + 1), and a bound (m,) of all that q leaves of g.
@@ -261,10 +261,10 @@ class Look:
         high = np.minimum(width * (part[ends] + 1) / PARTS + 4.0 * step, width)
         count = np.ceil((high - low) / step).astype(np.intp) + 1
         self.work.take(2 * int(count.sum()))
-        each = np.repeat(np.arange(len(owner)), count)
-        number = np.arange(len(each)) - np.repeat(np.cumsum(count) - count, count)
-        time = low[each] + (high - low)[each] * number / (count[each] - 1)
-        return ResponsePlaces(owner[each], time)
+        run = np.repeat(np.arange(len(owner)), count)
+        number = np.arange(len(run)) - np.repeat(np.cumsum(count) - count, count)
+        time = low[run] + (high - low)[run] * number / (count[run] - 1)
+        return ResponsePlaces(owner[run], time)
 
 
 @dataclass(frozen=True)

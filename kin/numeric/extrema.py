@@ -79,6 +79,7 @@ def extremes(
     most = 8 * len(low) + MOST_OPEN
     ends = Extremes(-np.inf, np.nan, -1, np.inf, np.nan, -1)
     owner = np.arange(len(low))
+    # each round takes in all intervals, block by block, and halves those that may still hold an extreme
     for halving in range(MOST_HALVINGS + 1):
         parts = [slice(begin, begin + BLOCK) for begin in range(0, len(low), BLOCK)]
         doubtful = []

@@ -86,6 +86,7 @@ def climb(
         large: NDArray[np.bool_] = np.abs(by) > fine
         return large | ((by != 0.0) & across(breaks, at, by)) if len(breaks) else large
 
+    # the sign of the slope narrows the bracket of each point; a step out of the bracket goes to its middle
     todo = np.flatnonzero(far(x, step))
     low, high = np.full(len(x), -np.inf), np.full(len(x), np.inf)
     for _ in range(MOST_STEPS):
@@ -110,7 +111,7 @@ def climb(
 
 
 def across(breaks: Array, x: Array, step: Array) -> NDArray[np.bool_]:
-    """Whether a break in [0, 2 pi) lies between x and x + step, (n,) each; steps are below half a turn.
+    """Whether one of the `breaks` (m,) in [0, 2 pi) lies between x and x + step (n,), by less than half a turn.
 
     Derivatives at a break are those behind it, so that a step back from a break leads across it.
     """
@@ -185,7 +186,7 @@ def searched_again(feet: Feet, points: Array, contour: Tight, search: Callable[[
 
 
 def better(first: Feet, two: Feet, score_one: Array | None = None, score_two: Array | None = None) -> Feet:
-    """For each point the foot of the greater score (n,), by default of the greater excess."""
+    """For each point the foot of the greater score, `score_one` (n,) or `score_two` (n,), by default the excess."""
     wins = (first.excess if score_one is None else score_one) >= (two.excess if score_two is None else score_two)
     pairs = zip(first.rows, two.rows, strict=True)
     return Feet(*(np.where(wins if a.ndim == 1 else wins[:, None], a, b) for a, b in pairs))

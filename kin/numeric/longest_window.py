@@ -111,8 +111,8 @@ def longest_of_each(
     section = search.section(at_nodes, edges)
     longest = search.maximal_windows(at_nodes, min(float(length[section == k].max(initial=0.0)) for k in sections))
     section = search.section(longest, edges)
-    each = [_disjoint(longest.take(section == k), search.period, 1) for k in sections]
-    return _polished(each[0].joined(*each[1:]), f, search)
+    windows = [_disjoint(longest.take(section == k), search.period, 1) for k in sections]
+    return _polished(windows[0].joined(*windows[1:]), f, search)
 
 
 def _search(f: Callable[[Array, int], Array], breaks: Sequence[float] | Array, band: float, period: float) -> _Search:

@@ -36,6 +36,7 @@ def zeros(
     x, open_ = start, np.ones(start.shape, dtype=np.bool_)
     for step in range(FREE + HALVINGS):
         value, slope = function(x)
+        # the sign narrows the bracket; Newton's step is taken inside it, clipped to its end every other time
         low, high = np.where(value <= 0.0, x, low), np.where(value >= 0.0, x, high)
         usable = (slope > 0.0) & (slope < np.inf) & (step < FREE)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):

@@ -28,7 +28,7 @@ def factorials(order: int) -> Array:
 
 
 def product(a: Array, b: Array) -> Array:
-    """Return the truncated Cauchy product of coefficients (m, n)."""
+    """Return the Cauchy product (m, n) of coefficients a and b (m, n), cut off at the same order."""
     out: Array = a[0] * b
     for i in range(1, len(a)):
         out[i:] += a[i] * b[:-i]
@@ -36,7 +36,7 @@ def product(a: Array, b: Array) -> Array:
 
 
 def quotient(a: Array, b: Array) -> Array:
-    """Taylor coefficients of a/b, as many as a has, by long division; b[0] must not be 0."""
+    """Taylor coefficients (m, n) of a/b, from those of a and b (m, n), by long division; b[0] must not be 0."""
     out, remainder = np.empty_like(a), a.copy()
     for k in range(len(a)):
         out[k] = remainder[k] / b[0]

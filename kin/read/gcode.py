@@ -252,8 +252,8 @@ class _Machine:
             self.at[k] = value
         centred = "I" in numbers or "J" in numbers
         if centred != (motion in "23"):
-            what = f"an arc has no centre I, J; {CENTRES}" if motion in "23" else "a straight move has a centre"
-            raise self._error(number, what, "syntax")
+            problem = f"an arc has no centre I, J; {CENTRES}" if motion in "23" else "a straight move has a centre"
+            raise self._error(number, problem, "syntax")
         if motion != "0" and not (self.feed > 0.0 and self.turning):
             raise self._error(number, "a feed move without a feed F and a turning spindle M3", "syntax")
         x, y, z = self.at

@@ -135,9 +135,9 @@ def nested(contours: list[Contour], path: Path, deepest: int = 1) -> list[Nestin
         x, y = later[wrong][0].tolist()
         box = contours[order[rank + 1 + int(np.flatnonzero(wrong)[0])]].box
         size = f"{box.x_max - box.x_min:.6g} x {box.y_max - box.y_min:.6g} mm"
-        what = f"the closed contour at {place_text(x, y, digits=9)}"
+        subject = f"the closed contour at {place_text(x, y, digits=9)}"
         if rank:
-            raise ReadError("island", f"{what} lies inside a hole; it is {size}", path, (x, y))
-        raise ReadError("several", f"{what} does not lie inside the largest one; it is {size}", path, (x, y))
+            raise ReadError("island", f"{subject} lies inside a hole; it is {size}", path, (x, y))
+        raise ReadError("several", f"{subject} does not lie inside the largest one; it is {size}", path, (x, y))
     places = zip(order, depth.tolist(), inside_of.tolist(), strict=True)
     return [NestingPlace(k, deep, None if outer < 0 else outer) for k, deep, outer in places]

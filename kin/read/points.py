@@ -113,10 +113,10 @@ def read_points(path: Path) -> PointTable:
     size = path.stat().st_size
     if size > MOST_BYTES:
         raise ReadError("range", f"{size / 1e6:.4g} MB, and of points up to {MOST_BYTES / 1e6:.4g} MB are read", path)
-    data = path.read_bytes()
-    if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+    raw = path.read_bytes()
+    if b"\0" in raw and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise ReadError("syntax", "not a text; save the points as CSV", path)
-    text = _decoded(data)
+    text = _decoded(raw)
     if re.search(r"^\s*FA\s*\(", text, re.MULTILINE | re.IGNORECASE) and "FEAT" in text.upper():
         return _demand_sound(_dmis(text, path), path)
     if text.lstrip().upper().startswith("DMISMN"):

@@ -149,7 +149,7 @@ def opening(free: Indices, ends: Array, gap: float, path: Path) -> ReadError:
     (x, y), (x2, y2), wide = points[worst].tolist(), points[nearest[worst]].tolist(), float(width[worst])
     missing = wide > MISSING_SHARE * float(np.ptp(ends, axis=0).max())
     more = f"; {len(free) // 2} such places" if len(free) > 2 else ""
-    what = "the contour is open, a segment is missing" if missing else "the contour is open"
+    problem = "the contour is open, a segment is missing" if missing else "the contour is open"
     places = f"{place_text(x, y, digits=9)} and {place_text(x2, y2, digits=9)}"
-    message = f"{what} between {places}: {wide:.3g} apart, permitted is {gap:.3g}{more}"
+    message = f"{problem} between {places}: {wide:.3g} apart, permitted is {gap:.3g}{more}"
     return ReadError("open" if missing else "gap", message, path, (x, y), wide)

@@ -281,8 +281,8 @@ def gather(drawn: list[Drawn], layers: set[str], path: Path) -> CutEntities:
             shape = shape_of(item.entity)
             entities.shapes.append(shape if item.to is None else item.to.moved(shape, item.rise, item.scale))
         except UnfitError as error:
-            reason, what = error.args
-            raise ReadError(reason, f"{item.name}: {what}", path) from None
+            reason, problem = error.args
+            raise ReadError(reason, f"{item.name}: {problem}", path) from None
         entities.names.append(item.name)
         entities.layers.append(item.layer)
     return entities

@@ -67,8 +67,8 @@ def check(*numbers: Array, limit: float = LARGEST) -> None:
     for array in numbers:
         bad = array[~(np.abs(array) <= limit)]
         if bad.size:
-            what = f"a value of {bad.flat[0]:g}" if np.isfinite(bad.flat[0]) else "a value that is not finite"
-            raise UnfitError("range", what)
+            problem = f"a value of {bad.flat[0]:g}" if np.isfinite(bad.flat[0]) else "a value that is not finite"
+            raise UnfitError("range", problem)
 
 
 def check_degree(degree: int) -> None:

@@ -61,9 +61,9 @@ class _Drawn(NamedTuple):
 def read_svg(path: Path, options: DrawingOptions) -> Drawing:
     """Read the outer contour and the holes that an SVG file gives to cut.
 
-    Groups are layers if their id, or Inkscape's label, is the name of one in a DXF. Cut are CUT, BORE, HOLES, MARK,
-    GROOVE_INNER, GROOVE_OUTER and what stands on no layer; where nothing stands on CUT, all but reference geometry.
-    What is not displayed is left out.
+    A group is a layer if its id, or Inkscape's label, is the name of a layer of a DXF file. Cut are CUT, BORE, HOLES,
+    MARK, GROOVE_INNER, GROOVE_OUTER and what stands on no layer; where nothing stands on CUT, all but reference
+    geometry. Elements with display none are left out.
 
     Raises OSError where the file cannot be read; ReadError for a damaged or too large file, elements, transforms and
     units that are not read, and a contour that is not one closed chain of lines, arcs of circles and cubics.
@@ -171,8 +171,8 @@ def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> CutEntiti
         try:
             shapes = path_of(element.get("d", ""), to) if kind == "path" else [_circle(element, to)]
         except UnfitError as error:
-            reason, what = error.args
-            raise ReadError(reason, f"{name}: {what}", path) from None
+            reason, problem = error.args
+            raise ReadError(reason, f"{name}: {problem}", path) from None
         for piece in shapes:
             entities.shapes.append(piece)
             entities.names.append(name)

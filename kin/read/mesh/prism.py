@@ -129,11 +129,11 @@ def _walls_upright(mesh: Mesh, z_min: float, z_max: float) -> bool:
 
 
 def evened(corners: Corners) -> Evened | None:
-    """Bring corners of triangles (t, 3, 3), mm, together that only rounding holds apart; None where walls are not so.
+    """Bring corners of triangles (t, 3, 3), mm, together that only rounding holds apart; None where walls lean or step.
 
     Corners that belong above one another differ by twice the `rounding` of either at most, along x and along y; so do
-    the heights of the corners of a face. Each place is moved to the middle of its corners. A place wider than that, and
-    a level face between bottom and top, give None: such walls lean, or have steps.
+    the heights of the corners of a face. Each place is moved to the middle of its corners. Walls lean where a place is
+    wider than that; a level face between bottom and top is a step.
     """
     apart = 2.0 * rounding(corners)
     distinct_corners, numbers = weld(corners.reshape(-1, 3))

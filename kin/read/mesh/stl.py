@@ -74,7 +74,7 @@ class Solid(ReadSolid):
             "triangles without area": self.degenerate,
             "triangles drawn twice": self.duplicate,
         }
-        faults = [f"{number} {what}" for what, number in counts.items() if number]
+        faults = [f"{number} {kind}" for kind, number in counts.items() if number]
         if not self.volume > 0.0:
             faults.append(f"the volume is {self.volume:.6g} mm^3: the triangles face inward")
         return tuple(faults)
@@ -257,8 +257,8 @@ def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -
     if meeting:
         raise met(meeting, path)
     order = nested(contours, path, deepest)
-    each = ((counter_clockwise(contours[k]), depth, inside) for k, depth, inside in order)
-    return tuple(ClosedContour(contour, depth, inside, pieces=len(contour)) for contour, depth, inside in each)
+    places = ((counter_clockwise(contours[k]), depth, inside) for k, depth, inside in order)
+    return tuple(ClosedContour(contour, depth, inside, pieces=len(contour)) for contour, depth, inside in places)
 
 
 def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "text"]]:
@@ -311,8 +311,8 @@ def facets(raw: bytes, path: Path) -> Array:
     for column, word in FACET.items():
         wrong = np.flatnonzero(table[:, column] != word)
         if wrong.size:
-            there = table[wrong[0], column].decode("latin-1")
-            message = f'facet {wrong[0] + 1} has "{there}" where "{word.decode("ascii")}" belongs'
+            found_word = table[wrong[0], column].decode("latin-1")
+            message = f'facet {wrong[0] + 1} has "{found_word}" where "{word.decode("ascii")}" belongs'
             raise ReadError("syntax", message, path)
     coordinates = table[:, NUMBERS].ravel()
     try:
@@ -365,14 +365,14 @@ def rings(outline: Outline, path: Path) -> list[Indices]:
     points, start, end = outline
     start, end = start[start != end], end[start != end]  # triangles without area leave these
     leaving, arriving = (np.bincount(ends, minlength=len(points)) for ends in (start, end))
-    for reason, wrong, what in (
+    for reason, wrong, problem in (
         ("open", leaving != arriving, "the section is open"),
         ("branch", leaving > 1, "the section touches itself"),
     ):
         if wrong.any():
             x, y = points[np.flatnonzero(wrong)[0]].tolist()
             places = np.count_nonzero(wrong)
-            raise ReadError(reason, f"{what} at {place_text(x, y, digits=9)} mm; {places} such points", path, (x, y))
+            raise ReadError(reason, f"{problem} at {place_text(x, y, digits=9)} mm; {places} such points", path, (x, y))
     following = np.full(len(points), -1, dtype=np.intp)
     following[start] = end
     step = following.tolist()

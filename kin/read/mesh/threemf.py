@@ -112,7 +112,7 @@ def _ends(corners: Array) -> tuple[float, float]:
 
 
 def read_placed(path: Path | str) -> tuple[Placed, ...]:
-    """Read every object that is built, in the order of the build, but for supports and the like; each in mm.
+    """Read every object that is built, in the order of the build, mm; objects that are not models are left out.
 
     Raises OSError where the file cannot be read; ReadError for a file that is too large, damaged or no 3MF, and for an
     object that is empty, out of range or of too many triangles.

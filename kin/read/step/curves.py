@@ -313,8 +313,8 @@ def spline_of(space: StepFile, number: int) -> Spline:
         knots = _knots(space, number, knotted, degree, len(control))
         check_spline(degree, knots, weight, len(control))
     except UnfitError as error:
-        reason, what = error.args
-        raise file.error(number, what, reason) from None
+        reason, problem = error.args
+        raise file.error(number, problem, reason) from None
     plan = Beziers.from_spline(degree, knots, control[:, :2], weight)
     rise = Beziers.from_spline(degree, knots, np.column_stack([control[:, 2], np.zeros(len(control))]), weight)
     return Spline(plan, rise)

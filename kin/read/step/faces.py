@@ -290,13 +290,13 @@ def face_of(space: StepFile, number: int, edges: dict[int, StepEdge]) -> Face:
         bound = file.reference(listed, number)
         _, loop, orientation, *_ = file.values(bound, file.kind(bound, ("FACE_BOUND", "FACE_OUTER_BOUND"), number), 3)
         forward = file.flag(orientation, bound)
-        ring = file.reference(loop, bound)
-        file.kind(ring, ("EDGE_LOOP",), bound)
+        edge_loop = file.reference(loop, bound)
+        file.kind(edge_loop, ("EDGE_LOOP",), bound)
         uses = [
-            _use(space, file.reference(item, ring), edges)
-            for item in file.several(file.values(ring, "EDGE_LOOP", 2)[1], ring)
+            _use(space, file.reference(item, edge_loop), edges)
+            for item in file.several(file.values(edge_loop, "EDGE_LOOP", 2)[1], edge_loop)
         ]
-        _check_loop(space, ring, uses, edges)
+        _check_loop(space, edge_loop, uses, edges)
         loops.append(tuple(uses) if forward else tuple(Use(use.edge, not use.forward) for use in reversed(uses)))
     if not loops:
         raise file.error(number, "it has no bounds")

@@ -48,6 +48,7 @@ def space_of(file: Exchange, solid: int, *, alone: bool = True) -> StepFile:
     for kind in UNREAD:
         for number in file.of(kind):
             raise file.error(number, "is not read; export the part alone, with nothing put together")
+    # the representation that lists the solid, its units, and the coarsest accuracy that it states
     holders = [
         (number, kind)
         for kind in REPRESENTATIONS
@@ -85,11 +86,11 @@ class _Places:
                 if TRANSFORMED in records:
                     raise file.error(number, "relates no two representations", "syntax")
                 continue
-            first, other = (file.reference(value, number) for value in file.values(number, kind, 4)[2:4])
+            first, second = (file.reference(value, number) for value in file.values(number, kind, 4)[2:4])
             if TRANSFORMED in records:
-                self.moved[number] = (first, other)
+                self.moved[number] = (first, second)
             else:
-                self.plain.append((number, first, other))
+                self.plain.append((number, first, second))
 
     def of(self, holder: int, *, alone: bool) -> Frame | None:
         """Where the solid of a representation stands in the outermost assembly, `alone` there or with other solids.

@@ -252,7 +252,7 @@ class _Body:
         faults = []
         count = Counter(use for face in self.faces for loop in face.loops for use in loop)
         number = Counter(use.edge for use in count.elements())
-        for what, wrong in (
+        for problem, wrong in (
             ("belongs to one face only", [edge for edge, times in number.items() if times == 1]),
             ("belongs to more than two faces", [edge for edge, times in number.items() if times > 2]),
             (
@@ -262,7 +262,7 @@ class _Body:
         ):
             named = ", ".join(f"#{edge}" for edge in sorted(wrong)[:MOST_NAMED])
             if wrong:
-                faults.append(f"{len(wrong)} edges ({named}): each {what}")
+                faults.append(f"{len(wrong)} edges ({named}): each {problem}")
         wound = [face.number for face in self.faces if abs(face.winding) > WOUND]
         faults += [f"face #{number}: an arc of its bounds goes the wrong way round" for number in wound]
         for lid in self.lids:
@@ -283,7 +283,7 @@ class _Body:
         off |= {face.number: face.misfit for face in self.faces}
         worst = max(off, key=lambda number: off[number])
         if off[worst] > self.space.accuracy:
-            what = "ends beside its curve" if worst in self.edges else "is bounded by edges beside its surface"
-            message = f"{what} by {off[worst]:.3g} mm, permitted is {self.space.accuracy:.3g}"
+            problem = "ends beside its curve" if worst in self.edges else "is bounded by edges beside its surface"
+            message = f"{problem} by {off[worst]:.3g} mm, permitted is {self.space.accuracy:.3g}"
             raise self.space.file.error(worst, message, "gap")
         return off[worst]
