@@ -266,6 +266,7 @@ class Beziers:
             speed: Array = np.hypot(v[:, 0], v[:, 1]).reshape(at.shape)
             return speed @ weights * (step / 2.0)
 
+        # parts whose halves agree with them are done; the others are halved again
         total = np.zeros(self.count)
         coarse = integrals(row, begin, step)
         whole = coarse.copy()

@@ -70,8 +70,8 @@ class Box(NamedTuple):
 class Contour(Pieces):
     """Pieces end to end, closed: end[i] is start[i+1], the last end the first start, within the reader's gap.
 
-    A reader gives it counter-clockwise; every measure takes either sense, and only the signs of `area`, `turning` and
-    `joints`, and `is_convex`, depend on it. `arcs_within` is the greatest distance, mm, of the arcs that stand for
+    A reader gives it counter-clockwise; every measure takes either sense, and only `is_convex` and the signs of `area`,
+    `turning`, `turns` and `joints` depend on it. `arcs_within` is the greatest distance, mm, of the arcs that stand for
     splines by default; None for 1e-9 mm, but from 1e-12 to 2e-11 of the extent (the greatest coordinate).
     """
 

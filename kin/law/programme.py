@@ -155,6 +155,7 @@ class _Accelerated:
                 out[0], out[1] = path * x + s, path * slope + slope * scale * x
                 out[2:3] = slope * scale * slope
                 return finite(out, "overflow")
+            # Taylor rows of the sine or cosine, times powers of the pace, then the straight run
             angle, pace = x * rate, slope * rate
             sine, cosine = np.sin(angle), np.cos(angle)
             out -= sine_rows(sine, cosine, order) if self.shape == "sin" else sine_rows(cosine, -sine, order)

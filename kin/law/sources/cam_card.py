@@ -493,6 +493,7 @@ def _mixture(family: _Family, card: SideCard, weights: Array) -> Mixture:
 
 def _no_card(lift: float, sides: Sequence[SideCard], nose: float | None, most: float) -> IntentError:
     """The error for a card that no lobe meets, with the nearest card: that of the least greatest difference."""
+    # the least difference that can be met is bracketed by doubling, then halved
     low, high = 0.0, 1.0
     while _weights_within(lift, sides, nose, most, high) is None and high < _FARTHEST:
         low, high = high, 2.0 * high

@@ -503,6 +503,7 @@ def _of_many(space: FunctionSpace, bounds: Bounds, start: Touch | None, ample: f
 
     Of many bounds some are chosen, and those that are missed are added.
     """
+    # every k-th bound first, then also those that the motion misses
     n = len(bounds.x)
     chosen = np.arange(n) if n <= _FEW else np.arange(0, n, -(-n // _FEW))
     if start is not None:

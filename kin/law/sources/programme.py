@@ -231,6 +231,7 @@ def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Arra
     stated = _matched_state(parts[i], way)
     if stated is not None:
         return stated
+    # else from the neighbour, across the end of the motion too, where its sense may change
     sign, n = 1.0, i + way
     if not 0 <= n < len(parts):
         if around is None:
