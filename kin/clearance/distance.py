@@ -271,7 +271,7 @@ def _depths(meeting: Encounter, pairs: Pairs | None, cells: Indices, precision: 
     value, place = np.full(len(cells), np.inf), np.zeros((len(cells), 2))
     row = np.full(len(motion.half), -1)
     row[cells] = np.arange(len(cells))
-    for own, other, seen, feature in (
+    for own, target, seen, feature in (
         (meeting.second, meeting.first, motion, pairs and pairs.second),
         (meeting.first, meeting.second, back, pairs and pairs.first),
     ):
@@ -282,7 +282,7 @@ def _depths(meeting: Encounter, pairs: Pairs | None, cells: Indices, precision: 
             codes = paired(row[pairs.cell[wanted]], feature[wanted], len(own.reach))
             r, k = np.divmod(np.unique(codes), len(own.reach))
         arcs = moved(own.arcs.take(k), seen.place[cells[r]], seen.angle[cells[r]])
-        depth, point = _deepest(other, arcs, r, value, precision)
+        depth, point = _deepest(target, arcs, r, value, precision)
         if seen is back:
             point = turned(point, motion.angle[cells]) + motion.place[cells]
         deeper = depth < value

@@ -89,16 +89,16 @@ def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
         later = boxes[k + 1 :]
         near = (later[:, 0] <= x_max + TOUCHING) & (later[:, 2] >= x_min - TOUCHING)
         near &= (later[:, 1] <= y_max + TOUCHING) & (later[:, 3] >= y_min - TOUCHING)
-        others = [contours[k + 1 + int(j)] for j in np.flatnonzero(near)]
-        if not others:
+        candidates = [contours[k + 1 + int(j)] for j in np.flatnonzero(near)]
+        if not candidates:
             continue
         rough, off = outline.rough
-        _, away = nearest(rough, np.array([other.start[0] for other in others]))
-        for other, distance in zip(others, away, strict=True):
-            x_min, y_min, x_max, y_max = other.box
+        _, away = nearest(rough, np.array([candidate.start[0] for candidate in candidates]))
+        for candidate, distance in zip(candidates, away, strict=True):
+            x_min, y_min, x_max, y_max = candidate.box
             if distance - off > np.hypot(x_max - x_min, y_max - y_min):
                 continue  # no point of the later contour is so far from its first point
-            common = meetings(outline, other).point
+            common = meetings(outline, candidate).point
             if len(common):
                 return float(common[0, 0]), float(common[0, 1])
     return None

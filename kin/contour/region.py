@@ -86,14 +86,14 @@ class Region:
         """The region with each piece k cut into two of half its length, 2 k and 2 k + 1."""
         n = self.pieces
         fine, _ = self.chain.cut(np.full(n, 2))
-        straight, each = right(fine.tangent), np.repeat(self.widened, 2)
+        straight, widened = right(fine.tangent), np.repeat(self.widened, 2)
         # the joint between both halves is smooth
         middle = 2.0 * straight[1::2]
         at_start = np.stack([self.at_start[:n], middle], axis=1).reshape(-1, 2)
         at_end = np.stack([middle, self.at_end[:n]], axis=1).reshape(-1, 2)
-        rest = np.arange(n, len(self.reach))
-        points = _Points(self.middle[rest], self.at_start[rest])
-        return replace(_region(fine, each, points, at_start, at_end), boundary=self.boundary + n)
+        dots = np.arange(n, len(self.reach))
+        points = _Points(self.middle[dots], self.at_start[dots])
+        return replace(_region(fine, widened, points, at_start, at_end), boundary=self.boundary + n)
 
     @cached_property
     def chain(self) -> Arcs:
@@ -238,15 +238,15 @@ def _ends(first: Arcs, second: Arcs) -> tuple[Gaps, Array]:
     """Least distance from an end of either piece to the other, and half the length of both together (k,)."""
     n = len(first)
     best = Gaps(np.full(n, np.inf), np.empty((n, 2)), np.empty((n, 2)))
-    for end, other, own in (
+    for end, target, own in (
         (first.start, second, True),
         (first.ends, second, True),
         (second.start, first, False),
         (second.ends, first, False),
     ):
-        s, distance = nearest_on(other, end)
+        s, distance = nearest_on(target, end)
         nearer = distance < best.distance
-        foot = other.take(nearer).points(s[nearer])
+        foot = target.take(nearer).points(s[nearer])
         best.distance[nearer] = distance[nearer]
         best.first[nearer] = end[nearer] if own else foot
         best.second[nearer] = foot if own else end[nearer]
