@@ -51,7 +51,7 @@ class Elastic(NamedTuple):
         return self._replace(preload=np.maximum(self.preload - gap / compliance, 0.0))
 
     def split(self, force: Array) -> Array:
-        """P1 and P2 (2, n), 0 or above, at forces F = P1 - P2 (n,).
+        """P1 and P2 (2, n), N or N mm, 0 or above, at forces F = P1 - P2 (n,).
 
         Where one contact is lost, the other bears |F| alone.
         """
@@ -87,7 +87,7 @@ class Guided(NamedTuple):
 
     @property
     def together(self) -> Array:
-        """Least share of the stiffness along the travel that friction leaves while both bear (n,); jammed at 0."""
+        """Least share of the stiffness along the travel that friction leaves while both bear (n,); at 0 it jams."""
         ratio = self.elastic.second / self.elastic.first
         turned = np.abs(self.ends[0] - ratio * self.ends[1]).sum(axis=0)
         share: Array = 1.0 - np.abs(self.rub) * turned / (1.0 + ratio)

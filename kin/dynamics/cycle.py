@@ -85,7 +85,8 @@ class Log:
     ) -> None:
         """Note the extremes of the force of a contact, LOWER or UPPER, over its samples.
 
-        `span_of(stretch)` gives the force between samples. Contact ends at `hit`, stretch and time, or goes on.
+        `span_of(stretch)` gives the force between samples. Contact ends at `hit`, stretch and time, or goes on. Raises
+        SpentError beyond the places that the work permits.
         """
         end = float(samples.phi(-1) if hit is None else samples.knots[hit[0]] + hit[1])
         self.reached = end

@@ -132,7 +132,7 @@ def windows(begin: float, end: float, fine: float, step: float) -> Iterator[Arra
 def first(span: Span, time: Array, level: Array, work: Work) -> float | None:
     """First time, rad, at which a state has ended, from its levels (n,) at times (n,), rad; None if it outlasts them.
 
-    It is the first of the times where the state has ended already there.
+    It is the first of the times where the state has ended already there. Raises SpentError beyond what `work` permits.
     """
     ended = np.flatnonzero(level < span.limit)
     until = int(ended[0]) if len(ended) else len(level)
@@ -182,7 +182,7 @@ def crossing(
     """Time between `low` and `high` at which a level falls below `limit`: later end of a bracket of relative `width`.
 
     Chandrupatla's method, Adv. Eng. Softw. 28, 1997: inverse interpolation where it is safe, else halving. A level that
-    is below the limit at the start gives the start.
+    is below the limit at the start gives the start. Raises SpentError beyond what `work` permits.
     """
     work.take(0)
     width *= max(abs(low), abs(high))
@@ -219,7 +219,10 @@ def _interpolated(places: tuple[float, float, float], levels: tuple[float, float
 
 
 def top(span: Span, low: float, high: float, sign: float, work: Work) -> tuple[float, float]:
-    """The level between two times, rad, whose product with `sign` is greatest, and its time, by closer looks."""
+    """The level between times `low` and `high`, rad, whose product with `sign` is greatest, and its time.
+
+    Found by closer and closer looks. Raises SpentError beyond what `work` permits.
+    """
     for _ in range(_ROUNDS):
         time = np.linspace(low, high, _GRID)
         work.take(_GRID)

@@ -37,7 +37,7 @@ class Intended:
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles (m,), rad, at which the acceleration or a derivative of it may jump."""
+        """Shaft angles (m,), rad, at which the acceleration or one of its derivatives may jump."""
         return self.follower.motion.breaks
 
     def rows(self, phi: Array) -> Array:

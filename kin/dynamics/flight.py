@@ -37,8 +37,8 @@ class Depth(NamedTuple):
 class Path:
     """A place, m or rad, and its rate on a stretch of half width `half`, rad, by series (2, DEGREE + 1).
 
-    Times count from `ahead`, rad, behind the start of the stretch. `size`, `rate`, `bend` and `bend_rate` bound the
-    place and three derivatives by radian of shaft.
+    Times count from `ahead`, rad, after the start of the stretch. `size`, `rate`, `bend` and `bend_rate` are bounds of
+    the moduli of the place and of three derivatives by radian of shaft.
     """
 
     def __init__(self, series: Array, half: float, ahead: float = 0.0) -> None:

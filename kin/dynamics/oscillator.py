@@ -31,7 +31,10 @@ class Propagator(NamedTuple):
 
 @dataclass(frozen=True)
 class Oscillator:
-    """`decay` a >= 0 and `square` r^2 >= 0; 0 and 0 is a free mass. ValueError for other figures."""
+    """Oscillator z'' + 2 a z' + r^2 z = 0 of the `decay` a and the `square` r^2; with 0 and 0 it is a free mass.
+
+    Raises ValueError for figures below 0 or not finite.
+    """
 
     decay: float
     square: float

@@ -46,7 +46,7 @@ class ResponseFigure:
 
     @staticmethod
     def of(response: Response, z: float, v: float, more: Array | float = 0.0) -> ResponseFigure:
-        """Make the figure w0 z + w1 z' + q, w0 `z` and w1 `v`; q is `more`, a series (m, DEGREE + 1) or constant."""
+        """Make the figure w0 z + w1 z' + q: w0 is `z`, w1 `v`, and q `more`, a constant or a series (m, DEGREE + 1)."""
         series = z * response.p + v * response.v
         if isinstance(more, float):
             series[:, 0] += more

@@ -108,14 +108,14 @@ class Response:
         return self._steps[:2]
 
     def starts(self, state: Array, first: int, count: int) -> Array:
-        """States (2, count) at the starts of the stretches `first`, `first` + 1, ..., behind the drive's jumps there.
+        """States (2, count) at the starts of the stretches `first`, `first` + 1, ..., after the drive's jumps there.
 
-        `state` (2,) is that at the end of the stretch before, ahead of the jump at the first.
+        `state` (2,) is the state at the end of the stretch before, before the jump at the first.
         """
         return self._run(state, first, count)[0]
 
     def end(self, state: Array, first: int, count: int) -> Array:
-        """State (2,) at the end of `count` stretches from `first` on; `state` (2,) is ahead of the first jump."""
+        """State (2,) at the end of `count` stretches from `first` on; `state` (2,) is that before the first jump."""
         return self._run(state, first, count)[1]
 
     def _run(self, state: Array, first: int, count: int) -> tuple[Array, Array]:
@@ -146,7 +146,7 @@ class Response:
         return np.array([p + z, v + rate])
 
     def periodic(self) -> Array:
-        """State (2,) at the end of the turn that a turn brings back to itself; ValueError at exact resonance.
+        """State (2,) at the start of a turn, before any jump there, that returns at its end; ValueError at resonance.
 
         The second pass starts where free motion is small already, so that its phase, good to r eps, does not limit the
         result.
@@ -182,7 +182,7 @@ class Response:
         return lasting, fine
 
     def samples(self, starts: Array, stretches: Indices) -> ResponsePlaces:
-        """Places that show every swing of z on stretches (n,), ends included; `starts` (2, m) are all states."""
+        """Places that show every swing of z on stretches (n,), ends included, from states (2, m) at all starts."""
         width = 2.0 * self.half[stretches]
         lasting, fine = self.swings(starts, stretches)
         counts = fine + _SAMPLES

@@ -57,7 +57,8 @@ _CURVED = ORDERS**2 * (ORDERS**2 - 1.0) / 3.0  # greatest second derivative of e
 class Look:
     """Steady state of a train at one shaft speed, with proved lower bounds of its contact force, N or N m.
 
-    Symbols q, h and b, and the kicks, are those of the module; the response has m stretches.
+    Symbols q, h and b, and the kicks, are defined on top of the module; the response has m stretches. Figures that take
+    places to find raise SpentError beyond what `work` permits.
     """
 
     def __init__(self, train: Train, drive: Drive, rpm: float, work: Work) -> None:

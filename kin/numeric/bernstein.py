@@ -149,9 +149,8 @@ def _first_sign(coefficients: Array) -> Array:
 def roots(coefficients: Array) -> list[float]:
     """Roots in (0, 1), rising, at which a Bernstein polynomial (k+1,) changes sign; a touching root may be listed too.
 
-    Roots within END_MARGIN of 0 or 1 are left out.
-    The number of sign changes of the coefficients bounds the number of roots (variation diminishing): none or one is
-    decided at once, more are halved.
+    Roots within END_MARGIN of 0 or 1 are left out. The number of sign changes of the coefficients bounds the number of
+    roots (variation diminishing): an interval without any is left, others are halved.
     """
     places: list[float] = []
     stack = [(coefficients, 0.0, 1.0)]

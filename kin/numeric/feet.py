@@ -111,7 +111,7 @@ def climb(
 
 
 def across(breaks: Array, x: Array, step: Array) -> NDArray[np.bool_]:
-    """Whether one of the `breaks` (m,) in [0, 2 pi) lies between x and x + step (n,), by less than half a turn.
+    """Whether a break lies between x and x + step (n,); breaks (m,) are in [0, 2 pi), steps below half a turn.
 
     Derivatives at a break are those behind it, so that a step back from a break leads across it.
     """

@@ -211,7 +211,7 @@ def rising(
 ) -> Ball:
     """Ball that encloses an increasing function, nowhere below `floor`, of every number in the ball x.
 
-    `tiny` is the error of its underflow. The radius is infinite where x is not within the domain, least and greatest.
+    `tiny` is the error of its underflow. The radius is infinite where x is not within `domain`, its two ends included.
     """
     lower, upper = x.bounds()
     with _fresh():

@@ -293,9 +293,9 @@ def derivatives_by(f: Series, parameter: Series) -> list[Series]:
 
 
 def horner(coefficients: Sequence[float] | Array, x: Series) -> Series:
-    """Polynomials of these coefficients (k,) or (k, n), lowest first, at a jet or ball jet; a jet may overflow.
+    """Polynomials of these coefficients (k,) or (k, n), lowest first, at a jet or ball jet.
 
-    Then it raises DomainError.
+    Raises DomainError where a jet overflows.
     """
     if isinstance(x, BallJet):
         ball = x.constant(coefficients[-1])

@@ -43,7 +43,7 @@ class ReadSolid(Nest):
     height              at which the section was taken
     prism               the walls stand upright from the lowest face to the highest one, to the file's rounding
     volume              mm^3, negative if the surface faces inward
-    sections            at the heights given to the reader, in their order
+    sections            at the heights given to the reader, in their order, without heights that the reader leaves out
     faces               heights of the horizontal faces, rising
     leaning             triangles or faces neither horizontal nor upright (k, 4): least and greatest height, reach from
                         the axis, mm, and mm that they go inward per mm of height, nan for a STEP file

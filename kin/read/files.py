@@ -50,12 +50,13 @@ def read_drawing(
 def read_solid(
     path: Path | str, heights: Sequence[float] = (), units: float | None = None, deepest: int = 1
 ) -> AnySolid:
-    """Read a solid with its sections at `heights`, mm, in which a closed chain may lie inside `deepest` others.
+    """Read a solid with its sections at `heights`, mm, the first of which gives its contour.
 
-    `units`, mm, is the unit of a file that states none; None is mm.
+    In a section a closed chain may lie inside `deepest` others. A height beyond a plain prism of triangles has no
+    section. `units`, mm, is the unit of a file that states none; None is mm.
 
-    Raises OSError where the file cannot be read; ReadError for a damaged or too large file, and where a section is not
-    one closed contour with others in it; ValueError for a suffix that is no solid's.
+    Raises OSError where the file cannot be read; ReadError for a damaged or too large file, a height beyond any other
+    part, and a section that is not one closed contour with others in it; ValueError for a suffix that is no solid's.
     """
     path = Path(path)
     record = format_of(path)

@@ -89,7 +89,7 @@ class Drawing(Nest):
 
 
 class CutEntities(NamedTuple):
-    """The entities to cut: their shapes, names and layers; and what was set aside."""
+    """Entities that are read, with their shapes, names and layers, and counts of the others by layer and type."""
 
     shapes: list[Shape]
     names: list[str]

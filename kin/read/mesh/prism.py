@@ -24,7 +24,7 @@ SPLITS = 16  # passes in which places are separated; two or three will do for a 
 
 
 class Outline(NamedTuple):
-    """Directed edges (k,), (k,) by point number, the solid on their left, and the points (n, 2)."""
+    """Points (n, 2), mm, and directed edges by point numbers, start (k,) and end (k,), the solid on their left."""
 
     points: Array
     start: Indices
@@ -178,15 +178,15 @@ def _places(points: Array, apart: float) -> Indices:
 def rounding(corners: Corners) -> float:
     """How far a coordinate of triangles (t, 3, 3) may be from the true one by rounding, mm.
 
-    A number is written to half a unit of its last place, u: of single precision in a binary file, else as the decimals
-    tell. A program that turns a part about the shaft reads x and y, off by u each, and works out x cos a - y sin a.
+    A number is written to half a unit of its last place, u: of single precision in a binary file, else of its last
+    decimal. A program that turns a part about the shaft reads x and y, off by u each, and works out x cos a - y sin a.
     That brings in (|cos a| + |sin a|) u <= 1.42 u; the rounding of the cosine and the sine, and of both products,
     each a share eps of numbers whose sizes sum up to no more than 1.42 times the greatest coordinate m; and u once
     more when the difference is rounded and written:
 
         (1 + sqrt 2) u + 2 sqrt 2 eps m.
 
-    To write again or to shift takes less. Text of nine digits or fewer may come from a program that reckons in single
+    To write again or to shift takes less. Text of nine digits or fewer may come from a program that computes in single
     precision, and so may more digits if every number is one of single precision to within them.
     """
     largest = float(np.abs(corners).max())

@@ -81,7 +81,7 @@ class Solid(ReadSolid):
 
 
 def read_stl(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> Solid:
-    """Read a part from a STL file, as mm. Costs about one sort of the corners.
+    """Read a part from an STL file, as mm. Costs about one sort of the corners.
 
     `heights`, mm, become `sections`, and the contour is that of the first. Without any it is that of the section at
     half the part's height, or where a part has steps of the widest section midway between two of them. A height beyond
