@@ -315,6 +315,7 @@ class _Search:
         wide = np.diff(starts) > _SAME * period
         left, right = starts[:-1][wide], starts[1:][wide]
         middle = 0.5 * (left + right)
+        # between neighbouring starts a window begins and ends in the same pieces: its middle start shows which
         own = np.clip(np.searchsorted(of.x, middle, side="right") - 1, 0, count - 1)
         change = of.coefficients[own, -1] - of.coefficients[own, 0]
         first, rises = own + count, change > 0

@@ -70,6 +70,7 @@ class _Shape:
 
     def compile(self) -> None:
         """Make `__init__`; MISSING is the default of a field with a factory, which then makes the value."""
+        # parameters and statements with numbers in place of names, so that one text serves many classes
         placed, named, body = ["self"], ["*"], ["pass"]
         by_place: list[object] = []
         by_key: dict[str, object] = {}
@@ -87,6 +88,7 @@ class _Shape:
                 body.append(f"put(self, '_{number}', {value})")
         if hasattr(self.kind, "__post_init__"):
             body.append("self.__post_init__()")
+        # the compiled code gets the names, defaults and qualified name of this class
         parameters = ", ".join(placed + (named if len(named) > 1 else []))
         code = _compiled(f"def __init__({parameters}):\n " + "\n ".join(body))
         names = {f"_{number}": name for number, name in enumerate(self.fields)}

@@ -108,6 +108,7 @@ def read_rows(text: str, comments: tuple[str, ...] = ("#",)) -> Rows:
     kept = [(i, line) for i, line in lines if line and not line.startswith(comments) and not _EXCEL.match(line)]
     if not kept:
         raise RowError("no row of numbers is among its lines")
+    # lines of headings: the first, unless it has numbers, and those without numbers below it
     mark = _mark([line for _, line in kept[1 : _LOOKED + 1] or kept])
     count = 0
     if _is_heading(kept[0][1], mark):
@@ -115,6 +116,7 @@ def read_rows(text: str, comments: tuple[str, ...] = ("#",)) -> Rows:
     rows = kept[count:]
     if not rows:
         raise RowError("below its heading there is no row")
+    # headings with as many cells as the rows have columns; a second one's cells go in brackets behind the first's
     first = rows[0][1]
     widths = {len(_cells(first, mark)), len(first.split(None if mark == " " else mark))}
     headings = [_heading(line, mark, widths) for _, line in kept[:count]]

@@ -92,6 +92,7 @@ def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
         raise ReadError("several", f"{len(built)} objects are built, {names}, where {len(sought)} are expected", path)
     rising = sorted(built, key=lambda body: sum(_ends(_moved(body.corners, body.place))))
     base = rising[0].place if rising[0].rigid else np.vstack([np.eye(3), np.zeros(3)])
+    # places are composed with the inverse of the lowest object's place
     back = np.linalg.inv(base[:3])
     solids = []
     for body, (heights, deepest) in zip(rising, sought, strict=True):

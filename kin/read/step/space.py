@@ -109,6 +109,7 @@ class _Places:
         if not len(seats) == len(self.moved) == len(file.of(OCCURRENCE)):
             named = next(iter([*self.moved, *seats, *file.of(OCCURRENCE)]))
             raise file.error(named, "belongs to an assembly that is not whole; export the part alone")
+        # from the innermost assembly out, each relation puts the part into its parent once
         used: set[int] = set()
         while len(used) < len(self.moved):
             seat = [number for number, (child, _) in self.moved.items() if child in same and number not in used]
