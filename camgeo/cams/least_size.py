@@ -393,7 +393,7 @@ def least_prime(
 
     It is `start` itself where the radius there is not less. `shape` makes the pitch curve of a prime circle; `bend`
     measures another radius of that curve, mm, in place of the least convex one. Raises IntentError where no prime
-    circle up to a billion times `start` keeps `radius`.
+    circle up to a billion times `start` keeps `radius`, or `shape` makes no curve for one.
     """
 
     def short(prime: Array) -> Array:

@@ -86,7 +86,7 @@ class PreloadedCam(AlteredCam):
         return self.nominal.plate
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
-        """A size in words and the nominal cam of that size, which keeps both pressure angles, rad; None if unknown."""
+        """A size in words and the cam of that size, which keeps both pressure angles, rad; None if unknown."""
         return self.nominal.less_pressure(rising, falling, mm)
 
     def rounder_pitch(self, surface: str, mm: float) -> str:

@@ -30,7 +30,7 @@ class Bound:
         return max(self.outward, self.inward)
 
     def scaled(self, k: float) -> Bound:
-        """The bound in a drawing k times as large; raises ValueError for a k below 0."""
+        """The bound in a drawing k times as large, k > 0."""
         return Bound(k * self.outward, k * self.inward)
 
     def widened(self, margin: float) -> Bound:

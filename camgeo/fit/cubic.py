@@ -48,7 +48,7 @@ class NearestCubic:
 def nearest_cubic(speed: Array, turn: Array) -> NearestCubic:
     """Miss and lean of the cubics nearest to a curve at n places, by Taylor coefficients (5, n) of speed, mm, and turn.
 
-    Where the speed vanishes the miss is nan and the lean 0.
+    Raises DomainError where the speed is 0, or so small that terms overflow.
     """
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         f = _heights(speed, turn)
@@ -125,7 +125,7 @@ def span_density(curve: Curve, stretches: Array) -> SpanDensity:
     """Integral of (|c|/864)^(1/6) ds over each stretch (m, 2), none of which spans a break.
 
     c, 1/mm^5, is the coefficient of the nearest cubic's miss. The integral is the least number of spans at a tolerance
-    of 1 mm, to leading order. Where the curve stands still the density is taken as 0.
+    of 1 mm, to leading order. Raises DomainError where the curve stands still.
     """
     # equal steps of each cell of the curve, cut off at the stretch's ends, and the midpoint rule over them
     cells, edges = curve.cells, []

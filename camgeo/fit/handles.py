@@ -89,7 +89,7 @@ def cubic_spans(curve: Curve, low: Array, high: Array, out: float) -> tuple[Arra
 
     With them come the greatest sampled distances, mm (n,), of each from the curve and from the parallel through its
     ends. Handles are sought from two guesses, as their equations may have more than one solution; the closer span is
-    taken.
+    taken. Raises DomainError where the curve stands still in the middle of an interval.
     """
     a, b = curve.span(low, high)
     leaving, arriving = plane(a.tangent), plane(b.tangent)
