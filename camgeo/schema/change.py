@@ -42,15 +42,19 @@ _STEP = re.compile(r"\.?(?:([A-Za-z0-9_-]+)|'([^'\\]*)')|\[([0-9]+)\]")
 
 
 def yaml_text(values: AnyMapping[str, Value], file: str) -> str:
-    """YAML text of a recipe's values, a key a line; raises RecipeErrors, naming `file`, for values it may not hold."""
+    """YAML text of a recipe's values, a key a line.
+
+    Raises RecipeErrors for values that no recipe may hold; `file` is the recipe's name in these.
+    """
     return "".join(f"{line}\n" for line in _block(values, "", file, 0))
 
 
 def set_value(source: Source, path: str, value: Value) -> str:
-    """Text of a recipe with a value set at a path such as `cam.motion[1].over`, or added where the path has none yet.
+    """Text of a recipe with a value set at a path such as `cam.motion[1].over`, or added where there is none yet.
 
     All else stays as it is, comments included; a list or mapping that is replaced goes with its comments. Raises
-    RecipeErrors for a path that leads nowhere, a value that no recipe may hold, and a place that aliases share.
+    RecipeErrors for a path that leads nowhere, a value that no recipe may hold, a place that aliases share, and a value
+    that cannot be put there without harm to the rest.
     """
     steps = _steps(source, path)
     node, node_path = source.root, ""
@@ -73,10 +77,10 @@ def set_value(source: Source, path: str, value: Value) -> str:
 
 
 def replace_entry(source: Source, path: str, key: str, value: Value) -> str:
-    """Text of a recipe whose entry at a path has another key and value; all else stays as it is, comments included.
+    """Text of a recipe in which the entry at a path has another key and value; all else stays, comments included.
 
     Raises RecipeErrors for a path that leads nowhere, a value that no recipe may hold, and a place that cannot be
-    changed without the rest.
+    changed without harm to the rest.
     """
     *parents, name = _steps(source, path)
     node: Node | None = source.root
@@ -142,9 +146,9 @@ def _add_entry(source: Source, node: Node, target: str, steps: list[str | int], 
 
 
 def _verify_change(source: Source, path: str, text: str, new_path: str = "") -> str:
-    """The new text, whose values at all other paths must be the old ones; the entry may move to `new_path`.
+    """The new text itself, whose values at all other paths must be the old ones; the entry may move to `new_path`.
 
-    Raises RecipeErrors where they are not, or the new text is no YAML.
+    Raises RecipeErrors where other values have changed, or the new text is no YAML.
     """
     try:
         new = Source.of(text, source.file).root
@@ -176,7 +180,7 @@ def _refusal(file: str, path: str, problem: str, remedy: str = "", value: str | 
 
 
 def _block(values: AnyMapping[str, Value], path: str, file: str, depth: int) -> list[str]:
-    """Lines of a mapping; lists of lists or of mappings take a line an entry."""
+    """Lines of a mapping in block style; a list of lists or of mappings takes a line for each entry."""
     lines = []
     indent = "  " * depth
     for key, value in values.items():
@@ -195,7 +199,7 @@ def _block(values: AnyMapping[str, Value], path: str, file: str, depth: int) -> 
 
 
 def _flow(value: object, path: str, file: str, depth: int) -> str:
-    """Write any value on one line."""
+    """Text of any value on one line, in flow style."""
     depth = _deeper(depth, path, file)
     value = _without_arrays(value)
     if isinstance(value, AnyMapping):

@@ -23,9 +23,9 @@ _NAME = "recipe"  # of a text in errors
 def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float]) -> str:
     """Text of a recipe with numbers in the place of others, by paths such as `cam.shaft[0]`.
 
-    A number is written as the shortest text that reads back exactly, in the recipe's unit; a unit behind the old number
-    is removed. Raises CallError for a path at which no number stands, for one whose number an alias shares with other
-    fields, and for a number that is not finite; RecipeErrors for a text that is no YAML.
+    The values are in the recipe's units; each is written as the shortest text that reads back exactly, and a unit
+    behind the old number is removed. Raises CallError for a path at which no number stands, for a number that an alias
+    shares with other fields, and for a value that is not finite; RecipeErrors for a text that is no YAML.
     """
     source = _source(recipe)
     placed = list(scalars(source.root))
@@ -52,8 +52,8 @@ def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float
 def remove_section(recipe: str | Source, section: str) -> str:
     """Text of a recipe without a section of the top level and its comments; unchanged where it has no such section.
 
-    Raises RecipeErrors for a text that is no YAML, or from which the section cannot be cut without harm to the rest, as
-    where an alias outside stands for something inside.
+    Raises RecipeErrors for a text that is no YAML, for its only section, and for one that cannot be cut out without
+    harm to the rest, as where an alias elsewhere stands for a value in it.
     """
     source = _source(recipe)
     root = source.root
@@ -87,7 +87,7 @@ def _source(recipe: str | Source) -> Source:
 
 
 def _like(old: str, number: str) -> str:
-    """Write a number in the way of the text that it replaces: in its quotes, or with the line ends behind a block."""
+    """Text of a number in the style of the text that it replaces: in its quotes, or with its line ends."""
     if old[0] in "'\"":
         return f"{old[0]}{number}{old[0]}"
     return number + old[len(old.rstrip()) :]
@@ -119,7 +119,7 @@ def _without_lines(source: Source, root: Mapping, index: int) -> str:
 
 
 def _plain(node: Node) -> object:
-    """Texts, lists of them, lists of those: what a tree says, without its places."""
+    """Content of a tree without its places: texts, pairs of a mapping as a list, entries of a list as a tuple."""
     if isinstance(node, Scalar):
         return node.text
     if isinstance(node, Mapping):

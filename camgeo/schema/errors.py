@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _SHOWN = 60  # characters of a value that an error repeats
-NEAR, NEARER = 0.6, 0.75  # likeness of words that may be meant, and of those that are slips of the pen
-_LONGEST_WORD = 40  # for which a near one is sought
+NEAR, NEARER = 0.6, 0.75  # likeness from which a word is suggested, and from which it is taken for a misspelling
+_LONGEST_WORD = 40  # characters of a word for which a near one is sought
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,8 @@ class RecipeError:
     """One fault of a recipe.
 
     `line` and `column` count from 1, in characters; line 0 stands for the file as a whole. `path` is the field's path,
-    such as `cam.motion[1].law`, and empty where no field is at fault. `value` is what was given, as written.
+    such as `cam.motion[1].law`, and empty where no field is at fault. `value` is the given value as written, None where
+    there is none to show.
     """
 
     file: str
@@ -46,12 +47,12 @@ class RecipeError:
         return f"{self.statement}{value}{remedy}"
 
     def without_place(self, file: str) -> RecipeError:
-        """Copy of the fault without line and column, under another name: for texts that no file holds."""
+        """Copy of the fault without line and column, under another name of the file: for texts that no file holds."""
         return replace(self, file=file, line=0, column=0)
 
 
 class RecipeErrors(CamgeoError):  # noqa: N818 - it carries several errors
-    """All faults of a recipe, by line; `str()` gives one line each."""
+    """All faults of a recipe in the order of their places, each once; `str()` gives a line for each."""
 
     errors: tuple[RecipeError, ...]
 
@@ -66,7 +67,7 @@ class RecipeErrors(CamgeoError):  # noqa: N818 - it carries several errors
 
 
 def quote(text: str) -> str:
-    """Text in quotes for an error, at most 60 characters of it, control characters escaped."""
+    """Text in quotes for an error, shortened to 60 characters, control characters escaped."""
     return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")
 
 

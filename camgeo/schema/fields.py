@@ -75,9 +75,9 @@ class Kind(Enum):
 class OwnForm(Generic[R]):
     """Form of a field of `Kind.OWN`, declared by the module that knows it.
 
-    `noun` and `wanted` are for messages; `read` notes a fault and gives None for a faulty value; `schema` makes the
-    JSON schema. For a mapping whose `kind` chooses its keys, `tables` has the table of each kind, and `group` with the
-    kind says where a key belongs: `cam of kind support`.
+    `noun` and `wanted` are for messages. `read`, (reader, field, node, path), gives the value, or None for a faulty
+    one, whose fault it notes; `schema` makes the JSON schema. For a mapping whose `kind` chooses its keys, `tables` has
+    the table of each kind, and messages name the place of a key by `group` and the kind: `cam of kind support`.
     """
 
     noun: str
@@ -86,7 +86,7 @@ class OwnForm(Generic[R]):
     schema: Callable[[Field], Schema]
     tables: Mapping[str, FieldTable] | None = None
     group: str = ""
-    others: str = ""  # said of a `kind` that is none of them
+    others: str = ""  # remedy for a `kind` that is none of these
     instead: FieldTable | None = None  # of a mapping that may stand in place of a list
 
 
@@ -94,7 +94,8 @@ class OwnForm(Generic[R]):
 class Field:
     """One key of a table. Bounds are in the recipe's own units and degrees, as written.
 
-    `after` is the core's key behind which the key of a capability stands; `unshown` are starters that leave it out.
+    `about` describes the value in messages and in the JSON schema. `after` is the core's key behind which the key of a
+    capability stands; `unshown` are starters that leave it out.
     """
 
     name: str
@@ -102,8 +103,8 @@ class Field:
     about: str
     required: bool = False
     _: KW_ONLY
-    others: str = ""  # said of a word that is none of the choices
-    default: str = ""  # as documented; `load` knows the value
+    others: str = ""  # remedy for a word that is none of the choices
+    default: str = ""  # as documented; the value itself is set where the recipe is built
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None
@@ -131,7 +132,7 @@ class Field:
 
     @property
     def inner(self) -> FieldTable:
-        """Table of a field that has one; an AssertionError elsewhere."""
+        """Table of a field that has one; raises AssertionError for a field without a table."""
         if self.table is None:
             raise AssertionError(self.name)
         return self.table
@@ -198,7 +199,7 @@ class FieldTable:
         return tuple(item.name for item in self.fields)
 
     def field(self, name: str) -> Field:
-        """Field of a key; raises StopIteration for a key that the table has not."""
+        """Field of a key; raises StopIteration for a key that the table does not have."""
         return next(item for item in self.fields if item.name == name)
 
 
@@ -247,7 +248,7 @@ def field_at(root: FieldTable, path: str, kinds: Mapping[str, str]) -> Field | N
 
 
 def place_of_key(root: FieldTable, name: str, table: FieldTable) -> str:
-    """Place where a misplaced key belongs, `it belongs under part`, or else the keys of this table, as a remedy."""
+    """Remedy for a key `name` that `table` lacks: its place, `it belongs under part`, or else the keys here."""
     below = tuple(item.name for item in table.fields if item.table and name in item.table.keys)
     if below and table is not root:
         return f"it belongs under {either(below)}"

@@ -1,4 +1,4 @@
-"""The bytes of a file that somebody has named: nothing waits on a pipe, and nothing large is read whole."""
+"""The bytes of a file that a recipe or a call names: no pipe is waited for, and no large file is read whole."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def read_bytes(path: str | PathLike[str], most: int, noun: str) -> bytes:
-    """Bytes of a file, of a longer one the first `most` + 1; `noun` says in messages what the file holds.
+    """Bytes of a file, of a longer one the first `most` + 1; `noun` names the content of the file in messages.
 
     Raises Complaint for a file that does not exist or cannot be read, and for a pipe or a device.
     """

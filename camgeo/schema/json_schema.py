@@ -31,7 +31,7 @@ _RATIO = r"^[0-9]+(/[0-9]+)?$"
 
 
 def json_schema(root: FieldTable) -> Schema:
-    """JSON schema of a recipe with these keys; `load` refuses all that it refuses, and more."""
+    """JSON schema of a recipe with these keys; `load` refuses every recipe that the schema refuses, and more."""
     draft = "https://json-schema.org/draft/2020-12/schema"
     return {"$schema": draft, "title": "camgeo recipe", **table_schema(root)}
 
@@ -103,7 +103,7 @@ def _kind(field: Field) -> Schema:
 def number_schema(field: Field | None = None, unit: Kind | None = None) -> Schema:
     """JSON schema of a number within the bounds of its field, or of a text with a number and a unit of its kind.
 
-    `unit` is the kind of a number without a field.
+    Without a field, `unit` is the kind of the number, and the bounds only guard against slips.
     """
     number: Schema = {"type": "number"}
     if field is not None:

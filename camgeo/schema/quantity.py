@@ -11,11 +11,11 @@ LENGTHS = {"mm": 10, "cm": 100, "in": 254, "inch": 254}
 ANGLES = {"deg": 1}
 """The units that an angle may carry, in degrees."""
 LBF = 44482216152605  # 1e-13 N: 0.45359237 kg by 9.80665 m/s^2
-FORCES = {"N": 10**13, "lbf": LBF}
-MOMENTS = {"Nm": 10**17, "lbf*in": 254 * LBF, "lbf-in": 254 * LBF}
-RATES = {"N/m": 254 * 10**9, "N/mm": 254 * 10**12, "lbf/in": LBF}
-PSI = LBF  # by 25.4 mm squared
-NEWTONS = 64516 * 10**11  # an N/mm^2 in the same
+FORCES = {"N": 10**13, "lbf": LBF}  # in 1e-13 N
+MOMENTS = {"Nm": 10**17, "lbf*in": 254 * LBF, "lbf-in": 254 * LBF}  # in 1e-17 N m
+RATES = {"N/m": 254 * 10**9, "N/mm": 254 * 10**12, "lbf/in": LBF}  # in 1e-13 N by 25.4 mm
+PSI = LBF  # in 1e-13 N by a square of 25.4 mm
+NEWTONS = 64516 * 10**11  # an N/mm^2 in the same unit
 PRESSURES = {"N/mm^2": NEWTONS, "N/mm²": NEWTONS, "MPa": NEWTONS, "GPa": 1000 * NEWTONS, "psi": PSI, "ksi": 1000 * PSI}
 MASSES = {"kg": 10**8, "lb": 45359237}
 """The units that forces, moments, rates of springs, pressures and masses may carry, as whole multiples of one."""
@@ -42,7 +42,7 @@ def units_for(own_unit: str) -> tuple[str, ...]:
 
 
 def quantity_in(own_unit: str) -> str:
-    """Quantity that a unit measures, for messages: `a length`."""
+    """Quantity that a unit measures, for messages: `a length`; raises KeyError for a unit that no number may carry."""
     return _TAKEN[own_unit][2]
 
 

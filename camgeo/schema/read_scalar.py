@@ -1,4 +1,7 @@
-"""Reading the scalar fields of a recipe: texts, choices, numbers, formulas."""
+"""Reading the scalar fields of a recipe: texts, choices, numbers, formulas.
+
+Each function takes the field, its node and its path, and notes faults in the reader.
+"""
 
 from __future__ import annotations
 
@@ -19,10 +22,7 @@ if TYPE_CHECKING:
 
 
 def read_text(reader: Reader, field: Field, node: Node, path: str) -> object:
-    """Value of a text by its field: a note, a name, or a ratio as a pair (lambda, mu); None where faulty.
-
-    The fault is noted.
-    """
+    """Value of a text by the kind of its field: a note, a name, or a ratio (lambda, mu); None where faulty."""
     readers: dict[Kind, Callable[[str], object]] = {
         Kind.TEXT: read_paragraph,
         Kind.NAME: read_name,
@@ -39,7 +39,7 @@ def read_text(reader: Reader, field: Field, node: Node, path: str) -> object:
 
 
 def read_choice(reader: Reader, field: Field, node: Node, path: str) -> str | None:
-    """Word of a field with choices; None where it is none of them, with the fault noted."""
+    """Word of a field with choices; None where it is none of them."""
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in field.choices:
         return None if scalar is None else scalar.text
@@ -50,7 +50,7 @@ def read_choice(reader: Reader, field: Field, node: Node, path: str) -> str | No
 
 
 def read_truth(reader: Reader, field: Field, node: Node, path: str) -> bool | None:
-    """Truth value of the words true and false alone, not of YAML's others; None where faulty, with the fault noted."""
+    """Truth value of the words true and false; None for anything else, other truth values of YAML included."""
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in {"true", "false"}:
         return None if scalar is None else scalar.text == "true"
@@ -59,7 +59,7 @@ def read_truth(reader: Reader, field: Field, node: Node, path: str) -> bool | No
 
 
 def read_numeric(reader: Reader, field: Field, node: Node, path: str) -> float | int | None:
-    """Number in mm, rad or the field's own unit, within its bounds; None where faulty, with the fault noted.
+    """Number in mm, rad or the field's own unit, within its bounds; None where faulty.
 
     It is written in the recipe's unit or with a unit of its own; bounds hold in the recipe's unit.
     """
@@ -104,7 +104,7 @@ def _refuse_unit(reader: Reader, field: Field, scalar: Scalar, path: str, unit: 
 
 
 def read_formula(reader: Reader, field: Field, node: Node, path: str) -> str | None:
-    """Text of a formula on one line; None where it is faulty, with the fault noted at its place in the text."""
+    """Text of a formula on one line; None where it is faulty, with the fault noted at its place within the formula."""
     from kin.law.formula.formula import Formula, FormulaError
 
     scalar = _scalar(reader, field, node, path)
@@ -139,7 +139,7 @@ def _complain(reader: Reader, field: Field, node: Scalar, path: str, complaint: 
 
 
 def _inside(reader: Reader, node: Scalar, column: int) -> Mark:
-    """Place of a character of a scalar, or of the scalar where escapes or line breaks hide it."""
+    """Place of the character `column` of a scalar; that of the scalar where escapes or line breaks are in between."""
     (line, start), (end_line, end) = node.mark, node.end
     raw = reader.source.lines[line - 1][start - 1 : end - 1] if line == end_line else ""
     for lead in (0, 1):  # plain, quoted

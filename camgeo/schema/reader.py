@@ -47,7 +47,7 @@ class Reader:
     units    the recipe's unit, and `mm` its length; these and the following are set before other fields are read
     kinds    kind of each mapping with kinds, by its key
     angular  kinds of field that hold an angle
-    offers   figures that its cam has
+    offers   words for what its cam has, such as `roller`, `arm` and `plate`
     """
 
     def __init__(self, source: Source, readers: Readers, root: FieldTable) -> None:
@@ -89,7 +89,7 @@ class Reader:
         return self.units if kind in {Kind.POINT, Kind.PAIR, *_LENGTHS} else ""
 
     def scale(self, kind: Kind) -> float:
-        """Factor from a number as written to mm, mm^2 or radians."""
+        """Factor from a number as written to mm, mm^2 or rad; 1 for other kinds."""
         if kind in self.angular:
             return math.pi / 180
         return {**dict.fromkeys(_LENGTHS, self.mm), Kind.AREA: self.mm**2}.get(kind, 1.0)
@@ -122,7 +122,7 @@ class Reader:
                 self.survey(value, below)
 
     def table(self, table: FieldTable, node: Mapping, path: str) -> Values:
-        """Values of a mapping by key, without faulty ones; unknown, missing and conflicting keys are faults."""
+        """Values of a mapping by key, without faulty ones; unknown, missing and conflicting keys are noted."""
         nodes = entries(node)
         self._refuse_unknown(table, node, path)
         self._refuse_alternatives(table, nodes, node, path)
@@ -196,7 +196,10 @@ class Reader:
         return self.table(field.table, node, path)
 
     def one_of(self, field: Field, node: Node, path: str) -> Values | None:
-        """Values of a mapping whose `kind` chooses one of its form's tables; None where the kind is faulty."""
+        """Values of a mapping whose `kind` chooses one of its form's tables.
+
+        None where it is no mapping or its kind is faulty, with the fault noted.
+        """
         tables = (field.form.tables if field.form else None) or {}
         if not isinstance(node, Mapping):
             self.fault(node.mark, path, "not a mapping", describe(node), self.wanted(field))
@@ -217,7 +220,7 @@ class Reader:
         return None
 
     def items(self, field: Field, node: Node, path: str, most: int) -> tuple[Node, ...]:
-        """Entries of a list of one to `most`; empty where it is faulty, with the fault noted."""
+        """Entries of a list of 1 to `most` entries; empty where it is faulty, with the fault noted."""
         if not isinstance(node, Sequence):
             self.fault(node.mark, path, "not a list", describe(node), self.wanted(field))
             return ()
@@ -230,7 +233,7 @@ class Reader:
 
 
 def _other_measure(name: str, node: Node, names: collections.abc.Collection[str]) -> str:
-    """Remedy for a diameter in the place of a radius, or the reverse, with its value; empty for other keys."""
+    """Remedy for a diameter given in place of a radius, or the reverse, with its value; empty for other keys."""
     for measure, counterpart, factor in (("diameter", "radius", 0.5), ("radius", "diameter", 2.0)):
         new_name = name.replace(measure, counterpart)
         if measure in name and new_name in names and isinstance(node, Scalar):
@@ -242,6 +245,6 @@ def _other_measure(name: str, node: Node, names: collections.abc.Collection[str]
 
 
 def kind_of(node: Node | None, tables: collections.abc.Mapping[str, FieldTable]) -> str:
-    """Kind of a mapping, if `tables` has it; empty for any other node."""
+    """Word of a mapping's `kind`; empty where `tables` does not have it, and for any other node."""
     kind = entries(node).get("kind") if isinstance(node, Mapping) else None
     return kind.text if isinstance(kind, Scalar) and kind.text in tables else ""

@@ -44,7 +44,10 @@ def read_numbers(reader: Reader, field: Field, node: Node, path: str) -> tuple[f
 
 
 def read_harmonics(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[int, float], ...] | None:
-    """Pairs of a harmonic and its coefficient, harmonics rising; faulty entries are noted and left out."""
+    """Pairs of a harmonic and its coefficient, harmonics rising; None where it is no mapping, with the fault noted.
+
+    Faulty entries are noted and left out.
+    """
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
         return None
@@ -96,7 +99,8 @@ def form_of_kinds(
 ) -> OwnForm[Reader]:
     """Form of a mapping whose `kind` chooses the table of its keys.
 
-    `group`, with the kind, says in messages where a key belongs; `others` is said of a kind that is none of them.
+    `noun` names the mapping in messages, `group` with the kind the place of a key; `others` is the remedy for a kind
+    that is none of these.
     """
     return OwnForm(
         f"a {noun}",

@@ -17,7 +17,7 @@ _LEADING_ZERO = r"[+-]?0+[0-9]"
 _MOST_DIGITS = 60
 _LEAST = 1e-30  # so that no later square or quotient leaves the range of floats
 
-# Other ways to write a number, and what would do.
+# Other ways to write a number, and the remedy for each.
 _NOT_NUMBERS = (
     (r"(?i:[+-]?\.?(?:inf|infinity|nan))", "it must be finite"),
     (r"[+-]?[0-9]+(?::[0-9.]+)+", "sexagesimal numbers are not read; write it as one decimal number"),
@@ -37,7 +37,7 @@ RESERVED_SUFFIX = ".rejected"  # of the folder that a failing run leaves
 
 
 class Complaint(ValueError):  # noqa: N818 - it never leaves the package
-    """Problem of a text, and its remedy; the remedy is empty where the field says it."""
+    """Problem of a text, and its remedy; the remedy is empty where the one of the field is to be shown."""
 
     def __init__(self, problem: str, remedy: str = "") -> None:
         super().__init__(problem)
@@ -79,7 +79,7 @@ def read_number(text: str) -> float:
 
 
 def within_range(value: float) -> float:
-    """The number itself; raises Complaint for one that is not finite or below 1e-30 without being 0."""
+    """The number itself; raises Complaint where it is not finite, or nearer to 0 than 1e-30 without being 0."""
     if not math.isfinite(value):
         raise Complaint("too large")
     if 0 < abs(value) < _LEAST:
@@ -138,7 +138,7 @@ def read_ratio(text: str) -> tuple[int, int]:
 
 
 def read_name(text: str) -> str:
-    """The name itself, safe as the name of a folder on any system; raises Complaint for one that is not.
+    """The name itself; raises Complaint where it is not safe as the name of a folder on any system.
 
     Names that end as folders of failed runs do are refused too.
     """

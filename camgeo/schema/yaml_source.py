@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 50
 MAX_ALIASES = 100
-MAX_NODES = 10_000  # aliases counted as often as they stand for something
+MAX_NODES = 10_000  # texts, lists and mappings; those of an alias are counted wherever it stands
 
 # What YAML does not permit, with its three line ends that editors do not count (NEL, LS, PS) and the byte order mark.
 _FORBIDDEN = "[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]"
@@ -39,7 +39,10 @@ Mark: TypeAlias = tuple[int, int]  # line and column, from 1, in characters
 
 @dataclass(frozen=True)
 class Scalar:
-    """A text; `plain` where it stands without quotes, `end` just behind it, `tag` where one was written."""
+    """A text as written, from `mark` to just before `end`; `plain` is whether it stands without quotes.
+
+    `tag` is its YAML tag as written, None without one; `size` counts it as one node.
+    """
 
     text: str
     plain: bool
@@ -65,7 +68,7 @@ class Sequence:
 
 @dataclass(frozen=True)
 class Mapping:
-    """A mapping as written, keys that stand twice included; `flow`: it stands in braces.
+    """A mapping as written, keys that stand twice included; `flow` is whether it stands in braces.
 
     `end` is the place behind its brace, or behind its last entry where it has none. `tag` is its YAML tag as written,
     None without one; `size` the number of nodes in it, also those of aliases.
@@ -110,7 +113,7 @@ class Source:
         return self.starts[mark[0] - 1] + mark[1] - 1
 
     def last_line(self, key: Node, value: Node) -> int:
-        """Number of the last line, from 1, of an entry of a mapping in block style, without blank lines behind it."""
+        """Number, from 1, of the last line of an entry of a mapping in block style, blank lines behind it left out."""
         line, column = value.mark if is_empty(value) else value.end
         last = line - (column == 1)  # a block of text ends where the next line begins
         while last > key.mark[0] and not self.lines[last - 1].strip():
@@ -122,7 +125,7 @@ class Source:
 class _Frame:
     """A list or mapping that is still being read; a mapping's keys and values alternate in `children`.
 
-    `before` counts the nodes that came before it, `last` is just behind the last child.
+    `before` counts the nodes that came before it; `last` is the place just behind its last child.
     """
 
     event: yaml.CollectionStartEvent
@@ -190,12 +193,12 @@ def scalars(node: Node, path: str = "") -> Iterator[tuple[str, Scalar]]:
 
 
 def is_empty(node: Node) -> bool:
-    """Whether a node is YAML's null, however it is written."""
+    """Whether a node is YAML's null in any spelling, empty included."""
     return isinstance(node, Scalar) and node.plain and node.text in ("", "~", "null", "Null", "NULL")
 
 
 def keys(node: Mapping) -> dict[str, Scalar]:
-    """Keys of a mapping that are texts, by their text; the first of two alike."""
+    """Keys of a mapping that are texts, by their text; of equal keys the first."""
     first: dict[str, Scalar] = {}
     for key, _ in node.entries:
         if isinstance(key, Scalar):
@@ -204,7 +207,7 @@ def keys(node: Mapping) -> dict[str, Scalar]:
 
 
 def entries(node: Mapping) -> dict[str, Node]:
-    """Values of a mapping by key; the first of two alike."""
+    """Values of a mapping by the keys that are texts; of equal keys the first."""
     first: dict[str, Node] = {}
     for key, value in node.entries:
         if isinstance(key, Scalar):
@@ -213,12 +216,12 @@ def entries(node: Mapping) -> dict[str, Node]:
 
 
 def scalar_text(node: Scalar) -> str:
-    """Scalar for an error: a number bare, a text quoted."""
+    """Text of a scalar for an error: a number bare, any other text quoted."""
     return node.text if re.fullmatch(_BARE, node.text) else quote(node.text)
 
 
 def describe(node: Node) -> str:
-    """Node for an error: its scalar, or `a list of 3`."""
+    """Text on a node for an error: its scalar, or `a list of 3`."""
     if isinstance(node, Scalar):
         return "nothing" if is_empty(node) else scalar_text(node)
     count = len(node.entries if isinstance(node, Mapping) else node.items)
@@ -254,7 +257,7 @@ def _mark(mark: object) -> Mark:
 
 
 def _behind(mark: Mark, lines: tuple[str, ...]) -> Mark:
-    """Place of a value that is not there: behind the last sign before it, whichever blank or line the reader names."""
+    """Place of an empty value: behind the last character before it that is no blank, whatever the reader names."""
     line, column = min(mark, (len(lines), len(lines[-1]) + 1))
     return line, len(lines[line - 1][: column - 1].rstrip()) + 1
 
@@ -275,7 +278,7 @@ def _parse(text: str, lines: tuple[str, ...], file: str) -> Node:
 
 
 class _Loader(yaml.SafeLoader):
-    """PyYAML's own reader; it passes over blanks and comments at once: sign by sign they take a third of its time."""
+    """PyYAML's own reader, which passes over blanks and comments at once: one by one they take a third of its time."""
 
     def scan_to_next_token(self) -> None:
         """Go to the next token; a line that ends outside brackets lets a simple key begin."""
@@ -339,7 +342,7 @@ def _build(events: Iterator[yaml.Event], lines: tuple[str, ...], file: str) -> N
 
 
 class _Tree:
-    """A document's tree while it is put together."""
+    """A document's tree under construction."""
 
     def __init__(self, lines: tuple[str, ...], file: str) -> None:
         self.lines, self.file = lines, file
@@ -349,7 +352,7 @@ class _Tree:
         self.aliases = self.nodes = 0
 
     def take(self, event: _OfTree) -> None:
-        """Take the next event, which begins or ends a list or mapping, or is a node by itself."""
+        """Take the next event, which begins or ends a list or mapping, or is a whole node."""
         mark, end = _mark(event.start_mark), _mark(event.end_mark)
         if isinstance(event, yaml.CollectionStartEvent):
             self._open(event, mark)
@@ -384,7 +387,7 @@ class _Tree:
         return node
 
     def _add(self, node: Node, mark: Mark, end: Mark, anchor: str | None) -> None:
-        """Put a node where it belongs; raises RecipeErrors for more than `MAX_NODES` nodes."""
+        """Add a node to the open list or mapping, or as root; raises RecipeErrors for more than `MAX_NODES` nodes."""
         if self.nodes > MAX_NODES:
             problem = f"more than {MAX_NODES} entries, aliases expanded"
             raise _fault(self.file, mark, problem, remedy="a recipe needs a few dozen")
