@@ -45,8 +45,8 @@ EMPTY: Mapping[str, Any] = MappingProxyType({})
 class Results(NamedTuple):
     """Results of a capability in a run: sections of the report by their keys, checks, and figures of its own runs.
 
-    `runs` has, for each figure that is `of` a run, its values by the file that drives it, None for the intended motion.
-    `skipped` has pairs of a thing that was left out and the reason.
+    `runs` has, for each figure that is `of` a run, its values by the name of the file that drives it, None for the
+    intended motion. `skipped` has pairs (name, reason) of what was left out.
     """
 
     sections: Mapping[str, Any] = EMPTY
@@ -63,19 +63,19 @@ class MovedBody(Protocol):
         """Noun for messages: `valve`."""
 
     def rows(self, tappet: Array) -> Array:
-        """Lift of the body and its two derivatives (3, n), from those of the follower (3, n)."""
+        """Lift of the body, mm, and two derivatives by the shaft angle (3, n), from those of the follower (3, n)."""
 
     def follower_lift(self, lift: float) -> float:
         """Lift of the follower, mm, at a lift of the body, mm."""
 
 
 class MadeMotion(NamedTuple):
-    """The motion of a follower on a made part, beside the intended one: shaft angles (n,), rad; mm or rad.
+    """The motion of a follower on a made part, beside the intended one, at shaft angles (n,), rad; mm or rad.
 
     `errors` are made less intended position, velocity and acceleration by the shaft angle (3, n), without the offset
     that is set on assembly; nan where acceleration jumps. `sds` are their standard deviations (3, n). `deviation` gives
-    the standard deviation of a sum of position errors by its weights (n,). `gap` is how much more room than intended
-    two opposite contacts have, with its standard deviation (2, n); None of a single contact.
+    the standard deviation of a sum of position errors with the weights (n,). `gap` is by how much the play of two
+    opposite contacts exceeds the intended one, with its standard deviation (2, n); None for a single contact.
     """
 
     shaft: Array
@@ -86,7 +86,10 @@ class MadeMotion(NamedTuple):
 
 
 class MadeFigure(NamedTuple):
-    """A figure of a made motion: as intended and as made, its expanded uncertainty (k = 2), and where, degrees."""
+    """A figure of a made motion as intended and as made, in `unit`.
+
+    `uncertainty` is the expanded uncertainty (k = 2) of the made figure, `at_deg` the shaft angle of its place.
+    """
 
     name: str
     unit: str
@@ -129,9 +132,10 @@ class SampledCams(Protocol):
 
 
 class Estimate(NamedTuple):
-    """Estimate of a figure of m cams: `of` gives it (m,), `error` is the greatest seen, in degrees or as a share of it.
+    """Estimate of a figure of m cams: `of` gives it (m,).
 
-    An estimate without error, None, is exact.
+    `error` is the greatest error seen, in degrees with `in_degrees`, else as a share of the figure; None where the
+    estimate is exact.
     """
 
     of: Callable[[SampledCams], Array]
@@ -140,7 +144,10 @@ class Estimate(NamedTuple):
 
 
 class CallOption(NamedTuple):
-    """Option of `camgeo verify`, a keyword of the library: its help, the word for its value in help, its choices."""
+    """Option of `camgeo verify`, a keyword of the library: its help, the word for its value in help, its choices.
+
+    An option without choices takes any text.
+    """
 
     about: str
     metavar: str = ""
@@ -148,7 +155,10 @@ class CallOption(NamedTuple):
 
 
 class FileCall(NamedTuple):
-    """Arguments of `verify` for a capability's own files: paths, mm of the unit of files that state none, options."""
+    """Arguments of `verify` for a capability's own files.
+
+    `units` is the length, mm, of the unit of files that state none, None for the recipe's; `options` by name.
+    """
 
     paths: Sequence[Path]
     units: float | None = None
@@ -156,15 +166,15 @@ class FileCall(NamedTuple):
 
 
 class ShaftCam(NamedTuple):
-    """One of several cams on a shaft; heights are mm, angles rad.
+    """One of several cams on a shaft; lengths are mm, angles rad.
 
-    name       its name, of which the shaft has no other
-    recipe     its own, in the units of the shaft and turning as that does
+    name       its name, which no other cam of the shaft has
+    recipe     its own recipe, with the unit and the sense of rotation of the shaft
     design     its exact cam
-    at         angle by which its metal is turned, counter-clockwise as drawn for `cw`
+    at         angle by which its metal is turned, counter-clockwise in a drawing for rotation `cw`
     zero       shaft angle at which its motion begins
     low, high  its ends along the shaft
-    events     lift of its follower, mm, at which events are stated; None: no events
+    events     lift of its follower at which events are stated; None: no events
     """
 
     name: str
@@ -180,11 +190,13 @@ class ShaftCam(NamedTuple):
 class FileJudge(NamedTuple):
     """Judge of a capability's own files for `verify`, such as points measured on a part.
 
-    claims       whether a file is of that kind, by its heading or the options of the call; raises OSError
+    claims       whether a file is of that kind, by its heading or the options of the call; raises OSError where the
+                 file cannot be read
     options      options of a call on such files, by name; the command line gives their values as text
-    judge        checks and sections; raises CallError for files that cannot be judged, SurroundingsError for the disk
-    judge_shaft  the same of files of several cams on one shaft: (recipe of the shaft, its cams, call, clock)
-    shown        lines for the terminal: (report, whether all lines are wanted)
+    judge        checks and sections; raises CallError for files that cannot be judged, SurroundingsError where the disk
+                 refuses
+    judge_shaft  as `judge`, for files of several cams on one shaft: (recipe of the shaft, its cams, call, clock)
+    shown        text for the terminal: (report, whether all lines are wanted)
     """
 
     claims: Callable[[Path, Mapping[str, object]], bool]
@@ -198,7 +210,7 @@ class FileJudge(NamedTuple):
 
 
 def always(value: T) -> Callable[..., T]:
-    """Function that gives one value whatever its arguments."""
+    """Function that returns this value whatever its arguments."""
     return lambda *_: value
 
 
@@ -207,7 +219,7 @@ NO_CHECK: Callable[..., None] = always(None)
 
 
 def no_figure_at(_recipe: Recipe, _design: Design, name: str, _lift: float, /) -> Measured:
-    """Raise KeyError: no figure has a lift."""
+    """Measure a figure at a lift for a capability without such figures: raises KeyError."""
     raise KeyError(name)
 
 
@@ -216,30 +228,34 @@ def no_figure_at(_recipe: Recipe, _design: Design, name: str, _lift: float, /) -
 
 @dataclass(frozen=True, kw_only=True)
 class Capability:
-    """All that a capability adds. Lengths are mm, angles radians, figures and checks in mm and degrees.
+    """All that a capability adds. Lengths are in mm, angles in rad, figures and checks in mm and degrees.
 
     Of the recipe:
 
     fields    keys of the top level, each with the core's key behind which it stands as `after`
-    below     keys of another table, by the table's path such as `part`; they are taken out before that table is made
+    below     keys of another table, by the table's path such as `part`; their values are taken out before the value of
+              that table is built
     check     notes all faults between its keys and others: `reader.fault_at(path, problem, value, remedy)`
     build     object that `recipe.of(Class)` gives, from values without faults; None where the recipe has none
     speed     turns a minute of the shaft; None where the recipe gives no speed
-    profile   path of the field that gives the profile tolerance of the made contour, and the zone's width, mm
+    profile   path of the field that gives the profile tolerance of the made contour, and the width of the zone, mm;
+              None without one
     starters  recipes for `camgeo new`, by name
     roots     other kinds of recipes, by the label's keys
 
     Of figures and checks:
 
     figures   by name, as recipes limit them and sweeps rank by them
-    measure   figures `of` the design: (recipe, design, names, speeds of limits, turns a minute, by figure)
-    measure_at figures that have a lift: (recipe, design, name, lift in mm)
+    measure   figures `of` the design by name: (recipe, design, names, turns a minute of the limit of each figure)
+    measure_at figure at a lift: (recipe, design, name, lift in mm); raises KeyError for a name without such a figure
     moved     body that the follower moves besides itself, with events of its own; None for none
-    on_metal  figures of the motion that a made part gives: (recipe, design, motion); raises RecipeErrors
-    estimates figures of many cams at once for a sweep, by name
-    checks    declarations of all its checks; every check that it makes is one of them
-    exact     checks that need no file: (recipe, exact cam, each surface with its contour)
-    remedy    change that would bring a figure of its own to a bound that it misses; empty where none is known
+    on_metal  figures of the motion that a made part gives: (recipe, design, motion); raises RecipeErrors where they
+              cannot be had
+    estimates estimates of figures of many cams at once for a sweep, by name
+    checks    declarations of all its checks; every check that it makes is declared here
+    exact     checks that need no file: (recipe, exact cam, pairs of a surface and its contour)
+    remedy    sentence on a change that would bring a figure of its own to a bound that it misses: (recipe, name of the
+              figure, its value, the bound); empty where none is known
     demand    raises SurroundingsError where a library that it needs is missing, before anything is designed
     look      checks of files beside the judge's: (recipe, design, all files, checks of them so far, clock)
     examine   checks, sections of the report and figures of runs, when all files were judged
@@ -253,7 +269,7 @@ class Capability:
     tables    forms of CSV by their words
     variant   option by which a file shows something else than the cam; None for none
     alteration option by which a file alters the part that it shows; None for none
-    left_out  pairs of a thing that a run leaves out and the reason: (recipe, requests of files, design)
+    left_out  pairs (name, reason) of what a run leaves out: (recipe, requests of files, design)
     judges    judge of files of its own, of the suffixes that the label names; None for none
     """
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 def designed_intent(recipe: Recipe, design: Design, /) -> PartIntent:
-    """Intent of the part as it is designed, by which kin judges files."""
+    """Intent of the part as it is designed, by which kin judges files; raises ValueError for several discs."""
     from camgeo.synthesis.intent import intended
 
     return intended(recipe, design)
@@ -50,7 +50,10 @@ def has_holes(recipe: Recipe, /) -> bool:
 
 
 class RunResults(NamedTuple):
-    """Results of a run, for files that report on all others; `job` is None where no cam is made."""
+    """Results of a run, for files that report on all others.
+
+    `job` is None where a check of the exact contour fails, so that no cam is made.
+    """
 
     recipe: Recipe
     design: Design
@@ -67,8 +70,8 @@ class Variant:
     offered   whether files of a format have the key
     tag       text behind the recipe's name in the name of the first file of a format
     check     notes the faults of a file with the option: (request, values of the recipe, reader, path of the file)
-    foresee   raises what is certain to be refused, before anything is fitted
-    make      writes and judges the files, the first at a path
+    foresee   refuses what is certain to be refused, before anything is fitted
+    make      writes and judges the files: (job, request, path of the first file)
     """
 
     option: Field
@@ -84,7 +87,7 @@ class Variant:
 
 
 class Altered(NamedTuple):
-    """A number other than its default that a file gives for the option of a capability's `Alteration`."""
+    """A number other than its default that a file gives for the option `key` of a capability's `Alteration`."""
 
     capability: str
     key: str
@@ -157,8 +160,8 @@ class Format:
     suffix    ending of its files' names without the dot, where that is not the name
     tail      word behind the recipe's name in its files' names
     options   keys of one file
-    named     options of its own that tell files of one form apart, in their names
-    forms     by their words after the key `as`; by the empty word for a format without that key
+    named     options whose values stand in the names of its files, so that files of one form differ
+    forms     its forms by their words after the key `as`; by the empty word for a format without that key
     check     notes the faults between its options and others: (values of the file, values of the recipe, reader)
 
     Of its files:
@@ -178,13 +181,13 @@ class Format:
     foresee   refuses what is certain to be refused, before anything is fitted; raises MissingExtraError where a package
               is missing that makes its files, which are then left out
     intent    intent by which kin judges its files
-    bored     whether a file has the bore of the part
-    drilled   whether a file has holes besides the bore
-    unmade    pairs of a feature of the part that its files leave out and the reason
-    numbers   precision of the numbers of a mesh
+    bored     whether a file of a recipe has the bore of the part
+    drilled   whether a file of a recipe has holes besides the bore
+    unmade    pairs (name, reason) of features of the part that its files leave out
+    numbers   gives the precision of the numbers of a mesh; None for a format without meshes
     write     writes named meshes in their places: (path, meshes, title, mm of the unit, about)
     shaft     writes a file of several cams on one shaft, which nothing judges: (recipe of the shaft, its cams, request,
-              path); None where it has none
+              path); None where there is no such file
     """
 
     name: str
@@ -233,7 +236,7 @@ class Format:
         return {item.name: item.default for item in self.options.fields if item.name in {"as", *self.named}}
 
     def form(self, word: str | None) -> Form:
-        """Form by its word, for None the default form; for an unknown word a form that holds one surface."""
+        """Form by its word, for None the default form; for an unknown word a new form that holds one surface."""
         name = word or self.chosen.get("as", "")
         return self.forms.get(name) or Form(name=name)
 

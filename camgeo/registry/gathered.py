@@ -25,8 +25,8 @@ E = TypeVar("E", bound=Entry)
 class Gathered(Mapping[str, E]):
     """Entries of the core and of the capabilities, in one order whatever has been imported.
 
-    A name of the core needs no import. Any other is sought in the records that were imported, then in all of them;
-    iteration imports all. `among` gives the entries of the core and of some capabilities.
+    A name of the core needs no import. Any other name is sought in the records of capabilities that were imported, then
+    in all of them; iteration imports all. `among` gives the entries of the core and of some capabilities.
     """
 
     def __init__(self, core: Mapping[str, E], entries_of: Callable[[Capability], Mapping[str, E]]) -> None:
@@ -49,7 +49,7 @@ class Gathered(Mapping[str, E]):
         return True
 
     def __iter__(self) -> Iterator[str]:
-        """Go over the names in order."""
+        """Names of all entries in order."""
         return iter(self._whole())
 
     def __len__(self) -> int:
@@ -63,7 +63,7 @@ class Gathered(Mapping[str, E]):
         return self is other
 
     def owner(self, name: str) -> str:
-        """Name of the capability that an entry comes from, empty for the core; raises KeyError where there is none."""
+        """Name of the capability that an entry comes from, empty for the core; raises KeyError for an unknown entry."""
         if name in self._core:
             return ""
         loaded = registry.names_loaded()
@@ -73,7 +73,7 @@ class Gathered(Mapping[str, E]):
         raise KeyError(name)
 
     def among(self, capabilities: Collection[str]) -> dict[str, E]:
-        """Entries of the core and of these capabilities, in order."""
+        """Entries of the core and of these capabilities by name, in order."""
         added = {name: entry for capability in self._added(capabilities) for name, entry in capability.items()}
         return {name: added[name] if name in added else self._core[name] for name in self._ordered(capabilities)}
 

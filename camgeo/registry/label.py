@@ -18,15 +18,15 @@ class Label(NamedTuple):
     words     keys of a recipe's top level, formats, or options of files such as `key: value`, by which a recipe uses it
     formats   words of its formats of files, each with the module of the folder that has its `FORMAT`
     commands  names of its commands, each with its help; the module `command` of the folder has them
-    reports   files of the output folder that list others, as `report.json` does
+    reports   names of files of the output folder that list other files, as `report.json` does
     absent    why a run leaves the capability out, for the report's `skipped`; empty where that needs no words
     record    whether the folder has a module `record`; without one it adds nothing to recipes and reports
     option    help of the option of the folder's name, by which a call uses it on files of one cam; empty: none
     roots     keys of the top level that make a text a recipe of another kind, which the record reads
-    suffixes  of files that `verify` may be given for it, where its record claims them by their heading
+    suffixes  suffixes of files that `verify` takes for it, where its record claims them by their heading
     names     names that it adds to the library, each with the module of the folder that has it
     sources   options of `camgeo new` by which it makes a recipe out of files, each with its help; the function
-              `started` of the folder's module `start` is given the files, the path of a recipe and the new one's name
+              `started` of the folder's module `start` is given the files, the path of a recipe and the new name
     """
 
     rank: int

@@ -31,7 +31,7 @@ _RECORDS: dict[str, Capability] = {}
 
 
 def capability(name: str) -> Capability:
-    """Record of a capability; raises KeyError for a name that no folder has."""
+    """Record of a capability; raises KeyError for an unknown name, ModuleNotFoundError for one without a record."""
     if name not in _RECORDS:
         if name not in labels():
             raise KeyError(name)
@@ -51,7 +51,7 @@ def names_loaded() -> tuple[str, ...]:
 
 
 def in_order(names: Iterable[str]) -> list[Capability]:
-    """Records of these capabilities, in order of rank."""
+    """Records of the capabilities with these names, in order of rank; other names are left out."""
     chosen = set(names)
     return [capability(name) for name in names_with_record() if name in chosen]
 
@@ -68,7 +68,7 @@ def judges() -> dict[str, FileJudge]:
 
 
 def judge_of(path: Path, options: Mapping[str, object]) -> str:
-    """Name of the capability that claims a file by its suffix and heading; empty for none.
+    """Name of the capability that claims a file by suffix and heading, or by options of the call; empty for none.
 
     Raises OSError where the file cannot be read.
     """
@@ -96,5 +96,5 @@ def formats() -> dict[str, str]:
 
 
 def by_words(words: Collection[str]) -> tuple[str, ...]:
-    """Names of the recorded capabilities that have one of these words of a recipe among their label's words."""
+    """Names of the capabilities with a record whose label has one of these words of a recipe, in order of rank."""
     return tuple(name for name in names_with_record() if not set(labels()[name].words).isdisjoint(words))

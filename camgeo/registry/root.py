@@ -1,7 +1,7 @@
 """Kinds of recipes as the core sees them: a recipe of one cam, and those that capabilities read.
 
 A text is a recipe of the kind whose key stands at its top level, or of one cam. The types below stand above this
-module, for which alone imports for types run upwards.
+module: imports upwards are for types alone.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ class Designed(Protocol):
 class Root(Generic[R]):
     """Functions of one kind of recipe for commands and the library; lengths in mm.
 
-    table    keys of the recipe
+    table    table of the recipe's keys
     read     recipe of a parsed text, at a path; raises RecipeErrors with all faults
-    design   exact cams, as the library gives them
+    design   exact cams, in the form that the library returns
     export   writes and judges files: (recipe, folder, kinds of files or none for all, callback for each stage)
     check    makes and judges all files, and keeps none: (recipe, callback for each stage)
     judge    report on files of any origin: (recipe, paths, tolerance, mm of the unit of files that state none, gap)
     claimed  report on files that a capability judges: (recipe, name of the capability, arguments of `verify`)
-    settle   recipe with the open values of its motion found, when all else is read; None: none may be open
+    settle   recipe with the values of its motion that it leaves open computed; None: none may be left open
     show     report on files of any origin, and the page that shows them; None where there is no page
     explain  text of several lines on a failed check: (check, report, recipe, name of the recipe's file)
     foresee  checks that a run will make
@@ -70,7 +70,7 @@ class Root(Generic[R]):
 
 
 def folders() -> dict[str, str]:
-    """Name of the capability that reads recipes with a key, by that key."""
+    """Name of the capability that reads recipes of another kind than a cam, by the key of the kind."""
     return {key: name for name, label in registry.labels().items() for key in label.roots}
 
 
@@ -83,12 +83,12 @@ def root(key: str) -> Root[Any]:
 
 
 def root_of(recipe: R) -> Root[R]:
-    """Record of the kind that a recipe is of."""
+    """Record of a recipe's kind."""
     return root(recipe.root)
 
 
 def settle(recipe: R) -> R:
-    """Recipe with the open values of its motion found; itself where its kind leaves none open.
+    """Recipe with the values of its motion that it leaves open computed; the same recipe where its kind has none.
 
     Raises RecipeErrors where no such values exist.
     """
