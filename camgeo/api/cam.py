@@ -49,7 +49,7 @@ def _explain(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, file
 
 
 def _foresee(recipe: Recipe) -> tuple[Foreseen, ...]:
-    """Expected checks; none where the recipe's motion does not exist."""
+    """Checks that a run of the recipe will make; empty where its motion does not exist."""
     from camgeo.synthesis.expected_checks import foreseen
     from kin.law.programme import IntentError
 

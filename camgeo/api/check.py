@@ -19,15 +19,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Check(judge.Check):
-    """A figure held against its limit, both in `unit`: a length in the recipe's own, an angle in degrees.
+    """A figure held against its limit, both in `unit`: a length in the recipe's unit, an angle in degrees.
 
-    `value` is None where nothing could be measured, as `detail` explains; such a check does not hold. `at_deg` is the
-    shaft angle of the worst place, None where there is none; `file` is the name of the checked file, None without one.
+    `sense` is whether the value has to be `at_least` or `at_most` the limit. `value` is None where nothing could be
+    measured, as `detail` explains; such a check does not hold. `at_deg` is the shaft angle of the worst place, None
+    where there is none; `file` is the name of the checked file, None for a check of the design. `surface` names the
+    surface of a cam with several.
     """
 
     @staticmethod
     def of(recipe: Order, check: judge.Check) -> Check:
-        """Check in the recipe's units, of a check of the judge in mm."""
+        """Check in the recipe's units, made from a check in mm."""
         value, unit = in_units(recipe, check.value, check.unit)
         limit, _ = in_units(recipe, check.limit, check.unit)
         return Check(**vars(check) | {"value": value, "limit": limit, "unit": unit})
@@ -84,12 +86,12 @@ class Figure:
 
     @staticmethod
     def of(recipe: Recipe, measured: Measured) -> Figure:
-        """Figure in the recipe's units, of a figure in mm."""
+        """Figure in the recipe's units, made from a figure in mm."""
         value, unit = in_units(recipe, measured.value, measured.unit)
         return Figure(value, unit, measured.at_deg, measured.detail)
 
     def __str__(self) -> str:
-        """Text of the figure with its unit and its place."""
+        """Text of the figure with its unit and its place; `none` and the reason without a value."""
         if self.value is None:
             return f"none: {self.detail}" if self.detail else "none"
         place = "" if self.at_deg is None else f" at {self.at_deg:.2f} deg"

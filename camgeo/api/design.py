@@ -28,15 +28,15 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 MOST_POINTS = 1_000_000  # of a contour: more than any file has, and quickly made
-MOST_DERIVATIVE = 6  # of the motion by the shaft angle; more means nothing in print
+MOST_DERIVATIVE = 6  # greatest order of a derivative of the motion by the shaft angle
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
     """The exact cam of a recipe.
 
-    `motion`, `contour` and `edges` are in mm and radians, whatever the recipe's unit is. `checks` and `figures` are in
-    the recipe's own units, each with its unit beside it.
+    `motion`, `contour` and `edges` are in mm and rad, whatever the recipe's unit is. `checks` and `figures` are in the
+    recipe's own units, each with its unit beside it.
     """
 
     recipe: Recipe
@@ -64,7 +64,7 @@ class Design:
 
     @property
     def ok(self) -> bool:
-        """Whether all these checks hold."""
+        """Whether every check in `checks` holds."""
         return all(check.ok for check in self.checks)
 
     @cached_property
@@ -83,9 +83,9 @@ class Design:
 
     @property
     def sized(self) -> Recipe:
-        """Recipe with the sizes that `sizing` found in the place of that key; the recipe itself without `sizing`.
+        """Recipe in which the sizes that `sizing` leads to replace that key; the recipe itself without `sizing`.
 
-        Comments within `sizing` go with it, all other text stays.
+        Comments within `sizing` are removed with it, all other text stays.
         """
         return self.recipe.sized()
 
@@ -108,9 +108,10 @@ class Design:
         """Position of the follower at shaft angles theta, rad, any real numbers, or a derivative by the shaft angle.
 
         The result has the shape of `theta`; a number gives a number. The position is in `unit`, as in the motion table:
-        a lift from its datum, a swing of the arm; with a linkage the output of its last link.
-        Derivatives are by radian of shaft angle, up to the sixth; where one jumps it is the limit from above. Raises
-        CallError for another order, angles that are not finite, and a linkage that does not turn.
+        a lift from its datum, a swing of the arm; with a linkage the output of its last link. Derivatives are by radian
+        of shaft angle, up to the sixth; where a derivative jumps it is the limit from above. Raises CallError for
+        another order, angles that are not finite, and a linkage that does not make a full turn; TypeError for angles
+        that are no numbers.
         """
         angle, order = numbers_of("theta", theta), whole_of("derivative", derivative)
         if not np.isfinite(angle).all():
@@ -137,7 +138,8 @@ class Design:
         """Points (n, 2) of the exact contour, mm: counter-clockwise about the shaft at (0, 0), in the drawing's axes.
 
         They stand at equal steps of the curve's own parameter, the first not repeated at the end. Raises CallError
-        where a failed check prevents the contour, for fewer than 3 points and for more than a million.
+        where a failed check prevents the contour, for a cam of several surfaces, and for fewer than 3 points or more
+        than a million.
         """
         n = whole_of("n", n)
         if not 3 <= n <= MOST_POINTS:
@@ -157,8 +159,8 @@ class Design:
         """Edges of the contour within a tolerance, mm: arcs and lines, one spline, or the lines of a polyline.
 
         They are the edges of the files that camgeo writes, with their proved bound, in the axes of `contour`. Raises
-        ToleranceError where the tolerance cannot be held, CallError where a failed check prevents the contour, and for
-        an unknown form or a tolerance that is no length.
+        ToleranceError where the tolerance cannot be held, CallError where a failed check prevents the contour, for a
+        cam of several surfaces, an unknown form, or a tolerance that is no length.
         """
         from camgeo.output.job import Job
 
@@ -185,10 +187,11 @@ class Design:
         """Data of a page on the design without files, plain; lengths in the recipe's unit.
 
         `drawing` is the mechanism at shaft angle 0 as SVG, in which the group of body k has the id `body-k`; `bodies`
-        has the rows of x, y and angle of each over a turn, `plots` the curves, `marks` the places on the contour of
-        failed checks and remarks, `checks` and `remarks` the entries of a report. The script of the report's page plays
-        it (docs/page.md). Angles are degrees. Rows of numbers are packed: `{"c": value}` is constant, `{"n": [...]}`
-        are plain, `{"d": digits, "v": [...]}` differences in units of the last digit.
+        has the rows of x, y and angle of each body over a turn, `plots` the curves, `marks` the places on the contour
+        of failed checks and remarks, `checks` and `remarks` the entries of a report. The script of the report's page
+        plays it (docs/page.md). Angles are in degrees. Rows of numbers are packed: `{"c": value}` is constant,
+        `{"n": [...]}` are plain numbers, `{"d": digits, "v": [...]}` the first number and then differences, in units of
+        the last of that many decimals.
         """
         from camgeo.measures.remarks import remarks_of
         from camgeo.report.document import Findings, document, finite
@@ -205,7 +208,7 @@ class Design:
         return f"{type(self).__name__}({self.recipe.name!r}, {self.exact.follower.name})"
 
     def __str__(self) -> str:
-        """Line of the verdict, and a line for each failed check."""
+        """Text of a line with the verdict, and a line for each failed check."""
         failed = [f"\n  {check}" for check in self.checks if not check.ok]
         return f"{self.recipe.name}: {'FAILED' if failed else 'ok'}  {self.exact.follower.name}{''.join(failed)}"
 

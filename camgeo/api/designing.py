@@ -30,10 +30,11 @@ def design(recipe: Order | str | PathLike[str]) -> Designed: ...
 
 @with_packages()
 def design(recipe: OrderSource) -> Designed:
-    """Design the cam of a recipe, or all cams of one of another kind: no file is made, and no contour fitted.
+    """Design the cam of a recipe, or all cams of a recipe of another kind; no file is made, and no contour fitted.
 
-    Raises RecipeErrors where there is no such motion or curve. A check that fails raises nothing: `ok` of the
-    design is False then.
+    `recipe` is a recipe or the path of its file. A check that fails raises nothing: `ok` of the design is False then.
+    Raises RecipeErrors for faults of the file and where there is no such motion or curve, CallError for a path that no
+    file can have, SurroundingsError where a package is missing, TypeError for neither a recipe nor a path.
     """
     recipe = order_of(recipe)
     result = root_of(recipe).design(recipe)

@@ -50,7 +50,7 @@ class Arc:
 
 @dataclass(frozen=True)
 class Spline:
-    """A B-spline from `start` to `end`: control points (x, y) in mm, and degree + 1 more knots than those.
+    """A B-spline from `start` to `end`: control points (x, y) in mm, and degree + 1 more knots than control points.
 
     The curve runs from knots[degree] to knots[-1 - degree]. The spline of a whole contour ends where it starts.
     """
@@ -97,7 +97,7 @@ class Edges(Sequence[Edge]):
 
     @staticmethod
     def of(outline: Outline) -> Edges:
-        """Edges of a fitted outline."""
+        """Edges of a fitted outline: lines, lines and arcs, or one spline."""
         if isinstance(outline, Polygon):
             corners = _points(outline.vertices)
             edges: tuple[Edge, ...] = tuple(

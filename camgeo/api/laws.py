@@ -24,9 +24,9 @@ MOST_DERIVATIVE = 3  # the jerk
 class Law:
     """A motion law: displacement s(u) from 0 to 1 while u runs from 0 to 1.
 
-    `velocity`, `acceleration` and `jerk` are its greatest derivatives for unit stroke over unit time, `jerk` infinite
-    where the acceleration steps. A stroke h over an angle b, rad, has h/b, h/b^2 and h/b^3 times as much. `formula` is
-    the displacement in words.
+    `velocity`, `acceleration` and `jerk` are the greatest absolute values of its derivatives for unit stroke over unit
+    time, `jerk` infinite where the acceleration steps. A stroke h over an angle b, rad, has h/b, h/b^2 and h/b^3 times
+    as much. `formula` is the displacement as text.
     """
 
     name: str
@@ -45,8 +45,8 @@ class Law:
     def __call__(self, u: ArrayLike, *, derivative: int = 0) -> float | Array:
         """Displacement at u from 0 to 1, or a derivative by u up to the third.
 
-        Where a derivative jumps it is the limit from above, at 1 from below. `u` may have any shape, which the answer
-        has too. Raises CallError for another u or order.
+        Where a derivative jumps it is the limit from above, at 1 from below. The result has the shape of `u`; a number
+        gives a number. Raises CallError for another u or order, TypeError for what is no number.
         """
         share, order = numbers_of("u", u), whole_of("derivative", derivative)
         if not bool(((share >= 0.0) & (share <= 1.0)).all()):

@@ -30,8 +30,9 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Loaded:
     """Read a recipe from a file, from YAML text or from a mapping of the same keys.
 
     A `str` with a line break or with `: ` is YAML text, any other is the path of a file. A recipe without a file and
-    without `name` is called recipe. Raises RecipeErrors with every fault, its line, column and remedy, and TypeError
-    for another type.
+    without `name` has the name `recipe`. Raises RecipeErrors with every fault, its line, column and remedy, also where
+    the file does not exist; CallError for a path that no file can have, SurroundingsError where a package is missing,
+    TypeError for another type.
     """
     demand_type("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
     if isinstance(source, Mapping):

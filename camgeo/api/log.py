@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def library_log() -> logging.Logger | None:
-    """Logger of the library; None where `logging` was never imported, and so was not set up."""
+    """Logger `camgeo` of the library; None where `logging` was never imported, and so was not set up."""
     if "logging" not in sys.modules:
         return None
     import logging
@@ -28,7 +28,7 @@ def library_log() -> logging.Logger | None:
 
 @contextmanager
 def without_log() -> Iterator[None]:
-    """Log nothing within the context, whose results are reported in another way."""
+    """Context in which nothing is logged, for results that are reported in another way."""
     if (log := library_log()) is None:
         yield
         return
@@ -52,7 +52,7 @@ def stage_reporter(recipe: Order, progress: Callable[[str], None] | None = None)
 
 
 def log_failures(name: str, checks: Iterable[Check]) -> None:
-    """Log the failed checks as warnings."""
+    """Log the failed checks as warnings; `name` is the recipe's."""
     if log := library_log():
         for check in checks:
             if not check.ok:

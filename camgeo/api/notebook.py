@@ -26,7 +26,10 @@ def drawing(recipe: Recipe, exact: Exact) -> str:
 
 
 def notebook_html(picture: str, title: str, checks: Sequence[Check], *more: str) -> str:
-    """HTML of a drawing, the verdict and tables; the drawing is an image, so that its style stays within it."""
+    """HTML of the verdict, a drawing and the table of checks, then `more` HTML.
+
+    `picture` is SVG text; it becomes an image, so that its style stays within it.
+    """
     data = base64.b64encode(picture.encode("utf-8")).decode("ascii")
     failed = sum(not check.ok for check in checks)
     verdict = f"{failed} of {len(checks)} checks FAILED" if failed else f"all {len(checks)} checks hold"
@@ -37,7 +40,7 @@ def notebook_html(picture: str, title: str, checks: Sequence[Check], *more: str)
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """HTML of a table; texts are escaped."""
+    """HTML of a table with these heads of columns and rows of cells; texts are escaped."""
     cells = "".join(f"<th>{escape(name)}</th>" for name in head)
     body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
     return f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"

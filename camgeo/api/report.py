@@ -24,7 +24,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Remark:
-    """A figure beyond a rule of thumb, which no check limits: value and `rule` in `unit`, and a sentence on it."""
+    """A figure beyond a rule of thumb, which no check limits: value and `rule` in `unit`, and a sentence on it.
+
+    `at_deg` is the shaft angle of its place, degrees, None without one.
+    """
 
     name: str
     value: float | None
@@ -36,7 +39,11 @@ class Remark:
 
 @dataclass(frozen=True)
 class Motion:
-    """A follower's motion error over one turn, measured less intended, in `unit`: greatest and rms."""
+    """A follower's motion error over one turn, measured less intended, in `unit`: greatest and rms.
+
+    `at_deg` is the shaft angle of the greatest error, degrees. `dwell_flatness` is the range of the measured position
+    over a dwell, None where the motion has none. Figures that are not finite are None.
+    """
 
     max: float | None
     rms: float | None
@@ -49,8 +56,9 @@ class Motion:
 class File:
     """One file of a report, lengths in the recipe's unit; None where a figure does not apply to its kind.
 
-    `geometry_error` is the proved error of the fit, `measured_error` the error measured in the written file;
-    `perimeter` and `area` are those of its outer contour. `path` leads to the file, None where it was not kept.
+    `geometry_error` is the proved error of the fit, `measured_error` the error measured in the written file.
+    `measured_error`, `motion`, `perimeter` and `area` are those of its one contour, None for a file of several
+    surfaces. `path` is the path of the file, None where it was not kept.
     """
 
     name: str
@@ -100,13 +108,13 @@ class Report(Mapping[str, JSON]):
 
     @cached_property
     def files(self) -> tuple[File, ...]:
-        """Judged files, in the order of the recipe or the call; without those that the run left as they were."""
+        """Files that the run made or judged, in the order of the recipe or the call; without files that it left."""
         entries = [entry for entry in self._document["files"] if not entry.get("stale")]
         return tuple(self._file(entry, i) for i, entry in enumerate(entries))
 
     @property
     def missing(self) -> Mapping[str, str]:
-        """Reason why a file was left out for want of a package, by the file's name."""
+        """Reasons why files were left out for want of a package, by the names of the files."""
         return {entry["what"]: entry["why"] for entry in self._document["skipped"] if entry.get("missing")}
 
     def _file(self, entry: dict[str, Any], index: int) -> File:
@@ -121,7 +129,7 @@ class Report(Mapping[str, JSON]):
     def design(self) -> Designed:
         """Exact design of the recipe, computed at first use; no file is made.
 
-        Raises RecipeErrors where there is no such motion or curve.
+        Raises RecipeErrors where there is no such motion or curve, SurroundingsError where a package is missing.
         """
         from camgeo.api.designing import design
 
@@ -129,7 +137,10 @@ class Report(Mapping[str, JSON]):
 
     @property
     def figures(self) -> Figures:
-        """The figures of the design by name, such as `radius-of-curvature`."""
+        """Figures of the design by name, such as `radius-of-curvature`.
+
+        Raises RecipeErrors where there is no such motion or curve.
+        """
         figures: Figures = self.design.figures
         return figures
 
@@ -150,7 +161,7 @@ class Report(Mapping[str, JSON]):
         return as_json(self._document)
 
     def table(self) -> str:
-        """Every check and file as aligned text, as `camgeo export -v` prints it."""
+        """Aligned text of every check and file, as `camgeo export -v` prints it."""
         from camgeo.report.document import table
 
         return table(self._document)
@@ -174,7 +185,7 @@ class Report(Mapping[str, JSON]):
         return f"{type(self).__name__}({self.recipe.name!r}, {'ok' if self.ok else 'FAILED'}{folder})"
 
     def __str__(self) -> str:
-        """Line of the verdict, and a line for each failed check."""
+        """Text of a line with the verdict and the files, and a line for each failed check."""
         from camgeo.report.document import summary
 
         return summary(self._document)
@@ -208,7 +219,10 @@ def _fields_of(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, A
 
 
 def explanation(check: dict[str, Any], report: dict[str, Any], recipe: Order, file_name: str | None = None) -> str:
-    """Text of several lines on a failed check; `file_name` stands for the path of the recipe's file."""
+    """Text of several lines on a check of a report; `check` and `report` are plain data.
+
+    `file_name` replaces the path of the recipe's file in the text.
+    """
     from camgeo.registry.root import root_of
 
     return root_of(recipe).explain(check, report, recipe, file_name)

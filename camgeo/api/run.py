@@ -37,12 +37,13 @@ def export(
 ) -> Report:
     """Write a recipe's files into the folder `out`/<name>, read them back and judge them.
 
-    The folder has whole sets only: a set in which a check fails goes to `out`/<name>.rejected. `only` names kinds of
-    files, such as "dxf"; others stay as they are. `progress` is called with each stage as it begins. `options` are
-    those of capabilities, as `camgeo verify --help` lists them: further checks. Raises RecipeErrors where there is no
-    such cam or a tolerance cannot be held, SurroundingsError where the disk refuses or a package is missing, CallError
-    for a kind of which the recipe lists no file, TypeError for an unknown option. A check that fails raises nothing:
-    `ok` of the report is False then.
+    The folder has whole sets only: a set in which a check fails goes to `out`/<name>.rejected. `recipe` is a recipe or
+    the path of its file. `only` names kinds of files, such as "dxf"; files of other kinds stay as they are. `progress`
+    is called with the name of each stage as it begins. `options` are those of capabilities, as `camgeo verify --help`
+    lists them; True adds further checks. A check that fails raises nothing: `ok` of the report is False then. Raises
+    RecipeErrors where there is no such cam or a tolerance cannot be held, SurroundingsError where the disk refuses or a
+    package is missing, BusyError where another run of this name is at work, CallError where the recipe lists no file of
+    the kinds `only`, TypeError for an unknown option.
     """
     recipe = order_of(recipe)
     demand_callable("progress", progress)
@@ -61,10 +62,11 @@ def export(
 def check(recipe: OrderSource, *, progress: Callable[[str], None] | None = None, **options: bool) -> Report:
     """Make and judge all of a recipe's files, and keep none of them.
 
-    `progress` is called with each stage as it begins. `options` are those of capabilities, as `camgeo verify --help`
-    lists them: further checks. Raises RecipeErrors where there is no such cam or a tolerance cannot be held,
-    SurroundingsError where the disk refuses or a package is missing, TypeError for an unknown option. A check that
-    fails raises nothing: `ok` of the report is False then.
+    `recipe` is a recipe or the path of its file. `progress` is called with the name of each stage as it begins.
+    `options` are those of capabilities, as `camgeo verify --help` lists them; True adds further checks. A check that
+    fails raises nothing: `ok` of the report is False then. Raises RecipeErrors where there is no such cam or a
+    tolerance cannot be held, SurroundingsError where the disk refuses or a package is missing, TypeError for an unknown
+    option.
     """
     recipe = order_of(recipe)
     demand_callable("progress", progress)
@@ -87,15 +89,16 @@ def verify(
 ) -> Report:
     """Judge drawings, solids, milling programs and measured points of any origin by a recipe's motion.
 
-    `tolerance`, in the recipe's unit, is by default that of the recipe's file of the same name, or of its export.
-    `units` is the unit of files that state none. Ends in drawings within `gap` of one other, in the recipe's unit and
-    at most the tolerance, are joined by a line; the gap is added to the errors of contour and motion. With `page` the
-    report has the page that shows the files, `Report.page`. `options` are those of
-    capabilities, as `camgeo verify --help` lists them: further checks, and how files that a capability judges are to be
-    read, such as points. Raises RecipeErrors where there is no such cam, CallError for a path that is no
-    file of a known kind, for points that cannot be judged and for a gap that is too wide, UnitsError where a file
-    states another unit than `units`, SurroundingsError where a library is missing. A file that cannot be read raises
-    nothing: the check `readable` fails.
+    `recipe` is a recipe or the path of its file. `tolerance`, in the recipe's unit, is by default that of the recipe's
+    file of the same name, or of its export. `units` is the unit of files that state none. Ends in drawings within `gap`
+    of one other, in the recipe's unit and at most the tolerance, are joined by a line; the gap is added to the errors
+    of contour and motion. With `page` the report has the page that shows the files, `Report.page`. `options` are those
+    of capabilities, as `camgeo verify --help` lists them: further checks, and how files that a capability judges are to
+    be read, such as points. A file that cannot be read as what it is raises nothing: the check `readable` fails.
+
+    Raises RecipeErrors where there is no such cam, CallError for a path that is no file of a known kind, for a file
+    given twice, points that cannot be judged, and a tolerance, gap or unit that makes no sense; UnitsError where a file
+    states another unit than `units`, SurroundingsError where a package is missing, TypeError for an unknown option.
     """
     from kin.read.formats import suffixes
 
@@ -111,6 +114,7 @@ def verify(
     used = _with_options(
         "verify", recipe, {name: value for name, value in options.items() if name not in judge_options}
     )
+    # files that a capability claims, such as measured points, are judged by it in a call of their own
     path_faults = {path: _path_fault(path) for path in paths}
     claimed = [path for path in paths if not path_faults[path] and registry.judge_of(path, judge_options)]
     if claimed:
@@ -124,6 +128,7 @@ def verify(
                 has_file_bounds=within is not None or gap_width is not None or page,
             )
         )
+    # all faults of the call are collected, and raised together
     path_faults |= {path: _size_fault(path) for path in paths if not path_faults[path]}
     readable = [path for path in paths if not path_faults[path]]
     faults = [f"{escaped(str(path))}: {path_faults[path]}" for path in paths if path_faults[path]]
@@ -166,7 +171,10 @@ def _judge_claimed(
     *,
     has_file_bounds: bool,
 ) -> Report:
-    """Report on files that a capability judges; raises CallError for other files and options among them."""
+    """Report on files that a capability judges; raises CallError for other files among them and for a bound of files.
+
+    `has_file_bounds` is whether the call gives a tolerance, a gap or a page.
+    """
     from camgeo.registry.capability import FileCall
 
     faults = [f"{escaped(str(path))}: give it in a call of its own" for path in paths if path not in claimed]
@@ -186,7 +194,7 @@ def _judge_claimed(
 
 
 def _with_options(function: str, recipe: Order, options: Mapping[str, object]) -> Order:
-    """Recipe that uses the capabilities of the options of a call that are True; raises TypeError for others."""
+    """Recipe that uses the capabilities whose options are True; raises TypeError for an unknown option or no bool."""
     known_options = registry.options()
     for name, value in options.items():
         if name not in known_options:
@@ -196,7 +204,7 @@ def _with_options(function: str, recipe: Order, options: Mapping[str, object]) -
 
 
 def _log(report: Report) -> Report:
-    """The report itself, after its files and checks were logged."""
+    """Log files and checks of a report; returns the report itself."""
     name = report.recipe.name
     if log := library_log():
         for file in report.files if report.path is not None else ():
