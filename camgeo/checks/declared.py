@@ -47,7 +47,8 @@ LIMIT = "limit:"  # before the name of the figure that a recipe limits
 class CheckFacts:
     """Facts that decide which checks are made: the recipe and the follower of its motion.
 
-    In a run also whether the contour is trimmed, and whether the linkage turns right round.
+    In a run `trimmed` is whether an undercut of the contour is trimmed, `turns` whether the linkage turns right round,
+    True without one.
     """
 
     recipe: Recipe
@@ -57,7 +58,7 @@ class CheckFacts:
 
     @property
     def roller(self) -> bool:
-        """Whether the follower's touch is round: a roller or a curved shoe."""
+        """Whether the follower touches the cam with a radius: a roller or a curved shoe."""
         return self.recipe.cam.touch.radius > 0.0
 
     @property
@@ -84,16 +85,16 @@ OfFile: TypeAlias = "Callable[[CheckFacts, FileRequest], bool]"
 class Declared:
     """Declaration of one check.
 
-    units      units that it may have, lengths as mm
-    exact      whether it is made for the exact cam, its motion and mechanism
-    of_file    whether it is made for a file
-    why_not    reason why it is not made; empty where none is reported
-    field      path of the recipe's field that influences it most; `own_field` takes its place where the recipe has it
-    remedy     change that would let it hold; empty where none is known or the check itself says it
+    units      units that it may have, lengths as mm exact      whether it is made for the exact cam, its motion and
+    mechanism; None: never of_file    whether it is made for a file; None: never why_not    reason why it is not made,
+    for the report; empty where it is made or no reason is reported field      path of the recipe's field that
+    influences it most; `own_field` replaces it where the recipe has that remedy     sentence on a change that would let
+    it hold, empty where none is known; None: there is none, or the detail
+               of the check has it
     backlash   whether it concerns the play between contour and follower
     between    whether it is made once for a pair of discs, with the last of their files
     in_frame   whether with a linkage it concerns the cam in its frame, so that its place is the relative angle
-    strict     whether a figure equal to its limit fails; `strict_at` are limits at which it fails
+    strict     whether a figure equal to its limit fails; `strict_at` are the limits at which it fails in any case
     after      check behind which the check of a capability or of a feature stands
     """
 
@@ -113,7 +114,10 @@ class Declared:
     after: str = ""
 
     def place(self, recipe: Recipe, file: str | None) -> str:
-        """Path of the recipe's field that influences the check most; `file` is that of the check, if it has one."""
+        """Path of the recipe's field that influences the check most.
+
+        `file` is the name of the checked file, None for a check of the exact cam.
+        """
         section, _, name = self.own_field.partition(".")
         if name and getattr(getattr(recipe, section), name) is not None:
             return self.own_field
@@ -124,7 +128,7 @@ class Declared:
 
 
 def _named(name: str) -> Exact:
-    """Whether the follower names a check of its intended motion."""
+    """Condition that the follower makes a check of this name on its intended motion."""
     return lambda scene: name in scene.follower.checks
 
 
@@ -196,7 +200,7 @@ def _dwelling(scene: CheckFacts, file: FileRequest) -> bool:
 
 
 def run_with(scene: CheckFacts, file: FileRequest) -> bool:
-    """Whether the dynamics of a run are computed with a file's motion: the part is nominal and drives no linkage."""
+    """Whether the motion of a file drives a computed run, as of dynamics: the part is nominal and without a linkage."""
     return not scene.linked and file.format.part and file.compensation is None
 
 
@@ -212,7 +216,7 @@ def _no_roller(scene: CheckFacts) -> str:
 
 
 def _one_face(scene: CheckFacts) -> str:
-    single = not (scene.yoke or scene.swings or scene.follower.closure)  # of others that one tells what is left
+    single = not (scene.yoke or scene.swings or scene.follower.closure)  # the others have a check of their play
     return "the breadth is not constant: a single flat face follows" if single else ""
 
 
@@ -236,7 +240,7 @@ def _motion_lost(scene: CheckFacts) -> str:
 
 CURVATURE = Declared(RADIUS, ("mm",), lambda scene: not scene.roller, remedy=remedies.rounder, strict=True)
 PITCH = Declared(PITCH_RADIUS, ("mm",), lambda scene: scene.roller, remedy=remedies.rounder, strict=True)
-BENT = frozenset({CURVATURE.name, PITCH.name})  # of a cam the one or the other: the curve that undercut hangs on
+BENT = frozenset({CURVATURE.name, PITCH.name})  # a cam has either: it checks the curve whose curvature causes undercut
 UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), always(True))
 UNDERCUT_GLOBAL = Declared(
     "undercut-global",
@@ -369,7 +373,7 @@ OUTPUT = Declared(
     own_field="verify.output_error",
 )
 
-# kind of files of which a feature is checked: condition, and the check behind which it stands
+# by the word for the files in which a feature is checked: condition, and the check behind which its check stands
 _FILES: dict[str, tuple[OfFile | None, str]] = {
     "none": (None, WALL.name),
     "all": (_shaped, HOLES.name),
@@ -378,7 +382,7 @@ _FILES: dict[str, tuple[OfFile | None, str]] = {
 
 
 def _of_feature(feature: Feature[Any], check: FeatureCheck) -> Declared:
-    """Declaration of the check of a feature, which is made where the part has it."""
+    """Declaration of the check of a feature, which is made where the part has the feature."""
     condition, after = _FILES[check.files]
 
     def exact(scene: CheckFacts) -> bool:
@@ -431,7 +435,7 @@ def _of_figure(name: str, figure: DesignFigure) -> Declared:
             return _driven(scene, file) if figure.needs is OF_LINKAGE else _contour(scene, file)
         return False
 
-    # the check itself says what would do
+    # without a remedy: the detail of the check has it
     between = name == BACKLASH
     return Declared(LIMIT + name, (), of_design, of_file, field=f"limits.{name}", between=between)
 
@@ -445,7 +449,7 @@ def declaration(name: str) -> Declared | None:
 
 
 def declarations(recipe: Recipe | None = None) -> list[Declared]:
-    """Declarations of the checks of a recipe, or of all recipes, and behind them those of the limits."""
+    """Declarations of the checks of a recipe, without one those of all recipes, and then those of limits of figures."""
     if recipe is None:
         return [*CHECKS.values(), *(_of_figure(name, figure) for name, figure in FIGURES.items())]
     bounded = {limit.figure for limit in recipe.limits}

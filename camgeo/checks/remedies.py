@@ -1,7 +1,7 @@
 """Remedies of failed checks: functions that give a change of the recipe as text, empty where none is known.
 
-Each takes the check as the report has it, the report and the recipe. Figures are in the recipe's unit, rounded to the
-side on which the text is true.
+Each takes the check and the report, both as plain data, and the recipe. Figures are in the recipe's unit, rounded to
+the side on which the text is true.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
 
 
 def smaller_wheel(check: Entry, _report: Entry, _recipe: Recipe) -> str:
-    """Remedy for hollows: the largest grinding wheel that reaches into them; empty for a sharp hollow."""
+    """Remedy for a wheel too large for a hollow: the largest grinding wheel that fits; empty for a sharp hollow."""
     value = check["value"]
     return f"a manufacture.wheel of {downward(2.0 * value)} {check['unit']} or less" if value > 0.0 else ""
 
@@ -54,22 +54,22 @@ def wider_face(check: Entry, _report: Entry, recipe: Recipe) -> str:
 
 
 def shorter_dwell(check: Entry, report: Entry, _recipe: Recipe) -> str:
-    """Remedy for too short a dwell: the length that the output dwells in the intended motion and with every file.
+    """Remedy for too short a dwell: the angle over which the output dwells in the intended motion and with every file.
 
-    Empty for a linkage that does not turn.
+    Empty where that is 0 or unknown, as for a linkage that does not make a full turn.
     """
     length = worst(check, report)
     return f"a dwell.at_least of {downward(length)} or less, or a wider dwell.band" if length > 0.0 else ""
 
 
 def worst(check: Entry, report: Entry) -> float:
-    """Least value of all checks of the same name, of the design and of files; nan where one has none."""
+    """Least value of all checks of the same name, of the design and of files; nan where any of them has no value."""
     values = [other_check["value"] for other_check in report["checks"] if other_check["name"] == check["name"]]
     return math.nan if None in values else min(values)
 
 
 def lone_ring(recipe: Recipe) -> bool:
-    """Whether the part is a ring or a blank without holes: its one wall is that between opening and outline."""
+    """Whether the part has a round outline and no holes: its one wall is that between opening and outline."""
     part = recipe.part
     return part.outer is not None and part.bore is None and not part.openings
 
@@ -77,7 +77,7 @@ def lone_ring(recipe: Recipe) -> bool:
 def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
     """Remedy for too thin a wall: a smaller bore, or for a ring a larger outline.
 
-    Empty for other parts, whose check names the edges.
+    Empty for other parts, whose check names the edges, and where no bore would be left.
     """
     value, limit, part = check["value"], check["limit"], recipe.part
     detail = check.get("detail", "")
@@ -135,10 +135,10 @@ def _tolerance(recipe: Recipe, value: float, limit: float, tolerance: float | No
 
 
 class Missed(NamedTuple):
-    """A figure's value and the bound that it misses, in mm and degrees; `unit` is their unit.
+    """A figure's value and the bound that it misses, both in `unit`, lengths in mm and angles in degrees.
 
-    `tolerance` is that of the file, mm, None where no file is concerned. `surface` names the surface of the figure,
-    empty for a cam of one surface.
+    `tolerance` is the tolerance of the file, mm, None for a figure of no file. `surface` names the surface of the
+    figure, empty for a cam of one surface.
     """
 
     value: float
@@ -153,6 +153,7 @@ def limit_remedy(recipe: Recipe, limit: Limit, missed: Missed) -> str:
 
     Lengths are in the recipe's unit.
     """
+    # a change of the cam is the first choice, a change of the limit the last
     divisor = recipe.mm if missed.unit.partition("/")[0] == "mm" else 1.0
     value, bound = missed.value / divisor, missed.bound / divisor
     lower = value > bound
@@ -168,6 +169,7 @@ def limit_remedy(recipe: Recipe, limit: Limit, missed: Missed) -> str:
 
 
 def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
+    """Change that would lower a figure to a bound; empty where none is known."""
     if figure == figures.MOTION_ERROR:
         tolerance = None if missed.tolerance is None else missed.tolerance / recipe.mm
         return _tolerance(recipe, missed.value / recipe.mm, missed.bound / recipe.mm, tolerance)
@@ -200,7 +202,7 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
 
 
 def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
-    """Change that would raise a figure of a surface to a bound, in the recipe's unit; empty where none is known."""
+    """Change that would raise a figure to a bound, lengths in the recipe's unit; empty where none is known."""
     unit, remedy = "in" if recipe.units == "inch" else "mm", ""
     value, bound = missed.value / recipe.mm, missed.bound / recipe.mm
     by, advice = bound - value, recipe.cam.advice.on(missed.surface)
@@ -289,7 +291,7 @@ def _of_lobe(recipe: Recipe, limit: Limit, value: float, bound: float) -> str:
 
 
 def _outward(value: float, *, up: bool) -> str:
-    """Text of a limit that the value keeps, rounded outwards whatever its sign."""
+    """Text of a limit that the value keeps: rounded to a greater number with `up`, else to a smaller one."""
     if value == 0.0:
         return "0"
     text = upward(abs(value)) if up == (value > 0.0) else downward(abs(value))
