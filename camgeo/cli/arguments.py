@@ -13,7 +13,7 @@ def name_of(text: str) -> str:
 
 
 def add_out(command: argparse.ArgumentParser, holds: str = "of the results") -> None:
-    """Add the option --out, the folder that a command writes or reads; `holds` ends `folder ...` in its help."""
+    """Add the option --out, the folder that a command writes or reads; its help is `folder` and the words `holds`."""
     text = f"folder {holds} (default: out)"
     command.add_argument("--out", type=name_of, default="out", metavar="DIR", help=text)
 
@@ -26,7 +26,7 @@ def processes(text: str) -> int:
 
 
 def decimal(text: str) -> float:
-    """Value of a decimal number, fraction or arithmetic; raises ValueError for 1_0, nan and others."""
+    """Value of a decimal number, fraction or arithmetic; raises ValueError for any other text, 1_0 and nan included."""
     from camgeo.schema.scalars import Complaint, read_number
 
     try:

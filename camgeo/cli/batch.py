@@ -21,14 +21,17 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order
     from camgeo.schema.errors import RecipeError
 
-PAYS = 4.0  # processor seconds of remaining work from which more processes pay that import all anew
-FORKED = 1.0  # and those that are forked with all that is imported
-IMPORTS = 1.0  # processor seconds of the first recipe that its imports may take
+PAYS = 4.0  # processor seconds of remaining work from which processes pay that have to import everything
+FORKED = 1.0  # processor seconds of remaining work from which forked processes pay, which have the imports already
+IMPORTS = 1.0  # processor seconds that are subtracted from the first recipe for its imports
 
 
 @dataclass(frozen=True)
 class BatchTask:
-    """Work on each recipe: files of the kinds `only`, or of all, into `out`; without `out` only checks."""
+    """Work on each recipe: files of the kinds `only`, empty for all, are written into the folder `out`.
+
+    With `out` None the recipe is only checked.
+    """
 
     out: Path | None
     only: tuple[str, ...] = ()
@@ -36,9 +39,9 @@ class BatchTask:
 
 @dataclass(frozen=True)
 class Result:
-    """Outcome of one recipe: its report, None where a fault prevented it; a message for standard error; the status.
+    """Outcome of one recipe: its report, None where a fault prevented it; a message for standard error; exit status.
 
-    `errors` are the faults of the recipe, of which the message is made.
+    The message is empty where there is nothing to say. `errors` are the faults of the recipe that it tells.
     """
 
     report: Report | None
@@ -48,9 +51,9 @@ class Result:
 
 
 def results(recipes: Sequence[Order], task: BatchTask, jobs: int | None) -> Iterator[Result]:
-    """Result of each recipe, in order; the first run in this process.
+    """Result of each recipe, in order; the first recipe is run in this process.
 
-    The others run in `jobs` processes, by default one for each core, where their work is worth starting processes.
+    The others are run in `jobs` processes, by default one for each core, as soon as the remaining work is worth them.
     """
     started = time.process_time()
     warm = 0.0  # processor time when the first recipe had imported what they need
@@ -90,7 +93,10 @@ def _in_parallel(recipes: Sequence[Order], task: BatchTask, count: int, *, fork:
 
 
 def result(recipe: Order, task: BatchTask, progress: Progress | None = None) -> Result:
-    """Result of one recipe; a wrong recipe, the disk and a missing package are in the result, not raised."""
+    """Result of one recipe.
+
+    A faulty recipe, a disk that refuses and a missing package become its message and status, and raise nothing.
+    """
     from camgeo.api import run
     from camgeo.common.errors import SurroundingsError
     from camgeo.schema.errors import RecipeErrors
@@ -112,7 +118,10 @@ def result(recipe: Order, task: BatchTask, progress: Progress | None = None) -> 
 
 
 def folder_conflicts(recipes: Sequence[Order]) -> list[str]:
-    """Faults of recipes that would write into the same folder: a file named twice, or a name used twice."""
+    """Messages on recipes that would write into the same folder: a file named twice, or else a name used twice.
+
+    Empty without such recipes.
+    """
     paths = [recipe.path.resolve() for recipe in recipes]
     again = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]
     if again:

@@ -3,5 +3,5 @@
 OK = 0  # every check holds
 FAILED = 1  # a curve exists, and a check fails
 WRONG = 2  # the recipe or the call is wrong, no such curve exists, or a tolerance cannot be held
-SURROUNDINGS = 3  # the disk, a missing extra, a scheduler that does not answer
+SURROUNDINGS = 3  # the disk, a missing package, another program that does not answer
 INTERRUPTED = 130  # as a shell reports SIGINT

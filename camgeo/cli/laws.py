@@ -27,8 +27,8 @@ _CURVES = ("displacement", "velocity", "acceleration", "jerk")
 _COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73")
 _POINTS = 65  # of a curve on each stretch of a law
 _WIDTH, _HEIGHT = 220, 130  # of a law's frame in an SVG
-_MARGIN, _HEAD = 14, 30  # about the frame, and of its two lines of text
-_COLUMNS = 4
+_MARGIN, _HEAD = 14, 30  # about the frame, and height of the two lines of text above it
+_COLUMNS = 4  # laws side by side in a picture
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
@@ -39,7 +39,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the laws' peaks for unit stroke over unit time, draw them if wanted, and return the exit status."""
+    """Print the laws' peaks for unit stroke over unit time, draw the laws with `--picture`, return the exit status."""
     from kin.law.programme import IntentError
     from kin.law.sources.laws import NAMES, named
 
@@ -102,7 +102,10 @@ def _draw(laws: list[Law], path: Path) -> int:
 
 
 def _curves(law: Law) -> list[tuple[Array, Array]]:
-    """U (n,) and s, v, a, j (4, n) on each stretch of a law: limits at the knots, no step is drawn slanted."""
+    """Pairs of u (n,) and of displacement, velocity, acceleration and jerk (4, n) on each stretch of a law.
+
+    At the knots they are the limits from within the stretch, so that no step is drawn slanted.
+    """
     curves = []
     for begin, end in pairwise(law.motion.knots.tolist()):
         u = np.linspace(begin, end, _POINTS)
@@ -112,7 +115,7 @@ def _curves(law: Law) -> list[tuple[Array, Array]]:
 
 
 def _scales(curves: list[tuple[Array, Array]]) -> list[float]:
-    """Greatest values that each curve reaches, to draw it within -1 to 1; 1 where it is 0 throughout."""
+    """Greatest absolute value of each of the four curves, for drawing it within -1 to 1; 1 where it is 0 throughout."""
     tops = np.max([np.abs(rows).max(axis=1) for _, rows in curves], axis=0)
     return [float(top) or 1.0 for top in tops]
 

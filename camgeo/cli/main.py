@@ -33,10 +33,10 @@ O = TypeVar("O", bound="Order")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit status.
+    """Run one command and return its exit status; `argv` are the words of the call, by default those of the process.
 
     0: every check holds; 1: a check fails; 2: the recipe or the call is wrong; 3: disk, permission or package; 130:
-    interrupted.
+    interrupted. Raises SystemExit after help, the version or a fault of the call was written.
     """
     open_streams()
     try:
@@ -51,8 +51,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except CamgeoError as error:
         return _refusal(error)
     except OSError as error:
-        # Files are seen to where they are written, so this is our own output. Where its reader went away nothing more
-        # can be said; nothing is wrong with the recipe.
+        # Errors of files are caught where files are written, so this is standard output. Where its reader has gone
+        # nothing more can be written; nothing is wrong with the recipe.
         if not isinstance(error, BrokenPipeError):
             _complain(f"{error.filename or 'the output cannot be written'}: {error.strerror}")
         silence("stdout")
@@ -61,7 +61,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _refusal(error: CamgeoError) -> int:
-    """Print why a command cannot be carried out; the exit status. Raises errors that no user is meant to see."""
+    """Print why a command cannot be carried out, and return the exit status.
+
+    Raises the error itself where it is none of those that a call may cause.
+    """
     from camgeo.common.errors import CallError, SurroundingsError
     from camgeo.schema.errors import RecipeErrors
 
@@ -97,7 +100,7 @@ def _arguments(words: Sequence[str]) -> argparse.Namespace:
 
 
 def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    """Parser of a call in these words; only commands among the words get their arguments."""
+    """Parser of the words of a call; of commands in modules only those among the words get their arguments."""
     from camgeo.version import __version__
 
     # the width of the terminal costs an import of 13 ms of 200: only help needs it
@@ -281,9 +284,9 @@ def _watch(arguments: argparse.Namespace) -> int:
 def _load_recipes(
     paths: Sequence[str], tolerance: str | None, only: Sequence[str]
 ) -> tuple[list[Order], dict[int, Entry]]:
-    """Sound recipes that list a file of a kind in `only`, and entries of the others by their place in the call.
+    """Recipes without fault that list a file of a kind in `only`, and an entry of the report for each other path.
 
-    The faults of the others are written to the terminal.
+    The entries are by the places of the paths in the call; the faults are written to the terminal.
     """
     from camgeo.recipe.loading import load_order
     from camgeo.schema.errors import RecipeErrors
@@ -304,7 +307,7 @@ def _load_recipes(
 
 
 def _with_tolerance(recipe: O, tolerance: str | None) -> O:
-    """Recipe with the tolerance of the call, a text in its own unit or the recipe's; None leaves it as it is."""
+    """Recipe with the tolerance of the call, the text of a length with or without a unit; None leaves it as it is."""
     if tolerance is None:
         return recipe
     within = read_quantity(tolerance, recipe.units) * recipe.mm
@@ -314,7 +317,10 @@ def _with_tolerance(recipe: O, tolerance: str | None) -> O:
 def _run_recipes(
     recipes: Sequence[Order], refused: dict[int, Entry], task: BatchTask, arguments: argparse.Namespace
 ) -> int:
-    """Run recipes and write their reports, in JSON with the entries `refused` in their places; the highest status."""
+    """Run recipes, write their reports, and return the highest exit status.
+
+    In JSON the entries `refused`, of recipes with faults, stand at their places in the call.
+    """
     status = WRONG if refused else OK
     entries: list[Entry] = []
     for outcome in results(recipes, task, arguments.jobs):
@@ -342,7 +348,10 @@ def _run_recipes(
 
 
 def _tell_of_mixture(report: Entry, mixed: Sequence[str]) -> None:
-    """Write messages on files that differ from their reports, and add them to the report; the verdict stays."""
+    """Write the messages `mixed` on files that differ from their reports, and add them to the report.
+
+    The verdict of the report stays as it is.
+    """
     if mixed:
         report["mixed"] = [*report.get("mixed", ()), *mixed]
     for text in mixed:
@@ -359,7 +368,7 @@ def _show(report: Entry, *, verbose: bool) -> None:
 
 
 def _verify(arguments: argparse.Namespace) -> int:
-    """Judge files of any origin by a recipe's motion."""
+    """Judge files of any origin by a recipe's motion; return the exit status."""
     from camgeo.api.run import verify
     from camgeo.cli.new_file import demand_new, write_new
     from camgeo.cli.progress import Progress
@@ -403,7 +412,7 @@ def _verify(arguments: argparse.Namespace) -> int:
 
 
 def _new(arguments: argparse.Namespace) -> int:
-    """Print a starter recipe, or write it where no file is yet; print the kinds without one, or for a kind of cam."""
+    """Print a starter recipe or write it into a new file; without a kind, or for a kind of cam, print the starters."""
     from camgeo.cli.new_file import write_new
     from camgeo.recipe.starter import STARTERS, starter, starters_for
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def demand_new(*names: str | None) -> None:
-    """Raise CallError for names of files that exist or stand twice; None is no name."""
+    """Raise CallError for names of files that exist already or are given twice; a name of None is left out."""
     file_names = [name for name in names if name is not None]
     existing = [name for name in file_names if Path(name).exists()]
     if existing:
@@ -25,7 +25,7 @@ def demand_new(*names: str | None) -> None:
 
 
 def write_new(texts: Mapping[str, str]) -> None:
-    """Write texts by their file names, all or none.
+    """Write new files, each with the text under its name: all or none of them.
 
     Raises CallError for a file that exists, SurroundingsError where the file system refuses.
     """

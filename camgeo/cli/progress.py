@@ -9,14 +9,15 @@ import time
 from camgeo.common.terminal import complain, escaped, whisper
 
 PATIENCE = 1.0  # seconds before progress is shown
-LONG = 10.0  # seconds after which a stage is said where there is no terminal
+LONG = 10.0  # seconds after which a stage gets a line where there is no terminal
 
 
 class Progress:
     """Shows the stage of a command on the terminal's last line, once the command takes more than a second.
 
-    Without a terminal a stage that takes long gets a line of its own; with `every`, seconds, a line is written when
-    so long has passed since the last. A timer thread writes: a process with one is not forked before `clear`.
+    Without a terminal, a stage that takes more than `LONG` gets a line of its own; with `every`, a stage gets a line
+    where that many seconds have passed since the last line. A timer thread writes: `clear` has to be called before the
+    process is forked.
     """
 
     def __init__(self, name: str, every: float | None = None) -> None:

@@ -49,9 +49,10 @@ def _angle(text: str) -> float:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the page of each recipe and return the exit status, with the meanings of `camgeo.cli.main.main`.
+    """Write the page of each recipe and return the highest exit status.
 
-    With `--json` one recipe prints its page.json, several a list of theirs.
+    0: every check holds; 1: a check fails; 2: a recipe is wrong; 3: disk or package. With `--json` the page.json of one
+    recipe is printed, of several recipes the list of them.
     """
     from camgeo.cli.batch import folder_conflicts
     from camgeo.recipe.loading import load
@@ -80,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespace) -> tuple[int, Entry]:
-    """Write the page of one recipe; its exit status, and page.json or the errors in its place."""
+    """Write the page of one recipe; returns its exit status, and page.json or, with faults, an entry in its place."""
     from camgeo.cli.batch import failed_entry
     from camgeo.common.errors import SurroundingsError
     from camgeo.output.pipeline import check_and_show
@@ -118,7 +119,7 @@ def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespac
 
 
 def _pictures(recipe: Recipe, content: Content, forms: list[str], at_deg: float) -> dict[str, bytes]:
-    """Pictures by file name, in these forms, at the step of the turn nearest to an angle."""
+    """Pictures by file name, as `svg` or `png`, at the step of the turn nearest to a shaft angle, degrees."""
     from camgeo.report.page import svg
     from camgeo.report.page.scene import STEPS
 
@@ -134,9 +135,9 @@ def _pictures(recipe: Recipe, content: Content, forms: list[str], at_deg: float)
 
 
 def _write_page(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> Entry:
-    """Write page and pictures beside the recipe's files, all or none; the report that lists them.
+    """Write page and pictures beside the recipe's files, all or none; returns the report that lists them.
 
-    Pictures of an earlier call stay as they are.
+    Pictures of an earlier call stay as they are, and are listed too.
     """
     from camgeo.output.output_folder import Family, RunFolder
     from camgeo.report.document import as_json, file_entry

@@ -1,6 +1,6 @@
 """Watching a recipe: it is exported whenever it is saved, and a page on 127.0.0.1 reloads itself.
 
-A recipe made of several others is exported when one of those is saved, too. The server has two addresses: the page and
+A recipe made of other recipes is exported when one of those is saved, too. The server has two addresses: the page and
 a stream of events. A recipe with faults shows its errors on the terminal and over the page, and the watch goes on.
 """
 
@@ -22,13 +22,16 @@ if TYPE_CHECKING:
 
 HOST = "127.0.0.1"
 LOOK = 0.2  # seconds between looks at the file
-BEAT = 2.0  # seconds between signs of life to a page, by which one that is gone is noticed
+BEAT = 2.0  # seconds between messages to a page without news, by which a closed page is noticed
 EMPTY = "<!DOCTYPE html><meta charset=utf-8><title>camgeo</title><link rel=icon href=data:,><body>" + RELOAD
 
 
 @dataclass()
 class PageState:
-    """State of the page: its HTML, the errors of the recipe as last saved, and a count of the changes of either."""
+    """State of the page: its HTML, the errors of the recipe as last saved, and the number of changes of either.
+
+    `changed` guards the state and wakes the streams of events; with `ended` they end.
+    """
 
     page: str = EMPTY
     fault: str = ""
@@ -37,7 +40,7 @@ class PageState:
     ended: bool = False
 
     def show(self, page: str | None, fault: str) -> None:
-        """Show another page, or with None the fault over the last one."""
+        """Show a page and the fault over it, empty for none; with None the last page stays."""
         with self.changed:
             self.page = self.page if page is None else page
             self.fault = fault
@@ -81,7 +84,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(data)
 
     def _events(self) -> None:
-        """Send the page each version with its fault, until it is closed or the watch ends."""
+        """Send the number of each new version and its fault, until the page is closed or the watch ends."""
         self.send_response(200)
         self.send_header("Content-Type", "text/event-stream")
         self.send_header("Cache-Control", "no-store")
@@ -102,7 +105,7 @@ class _Handler(BaseHTTPRequestHandler):
             return  # the page was closed
 
     def log_message(self, format: str, *_: object) -> None:  # noqa: A002 - the library's own name
-        """Say nothing of each request."""
+        """Write no line for a request."""
 
 
 def watch(
@@ -114,9 +117,9 @@ def watch(
 ) -> None:
     """Export once and then whenever one of the files is saved, and serve the page, until interrupted.
 
-    Port 0 is any free one. The list of files may change with each export. `export_page` gives the page, None where
-    there is none, and the fault, empty for none; `report` is called with the address. Raises KeyboardInterrupt in the
-    end, OSError where the port is taken.
+    Port 0 is any free port. The list of files may change with each export. `export_page` returns the page, None where
+    there is none, and the fault, empty for none; `report` is called with the address. Raises KeyboardInterrupt when it
+    is interrupted, OSError where the port is taken.
     """
     state = PageState()
     server = ThreadingHTTPServer((HOST, port), partial(_Handler, state))
@@ -139,7 +142,7 @@ def watch(
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:
-    """Time, size and node of a file, of which one changes at each saving; None for a file that does not exist."""
+    """Time, size and node of a file, of which at least one changes at each saving; None where there is no such file."""
     try:
         status = path.stat()
     except OSError:
