@@ -26,7 +26,7 @@ def contours_of(design: Design, fitted: Iterable[Outline]) -> list[LayerOutline]
 
 
 def rim_of(body: Body) -> list[LayerOutline]:
-    """The round outline about the contours of a ring, alone in a list; an empty list for a disc."""
+    """The round outline about the contours of a ring or a groove, alone in a list; an empty list without one."""
     return [LayerOutline(rim.layer, rim.outline, rim.circle) for rim in (body.rim,) if rim is not None]
 
 

@@ -26,7 +26,8 @@ class Body:
 
     `openings` begin with the bore; `bore` is its diameter, or its width across flats; `features` are the values that
     the recipe gives. `least_radius` is the contour's least radius of curvature where it is convex, infinite without a
-    chamfer. `outer` is the diameter of a ring, whose contour is an opening too; None for a disc. `pocket` is the depth
+    chamfer. `outer` is the diameter of the round outline of a ring, whose contour is an opening too, or of the blank of
+    a groove; None for a disc, whose contour is its outline. `pocket` is the depth
     of the recess between two surfaces, None where it goes through or there is none. `checks` are those of features that
     are placed here.
     """
@@ -61,7 +62,7 @@ class Body:
 
     @property
     def rim(self) -> Opening | None:
-        """The round outline of a ring; None for a disc, whose contour it is."""
+        """The round outline of a ring or of the blank of a groove; None for a disc whose contour is its outline."""
         return None if self.outer is None else disc("outline", "CUT", (0.0, 0.0), 0.5 * self.outer)
 
     @property

@@ -160,7 +160,7 @@ def _outside(opening: Opening, other: Opening) -> Pair:
 
 
 def _outline_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
-    """Walls between the round outline of a ring and the surfaces, then the openings within it; none for a disc."""
+    """Walls between the round outline and the surfaces, then the openings; none for a disc without such an outline."""
     if body.outer is None or body.rim is None:
         return
     radius = 0.5 * body.outer

@@ -28,8 +28,9 @@ class Part:
     `thickness` is the disc's along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or
     6) are given; `bore_at`, rad, is then the direction of one flat's normal. `fit` is the tolerance class of a round
     bore, empty where none is stated; files have the nominal size. `wall` is the least wall permitted between any two
-    edges; without it the least wall is reported and must be above 0. `outer` is the diameter of a ring, whose opening
-    is the cam. `density` is in kg/m^3. `features` are the values of those in FEATURES that the recipe gives.
+    edges; without it the least wall is reported and must be above 0. `outer` is the diameter of the round outline of a
+    ring, whose opening is the cam, or of the blank of a groove. `density` is in kg/m^3. `features` are the values of
+    those in FEATURES that the recipe gives.
     """
 
     thickness: float | None = None
