@@ -1,1 +1,1 @@
-"""Helpers of all packages: rounding, the clock of a run."""
+"""Helpers of all packages: arguments, errors, texts on the terminal, processes, the clock of a run."""

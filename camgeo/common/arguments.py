@@ -1,7 +1,7 @@
 """Checks of the arguments of the library's functions.
 
 A wrong Python type raises TypeError, which names the argument, the type it must have and the type it has; a value of
-the right type that makes no sense raises CallError.
+the right type that makes no sense raises CallError. `name` is the name of the argument in these messages.
 """
 
 from __future__ import annotations
@@ -26,13 +26,16 @@ _SHOWN = 60  # characters of a value that a message repeats
 
 
 def demand_type(name: str, value: object, kind: type | tuple[type, ...], must: str, remedy: str = "") -> None:
-    """Raise TypeError for an argument that is of none of the types `kind`; `must` names them in the message."""
+    """Raise TypeError for an argument that is of none of the types `kind`.
+
+    In the message `must` names the types, and `remedy` follows, if it is not empty.
+    """
     if not isinstance(value, kind):
         raise TypeError(f"{name} must be {must}, not {type(value).__name__}{f'; {remedy}' if remedy else ''}")
 
 
 def path_of(name: str, value: object) -> Path:
-    """Path of an argument; raises TypeError for what is no str or path, CallError for a path that no file can have."""
+    """Argument as a path; raises TypeError for what is no str or path, CallError for a path that no file can have."""
     demand_type(name, value, (str, PathLike), "a str or a path")
     text = os.fspath(value)  # type: ignore[call-overload]
     demand_type(name, text, str, "a str or a path of a str")
@@ -48,7 +51,7 @@ def path_of(name: str, value: object) -> Path:
 
 
 def number_of(name: str, value: object) -> float:
-    """Argument as a float, infinite beyond all floats; raises TypeError for one that is no number."""
+    """Argument as a float, infinite for a number beyond all floats; raises TypeError for a bool and for no number."""
     if isinstance(value, bool):
         raise TypeError(f"{name} must be a number, not bool")
     demand_type(name, value, Real, "a number")
@@ -78,7 +81,7 @@ def numbers_of(name: str, value: object) -> Array:
 
 
 def short_repr(value: object) -> str:
-    """`repr` of a value for a message, at most 60 characters; numbers of thousands of digits are described."""
+    """`repr` of a value for a message, shortened to 60 characters; a number of thousands of digits is described."""
     try:
         text = repr(value)
     except ValueError:
@@ -97,9 +100,9 @@ def whole_of(name: str, value: object) -> int:
 
 
 def text_of(name: str, value: object, choices: Sequence[str], subject: str) -> str:
-    """Argument that must be one of several words.
+    """Argument that must be one of the words `choices`.
 
-    Raises TypeError for what is no str, CallError, whose message begins with `subject`, for another word.
+    Raises TypeError for what is no str; CallError, whose message begins with `subject`, for another word.
     """
     demand_type(name, value, str, "a str")
     if value not in choices:

@@ -14,9 +14,10 @@ if TYPE_CHECKING:
 
 @dataclass()
 class Clock:
-    """Seconds of each stage in the order of their ends; `report` is called with the name of each as it begins.
+    """Clock of a run: `stages` has (name, seconds) of each stage, in the order of their ends.
 
-    A stage's seconds leave out those of stages within it, so that no second counts twice.
+    `report` is called with the name of each stage as it begins. The seconds of a stage leave out those of stages within
+    it, so that no second counts twice.
     """
 
     report: Callable[[str], None] | None = None
@@ -24,7 +25,7 @@ class Clock:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Context that adds the seconds of a stage."""
+        """Context that adds a stage and the seconds spent in the context to `stages`."""
         if self.report is not None:
             self.report(name)
         start, first = time.perf_counter(), len(self.stages)

@@ -17,19 +17,22 @@ DISTRIBUTIONS = {"yaml": "PyYAML"}  # packages that are installed by another nam
 
 
 class CallError(CamgeoError, ValueError):
-    """A call that cannot be carried out: a path without a file, an unknown form; `faults` has a line for each fault."""
+    """A call cannot be carried out: a path without a file, an unknown form; `faults` has a line for each fault."""
 
     def __init__(self, *faults: str) -> None:
         super().__init__(*faults)
         self.faults = faults
 
     def __str__(self) -> str:
-        """Write the faults one a line."""
+        """Text with a line for each fault."""
         return "\n".join(self.faults)
 
 
 class SurroundingsError(CamgeoError):
-    """Surroundings of a run are missing or refuse: the disk, a permission, a package; `path` is the place."""
+    """Surroundings of a run are missing or refuse: the disk, a permission, a package.
+
+    `path` is the file or folder concerned; it begins the message.
+    """
 
     def __init__(self, message: str, path: Path) -> None:
         super().__init__(f"{escaped(str(path))}: {message}")
@@ -42,7 +45,10 @@ class BusyError(SurroundingsError):
 
 @contextmanager
 def with_packages() -> Iterator[None]:
-    """Turn a ModuleNotFoundError into a SurroundingsError with the command that installs the package."""
+    """Context or decorator that turns a ModuleNotFoundError into a SurroundingsError.
+
+    Its message has the command that installs the package.
+    """
     try:
         yield
     except ModuleNotFoundError as error:

@@ -9,7 +9,10 @@ T = TypeVar("T")
 
 
 class OnDemand(Mapping[str, T]):
-    """Mapping of known names to values, each made once by `make`; it follows a change of the collection of names."""
+    """Mapping of the names in a collection to values, each made by `make` at its first use.
+
+    Where the collection changes, so do the names of the mapping.
+    """
 
     def __init__(self, names: Collection[str], make: Callable[[str], T]) -> None:
         self._names = names

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-NOISE = 1e-9  # share of a figure that is its own rounding: 6.000000000000001 is reported as 6
+NOISE = 1e-9  # share of a figure by which it may be off through rounding: 6.000000000000001 is reported as 6
 
 
 def upward(value: float, digits: int = 6) -> str:
-    """Text of a positive figure rounded up to `digits` significant digits: a remedy that needs at least it holds."""
+    """Text of a positive figure rounded up to `digits` significant digits, for a remedy `at least`."""
     return _rounded(value * (1.0 - NOISE), digits, up=True)
 
 
 def downward(value: float, digits: int = 6) -> str:
-    """Text of a positive figure rounded down to `digits` significant digits: a remedy that needs at most it holds."""
+    """Text of a positive figure rounded down to `digits` significant digits, for a remedy `at most`."""
     return _rounded(value * (1.0 + NOISE), digits, up=False)
 
 

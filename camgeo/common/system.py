@@ -24,11 +24,15 @@ elif sys.platform != "emscripten":
     import fcntl
 
 WINDOWS = sys.platform == "win32"
-_PAUSES = (0.01, 0.03, 0.1, 0.3, 1.0)  # seconds before another try where Windows refuses, for a virus scanner say
+# seconds before each new try where Windows refuses, as a virus scanner may have the file open
+_PAUSES = (0.01, 0.03, 0.1, 0.3, 1.0)
 
 
 def retry(step: Callable[[], object]) -> None:
-    """Call a function that renames or removes a file; on Windows again for a while, where a program has it open."""
+    """Call a function that renames or removes a file; on Windows several times, as a program may have the file open.
+
+    Raises what the last call raises.
+    """
     for pause in _PAUSES if WINDOWS else ():
         try:
             step()
@@ -40,10 +44,10 @@ def retry(step: Callable[[], object]) -> None:
 
 
 def lock_file(path: Path) -> int | None:
-    """Descriptor of a file that is opened and locked; None where another process holds it.
+    """Descriptor of a file that is created, opened and locked; None where another process holds the lock.
 
-    The holder removes the file in the end. So a lock counts only if the path still leads to the file that was locked.
-    One that a killed process left behind is not held.
+    The holder removes the file in the end. So a lock counts only if the path still leads to the file that was locked. A
+    file that a killed process left behind is not locked. Raises OSError where the file cannot be opened.
     """
     while True:
         lock = os.open(path, os.O_CREAT | os.O_RDWR | getattr(os, "O_NOFOLLOW", 0), 0o666)
@@ -63,9 +67,9 @@ def lock_file(path: Path) -> int | None:
 
 
 def unlock(lock: int, path: Path) -> None:
-    """Remove the file of a lock, an open descriptor, while it is held, then close it.
+    """Remove the locked file, then close its descriptor `lock`, which ends the lock.
 
-    On Windows it is closed first, as that system removes no open file.
+    On Windows the descriptor is closed first, as that system removes no open file.
     """
     if WINDOWS:
         os.close(lock)
@@ -76,7 +80,10 @@ def unlock(lock: int, path: Path) -> None:
 
 
 def link_file(source: Path, target: Path) -> None:
-    """Link a file under a second name, or copy it where the system or file system has no hard links."""
+    """Link a file under a second name, or copy it where the system or file system has no hard links.
+
+    A symbolic link is linked or copied as such. Raises OSError where the file cannot be copied either.
+    """
     if sys.platform != "emscripten":
         with suppress(OSError, NotImplementedError):  # the second where a system knows no link to a link
             os.link(source, target, follow_symlinks=False)
@@ -88,9 +95,10 @@ def link_file(source: Path, target: Path) -> None:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Delay an interrupt to the end of the context; processes started within it ignore interrupts where they can.
+    """Context to whose end an interrupt is delayed; processes started within it block interrupts, but on Windows.
 
-    Both are needed: a thread of a library may still take the signal, and Python passes it to the main thread.
+    Blocking alone is not enough here: a thread of a library may take the signal, which Python passes to the main
+    thread.
     """
     came: list[tuple[int, FrameType | None]] = []
     main = threading.current_thread() is threading.main_thread()

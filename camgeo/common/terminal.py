@@ -15,9 +15,10 @@ _UNSEEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})  # controls, marks of direct
 
 
 def open_streams() -> None:
-    """Let both streams take any text: a closed one (`>&-`, None in Python) drops it, a narrow encoding escapes it.
+    """Let standard output and standard error take any text.
 
-    Lines end with LF on every system.
+    A closed stream (`>&-`, None in Python) drops it, a narrow encoding escapes what it lacks. Lines end with LF on
+    every system.
     """
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
@@ -28,14 +29,17 @@ def open_streams() -> None:
 
 
 def escaped(text: str, *, keep: str = "") -> str:
-    """Text without characters that could disturb or deceive a terminal: those not in `keep` are escaped."""
+    """Text in which characters that could disturb or deceive a terminal are escaped, but for those in `keep`."""
     if text.isprintable():
         return text
     return "".join(c if c in keep or _is_visible(c) else c.encode("unicode_escape").decode() for c in text)
 
 
 def say(text: str, *, at_once: bool = False) -> None:
-    """Print lines of a result on standard output, control characters escaped; `at_once` flushes them."""
+    """Print lines of a result on standard output, control characters escaped; `at_once` flushes the stream.
+
+    Raises OSError where standard output cannot be written.
+    """
     print(escaped(text, keep="\n"), flush=at_once)
 
 
@@ -45,7 +49,7 @@ def complain(text: str) -> None:
 
 
 def whisper(text: str) -> None:
-    """Write to standard error as it stands, if it can be written."""
+    """Write a text unchanged to standard error; a stream that cannot be written is silenced."""
     try:
         sys.stderr.write(text)
         sys.stderr.flush()
@@ -54,7 +58,10 @@ def whisper(text: str) -> None:
 
 
 def silence(name: str) -> None:
-    """Lead a stream that cannot be written to the null device, as its flush at the end of the process would fail."""
+    """Redirect a stream, `stdout` or `stderr`, that cannot be written to the null device.
+
+    Its flush at the end of the process would fail otherwise.
+    """
     stream = getattr(sys, name)
     try:
         nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -65,7 +72,10 @@ def silence(name: str) -> None:
 
 
 def say_json(text: str) -> None:
-    """Print a JSON text; characters that the encoding lacks or a terminal would obey are escaped as JSON does."""
+    """Print a JSON text; characters that the encoding lacks or a terminal would obey are escaped as JSON does.
+
+    Raises OSError where standard output cannot be written.
+    """
     try:
         text.encode(sys.stdout.encoding or "utf-8")
         narrow = False
@@ -82,6 +92,6 @@ def _is_visible(c: str) -> bool:
 
 
 def _as_json(c: str) -> str:
-    """Escape of a character in a string of JSON by its number, beyond the first 65536 a pair of surrogates."""
+    """Escape of a character in a string of JSON: its number, for numbers from 65536 a pair of surrogates."""
     units = c.encode("utf-16-be", "surrogatepass")
     return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))

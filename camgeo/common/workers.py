@@ -1,7 +1,7 @@
-"""Processes that work for a run: how many, deaf to interrupts, and gone with the run that started them.
+"""Processes that work for a run: how many there are, how they ignore interrupts, and how they end with the run.
 
-An interrupt at the terminal reaches every process of a run. Only the run itself hears it; it lets go of its workers,
-and each of them leaves what it has in hand as an interrupt would make it, clearing up behind itself.
+An interrupt at the terminal reaches every process of a run. Only the run itself heeds it: it closes a pipe to its
+workers, and each of them then ends its work as if it were interrupted, clearing up behind itself.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 R = TypeVar("R")
 
-AHEAD = 2  # items handed out for each worker: one at work, one waiting
+AHEAD = 2  # items submitted for each worker: one at work, one waiting
 MOST_ON_WINDOWS = 61  # processes that one wait of Windows can wait for, less two
 _TO_CLEAR_UP = 2.0  # seconds after which a worker whose run is over ends in any case
-FORKS = sys.platform == "linux"  # macOS has it too, and its libraries do not bear it
+FORKS = sys.platform == "linux"  # macOS forks too, but its libraries fail in a forked process
 KILLED = "a process was killed before {} was done, perhaps for lack of memory; see --jobs"
 
 
@@ -49,7 +49,10 @@ class Pool:
         self._executor = executor
 
     def submit(self, function: Callable[[T], R], item: T) -> Future[R]:
-        """Hand an item to a function of a module; raises BrokenProcessPool where a process was killed."""
+        """Future of a function of a module called with an item in a worker.
+
+        Raises BrokenProcessPool where a process was killed.
+        """
         with uninterrupted():  # this may start processes
             return self._executor.submit(cast("Callable[[T], R]", partial(_work_on, function)), item)
 
@@ -60,7 +63,7 @@ def available() -> int:
 
 
 def may_fork() -> bool:
-    """Whether this process may be forked: no thread runs beside this one, of a library neither."""
+    """Whether this process may be forked: on Linux, with no thread beside this one, not even of a library."""
     return FORKS and len(list(Path("/proc/self/task").iterdir())) == 1
 
 
@@ -71,9 +74,9 @@ def needed(processes: int, items: int) -> int:
 
 @contextmanager
 def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
-    """Context of worker processes for a run; left by an exception or before all is done, it abandons work in progress.
+    """Context of worker processes for a run; left by an exception, it abandons work in progress.
 
-    With `fork` the workers begin with all that this process has imported, where the system is sure to fork safely.
+    With `fork` the workers begin with all that this process has imported, on a system that forks safely.
     """
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
@@ -101,9 +104,10 @@ def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
 
 
 def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Generator[tuple[T, R], None, None]:
-    """Pairs of an item and the function's result, in the order of their ends, `workers` at once.
+    """Pairs of an item and the function's result, in the order in which they end.
 
-    The function is one of a module. Raises BrokenProcessPool where a process was killed.
+    At most `workers` processes work at once; the function has to stand in a module. Raises BrokenProcessPool where a
+    process was killed, and what the function raises.
     """
     from concurrent.futures import FIRST_COMPLETED, wait
 
@@ -121,18 +125,18 @@ def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Gen
 
 
 def _start_server() -> None:
-    """Start the process that workers are forked from; like them it leaves interrupts to the run."""
+    """Start the process from which workers are forked; like them it ignores interrupts."""
     from multiprocessing import forkserver, resource_tracker
 
-    resource_tracker.ensure_running()  # first: it is deaf by itself, and leaves this process hearing
+    resource_tracker.ensure_running()  # first: it blocks interrupts by itself, and unblocks them here afterwards
     with uninterrupted():
         forkserver.ensure_running()
 
 
 def _be_a_worker(run: Connection, inherited: Connection | None) -> None:
-    """Leave interrupts to the run that started this process, and end with it, however it ends.
+    """Let this process ignore interrupts, and end with the run that started it.
 
-    `run` is a pipe that is closed when the run ends or lets go of its workers; `inherited` its other end, which a
+    `run` is a pipe that is closed when the run ends or abandons its workers; `inherited` is its other end, which a
     forked process has too.
     """
     import signal
@@ -157,14 +161,14 @@ def _be_a_worker(run: Connection, inherited: Connection | None) -> None:
 
 
 def _interrupt(_number: int, _frame: FrameType | None) -> None:
-    """Signal handler of a worker: end its work if the run is over; an interrupt of the terminal is left to the run."""
+    """Signal handler of a worker: end its work if the run is over; ignore an interrupt from the terminal."""
     if _State.over and _State.busy:
         _State.busy = False
         raise _OverError
 
 
 def _stop_again(unraisable: sys.UnraisableHookArgs) -> None:
-    """Hook of a worker: end its work again where the first end fell into a callback that cannot raise."""
+    """Hook for exceptions that cannot be raised: interrupt a worker again whose interrupt fell into a callback."""
     if not isinstance(unraisable.exc_value, _OverError):
         sys.__unraisablehook__(unraisable)
         return
