@@ -6,7 +6,7 @@ imported when it is first asked for.
 
 from camgeo.version import __version__
 
-TYPE_CHECKING = False  # as typing has it; importing that takes longer than all the rest
+TYPE_CHECKING = False  # in place of the name in `typing`, whose import takes longer than all else here
 if TYPE_CHECKING:
     from camgeo import capabilities
     from camgeo.api.check import Check, Figure, Figures
@@ -87,13 +87,13 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
     }
 
     def _homes() -> dict[str, str]:
-        """Module of each name: the core's, and those that the labels of capabilities add."""
+        """Module of each name of the library: the names of the core, and those that labels of capabilities add."""
         from camgeo.registry.registry import library_names
 
         return {**_CORE, **library_names()}
 
     def __getattr__(name: str) -> object:
-        """Import a name of the library when it is first asked for."""
+        """Value of a name of the library, imported at its first use; raises AttributeError for an unknown name."""
         if name == "__all__":
             return sorted(["__version__", *_homes()])
         home = _CORE.get(name) or _homes().get(name)
@@ -106,5 +106,5 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
         return value
 
     def __dir__() -> list[str]:
-        """Name what there is, imported or not."""
+        """Names of the library in alphabetical order, imported or not."""
         return sorted({*globals(), "__version__", *_homes()})

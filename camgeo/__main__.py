@@ -1,10 +1,10 @@
 """The entry of the command line, also `python -m camgeo`: from here to the end an interrupt ends with status 130.
 
-Nothing is imported before the interrupt is seen to, as the imports take most of a short run. What an interrupt cannot
-reach is Python's own start before this. numpy starts with one thread, as nothing here multiplies great matrices and
-starting threads takes longer than a small cam; what the user has set stays, and so does the environment of a program
-that imports the library. Python's search for cycles waits until there is something to find: by default it goes again
-and again over what the imports make, ezdxf's above all, and at the end over what goes with the process anyway.
+Nothing else is imported before interrupts are handled, as the imports take most of a short run; only an interrupt
+during Python's own start is not. numpy starts with one thread, as nothing here multiplies large matrices and starting
+threads takes longer than a small cam; a setting of the user stays, and so does the environment of a program that
+imports the library. The garbage collector waits for many new objects: by default it searches the objects of the imports
+again and again, those of ezdxf above all, and at the end all objects that are freed with the process anyway.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import signal
 import sys
 import time
 
-TYPE_CHECKING = False  # as typing has it; importing that takes as long as all the above
+TYPE_CHECKING = False  # in place of the name in `typing`, whose import takes as long as all imports above
 if TYPE_CHECKING:
     from types import FrameType
     from typing import NoReturn
@@ -23,14 +23,15 @@ if TYPE_CHECKING:
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")  # of numpy's BLAS
 _COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 _INTERRUPTED = "camgeo: interrupted\n"
-_IMPATIENT = 1.0  # seconds from which a second interrupt is a person's: one may arrive twice, by way of a launcher
+_IMPATIENT = 1.0  # seconds after which a second interrupt is a new one: a launcher may pass the same one on twice
 
 
 class _Interrupts:
-    """Interrupts of this process: the first raises KeyboardInterrupt, and later ones are kept.
+    """Interrupts of this process: the first raises KeyboardInterrupt, at the time `first`.
 
-    A library's callback may swallow one, or print it; it is raised again until it ends the run. While that clears up,
-    others are ignored; an impatient one ends it at once, which loses nothing: the next run clears up.
+    A callback of a library may swallow it, or print it; it is raised again until it ends the run. While the run clears
+    up, further interrupts are ignored for `_IMPATIENT` seconds; a later one ends the process at once, which loses
+    nothing, as the next run clears up.
     """
 
     def __init__(self) -> None:
@@ -40,7 +41,7 @@ class _Interrupts:
         self._reported = False
 
     def listen(self) -> None:
-        """Take over from Python, unless interrupts are ignored (`nohup`, a shell's background)."""
+        """Handle interrupts in place of Python's handler, unless they are ignored (`nohup`, a shell's background)."""
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGINT, self._came)
             sys.unraisablehook = self._swallowed
@@ -61,13 +62,13 @@ class _Interrupts:
             os._exit(130)
 
     def report(self) -> None:
-        """Print once that the run was interrupted: one that was swallowed may come again meanwhile."""
+        """Print that the run was interrupted, once: a swallowed interrupt may be raised again meanwhile."""
         if not self._reported:
             self._reported = True
             _say(_INTERRUPTED)
 
     def _swallowed(self, unraisable: sys.UnraisableHookArgs) -> None:
-        """Raise an interrupt again that fell into a callback from which nothing can be raised."""
+        """Hook for exceptions that cannot be raised: repeat an interrupt that fell into such a callback."""
         if not isinstance(unraisable.exc_value, KeyboardInterrupt):
             sys.__unraisablehook__(unraisable)
         elif not self.over:
@@ -75,13 +76,13 @@ class _Interrupts:
             self._repeat()
 
     def _is_swallowing(self, frame: FrameType | None) -> bool:
-        """Whether an interrupt that comes in this frame would be lost once more: its hook is not over yet."""
+        """Whether an interrupt in this frame would be lost once more, as the hook of the last one is still running."""
         while frame is not None and frame.f_code is not _Interrupts._swallowed.__code__:
             frame = frame.f_back
         return frame is not None
 
     def _repeat(self) -> None:
-        """Interrupt the run again, not here: it would fall into the same callback."""
+        """Interrupt the run again a little later: here the interrupt would fall into the same callback."""
         import threading
         from _thread import interrupt_main
 

@@ -1,10 +1,10 @@
 """Pytest plugin: each check of each recipe that a project names becomes a test item.
 
-A project asks for it with one line of its pytest configuration, `camgeo_recipes = recipes/*.yaml`. Where that line is
-missing nothing is registered and nothing imported beyond this module and the labels of capabilities.
+A project uses it by one line of its pytest configuration, `camgeo_recipes = recipes/*.yaml`. Where that line is missing
+nothing is registered and nothing imported beyond this module and the labels of capabilities.
 
 Collection reads the recipes and foresees their checks, which takes milliseconds. A recipe is made and judged when its
-first item runs, once a process.
+first item runs, once in each process.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ INI = "camgeo_recipes"
 VERIFIED = "camgeo_verify"
 OPTION = "camgeo_{}"  # ini line of an option of a capability
 WHOLE = "recipe"  # name of the item that stands for a recipe as a whole
-TOGETHER = frozenset({"no", "loadfile", "loadscope"})  # of xdist's ways those that leave a recipe to one process
+TOGETHER = frozenset({"no", "loadfile", "loadscope"})  # modes of --dist of xdist that leave a recipe to one process
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the ini line and the option."""
+    """Add the lines of the configuration, and the option --camgeo-out."""
     parser.addini(
         INI,
         "recipes of camgeo whose checks become test items: paths or glob patterns, relative to this file",
@@ -71,7 +71,10 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 class Recipes:
-    """The recipes of one session."""
+    """Recipes of one session; `runs` has a run for each, by the resolved path of its file.
+
+    `out` is the folder in which the files are kept, None for none.
+    """
 
     def __init__(self, config: pytest.Config, patterns: list[str], out: Path | None) -> None:
         self.config = config
@@ -109,7 +112,7 @@ class Recipes:
         return f"camgeo: {len(self.runs)} recipe{'s' * (len(self.runs) != 1)}"
 
     def pytest_collect_file(self, file_path: Path, parent: pytest.Collector) -> RecipeFile | None:
-        """Collect the files that the project names."""
+        """Collector of a recipe that the project names; None for any other file."""
         run = self.runs.get(file_path.resolve())
         if run is None:
             return None
@@ -132,7 +135,10 @@ class Recipes:
                 item.run.selected.add(item.name)
 
     def _found(self) -> list[Path]:
-        """Files that the patterns match, each once, in the patterns' order; raises UsageError if one matches none."""
+        """Files that the patterns match, each once, in the order of the patterns.
+
+        Raises UsageError for a pattern that matches no file.
+        """
         paths: dict[Path, None] = {}
         faults = []
         for pattern in self.patterns:
@@ -149,7 +155,7 @@ class Recipes:
         return list(paths)
 
     def _verified(self, line: str) -> None:
-        """Have a recipe verify the files of a line of the settings.
+        """Add the files and options of a line of the settings to the recipe that has to verify them.
 
         Raises UsageError for a recipe that is not among those found, a file that does not exist, and a line without
         files.
@@ -178,10 +184,16 @@ class Recipes:
 
 @dataclass
 class RecipeRun:
-    """One recipe of a session, made and judged when its report is first asked for.
+    """One recipe of a session, made and judged at the first use of its report.
 
-    `shown` is its path as messages show it, `fault` all that keeps it from being made, `certain` if it would do so in
-    any process and at any time, `selected` the names of its items that are going to run.
+    path      file of the recipe; `shown` is its path in messages
+    out       folder in which its files are kept; None for none
+    options   options of capabilities
+    recipe    the recipe as read; None before it is read, and with faults
+    fault     message on what prevents it from being made, empty for nothing
+    certain   whether that would happen in any process and at any time
+    selected  names of its items that are going to run
+    verified  files and options of each line by which it verifies files
     """
 
     path: Path
@@ -196,7 +208,7 @@ class RecipeRun:
     _report: Entry | None = field(default=None, repr=False)
 
     def load(self) -> None:
-        """Read the recipe, or find its faults."""
+        """Read the recipe into `recipe`; its faults go into `fault`."""
         from camgeo.recipe.loading import load_order
         from camgeo.schema.errors import RecipeErrors
 
@@ -207,7 +219,7 @@ class RecipeRun:
 
     @property
     def report(self) -> Entry | None:
-        """The report on the recipe; None where it has faults, which `fault` then gives."""
+        """Report on the recipe, as plain data; None where it cannot be made, with the reason in `fault`."""
         if self._report is None and not self.fault:
             self._run()
         return self._report
@@ -219,7 +231,7 @@ class RecipeRun:
         from camgeo.schema.errors import RecipeErrors
 
         assert self.recipe is not None
-        # what the items that follow say, should an exception end this one
+        # message of the following items, should an exception end this item
         self.fault = (
             f"{self.shown}: the run broke off with an error of camgeo's own, reported by the first item that ran"
         )
@@ -248,7 +260,10 @@ class RecipeFile(pytest.File):
         self.others = others
 
     def collect(self) -> Iterator[RecipeItem]:
-        """One item for the recipe, one for each check that is foreseen, and one for files that it verifies."""
+        """One item for the recipe, one for each expected check, and one for each line of files that it verifies.
+
+        Raises CollectError where two recipes of the session would write into the same folder.
+        """
         self.run.load()
         recipe = self.run.recipe
         if recipe is not None and self.run.out is not None:
@@ -273,7 +288,10 @@ class RecipeFile(pytest.File):
 
 
 def _expected_checks(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, ...]:
-    """Expected checks of a recipe with these options; the item of the recipe itself has all others."""
+    """Expected checks of a recipe with these options; empty where an option does not go with the recipe.
+
+    The item of the recipe as a whole has all other checks.
+    """
     from camgeo.common.errors import CallError
     from camgeo.registry.root import root_of
 
@@ -284,7 +302,7 @@ def _expected_checks(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, .
 
 
 def _value(text: str) -> float | str:
-    """Value of an option: a number, or the text where it is none."""
+    """Value of an option: a number where the text is one, else the text."""
     try:
         return float(text)
     except ValueError:
@@ -302,7 +320,7 @@ class RecipeItem(pytest.Item):
     def repr_failure(
         self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
     ) -> str | TerminalRepr:
-        """Leave pytest's own calls out of the traceback of an error in camgeo."""
+        """Text of a failure; the traceback of an error in camgeo leaves out pytest's own calls."""
         excinfo.traceback = excinfo.traceback.cut(path=__file__)
         return super().repr_failure(excinfo, style)
 
@@ -334,7 +352,7 @@ class VerifyItem(RecipeItem):
         self.options = options
 
     def runtest(self) -> None:
-        """Judge the files, and fail unless every check of them holds."""
+        """Judge the files; fails unless every check holds."""
         from camgeo import verify
         from camgeo.common.errors import CallError
 
@@ -364,7 +382,7 @@ class CheckItem(RecipeItem):
         self.known = foreseen
 
     def runtest(self) -> None:
-        """Hold the check's figure against its limit."""
+        """Fail unless the check holds, or was not made for a reason that another item reports; run the recipe first."""
         report = self.run.report
         if self.check is None:
             self._whole(report)
@@ -416,9 +434,10 @@ class CheckItem(RecipeItem):
         _fail(f"{foreseen} is not among the checks that were made")
 
     def _not_judged(self, cause: str, told_by: str | None) -> None:
-        """Skip where an item of this session is certain to fail for the same cause; else fail, as nothing else might.
+        """Skip where another item of this session is certain to fail for the same cause, else fail.
 
-        None is for a cause that need not be there in the process in which the other item runs.
+        `told_by` is the name of the check of that item; None for a cause that may be absent in the process in which the
+        other item runs.
         """
         if told_by is not None:
             name = told_by if told_by in map(str, self.known) else WHOLE

@@ -1,10 +1,10 @@
 """Assertions for one's own tests of cams: on any DXF, SVG, STL, 3MF or STEP file, and on recipes.
 
 Each function returns the figure it has measured and raises AssertionError with figure, limit and place. A file that
-cannot be read as a contour fails; a file that is not there raises OSError, a recipe with faults RecipeErrors, a wrong
-type TypeError, a value that makes no sense CallError. Paths are
-those of drawings and solids, told apart so. Lengths are in mm where a function takes no recipe, else
-in the recipe's units, as in its report.
+cannot be read as a contour fails. A file that does not exist raises OSError where no recipe is given, else CallError; a
+recipe with faults raises RecipeErrors, a wrong type TypeError, a value that makes no sense CallError. Drawings and
+solids are told apart by the suffix of the path. Lengths are in mm where a function takes no recipe, else in the
+recipe's units, as in its report.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ __all__ = [
     "assert_watertight",
 ]
 
-GAP = 1e-6  # mm
+GAP = 1e-6  # mm between ends of entities: far above the rounding of coordinates, far below any tolerance
 MOST_NAMED = 5  # faults named in a message
 UNREAD = frozenset(
     {CLOSED.name, READABLE.name, WATERTIGHT.name}
@@ -70,7 +70,10 @@ BACKLASH = frozenset(one.name for one in CHECKS.values() if one.backlash)
 
 @dataclass(frozen=True)
 class Breadth:
-    """Least and greatest distance between parallel tangents, mm, and the direction of their normal, deg in [0, 360)."""
+    """Least and greatest distance between parallel tangents, mm.
+
+    The directions of their normals are in degrees, from 0 to less than 360.
+    """
 
     least: float
     least_at_deg: float
@@ -82,8 +85,9 @@ class Breadth:
 class Motion:
     """A follower's motion error over one turn, measured less intended, in `unit`.
 
-    `rms` is taken over the recipe's `verify.angles`, `max` over the whole turn; it is at the shaft angle `at_deg`.
-    `dwell_flatness` is the range of the measured position over a dwell, None where the motion has none.
+    `rms` is taken over the recipe's `verify.angles` steps, `max` over the whole turn; it is at the shaft angle
+    `at_deg`, degrees. `dwell_flatness` is the range of the measured position over a dwell, None where the motion has
+    none.
     """
 
     max: float
@@ -118,8 +122,9 @@ def _ends_traceback(assertion: Callable[P, R]) -> Callable[P, R]:
 def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
     """Assert that the cut contour closes, without crossing itself and without anything drawn twice or without length.
 
-    Returns the widest gap between two entities, mm; at most `gap` is permitted. Of a solid its whole surface has to be
-    watertight, and the gap is 0.
+    Returns the widest gap between two entities, mm; at most `gap`, mm, is permitted. The surface of a solid has to be
+    watertight, and its gap is 0. Raises CallError for a file that is neither a drawing nor a solid, and for a gap below
+    0.
     """
     path = path_of("path", path)
     if _is_solid(path):
@@ -133,7 +138,7 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
 
 @_ends_traceback
 def assert_watertight(path: AnyPath) -> float:
-    """Assert that a solid is closed, its faces looking outward, none of them without area or there twice.
+    """Assert that a solid is closed, with faces whose normals point outward, none of them without area or twice there.
 
     Returns the enclosed volume, mm^3. Raises CallError for a file that is no solid.
     """
@@ -154,9 +159,10 @@ def assert_constant_breadth(
 ) -> Breadth:
     """Assert that a contour has the same breadth in all directions: a yoke of two parallel faces fits it all round.
 
-    The breadth may differ from the given one by twice the `tolerance` of the contour, which both sides may be off by;
-    without one, from the mean of its extremes. All in mm; `mm` is the length of a drawing unit, for a DXF that states
-    none. The extremes are those of the whole turn, not of samples. Returns them.
+    The breadth may differ from `breadth`, by default the mean of its extremes, by twice the `tolerance` of the contour,
+    as both sides may be off by that. All in mm; `mm` is the length of a drawing unit, for a DXF that states none.
+    Returns the extremes, those of the whole turn and not of samples. Raises CallError for a file that is neither a
+    drawing nor a solid, and for a tolerance or `mm` below 0.
     """
     path = path_of("path", path)
     measured = _breadth(_contour(path, None if mm is None else _length("mm", mm)))
@@ -174,14 +180,14 @@ def assert_constant_breadth(
 
 
 def _breadth(contour: Contour) -> Breadth:
-    """Extremes of the breadth: the play of the contour in a yoke, over the whole turn."""
+    """Extremes of the breadth over the whole turn, from the play of the contour in a yoke of two faces."""
     import numpy as np
 
     from kin.follower.follower import follower_of
     from kin.law.contacts import Flat, opposite
     from kin.law.support_function import lift_from_fourier
 
-    # any breadth of the yoke and any intended motion would do, as only the play is asked for
+    # the play, breadth of the yoke less that of the contour, is the same for any intended motion
     frame = float(contour.support(np.array([0.0, math.pi])).q.sum())
     play = (
         follower_of(opposite(Flat(), frame), lift_from_fourier(0.5 * frame, {}, {}).law)
@@ -210,9 +216,10 @@ def assert_motion(
 
     `limit` of the motion error is in the recipe's units, in degrees for a follower that swings; without one it is that
     of the recipe, or what `tolerance` implies. `tolerance` of the contour is by default the recipe's for a file of that
-    name, else `export.tolerance`. `gap` and `options` are those of `camgeo.verify`, whose checks are asserted too: ends
-    in drawings within the gap of one other are joined. `angles` takes the place of `verify.angles`. Returns the motion
-    error, of several surfaces the greatest.
+    name, else `export.tolerance`. Ends in drawings within `gap` of one other are joined. `options` are those of
+    capabilities, as in `camgeo.verify`, whose checks are asserted too. `angles` replaces `verify.angles`. Returns the
+    motion error, of several surfaces the greatest. Raises CallError for no file of a known kind and for a limit,
+    tolerance, gap or number of angles that makes no sense.
     """
     names = {MOTION.name, *BACKLASH}
     rows = _judge(recipe, path, names, options, limit=limit, tolerance=tolerance, gap=gap, angles=angles)
@@ -228,10 +235,11 @@ def assert_contour(
 ) -> float:
     """Assert that a file's contour lies within the tolerance of the recipe's exact one, in both directions.
 
-    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` is by default the recipe's for a
-    file of that name, else `export.tolerance`. Ends in drawings within `gap` of one other are joined. `options` are
-    those of `camgeo.verify`, whose checks are asserted too. Returns the greatest distance between the two, in the
-    recipe's units.
+    It fails for faults that no follower feels, too: a dent, a spike, a wrong unit. `tolerance` is by default the
+    recipe's for a file of that name, else `export.tolerance`. Ends in drawings within `gap` of one other are joined.
+    `options` are those of capabilities, as in `camgeo.verify`, whose checks are asserted too. Returns the greatest
+    distance between both contours, in the recipe's units. Raises CallError for no file of a known kind and for a
+    tolerance or gap that makes no sense.
     """
     rows = _judge(recipe, path, {CONTOUR.name}, options, tolerance=tolerance, gap=gap)
     return max(float(row["measured_error"]) for row in rows)
@@ -248,7 +256,7 @@ def _judge(
     gap: float | None,
     angles: int | None = None,
 ) -> list[Entry]:
-    """Judge a file and assert the checks of those names; the report's entries of its surfaces.
+    """Judge a file and assert its checks with these names; returns the report's entries of its surfaces.
 
     Raises CallError for a number of `angles` at which no file is judged, and for a limit below 0.
     """
@@ -287,8 +295,9 @@ def _judge(
 def assert_recipe(recipe: OrderSource, **options: Any) -> Report:  # noqa: ANN401 - bool, as those of camgeo.check
     """Assert that a recipe has no faults, and that every check of its exact curves and of its files holds.
 
-    It may be of any kind. Makes and judges the files in a temporary folder; `options` are those of `camgeo.check`.
-    Returns the report, which as a mapping is what report.json holds.
+    The recipe may be of any kind. Its files are made and judged in a temporary folder; `options` are those of
+    `camgeo.check`. Returns the report, which as a mapping has the content of report.json. Faults of the recipe raise
+    AssertionError here; raises SurroundingsError where the disk refuses or a package is missing.
     """
     from camgeo import check
     from camgeo.schema.errors import RecipeErrors
@@ -310,9 +319,10 @@ def assert_verified(
     *paths: AnyPath,
     **options: Any,  # noqa: ANN401 - those of camgeo.verify
 ) -> Report:
-    """Assert that every check of `camgeo.verify` holds of files of any kind that it takes, as of points of a part.
+    """Assert that every check of `camgeo.verify` holds for these files, of any kind that it takes, such as points.
 
-    Returns its report.
+    `options` are the further arguments of `camgeo.verify`. Returns its report. Raises CallError for files that cannot
+    be judged.
     """
     from camgeo import verify
 
@@ -325,10 +335,11 @@ def assert_verified(
 
 @_ends_traceback
 def assert_no_undercut(recipe: RecipeSource) -> float:
-    """Assert that the exact contour of a recipe has no undercut, local or global, also where it asks to trim it.
+    """Assert that the exact contour of a recipe has no undercut, local or global, also where the recipe would trim it.
 
-    Returns the least radius of curvature, in the recipe's units: of the contour for a flat face, of the pitch curve for
-    a roller.
+    Returns the least radius of curvature, in the recipe's units: of the contour for a flat face or a knife edge, of the
+    pitch curve for a roller or a shoe; of several surfaces the first one's. Raises RecipeErrors where there is no such
+    motion or curve.
     """
     from camgeo.report.document import Findings, document
     from camgeo.synthesis.design import designed
@@ -345,7 +356,7 @@ def assert_no_undercut(recipe: RecipeSource) -> float:
 
 
 def _length(name: str, value: float) -> float:
-    """Argument that is a length of 0 or above, mm; raises CallError for another number, TypeError for none."""
+    """Argument that must be a number of 0 or above; raises CallError for another number, TypeError for no number."""
     length = number_of(name, value)
     if not 0.0 <= length < math.inf:
         raise CallError(f"{name} is a number of 0 or above, not {length!r}")
