@@ -262,6 +262,7 @@ def _judge(
     """
     from camgeo import verify as judged
 
+    # limit and angles replace those of the recipe
     path, recipe = path_of("path", path), recipe_of(recipe)
     swings = recipe.cam.arrangement.unit == "deg"
     verify = recipe.verify
@@ -274,10 +275,12 @@ def _judge(
             raise CallError(f"a file is judged at 1 angle at least and {MOST_ANGLES} at most, not {short_repr(angles)}")
         verify = replace(verify, angles=angles)
     recipe = replace(recipe, verify=verify)
+    # of a file that is no contour there is one check alone, whatever its name
     report: Entry = dict(judged(recipe, path, tolerance=tolerance, gap=gap, **options))
     file_checks = [check for check in report["checks"] if check.get("file") == path.name]
     if len(file_checks) == 1 and file_checks[0]["name"] in UNREAD:
         _all_hold(file_checks, report, recipe, str(path))
+    # the checks of capabilities that the call uses are asserted beside those of `names`
     names = names | {name for name in CHECKS if options.get(CHECKS.owner(name), False)}
     wanted_checks = [check for check in file_checks if check["name"] in names]
     if not wanted_checks:

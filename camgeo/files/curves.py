@@ -55,6 +55,8 @@ def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, floa
         (x, y), radius = whole
         circle = gp_Circ(gp_Ax2(point((x, y), z), up, gp_Dir(1.0, 0.0, 0.0)), radius)
         return [(circle, (x + radius, y))]
+    # a circle of the kernel begins at its x axis, so that axis is turned to the start of the arc, and its normal down
+    # for a clockwise arc
     length, radii, flat = measures(outline)
     _demand_long(length)
     curves = []
@@ -150,7 +152,7 @@ def measures(outline: ArcSpline) -> tuple[Array, Array, Any]:
 
 
 def point(place: Sequence[float], z: float) -> Shape:
-    """Return the kernel's point at a place and a height."""
+    """Return the kernel's point at a place (x, y) and a height z, mm."""
     from OCP.gp import gp_Pnt
 
     return gp_Pnt(float(place[0]), float(place[1]), z)

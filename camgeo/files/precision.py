@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Outline
     from kin.numeric.arrays import Array
 
-# Least tolerance that is accepted, in worst displacements of a vertex. A quarter of it, e, is left to the fit. The
-# sagitta over two edges is then 8 e, twice the displacement, which rounding cannot turn into a dent. For the numbers in
-# which a file is saved again the same holds; a finer tolerance is kept by the file alone.
+# Least tolerance that is accepted, in worst displacements of a vertex. The fit is then left e, a quarter of the
+# displacement, and the sagitta over two edges, 8 e, is twice the displacement, so that rounding makes no dent. The same
+# holds for the numbers in which a file is saved again; a finer tolerance is kept by the file alone.
 _LEAST = 1.25
 
 

@@ -214,6 +214,7 @@ def make_step(job: Job, request: FileRequest, path: Path) -> MadeFiles:
         form = request.as_ or "arcs"
         discs = job.design.discs
         names = [disc.name if len(discs) > 1 else "" for disc in discs]
+        # the tolerance holds for the written walls, so that the fit is finer by what writing moves them
         contours_of_discs = [
             single_job.written_outlines(form, tolerance, lambda fit: wall_error(fit, recipe.units))
             for single_job in job.single

@@ -67,6 +67,7 @@ def write_svg(
     for layered in outlines:
         text = _path(layered.outline, mm) if layered.circle is None else _circle(layered.layer, *layered.circle, mm)
         shapes_of_layers.setdefault(layered.layer, []).append(text)
+    # the page is as large as all outlines with a margin, and its viewBox is in drawing units about the shaft
     low_x, low_y, wide, high = _page([_box(layered) for layered in outlines], mm)
     size = _PAGE_UNIT[unit]
     description = "; ".join(filter(None, (f"camgeo units: {unit}", about, *remarks)))

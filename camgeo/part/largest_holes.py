@@ -80,7 +80,7 @@ class Space:
         return least - self.wall
 
     def exactly(self, centre: tuple[float, float]) -> float:
-        """Radius that a hole about one point (x, y) can have, mm, by the exact contour; negative where none fits."""
+        """Radius, mm, that a hole about one centre (x, y) can have by the exact contour; negative where none fits."""
         inside, _ = distance_inside(self.looks, centre)
         return float(self.left(np.array([centre]), np.array([inside - self.edge]))[0])
 
@@ -146,9 +146,9 @@ def _climbed(space: Space, points: Array, step: float) -> tuple[float, float]:
 
 
 def ring(space: Space, count: int, start: float, least: float) -> Circles:
-    """Equal holes at equal angles, the first at `start`, rad, on the circle on which they are largest.
+    """Centres and diameter of `count` equal holes at equal angles, on the circle on which they are largest.
 
-    Empty where their diameter is below `least`, mm.
+    The first is at the angle `start`, rad. Empty where their diameter would be below `least`, mm.
     """
     angle = start + 2.0 * np.pi * np.arange(count) / count
     u = np.column_stack([np.cos(angle), np.sin(angle)])

@@ -64,7 +64,7 @@ class Part:
 
     @property
     def plain(self) -> bool:
-        """Whether the part has no edge besides the contour and a round bore, if any."""
+        """Whether the part has no features, no outline of its own, and no bore or a round one."""
         return not self.sides and self.outer is None and not self.features
 
     @property

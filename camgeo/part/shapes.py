@@ -80,7 +80,7 @@ def hole_at(name: str, circle: float, diameter: float, angle: float) -> Opening:
 
 
 def keyed(radius: float, width: float, depth: float, angle: float) -> ArcSpline:
-    """Circle about the origin with a keyway of this width, mm; its bottom is `depth` beyond the circle (DIN 6885 t2).
+    """Circle of a radius, mm, about the origin with a keyway; its bottom is `depth` beyond the circle (DIN 6885 t2).
 
     `angle`, rad, is the direction of the keyway's middle. Raises ValueError for a keyway wider than the circle.
     """
@@ -92,7 +92,7 @@ def keyed(radius: float, width: float, depth: float, angle: float) -> ArcSpline:
 
 
 def flattened(radius: float, across: float, angle: float) -> ArcSpline:
-    """Circle about the origin with a flat, `across` mm from the opposite side of the circle.
+    """Circle of a radius, mm, about the origin with a flat, `across` mm from the opposite side of the circle.
 
     The flat's normal points to `angle`, rad. Raises ValueError where `across` is not between 0 and the diameter.
     """
@@ -112,7 +112,7 @@ def polygonal(sides: int, across: float, normal: float) -> ArcSpline:
 
 
 def slot(inner: float, outer: float, width: float) -> ArcSpline:
-    """Slot with round ends along the x axis, its ends at the radii `inner` and `outer`, mm."""
+    """Slot of this width, mm, with round ends along the x axis, which reach to the radii `inner` and `outer`, mm."""
     half = 0.5 * width
     points = np.array([[inner + half, -half], [outer - half, -half], [outer - half, half], [inner + half, half]])
     return ArcSpline(points, np.array([0.0, 1.0, 0.0, 1.0]), EXACT)

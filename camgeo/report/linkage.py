@@ -26,13 +26,14 @@ if TYPE_CHECKING:
 def linkage_section(recipe: Recipe, driven: DesignedLinkage, files: Sequence[FileResult]) -> dict[str, Any]:
     """Section of the report on the linkage of a recipe, as plain data.
 
-    Its `error` is that of the file with the greatest error of the output, and is absent without judged files. Of a
-    mechanism that does not turn right round it has mobility alone.
+    Its `error` is the error of the output with the file in which it is greatest, and is absent without judged files. Of
+    a mechanism that does not turn right round the section has mobility alone.
     """
     mechanism, mobility = driven.mechanism, driven.mechanism.mobility()
     length_unit = in_units(recipe, None, "mm")[1]
     scale, unit = (math.degrees(1.0), "deg") if mechanism.unit == "deg" else (1.0 / recipe.mm, length_unit)
     judged = [(file.path.name, file.linkage) for file in files if file.linkage is not None]
+    # what a mechanism that binds has, too
     section: dict[str, Any] = {
         "kind": None if recipe.linkage is None else recipe.linkage.kind,
         "margin": {"value": mobility.margin / recipe.mm, "unit": length_unit, "loop": mobility.loop},
@@ -45,6 +46,7 @@ def linkage_section(recipe: Recipe, driven: DesignedLinkage, files: Sequence[Fil
         return section
     section |= _figures(driven.figures, scale, unit)
     section["dwells"] = _dwells(recipe, driven, judged, scale)
+    # the limit is the recipe's, or else the one that the judge derived from the tolerance
     if judged:
         name, worst = max(judged, key=lambda pair: pair[1].error.max)
         limit = recipe.verify.output_error

@@ -42,6 +42,7 @@ def contact_table(
     if not design.contours:
         raise ValueError(f"{recipe.name}: there is no contour to be touched")
     columns = dict(zip(names, rows.T, strict=True))
+    # at a break the frame after it counts, at the last row, the end of the turn, the frame before it
     shaft = np.linspace(0.0, TURN, len(rows))
     relative = shaft if design.driven is None else design.driven.mechanism.relative(shaft)
     side = np.where(np.arange(len(rows)) < len(rows) - 1, 1, -1)
@@ -53,6 +54,7 @@ def contact_table(
     ]
     for name, t, surface, contour in touching:
         frame = contour.sample(t, side)
+        # the radius of curvature is speed by turn, both by the contour's parameter; a straight place has none
         with np.errstate(divide="ignore"):
             radius = surface.side * frame.speed / np.where(frame.turn == 0.0, np.nan, frame.turn)
         x, y = np.where(np.abs(frame.point) < NOTHING * contour.size, 0.0, frame.point).T / recipe.mm

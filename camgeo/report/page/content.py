@@ -83,6 +83,7 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     files = [file for result in results if (file := outline.contours_of(recipe, result)) is not None]
     per = outline.Exact.looks(files)
     exacts = {profile.surface.name: outline.Exact.of(design, profile, per) for profile in design.surfaces}
+    # the drawing: one for each group of files that show the whole cam
     groups = outline.group_files(files, len(design.discs))
     drawings = [_drawing_of(group) for group in groups]
     scene, plots, relative = mechanism(recipe, design, drawings)
@@ -91,6 +92,7 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
         plots += capability.plots(recipe, design)
     plots += [curves.curvature(recipe, design, profile, exacts[profile.surface.name]) for profile in design.surfaces]
     plots += [plot for group in groups for plot in curves.backlash(recipe, design, group)]
+    # the distances from the exact contours; equal ones are listed once, as files of one tolerance often agree
     measured = ((file, surface, exacts[surface].error(arcs)) for file in files for surface, arcs in file.arcs.items())
     errors = [
         FileError(file.name, surface, low / recipe.mm, high / recipe.mm, file.tolerance / recipe.mm)
@@ -100,6 +102,7 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
         replace(alike[0], name=", ".join(error.name for error in alike))
         for alike in curves.group_alike(errors, FileError.like)
     )
+    # the exact contours as they are drawn, at one of the `per` places in each step
     flip = np.array([1.0, -1.0 if recipe.rotation == "ccw" else 1.0])
     middle = slice(per // 2, None, per)
     contours = {

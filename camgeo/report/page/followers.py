@@ -53,7 +53,10 @@ def cam(
 
 
 def dashes(start: float, end: float, size: float) -> tuple[Ring, ...]:
-    """Return the dashes of a line along the x axis, each as long as a joint and the gap half of that, or nearly so."""
+    """Return the dashes of a line along the x axis from `start` to `end`, with a dash at either end.
+
+    Each is about as long as a joint, and the gaps are half of that.
+    """
     count = max(1, round((end - start) / (1.5 * size)))
     period = (end - start) / (count - 1.0 / 3.0)  # a dash at either end
     begins = start + period * np.arange(count)

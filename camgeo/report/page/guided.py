@@ -168,10 +168,12 @@ def roller_frame(
     The slot clears a shaft of the radius `hole`. The second part is turned by `facing`.
     """
     first, second = touches
+    # the slot clears the shaft over the whole travel; the frame is broad enough for it and for the stem
     inner = max(hole, 1.2 * size) + 0.6 * size
     width = 2.0 * (inner + abs(y) + HALF_STEM * size)
     slot = bar((-float(x.max()), 0.0 - y), (-float(x.min()), 0.0 - y), 2.0 * inner)
     frame = FilledShape("follower", (bar((-apart, 0.0), (0.0, 0.0), width), slot), "roller yoke")
+    # the guide stands beyond the frame in its outermost place
     half, run = HALF_STEM * size, 4.5 * size
     beyond = max(first.ahead, 0.5 * width)
     start = float(x.max()) + beyond + size

@@ -134,7 +134,7 @@ def _reflected(body: MovingBody) -> MovingBody:
 
 
 def still(x: float = 0.0, y: float = 0.0, angle: float = 0.0) -> Array:
-    """Return the pose of a body that does not move, (1, 3)."""
+    """Return the pose (1, 3) of a body that does not move: x, y and angle, rad."""
     return np.array([[x, y, angle]])
 
 
@@ -144,7 +144,7 @@ def poses(x: Array | float, y: Array | float, angle: Array | float) -> Array:
 
 
 def block(length: float, height: float, name: str = "") -> FilledShape:
-    """Return a sliding block about its origin."""
+    """Return a sliding block about its origin, `length` along x and `height` along y."""
     return FilledShape("block", (box(-0.5 * length, -0.5 * height, 0.5 * length, 0.5 * height),), name)
 
 
