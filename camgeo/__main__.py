@@ -86,9 +86,9 @@ class _Interrupts:
         import threading
         from _thread import interrupt_main
 
-        again = threading.Timer(0.01, interrupt_main)
-        again.daemon = True
-        again.start()
+        timer = threading.Timer(0.01, interrupt_main)
+        timer.daemon = True
+        timer.start()
 
 
 def main() -> NoReturn:

@@ -395,8 +395,8 @@ class CheckItem(RecipeItem):
         if report is None:
             _fail(self.run.fault)
             return
-        more = [check for check in report["checks"] if (check["name"], check.get("file")) not in self.known]
-        self._hold(more, report)
+        unforeseen = [check for check in report["checks"] if (check["name"], check.get("file")) not in self.known]
+        self._hold(unforeseen, report)
 
     def _one(self, foreseen: Foreseen, report: Entry) -> None:
         checks = [check for check in report["checks"] if (check["name"], check.get("file")) == foreseen]

@@ -132,8 +132,10 @@ def verify(
     path_faults |= {path: _size_fault(path) for path in paths if not path_faults[path]}
     readable = [path for path in paths if not path_faults[path]]
     faults = [f"{escaped(str(path))}: {path_faults[path]}" for path in paths if path_faults[path]]
-    again = [path for path in dict.fromkeys(readable) if readable.count(path) > 1]
-    faults += [f"{escaped(str(path))}: it is given {readable.count(path)} times; give each file once" for path in again]
+    repeated = [path for path in dict.fromkeys(readable) if readable.count(path) > 1]
+    faults += [
+        f"{escaped(str(path))}: it is given {readable.count(path)} times; give each file once" for path in repeated
+    ]
     known_suffixes = [suffix for suffix, name in suffixes().items() if name in FORMATS]
     faults += [
         f"{escaped(str(path))}: none of {', '.join(known_suffixes)}"
@@ -178,8 +180,8 @@ def _judge_claimed(
     from camgeo.registry.capability import FileCall
 
     faults = [f"{escaped(str(path))}: give it in a call of its own" for path in paths if path not in claimed]
-    again = [path for path in dict.fromkeys(paths) if paths.count(path) > 1]
-    faults += [f"{escaped(str(path))}: it is given {paths.count(path)} times; give each file once" for path in again]
+    repeated = [path for path in dict.fromkeys(paths) if paths.count(path) > 1]
+    faults += [f"{escaped(str(path))}: it is given {paths.count(path)} times; give each file once" for path in repeated]
     if units is not None and units not in UNIT_MM:
         faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {short_repr(units)}")
     name = escaped(str(claimed[0]))

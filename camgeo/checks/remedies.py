@@ -84,12 +84,12 @@ def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
     outline = part.outer is not None and "opening and outline: " in detail and not detail.endswith(" would do")
     if value is None or limit is None or not (part.plain or outline or lone_ring(recipe)):
         return ""
-    less = 2.0 * (limit - value)
+    change = 2.0 * (limit - value)
     if outline or lone_ring(recipe):
-        return f"a part.outer larger by more than {upward(less)} {check['unit']}"
+        return f"a part.outer larger by more than {upward(change)} {check['unit']}"
     if part.bore is None:
         return ""
-    return f"a bore smaller by more than {upward(less)} {check['unit']}" if less * recipe.mm < part.bore else ""
+    return f"a bore smaller by more than {upward(change)} {check['unit']}" if change * recipe.mm < part.bore else ""
 
 
 def nearer(check: Entry, report: Entry, recipe: Recipe) -> str:
@@ -192,8 +192,8 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
             return f"a ratio nearer to 1 (at this one no swing, however small, stays below {least:.4g} deg)"
     limits = "cam.sizing.pressure-angle"
     if limits in recipe.marks and figure in {figures.PRESSURE_ANGLE, figures.ON_RISE, figures.ON_RETURN}:
-        both = figure == figures.PRESSURE_ANGLE and f"{limits}.on_return" in recipe.marks
-        key = "on_return" if figure == figures.ON_RETURN else "at_most and on_return" if both else "at_most"
+        limits_both = figure == figures.PRESSURE_ANGLE and f"{limits}.on_return" in recipe.marks
+        key = "on_return" if figure == figures.ON_RETURN else "at_most and on_return" if limits_both else "at_most"
         return f"{key} of {missed.bound:.6g} under sizing"
     advice = recipe.cam.advice.on(missed.surface)
     if advice.larger and eased_by == "size" and not recipe.cam.sizes:  # a size that is found is no larger one
@@ -205,18 +205,18 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
     """Change that would raise a figure to a bound, lengths in the recipe's unit; empty where none is known."""
     unit, remedy = "in" if recipe.units == "inch" else "mm", ""
     value, bound = missed.value / recipe.mm, missed.bound / recipe.mm
-    by, advice = bound - value, recipe.cam.advice.on(missed.surface)
+    lack, advice = bound - value, recipe.cam.advice.on(missed.surface)
     if figure == figures.RADIUS and recipe.cam.sizes:
         remedy = advice.rounder(value, bound, unit)
     elif figure in {figures.RADIUS, figures.HOLLOW_RADIUS} and advice.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
         roller, hollow = advice.radius / recipe.mm, figure == figures.HOLLOW_RADIUS
-        wider = recipe.cam.side > 0 and roller + by < advice.most_radius / recipe.mm
-        if wider if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
-            remedy = f"a {advice.radius_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
+        wider = recipe.cam.side > 0 and roller + lack < advice.most_radius / recipe.mm
+        if wider if hollow else lack < roller:  # in a ring it is the base radius that makes hollows wider
+            remedy = f"a {advice.radius_field} of {upward(roller + lack) if hollow else downward(roller - lack)} {unit}"
             remedy += advice.same_pitch(recipe.mm)
     elif figure == figures.RADIUS:
-        remedy = advice.rounder(0.0, by, unit)
+        remedy = advice.rounder(0.0, lack, unit)
     elif figure == figures.PITCH_RADIUS:
         remedy = "" if recipe.cam.sizes else ", ".join(filter(None, (advice.larger, advice.less_steep)))
     elif figure in figures.OF_LINKS:
@@ -226,10 +226,12 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
     elif figure == figures.PIVOT_CLEARANCE:
         remedy = "a pivot farther from the shaft"
     elif figure == figures.LEAST_WALL and lone_ring(recipe):
-        remedy = f"a part.outer larger by more than {upward(2.0 * by)} {unit}"
+        remedy = f"a part.outer larger by more than {upward(2.0 * lack)} {unit}"
     elif figure == figures.LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
         remedy = (
-            f"a bore smaller by more than {upward(2.0 * by)} {unit}" if 2.0 * by * recipe.mm < recipe.part.bore else ""
+            f"a bore smaller by more than {upward(2.0 * lack)} {unit}"
+            if 2.0 * lack * recipe.mm < recipe.part.bore
+            else ""
         )
     return remedy
 
@@ -244,9 +246,9 @@ def _of_preload(figure: str, value: float, bound: float) -> str:
 
 def _of_place(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     """Size or place of the recipe, in its unit, that would meet a bound; empty for other figures."""
-    more, unit = value < bound, "in" if recipe.units == "inch" else "mm"
+    must_rise, unit = value < bound, "in" if recipe.units == "inch" else "mm"
     if figure == figures.LOBE_CENTRE and "cam.motion.lobe" in recipe.marks:
-        nose = f"a cam.motion.lobe.nose {'larger' if more else 'smaller'} by"
+        nose = f"a cam.motion.lobe.nose {'larger' if must_rise else 'smaller'} by"
         return f"{nose} {upward(abs(bound - value))} deg"
     keys = {
         figures.BASE_RADIUS: "cam.base_radius",
@@ -257,16 +259,16 @@ def _of_place(recipe: Recipe, figure: str, value: float, bound: float) -> str:
         return ""
     if figure == figures.BASE_RADIUS and recipe.cam.sizes:
         angle, limited = figures.PRESSURE_ANGLE, "cam.sizing.pressure-angle" in recipe.marks
-        return f"a {'smaller' if more else 'greater'} {angle} under sizing" if limited else ""
-    return f"a {keys[figure]} of {bound:.9g} {unit} or {'more' if more else 'less'}"
+        return f"a {'smaller' if must_rise else 'greater'} {angle} under sizing" if limited else ""
+    return f"a {keys[figure]} of {bound:.9g} {unit} or {'more' if must_rise else 'less'}"
 
 
 def _of_files(recipe: Recipe, figure: str, missed: Missed) -> str:
     """Tolerance that would bring a figure of a file to its bound: errors are in proportion to it."""
-    less = missed.bound < missed.value
+    must_fall = missed.bound < missed.value
     if figure == figures.PIECES:
-        return f"a {'larger' if less else 'smaller'} tolerance"
-    if not less or missed.bound <= 0.0 or missed.tolerance is None:
+        return f"a {'larger' if must_fall else 'smaller'} tolerance"
+    if not must_fall or missed.bound <= 0.0 or missed.tolerance is None:
         return ""
     if figure == figures.CONTOUR_ERROR:
         return f"a tolerance of {missed.bound / recipe.mm:.6g}"
@@ -277,17 +279,17 @@ def _of_files(recipe: Recipe, figure: str, missed: Missed) -> str:
 
 def _of_lobe(recipe: Recipe, limit: Limit, value: float, bound: float) -> str:
     """Change of a lobe's half, or of segments, that would bring duration, area or ramp velocity to a bound."""
-    half, more = "cam.motion.lobe.half", value < bound
+    half, must_rise = "cam.motion.lobe.half", value < bound
     if limit.figure not in {figures.DURATION, figures.LIFT_AREA, figures.RAMP_VELOCITY} or bound <= 0.0 or value <= 0.0:
         return ""
     if half not in recipe.marks:
         segments = any(path.startswith("cam.motion[") for path in recipe.marks)
-        longer = more if limit.figure != figures.RAMP_VELOCITY else not more
+        longer = must_rise if limit.figure != figures.RAMP_VELOCITY else not must_rise
         return f"a rise and a return over {'more' if longer else 'less'} of the turn" if segments else ""
     if limit.figure == figures.RAMP_VELOCITY:
-        return "" if more else f"a larger {half}"
+        return "" if must_rise else f"a larger {half}"
     about = "about " if "cam.motion.lobe.ramp" in recipe.marks else ""  # which keeps its length
-    return f"a {half} {about}{upward(bound / value) if more else downward(bound / value)} times as large"
+    return f"a {half} {about}{upward(bound / value) if must_rise else downward(bound / value)} times as large"
 
 
 def _outward(value: float, *, up: bool) -> str:

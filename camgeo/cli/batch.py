@@ -123,10 +123,10 @@ def folder_conflicts(recipes: Sequence[Order]) -> list[str]:
     Empty without such recipes.
     """
     paths = [recipe.path.resolve() for recipe in recipes]
-    again = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]
-    if again:
+    repeated = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]
+    if repeated:
         text = "the same recipe is named twice in this call; name it once"
-        return [f"{escaped(str(recipe.path))}: {text}" for recipe in again]
+        return [f"{escaped(str(recipe.path))}: {text}" for recipe in repeated]
     names = [recipe.name.casefold() for recipe in recipes]
     twice = [recipe for recipe in recipes if names.count(recipe.name.casefold()) > 1]
     text = "the name {} is used by several recipes of this call; give each its own `name:`"

@@ -176,9 +176,9 @@ def _stop_again(unraisable: sys.UnraisableHookArgs) -> None:
     from _thread import interrupt_main
 
     _State.busy = True
-    again = threading.Timer(0.01, interrupt_main)  # not here: it would fall into this same callback
-    again.daemon = True
-    again.start()
+    timer = threading.Timer(0.01, interrupt_main)  # not here: it would fall into this same callback
+    timer.daemon = True
+    timer.start()
 
 
 def _work_on(function: Callable[[T], R], item: T) -> R | None:

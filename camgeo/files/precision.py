@@ -52,8 +52,8 @@ class Precision:
         def spacing(size: float) -> float:
             return mm * self.spacing(size / mm) + 4.0 * float(np.spacing(size))  # the quotient and the product round
 
-        again = None if self.again is None else self.again.in_units(mm)
-        return replace(self, nearest=lambda values: self.nearest(values / mm) * mm, spacing=spacing, again=again)
+        coarser = None if self.again is None else self.again.in_units(mm)
+        return replace(self, nearest=lambda values: self.nearest(values / mm) * mm, spacing=spacing, again=coarser)
 
     def rounded(self, points: Array) -> tuple[Array, float]:
         """Points (n, d) as written, mm, without negative zeros, and the greatest distance that one moved, mm."""
@@ -83,8 +83,8 @@ class Precision:
                 f"rounding to {self.name} alone moves points by {moved:.3g} mm; at least {upward(least, 3)} mm",
                 least,
             )
-        remainder, more = tolerance - moved, 0.0 if self.again is None else self.again.bound(size + tolerance)
-        return remainder - more if remainder >= _LEAST * more else remainder
+        remainder, moved_again = tolerance - moved, 0.0 if self.again is None else self.again.bound(size + tolerance)
+        return remainder - moved_again if remainder >= _LEAST * moved_again else remainder
 
     def within(self, noun: str, deviation: float, tolerance: float) -> None:
         """Raise ToleranceError for a deviation, mm, that is above the tolerance or nan; `noun` begins its message."""

@@ -127,17 +127,17 @@ def _round_all(
     bound, opening_errors = EXACT, []
     for layer, outline, _ in outlines:
         if isinstance(outline, Polygon):
-            loop, by, fallen = rounded_contour(outline, precision)
-            bound = bound.wider(outline.bound.widened(by))
+            loop, shift, fallen = rounded_contour(outline, precision)
+            bound = bound.wider(outline.bound.widened(shift))
             precision.within("the contour", bound.worst, tolerance)
             vertices, dropped = vertices + len(loop), dropped + fallen
         elif isinstance(outline, ArcSpline):
-            loop, off, by = rounded_loop(outline, tolerance, precision, _WORDS.get(layer, "a hole"))
-            opening_errors.append(off)
+            loop, error, shift = rounded_loop(outline, tolerance, precision, _WORDS.get(layer, "a hole"))
+            opening_errors.append(error)
         else:
             raise TypeError("a prism has no splines")
         loops.append(loop)
-        moved = max(moved, by)
+        moved = max(moved, shift)
     inner_count = len(loops[1]) if len(loops) > 1 else 0
     besides = Bound(max(opening_errors), max(opening_errors)) if opening_errors else None
     return loops, MeshFacts(0, vertices, inner_count, dropped, moved, bound, besides)
@@ -169,10 +169,10 @@ def rounded_loop(
 
     Raises ToleranceError where the error is more than the tolerance; `noun` names the hole in it.
     """
-    polygon, off = loop_polygon(hole, precision.fit_tolerance(tolerance, float(np.abs(hole.box()).max())))
+    polygon, error = loop_polygon(hole, precision.fit_tolerance(tolerance, float(np.abs(hole.box()).max())))
     inner, moved = precision.rounded(polygon)
-    precision.within(noun, off + moved, tolerance)
-    return inner, off + moved, moved
+    precision.within(noun, error + moved, tolerance)
+    return inner, error + moved, moved
 
 
 def loop_polygon(outline: ArcSpline, tolerance: float) -> tuple[Array, float]:
@@ -182,8 +182,8 @@ def loop_polygon(outline: ArcSpline, tolerance: float) -> tuple[Array, float]:
     points of them.
     """
     if (circle := outline.circle) is not None:
-        polygon, off = bore_polygon(2.0 * circle[1], tolerance)
-        return polygon + circle[0], off
+        polygon, error = bore_polygon(2.0 * circle[1], tolerance)
+        return polygon + circle[0], error
     rows, worst = [], 0.0
     for start, end, bulge in outline.pieces():
         count = 1

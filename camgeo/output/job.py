@@ -236,9 +236,9 @@ class Job:
         limits = permitted(self.recipe, self.tolerance(request))
         with self.clock.stage(f"judge {request.kind}"):
             discs = [DiscsRead(file.path.name, file.surfaces, file.uneven) for file in files]
-            closures, more = left_between(discs, shaft_of_file(self.recipe, self.design, request.kind), limits)
+            closures, play_checks = left_between(discs, shaft_of_file(self.recipe, self.design, request.kind), limits)
         files[-1] = replace(files[-1], closures=closures)
-        return MadeFiles(tuple(files), (*checks, *more))
+        return MadeFiles(tuple(files), (*checks, *play_checks))
 
     def _why_lost(self, check: Check) -> Check:
         """Check with the reason why a roller may miss a file's contour, where the cam can hardly be turned through."""
@@ -249,8 +249,10 @@ class Job:
         )
         if slope is None or slope < STEEP:
             return check
-        less = self.recipe.cam.advice.less_swing(self.recipe.mm)
-        why = f"psi'(phi) reaches {slope:.9g}, so the follower moves almost along the contour; {less} would satisfy it"
+        remedy = self.recipe.cam.advice.less_swing(self.recipe.mm)
+        why = (
+            f"psi'(phi) reaches {slope:.9g}, so the follower moves almost along the contour; {remedy} would satisfy it"
+        )
         return replace(check, detail=f"{marked(check.detail)}: {why}")
 
 

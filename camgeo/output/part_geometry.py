@@ -81,9 +81,9 @@ def part_mesh(
 
         # where solids are joined or cut in any case, the openings are cut then, each to its depth
         plain = _plain(body)
-        kept = outlines if plain else outlines[: len(outlines) - len(body.openings)]
+        extruded = outlines if plain else outlines[: len(outlines) - len(body.openings)]
         mesh, facts = pocketed_mesh(
-            kept, depth=body.pocket, thickness=body.thickness, tolerance=tolerance, precision=precision
+            extruded, depth=body.pocket, thickness=body.thickness, tolerance=tolerance, precision=precision
         )
         if plain:
             return mesh, facts

@@ -117,7 +117,7 @@ def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
             openings += placed.openings
             checks += [] if placed.check is None else [placed.check]
     if pocket is not None:
-        openings = [replace(each, island=distance_inside(looks, each.middle)[0] > 0.0) for each in openings]
+        openings = [replace(opening, island=distance_inside(looks, opening.middle)[0] > 0.0) for opening in openings]
     radius = least_radius(looks.contour)[0] if part.edge else math.inf
     return Body(part.thickness, tuple(openings), part.bore, part.features, radius, part.outer, pocket, tuple(checks))
 

@@ -69,11 +69,11 @@ def part_checks(
     if pairs:
         thin = [pair for pair in pairs if not _holds(pair.gap.wall, least)]
         detail = "; ".join(map(str, thin[:MOST_NAMED] or pairs[:1]))
-        left = len(thin) - MOST_NAMED
-        more = f"; and {left} more {'pair' if left == 1 else 'pairs'}" if left > 0 else ""
+        unnamed = len(thin) - MOST_NAMED
+        ending = f"; and {unnamed} more {'pair' if unnamed == 1 else 'pairs'}" if unnamed > 0 else ""
         worst = pairs[0].gap
         at_deg = None if worst.parameter is None else shaft_deg(worst.parameter)
-        detail += more + _free_of_thin_walls(thin, body, limit)
+        detail += ending + _free_of_thin_walls(thin, body, limit)
         checks.append(Check(WALL, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=detail))
     for feature, value in with_records(body.features):
         if feature.contour is not None:
@@ -141,10 +141,10 @@ def walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     for opening in body.openings:
         yield to_surface(opening, body, surfaces)
     for i, first in enumerate(body.openings):
-        for two in body.openings[:i]:
-            apart = math.dist(first.middle, two.middle)
-            if apart <= 2.0 * (first.reach + two.reach):
-                yield Possible(apart - first.radius - two.radius, partial(_outside, two, first))
+        for second in body.openings[:i]:
+            apart = math.dist(first.middle, second.middle)
+            if apart <= 2.0 * (first.reach + second.reach):
+                yield Possible(apart - first.radius - second.radius, partial(_outside, second, first))
     for feature, value in with_records(body.features):
         if feature.walls is not None:
             yield from feature.walls(value, body, surfaces)

@@ -232,10 +232,10 @@ def narrowed(width: float, out: float, scale: float) -> float:
 
     Raises NothingLeftError where that closes the opening.
     """
-    left = width - 2.0 * out
-    if not left > 0.0:
+    remaining = width - 2.0 * out
+    if not remaining > 0.0:
         raise NothingLeftError(f"it is {width:.6g} mm across")
-    return scale * left
+    return scale * remaining
 
 
 def angle(name: str, about: str) -> Field:

@@ -208,8 +208,8 @@ def _chain_gap(chain: Arcs, other: Arcs, side: float) -> Gap:
     turning = np.flatnonzero((falls < 0.0) & (rises > 0.0))
 
     def product(s: Array) -> Array:
-        here = parts.take(turning)
-        return side * _from_chain(other, here.points(s), here.tangents(s))
+        turning_parts = parts.take(turning)
+        return side * _from_chain(other, turning_parts.points(s), turning_parts.tangents(s))
 
     zero = np.zeros(turning.size)
     feet = roots(product, zero, parts.length[turning], (falls[turning], rises[turning]), SETTLED)

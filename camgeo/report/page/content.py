@@ -220,12 +220,12 @@ def _mechanism(recipe: Recipe, design: Design, drawings: list[Drawn]) -> tuple[S
         note = f"{slides}{details[0].upper()}{details[1:]}. {note}" if details else slides + note
     # the follower alone, on its guide
     view = view_of(recipe, design)
-    bodies, more = DRAWN[design.follower.arrangement](view, reach, size)
+    bodies, follower_plots = DRAWN[design.follower.arrangement](view, reach, size)
     shaft = pivot("shaft", 0.0, 0.0, size, "O" if view.guide.unit == "deg" else "")
     discs = _discs(design, drawings, bore, size, -SHAFT)
     stage = Stage(view, -SHAFT, SHAFT, reach, size)
     bodies = _under_contacts(overlay_bodies(recipe.export.overlays, stage), bodies)
-    return Scene((*discs, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT
+    return Scene((*discs, shaft, *bodies), note), [*curves.motion(recipe, design), *follower_plots], SHAFT
 
 
 def _under_contacts(overlays: Sequence[MovingBody], bodies: list[MovingBody]) -> list[MovingBody]:
