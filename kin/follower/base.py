@@ -1,8 +1,8 @@
-"""What every follower answers: contacts on guides, the motion it is meant to make, and what its play is judged by.
+"""What every follower offers: its contacts on guides, its intended motion, and the rule by which its play is judged.
 
-A follower is its contacts (`kin.law.contacts`) and its motion. What depends on the pair of guide and touch is a file of
-formulas: a flat face on a line of travel `kin.follower.flat`, on an arm `kin.follower.faces_on_arm`, a roller on either
-`kin.follower.roller`. All others ask a follower by the names below, and never of what kind it is.
+A follower is its contacts (`kin.law.contacts`) and its motion. The formulas of each pair of guide and touch have their
+own module: a flat face on a line of travel `kin.follower.flat`, on an arm `kin.follower.faces_on_arm`, a roller on
+either `kin.follower.roller`. All other code uses a follower by the methods below, whatever its kind.
 """
 
 from __future__ import annotations
@@ -38,16 +38,16 @@ Rests = tuple[tuple[float, float], ...]
 
 
 class IntendedMotion(Protocol):
-    """An intended motion over the shaft angle; `Lift`, `Piecewise` and `kin.follower.laws.Swing` are."""
+    """An intended motion over the shaft angle, such as a `Lift`, a `Piecewise` or a `kin.follower.laws.Swing`."""
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles in [0, 2 pi) where the second derivative may jump."""
+        """Shaft angles (m,), rad, of one turn, where a second or higher derivative may jump; not all in [0, 2 pi)."""
 
     def derivatives(self, phi: Array, order: int, side: int = 1) -> Array:
-        """Position, mm or radians, and its derivatives at shaft angles phi (n,): (order + 1, n).
+        """Position, mm or rad, and its derivatives by the shaft angle at angles phi (n,): (order + 1, n).
 
-        At a break they are those from the right, or from the left (side -1).
+        At a break the derivatives are limits from the right, or from the left (side -1).
         """
 
 
@@ -55,12 +55,14 @@ class IntendedMotion(Protocol):
 class Closure:
     """Rule by which the play of a follower held from two sides is judged.
 
-    limit    greatest play or interference of a contour within a tolerance of the exact one
-    name     of the check on both, play and interference
-    tight    name of a check on interference alone; None for none
-    breadth  of a frame, mm: what is reported is how broad the contour is; None where play is
-    lever    play that is permitted for a permitted motion error of 1, mm or degrees; None where the tolerance sets it
-    radius   of the rollers, mm, beside which a play is small; None of a play that is an angle
+    limit    greatest play or interference, mm or degrees, of a contour within a tolerance, mm, of the exact one
+    name     name of the check on play and interference
+    tight    name of a second check, on interference alone; None without one
+    breadth  breadth of a frame, mm, where the contour's breadth is reported in place of the play; else None
+    lever    permitted play, mm or degrees, per mm or degree of permitted motion error; None where the contour's
+             tolerance alone sets the play
+    radius   radius of the rollers, mm, with which a limit is compared to see whether it is loose; None where the
+             stroke of the follower serves
     """
 
     limit: Callable[[float], float]
@@ -71,7 +73,7 @@ class Closure:
     radius: float | None = None
 
     def detail(self, play: Play) -> str:
-        """Words of the check on a play: the range of the contour's breadth for a frame, else that of the backlash."""
+        """Words of the check on a play: the range of the contour's breadth where `breadth` is given, else of play."""
         if self.breadth is not None:
             return f"breadth {span_words(self.breadth - play.most, self.breadth - play.least)}"
         sampled = ", sampled" if play.extremes == "sampled" else ""
@@ -84,8 +86,9 @@ class Closure:
 class Follower(ABC):
     """A follower; positions and motions are in mm or radians, error figures and limits in mm or degrees.
 
-    One contact is held on the cam by a spring, two hold the follower from both sides. Here their own positions count
-    away from the metal, and the follower's from where contact 1 would reach the shaft or the line to it.
+    One contact is held on the cam by a spring, two hold the follower from both sides. A contact's own position counts
+    away from the metal. The follower's position is 0 where contact 1 would reach the shaft or, on an arm, the line to
+    the shaft; the swing of two contacts on one arm is 0 in their mean position.
     """
 
     contacts: tuple[Contact[Guide, Touch], ...]
@@ -98,7 +101,7 @@ class Follower(ABC):
     @property
     @abstractmethod
     def rests(self) -> Rests:
-        """Dwells of the intended motion: from, to, as shaft angles in radians, to > from."""
+        """Dwells of the intended motion, each a pair of shaft angles (from, to), rad, to > from."""
 
     @property
     @abstractmethod
@@ -121,7 +124,7 @@ class Follower(ABC):
         return position
 
     def shaft_angle(self, parameter: Array) -> Array:
-        """Shaft angle (n,), rad, at which the point of the envelope at a parameter (n,) is touched."""
+        """Shaft angles (n,), rad, at which contact 1 touches the points of the envelope at parameters (n,)."""
         return parameter
 
     @property
@@ -130,44 +133,54 @@ class Follower(ABC):
         return METRE if self.unit == "mm" else 1.0
 
     def moved_by(self, length: float) -> float:
-        """Travel, m or rad, of the follower, about, as its contact moves by `length`, mm."""
+        """Approximate travel, m or rad, of the follower as its contact moves by `length`, mm."""
         return METRE * length if self.unit == "mm" else length / self.lever
 
     @property
     def lever(self) -> float:
-        """Distance of the contact from the arm's pivot, about, mm; infinite on a line of travel."""
+        """Approximate distance of the contact from the arm's pivot, mm; infinite on a line of travel."""
         return math.inf
 
     @abstractmethod
     def drives(self, contour: Contour) -> Sequence[Excitation]:
-        """Own position of each contact over the shaft angle as it rests on a contour, m or rad."""
+        """Own position of each contact, m or rad, over the shaft angle as it rests on a contour.
+
+        Raises ContactError where the contour reaches the pivot of a face's arm. The drive of a roller raises it when it
+        is evaluated at an angle at which the roller touches nothing.
+        """
 
     @abstractmethod
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
         """Pressure angle at contact 1 and the contour's radius of curvature there, (n,) each, at shaft angles phi (n,).
 
-        The angle, rad, is that from the contour's outward normal counter-clockwise to the way in which the touch
-        travels outwards: above 0 where the cam drives a rise. The radius, mm, is 0 at a corner, negative in a hollow
-        and infinite on a line.
+        The angle, rad, counts counter-clockwise from the normal out of the metal to the way in which the touch moves
+        away from the metal: of a round touch whose line of travel passes through the shaft it is above 0 where the
+        touch moves outwards. The radius, mm, is 0 at a corner, negative in a hollow and infinite on a line. Raises
+        ContactError where contact 1 finds no contact.
         """
 
     def contact_travel(self, contour: Contour) -> tuple[float, float] | None:  # noqa: ARG002
-        """Least and greatest place of contact 1 along a flat face over the turn, mm; None of a round touch.
+        """Least and greatest place of contact 1 along a flat face over the turn, mm.
 
-        On a line of travel it counts from the stem's axis, above 0 ahead of it; on an arm from the pivot's foot on the
-        face.
+        None for round touches and for two faces on one arm. On a line of travel the place counts from the stem's axis,
+        above 0 ahead of the axis; on an arm from the foot of the pivot on the face. Raises ContactError where the
+        contour reaches the pivot.
         """
         return None
 
     @abstractmethod
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
-        """Shaft angle and the follower's position (n,) with each contact touching metal at points (n, 2), mm.
+        """For each contact, shaft angles and follower's positions (n,) at which it touches metal at points (n, 2), mm.
 
-        `normals` (n, 2) are outward of the contour; angles and positions are radians or mm, nan out of reach.
+        `normals` (n, 2) are the contour's outward unit normals there. Angles are rad, nan out of reach; positions are
+        mm or rad.
         """
 
     def resting(self, contour: Contour) -> list[Shifted]:
-        """Drives of the follower's position, m or rad, one for each of its contacts as it rests on a contour alone."""
+        """Drives of the follower's position, m or rad: one for each contact, as that alone rests on a contour.
+
+        Raises ContactError where the contour reaches the pivot of a face's arm.
+        """
         each = zip(self.contacts, self.drives(contour), strict=True)
         return [
             Shifted(drive, float(contact.sense), -contact.sense * self.si * contact.zero) for contact, drive in each
@@ -175,40 +188,44 @@ class Follower(ABC):
 
     @abstractmethod
     def judge(self, contour: Contour, phi: Array) -> Judged:
-        """Motion error and play; rms and increments are from the shaft angles phi (n,).
+        """Motion error and play; rms and increments are from the shaft angles phi (n,), rad.
 
-        ContactError where the follower finds no contact.
+        Raises ContactError where the follower finds no contact, and UnsettledError where rounding hides the extremes of
+        a flat face's error.
         """
 
     @abstractmethod
     def motion_limit(self, tolerance: float) -> float:
-        """Greatest motion error, mm or degrees, of a contour within `tolerance` of the exact one."""
+        """Greatest motion error, mm or degrees, of a contour within `tolerance`, mm, of the exact one.
+
+        Raises ContactError where the intended contact reaches an arm's pivot or a pressure angle is 90 degrees.
+        """
 
     def direct_limit(self, tolerance: float) -> float:
         """Greatest motion error, mm or degrees, of a contour within `tolerance`, mm, at a pressure angle of 0.
 
-        On a flat face of an arm it is that at the greatest distance from the pivot.
+        On a flat face of an arm the contact counts as far from the pivot as the shaft is.
         """
         return math.degrees(self.moved_by(tolerance)) if self.unit == "deg" else tolerance
 
 
 @dataclass(frozen=True, eq=False)
 class Moved(Follower):
-    """A follower on a guide or an arm, whose intended motion runs over a parameter that its envelope shares."""
+    """A follower whose intended motion is given over the parameter of its envelope."""
 
     @property
     @abstractmethod
     def course(self) -> IntendedLaw:
-        """The intended motion over the shaft angle, as contact is followed along it."""
+        """Intended motion over the shaft angle, with proved bounds of its derivatives."""
 
     @property
     @abstractmethod
     def breaks(self) -> Array:
-        """Parameters in [0, 2 pi) at which the second derivative may jump, rising."""
+        """Parameters (k,) in [0, 2 pi) at which the second derivative may jump, rising."""
 
     @abstractmethod
     def over(self, parameter: Array) -> tuple[Array, Array]:
-        """Shaft angle and position with two derivatives by the parameter, (3, n) each."""
+        """Shaft angle, rad, and position, mm or rad, with two derivatives by the parameter (n,): (3, n) each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,14 +241,14 @@ class OfLaw(Moved):
 
     @cached_property
     def course(self) -> ByLaw:
-        """Law with proved bounds of its derivatives, along which contact is followed."""
+        """Law over the shaft angle with proved bounds of its derivatives."""
         from kin.follower.laws import ByLaw
 
         return ByLaw(self.law)
 
     @cached_property
     def rests(self) -> Rests:
-        """Dwells of the law."""
+        """Dwells of the law, each a pair of shaft angles (from, to), rad."""
         return tuple(dwells_of_law(self.law))
 
     @property
@@ -240,7 +257,7 @@ class OfLaw(Moved):
         return self.law.breaks
 
     def over(self, parameter: Array) -> tuple[Array, Array]:
-        """Shaft angle and position, with two derivatives by the parameter: (3, n) each."""
+        """Shaft angle, which is the parameter (n,), and position, with two derivatives by it: (3, n) each."""
         angle = np.stack([parameter, np.ones_like(parameter), np.zeros_like(parameter)])
         return angle, self.law.derivatives(parameter, 2)
 
@@ -261,12 +278,12 @@ class OfTransmission(Moved):
 
     @property
     def course(self) -> Swing:
-        """Swing over the shaft angle with proved bounds of its derivatives, along which contact is followed."""
+        """Swing over the shaft angle with proved bounds of its derivatives."""
         return self.motion
 
     @cached_property
     def rests(self) -> Rests:
-        """Dwells of psi over the shaft angle."""
+        """Dwells of psi, each a pair of shaft angles (from, to), rad."""
         return tuple(dwells_of_transmission(self.transmission))
 
     @property
@@ -275,11 +292,11 @@ class OfTransmission(Moved):
         return self.transmission.breaks
 
     def over(self, parameter: Array) -> tuple[Array, Array]:
-        """Shaft angle and swing, with two derivatives by the parameter: (3, n) each."""
+        """Shaft angle and swing, rad, with two derivatives by the parameter (n,): (3, n) each."""
         phi, psi = self.transmission.at(parameter, 2)
         return phi, self.share * psi
 
     def shaft_angle(self, parameter: Array) -> Array:
-        """Shaft angle at which contact A touches the envelope's point of that parameter (n,)."""
+        """Shaft angles (n,), rad, at which contact A touches the envelope's points at parameters (n,)."""
         phi: Array = self.transmission.at(parameter, 0)[0][0]
         return phi

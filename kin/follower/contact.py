@@ -29,21 +29,24 @@ if TYPE_CHECKING:
 
 STRAIGHT_ON = 1e-12  # corners that turn less, in radians, get no arc of their own
 MOST_TURN = np.pi / 8.0  # pieces are cut until each turns less
-WIDER = 1e3  # of the slack, where nothing is met with it
-PAIRS_AT_ONCE = 1_000_000  # bounds the memory that a hostile contour can ask for
+WIDER = 1e3  # times the slack, for a second search where the first meets nothing
+PAIRS_AT_ONCE = 1_000_000  # of piece and angle: bounds the memory that a hostile contour takes
 
 
 def dilated(chain: Arcs, radius: float) -> Arcs:
-    """Pieces, in no order, that bound the region a disc's centre cannot enter; the metal lies left of the chain.
+    """Pieces, in no order, among them the whole boundary of the region that a disc's centre cannot enter.
 
-    `radius` is the disc's, mm. A disc of radius 0, the point of a knife edge, is bounded by the chain itself.
+    The metal lies left of the closed chain; `radius` is the disc's, mm. Of radius 0, the point of a knife edge, the
+    boundary is the chain itself.
     """
     if radius == 0.0:
         return chain
+    # moved outward by r, a piece of curvature k and length L has k/(1 + k r) and L (1 + k r)
     growth = 1.0 + chain.curvature * radius
     fits = growth > 0.0
     moved = chain.start + radius * right(chain.tangent)
     pieces = Arcs(moved, chain.tangent, chain.curvature / np.where(fits, growth, 1.0), chain.length * growth).take(fits)
+    # about convex corners arcs of the disc's radius
     turns = chain.turns()
     corner = turns > STRAIGHT_ON
     before = np.roll(chain.end_tangents, 1, axis=0)[corner]
@@ -57,7 +60,7 @@ def dilated(chain: Arcs, radius: float) -> Arcs:
 
 
 def shortened(obstacle: Arcs, guide: Guide) -> tuple[Arcs, Indices]:
-    """Pieces of the obstacle short enough to be searched one by one, in order, and the piece each is part of (k,)."""
+    """The obstacle cut into pieces short enough for the search, in order; index (k,) of the piece each is part of."""
     step = guide.step(extent(obstacle))
     parts = np.maximum(
         np.ceil(np.abs(obstacle.curvature) * obstacle.length / MOST_TURN), np.ceil(obstacle.length / step)
@@ -66,16 +69,17 @@ def shortened(obstacle: Arcs, guide: Guide) -> tuple[Arcs, Indices]:
 
 
 def extent(pieces: Arcs) -> float:
-    """Greatest coordinate of a piece's start, mm."""
+    """Greatest absolute coordinate of the pieces' starts, mm."""
     return float(np.abs(pieces.start).max())
 
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """An obstacle made ready for searches at any shaft angles: what the centre can meet, and from which angles.
+    """An obstacle made ready for searches at any shaft angles: pieces that the centre can meet, and from which angles.
 
-    `obstacle` is the dilated contour, `pieces` are its short ones within reach (k,), `owner` the piece each is part of
-    (k,). Each is met from shaft angles of `low` to `low` + `width` (k,), rad. `slack`, mm, is `share` of the guide's.
+    `obstacle` is the dilated contour, `pieces` are k short parts of it within reach, `owner` (k,) is the index of the
+    obstacle's piece that each is part of. A part is met from shaft angles of `low` to `low` + `width` (k,), rad.
+    `slack`, mm, allows for rounding at the joints: `share` times the guide's own slack.
     """
 
     obstacle: Arcs
@@ -89,7 +93,10 @@ class Search:
 
     @staticmethod
     def of(obstacle: Arcs, guide: Guide, share: float = 1.0) -> Search:
-        """Prepare the search for first contacts on an obstacle; the cost grows with its pieces."""
+        """Prepare the search for first contacts on an obstacle, with `share` times the guide's slack.
+
+        The cost grows with the number of pieces.
+        """
         slack = share * guide.slack(extent(obstacle))
         pieces, owner = shortened(obstacle, guide)
         within = within_reach(pieces, guide, slack)
@@ -99,16 +106,17 @@ class Search:
         return Search(obstacle, guide, share, slack, pieces, owner, low, 2.0 * reach)
 
     def first(self, phi: Array) -> tuple[Array, Indices]:
-        """Find where the centre, coming from outside, meets the obstacle: distance from the shaft, and piece met.
+        """Find where the centre, coming from outside, first meets the obstacle at shaft angles phi (n,), rad.
 
-        From within if the guide counts inwards. `phi` (n,) are shaft angles. Returns r (n,) in mm and the index of the
-        piece (n,): nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and angle that can
-        meet. Where nothing is met, as by rounding at the joints of walls along the centre's own path, the slack is
-        widened.
+        From within if the guide counts inwards. Returns the distance r (n,) from the shaft, mm, and the index (n,) of
+        the obstacle's piece: nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and angle
+        that can meet. Where nothing is met, as by rounding at the joints of walls along the centre's own path, the
+        slack is widened.
         """
         turn, guide = 2.0 * np.pi, self.guide
         order = np.argsort(np.mod(phi, turn), kind="stable")
         angle = np.mod(phi, turn)[order]
+        # over two turns of rising angles, those that meet a piece are one run: its first place and its count
         ring = np.concatenate([angle, angle + turn])
         first = np.searchsorted(ring, self.low, side="left")
         count = np.minimum(np.searchsorted(ring, self.low + self.width, side="right") - first, len(angle))
@@ -117,11 +125,13 @@ class Search:
         total = np.cumsum(count)
         begin = 0
         while begin < len(self.pieces):
+            # as many pieces at a time as make PAIRS_AT_ONCE pairs
             end = max(begin + 1, int(np.searchsorted(total, total[begin] - count[begin] + PAIRS_AT_ONCE, side="right")))
             chosen = np.arange(begin, end)
             piece = np.repeat(chosen, count[chosen])
             number = np.arange(len(piece)) - np.repeat(np.cumsum(count[chosen]) - count[chosen], count[chosen])
             index = (first[piece] + number) % len(angle)
+            # the piece that reaches highest so far is met; a height of 0 is the shaft itself
             height = meet(self.pieces.take(piece), guide, angle[index], self.slack)
             np.maximum.at(best, index, height)
             won = (height == best[index]) & np.isfinite(height) & (height != 0.0)
@@ -131,6 +141,7 @@ class Search:
         touched = met >= 0
         radius[order[touched]] = guide.away * best[touched]
         piece_met[order[touched]] = self.owner[met[touched]]
+        # misses by rounding are searched for once more, with a wider slack
         missed = np.flatnonzero(piece_met < 0)
         if self.share < WIDER and len(missed):
             radius[missed], piece_met[missed] = Search.of(self.obstacle, guide, WIDER).first(phi[missed])
@@ -149,13 +160,17 @@ def within_reach(pieces: Arcs, guide: Guide, slack: float) -> NDArray[np.bool_]:
 
 
 def angles_of(pieces: Arcs, guide: Guide, slack: float) -> tuple[Array, Array]:
-    """Middle and half-width, rad, of an interval that holds all shaft angles from which each short piece is reached."""
+    """Middle and half-width, rad, (n,) each, of an interval of all shaft angles from which each short piece is reached.
+
+    `slack`, mm, lengthens the pieces against rounding.
+    """
     middle = pieces.points(0.5 * pieces.length)
     r = np.hypot(middle[:, 0], middle[:, 1])
     half = 0.5 * pieces.length + slack
     least, most = _distances(pieces, slack)
     lead = guide.lead(r)
     with np.errstate(over="ignore"):
+        # phi = t - lead(r): t changes by at most 1/r per mm, the lead by its steepest slope
         reach = half * np.hypot(1.0 / least, guide.lead_slope(least, most))
         # at an end of the travel the lead is infinitely steep, and yet changes by no more than between its extremes
         ends = [guide.lead(x) - lead for x in (least, most, np.clip(guide.turning, least, most))]
@@ -167,9 +182,9 @@ def angles_of(pieces: Arcs, guide: Guide, slack: float) -> tuple[Array, Array]:
 def _distances(pieces: Arcs, slack: float) -> tuple[Array, Array]:
     """Bounds of the distance from the shaft over each short piece, mm: (n,) each, the first above 0.
 
-    No point is farther from the middle than half the length. Nor does the distance leave those of the ends by more than
-    length^2/8 of its second derivative, which is at most 1/r + |k|: pieces that run round the shaft keep theirs, as
-    long arms need, whose shaft angle changes fast with it.
+    No point is farther from the middle than half the length. Nor does the distance leave the range of both ends by more
+    than length^2/8 times its second derivative, which is at most 1/r + |k|: close bounds for pieces that run round the
+    shaft, as long arms need, whose shaft angle changes fast with the distance.
     """
     middle, half = pieces.points(0.5 * pieces.length), 0.5 * pieces.length + slack
     r = np.hypot(middle[:, 0], middle[:, 1])
@@ -182,8 +197,10 @@ def _distances(pieces: Arcs, slack: float) -> tuple[Array, Array]:
 def meet(pieces: Arcs, guide: Guide, phi: Array, slack: float) -> Array:
     """Greatest distance from the shaft, mm (n,), at which the centre meets each short piece at its angle phi (n,), rad.
 
-    For a guide that counts inwards it is minus the least such distance. Where they do not meet it is -inf.
+    For a guide that counts inwards it is minus the least such distance. Where they do not meet it is -inf. A meeting up
+    to `slack`, mm, beyond the piece counts.
     """
+    # a crossing of the piece's whole circle is on the piece if it lies over the chord and within the sagitta
     chord_turn = 0.5 * pieces.curvature * pieces.length
     chord = pieces.length * np.sinc(chord_turn / np.pi)
     along = np.cos(chord_turn)[:, None] * pieces.tangent + np.sin(chord_turn)[:, None] * left(pieces.tangent)

@@ -25,15 +25,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class ContactLine:
-    """The force's line of a contact at n shaft angles, mm, per unit of the contact's own position, mm or rad.
+    """The line along which the normal force of a contact acts, at n shaft angles, in the axes of the contact's guide.
 
     normal  unit vector from the shaft's side to the follower's, (n, 2)
-    centre  a point on the line: the centre of a round touch, the point of contact of a face, (n, 2)
-    lever   by how much the gap grows with the own position, (n,): mm per mm, or mm per rad about a pivot
+    centre  a point on the line: the centre of a round touch, the point of contact of a face, mm (n, 2)
+    lever   growth of the gap with the own position, (n,): mm per mm, or mm per rad about a pivot
     shaft   lever of the line about the shaft, mm (n,), above 0 where the cam drives the follower outwards
-    bent    radius of curvature of what `centre` runs along on the cam, mm (n,), above 0 where that is convex
-    speed   with which `centre` runs along that, mm per rad of shaft (n,)
-    turn    of the guide's normal against the cam, rad per rad of shaft (n,): 1 on a line of travel
+    bent    radius of curvature of the path of `centre` on the cam, mm (n,), above 0 where the path is convex
+    speed   speed of `centre` along that path, mm per rad of shaft (n,)
+    turn    turn of the arm, or of the face's normal, against the cam, rad per rad of shaft (n,): 1 on a line of travel
     """
 
     normal: Array
@@ -46,7 +46,10 @@ class ContactLine:
 
 
 def contact_line(contact: Contact[Guide, Touch], follower: Array) -> ContactLine:
-    """The line of a contact from the follower's position and two derivatives by the shaft angle, (3, n), mm or rad."""
+    """The force's line of a contact; `follower` (3, n) is the follower's position, mm or rad, and two derivatives.
+
+    The derivatives are by the shaft angle. Raises ValueError for a round touch on an arm without a length.
+    """
     own = contact.sense * np.asarray(follower, dtype=np.float64)[:3]
     own[0] += contact.zero
     if isinstance(contact.touch, Flat):
@@ -55,7 +58,10 @@ def contact_line(contact: Contact[Guide, Touch], follower: Array) -> ContactLine
 
 
 def roller_turns(line: ContactLine, touch: Touch, side: Side) -> Array | None:
-    """Turns of a roller about its pin per turn of the shaft (n,), the metal inside (1) or outside; None of others."""
+    """Turns of a roller about its pin per turn of the shaft (n,), above 0 against the shaft's sense.
+
+    The metal lies inside the contour (side 1) or outside (-1). None for a touch that is no roller.
+    """
     if not isinstance(touch, Roller):
         return None
     turns: Array = side * line.speed / touch.radius - line.turn
@@ -63,6 +69,7 @@ def roller_turns(line: ContactLine, touch: Touch, side: Side) -> Array | None:
 
 
 def _of_centre(guide: Guide, own: Array) -> ContactLine:
+    """Line through the centre of a round touch; `own` (3, n) is its own position with two derivatives."""
     u, speed, bend = own
     if isinstance(guide, Oscillating):
         length, side = guide.arm, float(guide.side)
@@ -74,9 +81,11 @@ def _of_centre(guide: Guide, own: Array) -> ContactLine:
         centre = np.array([u, np.full_like(u, guide.offset)])
         along, curve = np.array([np.ones_like(u), np.zeros_like(u)]), np.zeros((2, len(u)))
         turn = np.ones_like(u)
+    # the centre moves over the cam by w = c' + M c, M the quarter turn anticlockwise
     way = along * speed + _across(centre)
     bending = along * bend + curve * speed**2 + _across(along * speed)
     size = np.hypot(*way)
+    # the normal stands across w; as w changes on the cam by w' + M w, the curvature is (w x w' + w^2)/|w|^3
     normal = -_across(way) / size
     curvature = (_cross(way, bending) + size**2) / size**3
     with np.errstate(divide="ignore"):
@@ -86,18 +95,21 @@ def _of_centre(guide: Guide, own: Array) -> ContactLine:
 
 
 def _of_face(guide: Guide, touch: Flat, own: Array) -> ContactLine:
+    """Line of a flat face; `own` (3, n) is its own position with two derivatives by the shaft angle."""
     u, speed, bend = own
     if isinstance(guide, Oscillating):
+        # the support function is p = a sin u - nearer, its normal turns by omega' = 1 + side u'
         side, a = float(guide.side), guide.pivot
         normal = np.array([np.sin(u), -side * np.cos(u)])
         p, turning = a * np.sin(u) - touch.nearer, 1.0 + side * speed
         slope = a * np.cos(u) * speed / turning
-        # d/d omega of that slope, omega' = 1 + side u'
+        # derivative by the shaft angle of slope = dp/d omega
         rate = a * (np.cos(u) * bend - np.sin(u) * speed**2) / turning - slope * side * bend / turning
         centre = p * normal + slope * _across(normal)
         lever = np.sum((centre - np.array([[a], [0.0]])) * -np.array([np.cos(u), side * np.sin(u)]), axis=0)
         bent = p + rate / turning
         return ContactLine(normal.T, centre.T, lever, -_cross(centre, normal), bent, np.abs(bent * turning), turning)
+    # on a line of travel p = u cos(tilt) + offset sin(tilt), and omega' = 1
     cos, sin = math.cos(touch.tilt), math.sin(touch.tilt)
     normal = np.array([np.full_like(u, cos), np.full_like(u, sin)])
     p = cos * u + sin * guide.offset

@@ -4,7 +4,7 @@ From the file to the exact contour: the excess of every point, its extremes foun
 (`kin.numeric.extrema`). From the exact contour to the file: a closed contour within a tube about the exact one, whose
 feet go round it once, meets every normal of it inside the tube, so no point of the exact contour is farther from the
 file than the tube is wide. That takes normals that do not cross inside the tube: tight corners, whose radius of
-curvature compares with the tube's width, are looked at on their own. The feet also tell a contour that turns back on
+curvature compares with the tube's width, are measured on their own. The feet also show a contour that turns back on
 itself within the tube.
 """
 
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from kin.numeric.feet import Feet
 
 LEAST_PARTS = 1024  # a contour of fewer pieces is cut into about so many
-TIGHT = 4.0  # a radius of curvature below so many widths of the tube makes a tight corner
-CUT_OFF = 2e-11  # of the extent; points of the exact curve with more excess are no part of the trimmed contour
+TIGHT = 4.0  # widths of the tube: a smaller radius of curvature makes a tight corner
+CUT_OFF = 2e-11  # of the extent: points of the exact curve with more excess are no part of the trimmed contour
 MOST_TURN = 0.05  # rad; greatest turn of a part
-HALVINGS = 50  # between two looks, in the search for a corner: to the last places
+HALVINGS = 50  # of the parameter between two neighbours, in the search for a corner: to the last places
 JOINED = 1e-12  # ends closer than this share of the contour's extent are one point
 
 
@@ -44,9 +44,9 @@ class Deviation:
     outside, inside     greatest excess, and greatest want, of metal, mm; one is below 0 if the contour lies wholly on
                         the other side
     bare                greatest distance of a tight corner of the exact contour from this one, mm; 0 without any
-    outside_at, ...     the envelope's parameters of those places
-    rounds              how often the feet go round
-    backwards           greatest length, mm, of a run in which they go back
+    outside_at, ...     the envelope's parameters of those places; `bare_at` is nan without a tight corner
+    rounds              number of turns that the feet make along the exact contour, above 0 counter-clockwise
+    backwards           greatest length, mm, of a run in which the feet go back
     """
 
     outside: float
@@ -64,7 +64,7 @@ class Deviation:
         return max((self.outside, self.outside_at), (self.inside, self.inside_at), (self.bare, self.bare_at))
 
     def less_sure(self, by: float) -> Deviation:
-        """Copy with all distances greater by `by`, mm: how far the contour itself may be off."""
+        """Copy with all distances greater by `by`, mm, the distance by which the contour itself may be off."""
         return replace(self, outside=self.outside + by, inside=self.inside + by, bare=self.bare + by)
 
 
@@ -113,9 +113,11 @@ def _walk(contour: Contour, within: float | None) -> _OfArcs | _OfBeziers:
 def deviation(contour: Contour, envelope: Envelope, within: float | None = None) -> Deviation:
     """Deviation of a closed contour from an exact one.
 
-    Splines of polynomials are followed themselves; for those beside lines and arcs, and for rational ones, stand arcs
-    within a distance, mm (`Contour.as_arcs`).
+    A contour of polynomials alone is followed itself. Arcs stand for rational pieces, and for splines beside lines and
+    arcs: to `within`, mm, or to the contour's own tolerance where that is None. Raises UnsettledError where a foot or
+    an extreme is not found, ValueError where rounding is larger than `within`.
     """
+    # feet of both ends of all parts: an end is the next part's start, unless the file leaves gaps
     walk = _walk(contour, within)
     low, high = walk.ends
     every = np.arange(len(low))
@@ -133,9 +135,11 @@ def deviation(contour: Contour, envelope: Envelope, within: float | None = None)
         point, *_ = walk.rows(np.array([x]), np.array([piece]))
         return float(envelope.feet(point).parameter[0])
 
+    # one way the extremes of the excess along the parts, the other way tight corners of the exact contour left bare
     fine = resolution(np.append(start, [[envelope.extent, 0.0]], axis=0))
     excess = extremes(low, high, _along(feet, *first), _along(end_feet, *last), inside, resolution=fine)
     bare, bare_at = _bare(contour, envelope, max(excess.greatest, -excess.least), within)
+    # how far the foot goes on along each part
     advance = np.mod(end_feet.parameter - feet.parameter + np.pi, 2.0 * np.pi) - np.pi
     return Deviation(
         outside=excess.greatest,
@@ -150,9 +154,10 @@ def deviation(contour: Contour, envelope: Envelope, within: float | None = None)
 
 
 def convex_deviation(reach: Extremes) -> Deviation:
-    """Deviation of a convex contour from a convex exact one, from the extremes of q - p over theta.
+    """Deviation of a convex contour from a convex exact one, from the extremes `reach` of q - p, mm, over theta.
 
-    For convex bodies the Hausdorff distance is the greatest difference of their support functions, either way.
+    q is the contour's support function, p the exact one. For convex bodies the Hausdorff distance is the greatest
+    difference of their support functions, either way.
     """
     return Deviation(
         outside=reach.greatest,
@@ -167,7 +172,10 @@ def convex_deviation(reach: Extremes) -> Deviation:
 
 
 def _bare(contour: Contour, envelope: Envelope, width: float, within: float | None) -> tuple[float, float]:
-    """Greatest distance from the contour of the exact contour's tight corners, and the parameter of that place."""
+    """Greatest distance, mm, from the contour of the exact contour's tight corners, and the parameter of that place.
+
+    `width`, mm, is the tube's: the greatest excess or want. Without a tight corner 0 and nan come back.
+    """
     parameter, radius = envelope.radii()
     tight = np.abs(radius) < TIGHT * width
     if not envelope.regular:
@@ -181,7 +189,7 @@ def _bare(contour: Contour, envelope: Envelope, width: float, within: float | No
 
 
 def _trimmed(envelope: Envelope, parameter: Array, tight: NDArray[np.bool_]) -> tuple[Array, NDArray[np.bool_]]:
-    """Leave out what an undercut cuts off, and add the corners that it leaves."""
+    """Parameters and whether each is tight, without what an undercut cuts off, with the corners that it leaves."""
     points = envelope.points(parameter)
     cut_off = CUT_OFF * float(np.abs(points).max())
     kept = envelope.feet(points).excess <= cut_off
@@ -199,8 +207,8 @@ def _trimmed(envelope: Envelope, parameter: Array, tight: NDArray[np.bool_]) -> 
 def _along(feet: Feet, first: Array, second: Array) -> Array:
     """Excess and its two derivatives along a curve (3, n), from the feet of points on it.
 
-    With the curve's derivatives x' and x'' (n, 2) there, M the quarter turn to the left, N and K the gradient of the
-    excess and the curvature of its line: f' = N.x', f'' = N.x'' + K (x'.MN)^2.
+    With the curve's derivatives x' and x'' (n, 2) there, M the quarter turn to the left, N the gradient of the excess
+    and K the curvature of its level line: f' = N.x', f'' = N.x'' + K (x'.MN)^2.
     """
     bend = dot(feet.normal, second) + feet.curvature * dot(left(feet.normal), first) ** 2
     return np.stack([feet.excess, dot(feet.normal, first), bend])

@@ -1,7 +1,7 @@
-"""What a contact of a follower feels of a contour over the shaft angle: what drives a follower train.
+"""Position of a contact of a follower on a contour over the shaft angle, as it drives a follower train.
 
-Every drive is in SI, metres or radians: a contact's own position, which grows away from the cam. Each touch has its
-own, beside its follower.
+Every drive is in SI, metres or radians: a contact's own position, which grows away from the cam. The drive of each
+touch stands in the module of its follower.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
     from kin.numeric.extrema import Extremes
 
-INSET = 1e-6  # of a stretch between two breaks: so far within it is looked at, and reckoned back from there
-ENDS = ((0.0, INSET), (1.0, 1.0 - INSET))  # of a stretch, and where that is looked at
-LEAST = 12  # stretches
-RESOLUTION = 1e-11  # of the extent
+INSET = 1e-6  # of a stretch between two breaks: rows at its ends are carried there from so far within
+ENDS = ((0.0, INSET), (1.0, 1.0 - INSET))  # shares of a stretch: each end, and the place it is carried from
+LEAST = 12  # stretches of a turn at least
+RESOLUTION = 1e-11  # of the size of the positions, to which their extremes are found
 CLOSE = 1e-9  # rad: breaks that are closer are one
 
 
@@ -31,19 +31,19 @@ class Excitation(Protocol):
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles at which velocity or acceleration may jump, in [0, 2 pi), in any order."""
+        """Shaft angles (k,), rad, in [0, 2 pi), in any order, at which velocity or acceleration may jump."""
 
     @property
     def smooth(self) -> bool:
-        """Whether the two limits of the velocity are one at all breaks."""
+        """Whether the velocity is continuous at all breaks."""
 
     def rows(self, phi: Array) -> Array:
-        """Position and two derivatives by the shaft angle, (3, n), at angles phi (n,) that are no breaks."""
+        """Position, m or rad, and two derivatives by the shaft angle, (3, n), at phi (n,), rad, not at breaks."""
 
 
 @dataclass(frozen=True, eq=False)
 class Shifted:
-    """Excitation sign * drive + offset."""
+    """Excitation sign * drive + offset, the offset in m or rad."""
 
     drive: Excitation
     sign: float = 1.0
@@ -51,7 +51,7 @@ class Shifted:
 
     @property
     def breaks(self) -> Array:
-        """Breaks of the drive that is shifted, rad of shaft."""
+        """Breaks (k,) of the drive that is shifted, rad of shaft."""
         return self.drive.breaks
 
     @property
@@ -67,9 +67,10 @@ class Shifted:
 
 
 def extremes_between(first: Excitation, second: Excitation, size: float) -> Extremes:
-    """Least and greatest of second - first over a turn, m or rad.
+    """Least and greatest of second - first over a turn, m or rad, with their shaft angles, rad.
 
-    `size` is the size of the positions, of which rounding is a share.
+    `size`, m or rad, is the size of the positions, of which rounding is a share. Raises UnsettledError where rounding
+    hides an extreme, ContactError where a contact finds nothing to rest on.
     """
     ends = np.concatenate([first.breaks, second.breaks, np.arange(LEAST) * TURN / LEAST])
     ends = distinct(np.mod(ends, TURN))
@@ -85,6 +86,6 @@ def extremes_between(first: Excitation, second: Excitation, size: float) -> Extr
 
 
 def _carried(rows: Array, step: Array) -> Array:
-    """Value and two derivatives (3, n) a step (n,) on, to second order."""
+    """Value and two derivatives (3, n) a step (n,), rad, further on, to second order."""
     f, slope, bend = rows
     return np.stack([f + step * (slope + 0.5 * step * bend), slope + step * bend, bend])

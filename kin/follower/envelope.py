@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Frames(NamedTuple):
-    """An exact contour at n parameters: what moves along with it, the tangent being the normal turned to the left.
+    """Points, normals and their rates of an exact contour at n parameters; the tangent is the normal turned left.
 
     points (n, 2)   mm
     normals (n, 2)  unit vectors, outward
@@ -50,10 +50,10 @@ class Envelope(Protocol):
 
     @property
     def breaks(self) -> Array:
-        """Parameters in [0, 2 pi) at which the curvature may jump."""
+        """Parameters (k,) in [0, 2 pi) at which the curvature may jump."""
 
     def feet(self, points: Array) -> Feet:
-        """Feet of points (n, 2), mm. Raises UnsettledError where one is not found."""
+        """Feet on the contour of points (n, 2), mm. Raises UnsettledError where a foot is not found."""
 
     def points(self, parameter: Array) -> Array:
         """Points (n, 2) of the contour, mm, at parameters (n,).
@@ -69,16 +69,16 @@ class Envelope(Protocol):
 
     @property
     def extent(self) -> float:
-        """Greatest length, mm, of those whose difference an excess is: it is known to the rounding of this length."""
+        """Greatest length, mm, that enters an excess, which is known to the rounding of this length."""
 
     def area_and_perimeter(self) -> tuple[float, float]:
-        """Enclosed area and length of a regular contour, mm^2 and mm."""
+        """Enclosed area, mm^2, and length, mm, of a regular contour."""
 
     def inset(self, distance: float) -> Envelope:
         """Envelope of the parallel contour inside this one, at a distance, mm."""
 
     def displaced(self, by: Outwards) -> Envelope:
-        """Contour that lies `by`, mm, farther outside, to first order; it has no corner where this one has none."""
+        """Contour that lies the distance `by` farther outside, to first order, without corners of its own."""
 
 
 class Outwards(Protocol):
@@ -89,27 +89,24 @@ class Outwards(Protocol):
 
 
 class FacePitch(Protocol):
-    """A moving line along a flat face, over a parameter of period 2 pi.
-
-    `Transmission` is one, of face A of its pair.
-    """
+    """A moving line along a flat face, over a parameter of period 2 pi; of face A of a pair its `Transmission`."""
 
     @property
     def breaks(self) -> Array:
-        """Parameters in [0, 2 pi) where the second derivative may jump, rising."""
+        """Parameters (k,) in [0, 2 pi) where the second derivative may jump, rising."""
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Distance r from the shaft, mm, and direction t of the normal, rising, with derivatives: (order + 1, n) each.
+        """Distance r from the shaft, mm, and direction t of the normal, rad, which rises, at parameters tau (n,).
 
-        At a break they are those from the right, or from the left (side -1).
+        Both with derivatives by tau, (order + 1, n) each; at a break those from the right, or from the left (side -1).
         """
 
 
 @dataclass(frozen=True, eq=False)
 class LiftPitch:
-    """A face on a line of travel, its normal `tilt` ahead of that, rad; the parameter is the shaft angle.
+    """A face on a line of travel, its normal `tilt` ahead of the line, rad; the parameter is the shaft angle.
 
-    `along` is its distance from the shaft along that line, mm, which stands `turned` ahead of the shaft angle, rad.
+    The line stands `turned` ahead of the shaft angle, rad; `along` is the face's distance from the shaft along it, mm.
     """
 
     along: Lift
@@ -122,9 +119,9 @@ class LiftPitch:
         return self.along.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Distance r, mm, of the face from the shaft and direction t of its normal, rad, with derivatives by the angle.
+        """Distance r = cos(tilt) along, mm, and direction t = tau + tilt + turned, rad, with derivatives by tau.
 
-        (order + 1, n) each, r = cos(tilt) along, t = tau + tilt + turned; at a break those of the side (-1 from below).
+        Both are (order + 1, n); at a break they come from the right, or from the left (side -1).
         """
         r: Array = np.cos(self.tilt) * self.along.derivatives(tau, order, side)
         t = np.zeros_like(r)
@@ -134,9 +131,10 @@ class LiftPitch:
 
 @dataclass(frozen=True, eq=False)
 class ArmPitch:
-    """Line through the pivot of an arm along its face, whose angle to the line from pivot to shaft is `law`, radians.
+    """Line through the pivot of an arm along its face, over the shaft angle.
 
-    r = C sin psi, t = phi + side (psi - pi/2) over the shaft angle; `side` is 1 where the face trails the pivot.
+    Its angle psi to the line from pivot to shaft is `law`, rad; C is the distance `pivot` from the shaft, mm. Then
+    r = C sin psi and t = phi + side (psi - pi/2), with `side` 1 where the face trails the pivot, else -1.
     """
 
     law: Piecewise
@@ -149,7 +147,10 @@ class ArmPitch:
         return self.law.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Give distance r, mm, and direction t, rad, of the line, with derivatives up to an order of at most 2."""
+        """Distance r, mm, and direction t, rad, at shaft angles tau (n,), with derivatives: (order + 1, n) each.
+
+        The order is at most 2; at a break derivatives come from the right, or from the left (side -1).
+        """
         psi, rate, bend = self.law.derivatives(tau, 2, side)
         sine, cosine = np.sin(psi), np.cos(psi)
         r = self.pivot * np.stack([sine, cosine * rate, cosine * bend - sine * rate**2])
@@ -161,9 +162,9 @@ class ArmPitch:
 
 @dataclass(frozen=True, eq=False)
 class DisplacedFace:
-    """A face in the same direction, farther from the shaft by the smooth distance `by`.
+    """A face in the direction of another one, farther from the shaft by the smooth distance `by`.
 
-    Its contour keeps its normals: a jump of the radius of curvature leaves no corner.
+    Its contour keeps the normals of the other: a jump of the radius of curvature leaves no corner.
     """
 
     face: FacePitch
@@ -175,13 +176,16 @@ class DisplacedFace:
         return self.face.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Distance, mm, and direction, rad, of the face, with derivatives by the parameter."""
+        """Distance, mm, and direction, rad, with derivatives by the parameter tau (n,): (order + 1, n) each."""
         r, t = self.face.pitch(tau, order, side)
         return r + self.by.rows(tau, order), t
 
 
 def support_rows(pitch: FacePitch, tau: Array, side: int = 1) -> tuple[Array, Array]:
-    """Support function p, mm, and two derivatives by the normal's direction t, and t's rows by tau: (3, n) each."""
+    """Support function p, mm, and two derivatives by the normal's direction t; and t, rad, and two by tau: (3, n) each.
+
+    At a break of the pitch derivatives come from the right, or from the left (side -1).
+    """
     r, t = pitch.pitch(tau, 2, side)
     slope = r[1] / t[1]
     return np.stack([r[0], slope, (r[2] - slope * t[2]) / t[1] ** 2]), t
@@ -189,7 +193,10 @@ def support_rows(pitch: FacePitch, tau: Array, side: int = 1) -> tuple[Array, Ar
 
 @dataclass(frozen=True, eq=False)
 class FlatEnvelope:
-    """The contour enveloped by a flat face that stands `out` mm beyond its pitch, over the pitch's parameter."""
+    """The contour enveloped by a flat face that stands `out` mm beyond its pitch, over the pitch's parameter.
+
+    In the formulas p is the support function of the contour, u the normal, n the normal turned left.
+    """
 
     pitch: FacePitch
     out: float = 0.0
@@ -205,7 +212,7 @@ class FlatEnvelope:
         return p, t
 
     def points(self, parameter: Array) -> Array:
-        """Points c = p u + p' n: (n, 2)."""
+        """Points (n, 2) of the contour, mm, at parameters (n,): p u + p' n."""
         (p, slope, _), t = self._support(np.asarray(parameter, dtype=float))
         u = unit(t[0])
         points: Array = p[:, None] * u + slope[:, None] * left(u)
@@ -219,7 +226,7 @@ class FlatEnvelope:
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array, Array]:
-        """Parameter, rho = p + p'', the lesser of both sides at a break, p and direction of the normal."""
+        """Parameter, radius rho = p + p'' (the lesser of both sides at a break), p and direction of the normal."""
         tau, breaks = grid(self.pitch.breaks), self.pitch.breaks
         (p, _, bend), t = self._support(tau)
         rho = p + bend
@@ -255,7 +262,7 @@ class FlatEnvelope:
         return inside, (away + turns).ravel(), (tau + turns).ravel()
 
     def feet(self, points: Array) -> Feet:
-        """Feet of points (n, 2): where X.u - p is greatest."""
+        """Feet of points X (n, 2), mm: where X.u - p is greatest. Raises UnsettledError where a foot is not found."""
         if not self.regular:
             return self._search(points)
         inside, direction, tau = self._start
@@ -270,6 +277,7 @@ class FlatEnvelope:
         return better(self._climb(points, tau[first]), self._climb(points, tau[second]))
 
     def _climb(self, points: Array, tau: Array) -> Feet:
+        """Feet of points X (n, 2), climbing from parameters tau (n,)."""
         turned = np.empty((3, len(tau)))  # t and its derivatives at the last place of each
         curved = np.empty(len(tau))
 
@@ -280,9 +288,11 @@ class FlatEnvelope:
             away = dot(here, u)
             rise = dot(here, left(u)) - slope
             turned[:, which], curved[which] = t, away + bend
+            # of f = X.u - p: f, f' = t' (X.n - p') and -f'' = t'^2 (X.u + p'') - t'' (X.n - p')
             return away - p, t[1] * rise, t[1] ** 2 * (away + bend) - t[2] * rise
 
         tau, step, value, slope, bend = climb(slopes, tau, self.pitch.breaks)
+        # what is left of the step counts to second order; where the top is not round the excess stays as it is
         round_ = (bend > 0.0) & (curved > 0.0)
         excess = value + np.where(round_, 0.5 * slope * slope / np.where(round_, bend, 1.0), 0.0)
         direction = turned[0] + step * (turned[1] + 0.5 * step * turned[2])
@@ -290,7 +300,7 @@ class FlatEnvelope:
         return Feet(tau + step, excess, unit(direction), curvature)
 
     def area_and_perimeter(self) -> tuple[float, float]:
-        """1/2 integral of (p^2 - p'^2) over t, mm^2, and integral of p, mm (Cauchy)."""
+        """Area, 1/2 integral of (p^2 - p'^2) over t, mm^2, and perimeter, integral of p, mm (Cauchy)."""
         tau, weight = turn_quadrature(self.pitch.breaks)
         (p, slope, _), t = self._support(tau)
         weight = weight * t[1]
@@ -301,7 +311,7 @@ class FlatEnvelope:
         return FlatEnvelope(self.pitch, self.out - distance)
 
     def displaced(self, by: Outwards) -> FlatEnvelope:
-        """Contour of a face that stands farther out: its support function is greater by as much, mm."""
+        """Contour of a face that stands `by` farther out: its support function is greater by as much, mm."""
         return FlatEnvelope(DisplacedFace(self.pitch, by), self.out)
 
 
@@ -310,10 +320,10 @@ class Pitch(Protocol):
 
     @property
     def breaks(self) -> Array:
-        """Parameters in [0, 2 pi) where the second derivative may jump."""
+        """Parameters (k,) in [0, 2 pi) where the second derivative may jump."""
 
     def points(self, tau: Array) -> tuple[Array, Array, Array]:
-        """Give the roller's centre and its two derivatives by the parameter, each (n, 2)."""
+        """Roller centre, mm, and its two derivatives by the parameter tau (n,), each (n, 2)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -324,11 +334,11 @@ class TransmissionPitch:
 
     @property
     def breaks(self) -> Array:
-        """Parameters in [0, 2 pi) at which the second derivative may jump."""
+        """Parameters (k,) in [0, 2 pi) at which the second derivative may jump."""
         return self.transmission.breaks
 
     def points(self, tau: Array) -> tuple[Array, Array, Array]:
-        """Roller centre and its two derivatives by the parameter, mm, each (n, 2)."""
+        """Roller centre, mm, and its two derivatives by the parameter tau (n,), each (n, 2)."""
         r, t = self.transmission.pitch(tau, 2)
         u = unit(t[0])
         n = left(u)
@@ -339,9 +349,9 @@ class TransmissionPitch:
 
 @dataclass(frozen=True, eq=False)
 class DisplacedPitch:
-    """A pitch curve displaced along its normals by a smooth distance over its parameter.
+    """A pitch curve displaced outwards along its normals by the smooth distance `by` over its parameter.
 
-    Its speed has no jump where its curvature does, so that hardly a corner is left there.
+    Where the curvature of the pitch curve jumps, the corner left is of second order in the distance and its slope.
     """
 
     pitch: Pitch
@@ -349,14 +359,14 @@ class DisplacedPitch:
 
     @property
     def breaks(self) -> Array:
-        """Parameters of the pitch curve's breaks, in [0, 2 pi)."""
+        """Parameters (k,) of the pitch curve's breaks, in [0, 2 pi)."""
         return self.pitch.breaks
 
     def points(self, tau: Array) -> tuple[Array, Array, Array]:
-        """Centre and two derivatives, each (n, 2).
+        """Centre, mm, and two derivatives by the parameter tau (n,), each (n, 2).
 
-        The second lacks the distance times the rate of the turn, along the tangent: feet do not depend on that, and the
-        curvature to second order of the distance alone.
+        The second lacks one term along the tangent, the distance times the rate of the turn: feet do not depend on it,
+        and the curvature does so only to second order of the distance.
         """
         point, first, second = self.pitch.points(tau)
         off, slope, bend = self.by.rows(tau, 2)
@@ -387,7 +397,7 @@ class RollerEnvelope:
         return self.pitch.breaks
 
     def points(self, parameter: Array) -> Array:
-        """Points (n, 2) of the contour, mm: a roller radius inside the pitch curve along its normal."""
+        """Points (n, 2) of the contour, mm, at parameters (n,): a roller radius inside the pitch curve."""
         point, first, _ = self.pitch.points(parameter)
         points: Array = point - self.radius * right(first) / np.hypot(first[:, 0], first[:, 1])[:, None]
         return points
@@ -402,7 +412,7 @@ class RollerEnvelope:
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array, Array]:
-        """Parameter, pitch point, radius of curvature of the contour there, of the right side at a break, its point."""
+        """Parameter, pitch point, radius of curvature of the contour (from the right at a break), contour point."""
         tau = grid(self.pitch.breaks)
         point, first, second = self.pitch.points(tau)
         speed = np.hypot(first[:, 0], first[:, 1])
@@ -431,7 +441,7 @@ class RollerEnvelope:
         return bool((np.diff(closed) > 0.0).all())
 
     def feet(self, points: Array) -> Feet:
-        """Feet of points (n, 2): the nearest points of the pitch curve."""
+        """Feet of points (n, 2), mm: the nearest points of the pitch curve; UnsettledError where none is found."""
         if not self.regular:
             return self._search(points)
         tau = self._table[0]
@@ -445,21 +455,24 @@ class RollerEnvelope:
         size = 0.5 * dot(centre, centre)
         first, second = two_best(lambda x: x @ centre.T - size, points, len(tau))
         feet = self._climb(points, tau[first]), self._climb(points, tau[second])
-        # Across a fold of the pitch curve the far side is seen from without: the nearer foot counts, not the higher.
+        # across a fold of the pitch curve the far side is seen from without: the nearer foot counts, not the higher
         near = [-np.abs(foot.excess - self.radius) for foot in feet]
         return better(*feet, *near)
 
     def _climb(self, points: Array, tau: Array) -> Feet:
+        """Feet of points X (n, 2), climbing from parameters tau (n,)."""
         reached = [np.empty_like(points) for _ in range(3)]
 
         def slopes(x: Array, which: Indices) -> tuple[Array, Array, Array]:
             centre, first, second = self.pitch.points(x)
             for kept, new in zip(reached, (centre, first, second), strict=True):
                 kept[which] = new
+            # with the centre c at x, of f = -(X - c)^2/2: f, f' and -f''
             gap = points[which] - centre
             return -0.5 * dot(gap, gap), dot(gap, first), dot(first, first) - dot(gap, second)
 
         tau, step, _, _, _ = climb(slopes, tau, self.pitch.breaks)
+        # the step that is left counts to second order; then height and curvature of the parallel through the point
         centre, first, second = reached
         h = step[:, None]
         centre, first = centre + h * (first + 0.5 * h * second), first + h * second
@@ -473,7 +486,10 @@ class RollerEnvelope:
         return Feet(tau + step, height + self.radius, outward, curvature)
 
     def area_and_perimeter(self) -> tuple[float, float]:
-        """Steiner's formulas for the inner parallel curve: A - e P + pi e^2 and P - 2 pi e."""
+        """Area A - e P + pi e^2, mm^2, and perimeter P - 2 pi e, mm (Steiner).
+
+        A and P are those of the pitch curve, e is the roller's radius.
+        """
         tau, weight = turn_quadrature(self.pitch.breaks)
         point, first, _ = self.pitch.points(tau)
         area = float(0.5 * weight @ cross(point, first))
@@ -481,11 +497,11 @@ class RollerEnvelope:
         return area - self.radius * perimeter + np.pi * self.radius**2, perimeter - TURN * self.radius
 
     def inset(self, distance: float) -> RollerEnvelope:
-        """Parallel contour inside, at a distance, mm: that of a larger roller on the same pitch curve."""
+        """Parallel contour inside, at a distance, mm: by a radius greater by as much on the same pitch curve."""
         return RollerEnvelope(self.pitch, self.radius + distance)
 
     def displaced(self, by: Outwards) -> RollerEnvelope:
-        """Contour by a pitch curve that lies farther outside along its normals, by as much, mm."""
+        """Contour by a pitch curve that lies `by`, mm, farther outside along its normals."""
         return RollerEnvelope(DisplacedPitch(self.pitch, by), self.radius)
 
 

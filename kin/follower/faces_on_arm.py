@@ -47,8 +47,8 @@ SETTLED = 1e-8  # rad: after a Newton step below this the next is lost in roundi
 class ArmFace:
     """A flat face on an arm, its pivot at the distance `pivot` from the shaft, mm, its normal at t in the cam frame.
 
-    It stands `out` mm farther out than the line through the pivot that is parallel to it. `side` is 1 where the face
-    trails the pivot, phi = t + acos(q/pivot), and -1 where it leads it.
+    It stands `out` mm farther out than the line through the pivot that is parallel to it; q is the contour's support
+    function less `out`. `side` is 1 where the face trails the pivot, phi = t + acos(q/pivot), and -1 where it leads it.
     """
 
     pivot: float
@@ -63,7 +63,7 @@ class ArmFace:
         return ArmFace(contact.guide.pivot, contact.guide.side, -contact.touch.nearer)
 
     def bearing(self, contour: Contour) -> FlatContacts:
-        """Contacts of a contour with the face all round.
+        """Contacts of a contour with the face all round, their support function less `out`.
 
         Raises ContactError if the face's contact reaches the pivot.
         """
@@ -78,7 +78,7 @@ class ArmFace:
         return bearing
 
     def shaft(self, theta: Array, q: Array) -> Array:
-        """Shaft angle and derivatives by the normal's direction theta, (3, n), from q less `out` and its own (3, n)."""
+        """Shaft angle, rad, and two derivatives by the normal's direction theta (n,): (3, n); from rows (3, n) of q."""
         w, slope, bend = q / self.pivot
         sine = np.sqrt((1.0 - w) * (1.0 + w))
         angle = theta + self.side * np.arctan2(sine, w)
@@ -86,18 +86,19 @@ class ArmFace:
         return np.stack([angle, *rates])
 
     def starts(self, bearing: FlatContacts) -> Array:
-        """Shaft angle at which each stretch of the contour begins to bear on the face, rising (m,).
+        """Shaft angles (m,), rad, rising, at which each stretch of the contour begins to bear on the face.
 
-        It rises with theta as long as the contact stays on its side of the pivot.
+        The angle rises with theta as long as the contact stays on its side of the pivot.
         """
         q = bearing.derivatives(bearing.breaks, np.arange(len(bearing.breaks)))
         start: Array = self.shaft(bearing.breaks, q)[0]
         return start
 
     def touch(self, bearing: FlatContacts, phi: Array, middle: Array | None = None) -> Array:
-        """Face normal theta and its two derivatives by phi (3, n), for the face held in contact.
+        """Direction theta of the face's normal, rad, and two derivatives by phi (3, n), with the face held in contact.
 
-        `middle` (n,) are shaft angles that tell which stretch is meant where phi is the end of one.
+        For angles phi (n,), rad, at ends of stretches `middle` (n,), rad, are shaft angles within the stretch to be
+        taken. Raises UnsettledError where a contact is not found.
         """
         start = self.starts(bearing)
         turns = np.floor(((phi if middle is None else middle) - start[0]) / TURN)
@@ -124,11 +125,10 @@ class ArmFace:
         return np.stack([theta + turns * TURN, 1.0 / slope, -bend / slope**3])
 
     def leeway(self, support: Array, phi: Array, tolerance: float) -> Array:
-        """Swing, radians (n,), that a shift of a contour by `tolerance` gives the face, to second order.
+        """Swing, radians (n,), that a shift of a contour by `tolerance` e, mm, gives the face, to second order.
 
-        `support` (3, n) is the contour's less `out`, with two derivatives, at the places touched at shaft angles phi
-        (n,). That is e over the distance from pivot to contact, and the next term. Raises ContactError where the
-        intended contact reaches the pivot.
+        `support` (3, n) is q with two derivatives at the places touched at shaft angles phi (n,). The first order is e
+        over the distance from pivot to contact. Raises ContactError where the intended contact reaches the pivot.
         """
         r, slope, bend = support
         distance = np.sqrt(self.pivot**2 - r * r) - self.side * slope
@@ -141,7 +141,10 @@ class ArmFace:
 
 @dataclass(frozen=True, eq=False)
 class OfArmFace:
-    """Swing of a flat face on an arm, away from the cam, as it rests on a contour; `datum`, radians, where it is 0."""
+    """Swing of a flat face on an arm, away from the cam, as it rests on a contour.
+
+    The swing is `datum`, rad, where the face's normal points from the shaft to the pivot.
+    """
 
     face: ArmFace
     bearing: FlatContacts
@@ -150,7 +153,7 @@ class OfArmFace:
 
     @cached_property
     def breaks(self) -> Array:
-        """Shaft angles, rad, at which the contact passes from one piece of the contour to the next."""
+        """Shaft angles (m,), rad, at which the contact passes from one piece of the contour to the next."""
         return np.mod(self.face.starts(self.bearing), TURN)
 
     def rows(self, phi: Array) -> Array:
@@ -165,13 +168,12 @@ class OfArmFace:
 class _OnArm(Moved):
     """Flat faces on arms about one pivot.
 
-    The own position of a face is that of the contact's record: the swing by which it stands out beyond its level, which
-    is reached where its normal points along the line from shaft to pivot.
+    The own position of a face, rad, is its level less the angle between its normal and the line from shaft to pivot.
     """
 
     @cached_property
     def faces(self) -> tuple[ArmFace, ...]:
-        """The face of each contact."""
+        """Formulas of the face of each contact."""
         return tuple(ArmFace.of(contact) for contact in self.contacts)
 
     @property
@@ -182,7 +184,7 @@ class _OnArm(Moved):
     @property
     @abstractmethod
     def levels(self) -> tuple[float, ...]:
-        """Own position, radians, of each face whose normal points along the line from shaft to pivot."""
+        """Own position, rad, of each face where its normal points along the line from shaft to pivot."""
 
     @property
     @abstractmethod
@@ -192,7 +194,7 @@ class _OnArm(Moved):
     @property
     @abstractmethod
     def cells(self) -> Array:
-        """Shaft angles, rad, that divide the turn into cells in which the intended motion has nothing narrow."""
+        """Shaft angles (m,), rad, that divide the turn into cells; in each a cubic follows the intended motion."""
 
     @cached_property
     def envelope(self) -> FlatEnvelope:
@@ -200,18 +202,18 @@ class _OnArm(Moved):
         return FlatEnvelope(self.pitch, self.faces[0].out)
 
     def bearing(self, contour: Contour) -> FlatContacts:
-        """Where a contour bears all round; ContactError if it reaches the pivot."""
+        """Contacts of a contour with the faces all round; ContactError if one of them reaches the pivot."""
         for face in self.faces:
             bearing = face.bearing(contour)
         return bearing
 
     def drives(self, contour: Contour) -> list[OfArmFace]:
-        """Swing of each face away from the cam, as it rests on the contour. ContactError if that reaches the pivot."""
+        """Swing of each face away from the cam as it rests on the contour; ContactError if that reaches the pivot."""
         bearing = self.bearing(contour)
         return [OfArmFace(face, bearing, level) for face, level in zip(self.faces, self.levels, strict=True)]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """Pressure angle, rad, of a way across the line from the pivot, and radius of curvature, mm, (n,) each."""
+        """Pressure angle, rad, at face 1 and radius of curvature of the contour there, mm, (n,) each, at phi (n,)."""
         bearing, face = self.bearing(contour), self.faces[0]
         theta = face.touch(bearing, phi)[0]
         q, slope, bend = bearing.derivatives(theta, bearing.find(theta))
@@ -234,7 +236,7 @@ class _OnArm(Moved):
     def _rows(self, bearing: FlatContacts, i: int, phi: Array, middle: Array | None = None) -> Array:
         """Position, rad, and two derivatives by phi, (3, n), at phi (n,), rad, with face i resting on a contour.
 
-        `middle` (n,) are shaft angles that tell which stretch is meant where phi is the end of one.
+        For angles phi at ends of stretches `middle` (n,) are shaft angles within the stretch to be taken.
         """
         face, contact = self.faces[i], self.contacts[i]
         rows = face.touch(bearing, phi, middle)
@@ -245,12 +247,12 @@ class _OnArm(Moved):
         return position
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
-        """Motion error of each face, and the play between two; extremes over the whole turn."""
-        bearing, each = self.bearing(contour), range(len(self.faces))
-        worst = max((self._error_extremes(bearing, i).worst for i in each), key=lambda pair: pair[0])
+        """Motion error, the worst of all faces, and the play between two; extremes over the whole turn."""
+        bearing, numbers = self.bearing(contour), range(len(self.faces))
+        worst = max((self._error_extremes(bearing, i).worst for i in numbers), key=lambda pair: pair[0])
 
         def positions(angle: Array) -> Array:
-            return np.stack([self._rows(bearing, i, angle)[0] for i in each])
+            return np.stack([self._rows(bearing, i, angle)[0] for i in numbers])
 
         angle = with_steps(phi)
         errors = positions(angle) - self.course.rows(angle)[0]
@@ -279,7 +281,7 @@ class _OnArm(Moved):
         return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=self.resolution)
 
     def _play(self, bearing: FlatContacts) -> Play:
-        """How much farther face B would swing than face A, at rest on the contour."""
+        """Play, degrees: the swing with face A at rest on the contour less the swing with face B at rest on it."""
         starts = [face.starts(bearing) for face in self.faces]
         nodes, middle = _stretches(np.concatenate(starts))
 
@@ -294,19 +296,22 @@ class _OnArm(Moved):
 
     @cached_property
     def _touched(self) -> tuple[Array, Array]:
-        """Support rows (3, n) of the intended contour and shaft angles (n,) where face A touches it."""
+        """Intended support function less `out` with two derivatives (3, n), and shaft angles (n,) of A's contact."""
         return self._touched_at(grid(self.breaks))
 
     def _touched_at(self, tau: Array) -> tuple[Array, Array]:
-        """Support function less `out` with two derivatives (3, n), and shaft angles, at parameters (n,)."""
+        """Intended support function less `out` with two derivatives (3, n), and shaft angles, at parameters tau."""
         return support_rows(self.pitch, tau)[0], self.shaft_angle(tau)
 
     def motion_limit(self, tolerance: float) -> float:
-        """Greatest swing, degrees, that a shift of the contour by `tolerance` gives a face."""
+        """Greatest swing, degrees, that a shift of the contour by `tolerance`, mm, gives a face.
+
+        Raises ContactError where the intended contact reaches the pivot.
+        """
         return float(np.degrees(max(face.leeway(*self._touched, tolerance).max() for face in self.faces)))
 
     def direct_limit(self, tolerance: float) -> float:
-        """Least error of the swing, degrees, that a contour off by the tolerance makes: at the pivot's distance."""
+        """Swing error, degrees, of a contour off by `tolerance`, mm, the contact as far from the pivot as the shaft."""
         return float(np.degrees(tolerance / self.faces[0].pivot))
 
 
@@ -318,7 +323,7 @@ def _stretches(breaks: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class SwingingFace(OfLaw, _OnArm):
-    """A flat face on an arm about a pivot at distance C from the shaft, f mm nearer the cam than its parallel.
+    """A flat face on an arm about a pivot at distance C from the shaft, f mm nearer the cam than its pivot's parallel.
 
     Its position, of which `law` is the intended one over the shaft angle, is the angle psi between the face and the
     line from pivot to shaft, radians, which grows as the face is lifted: its distance from the shaft is C sin psi - f.
@@ -326,22 +331,22 @@ class SwingingFace(OfLaw, _OnArm):
 
     @property
     def levels(self) -> tuple[float, ...]:
-        """A quarter turn, where the face stands across the line to the shaft."""
+        """A quarter turn, rad: the face then stands across the line from pivot to shaft."""
         return (0.5 * np.pi,)
 
     @property
     def resolution(self) -> float:
-        """Resolution of the search, rad: one for all angles."""
+        """Resolution of the search, rad: the same at all angles."""
         return FINE_ANGLE
 
     @cached_property
     def cells(self) -> Array:
-        """Shaft angles, rad, between which the law is followed by cubics: it has nothing narrow there."""
+        """Shaft angles (m,), rad, between which cubics follow the law."""
         return cubic_cells(self.law, self.law.breaks, NEAR / self.faces[0].pivot)
 
     @property
     def lever(self) -> float:
-        """Distance, mm, of the contact from the pivot at shaft angle 0, about."""
+        """Approximate distance, mm, of the contact from the pivot at shaft angle 0."""
         return self.faces[0].pivot * float(np.cos(self.intended(np.zeros(1))[0]))
 
     @property
@@ -350,7 +355,10 @@ class SwingingFace(OfLaw, _OnArm):
         return ArmPitch(self.law, self.faces[0].pivot, self.faces[0].side)
 
     def contact_travel(self, contour: Contour) -> tuple[float, float]:
-        """Least and greatest place of contact 1 along the face, mm from the pivot's foot on it."""
+        """Least and greatest place of contact along the face, mm from the pivot's foot on it.
+
+        Raises ContactError where the contour reaches the pivot.
+        """
         face = self.faces[0]
         q, slope, _ = face.bearing(contour).all_round(TRAVEL_STEPS)
         place = np.sqrt(face.pivot**2 - q**2) - face.side * slope
@@ -382,22 +390,22 @@ class FlatPair(OfTransmission, _OnArm):
 
     @property
     def levels(self) -> tuple[float, ...]:
-        """Distance of each face from the line midway between the two, mm."""
+        """Angle, rad, that each face's normal makes with the line from shaft to pivot where the swing is 0: alpha/2."""
         return tuple(contact.apart for contact in self.contacts)
 
     @property
     def resolution(self) -> float:
-        """Greatest error, rad, that rounding may feign: of the search, and of a recipe's own formula."""
+        """Greatest error, rad, that rounding of the search and of a recipe's own formula may feign."""
         return RESOLUTION_ANGLE + 4.0 * self.transmission.rounding / self.transmission.arm
 
     @property
     def lever(self) -> float:
-        """Distance, mm, of the contacts from the pivot, about: the law's arm l."""
+        """Approximate distance, mm, of the contacts from the pivot: the law's arm l."""
         return self.transmission.arm
 
     @cached_property
     def cells(self) -> Array:
-        """Shaft angles, rad, of the law's cells: over the parameter they bend no more sharply than the law does."""
+        """Shaft angles (m,), rad, at the ends of cells of the parameter, in each of which a cubic follows psi."""
         cells = cubic_cells(self.transmission.psi, self.breaks, NEAR / self.transmission.arm)
         phi: Array = self.transmission.at(cells, 0)[0][0]
         return phi
@@ -409,18 +417,21 @@ class FlatPair(OfTransmission, _OnArm):
 
     @property
     def pitch(self) -> Transmission:
-        """Line through the pivot along face A, which envelops W's polar pitch curve."""
+        """Line through the pivot along face A: its distance r and direction t are those of W's polar pitch curve."""
         return self.transmission
 
     def play_limit(self, tolerance: float) -> float:
-        """Greatest play or interference, degrees, of a contour that is off by `tolerance`, mm, at both faces."""
+        """Greatest play or interference, degrees, of a contour that is off by `tolerance`, mm, at both faces.
+
+        Raises ContactError where an intended contact reaches the pivot.
+        """
         first, second = self.faces
         swing = first.leeway(*self._touched, tolerance) + second.leeway(*self._touched_ahead, tolerance)
         return float(np.degrees(swing.max()))
 
     @cached_property
     def _touched_ahead(self) -> tuple[Array, Array]:
-        """Support rows (3, n) where face B touches the contour, and shaft angles (n,), as face A touches the grid."""
+        """Support rows (3, n) where face B touches as face A touches the grid; angles (n,) of A's contact there."""
         tau = grid(self.breaks)
         return self._touched_at(
             self.transmission.polar_parameter(self.pitch.pitch(tau, 0)[1][0] + self.transmission.alpha)

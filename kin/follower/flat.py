@@ -1,6 +1,6 @@
-"""Flat faces on a line of travel: along their own normal a single face and a yoke of two, and one that stands askew.
+"""Flat faces on a line of travel: a single face, square to the line or askew, and a yoke of two square ones.
 
-What a face feels of a contour is its support function q and nothing else. The errors below are extremes over all shaft
+A face depends on a contour by its support function q alone. The errors below are extremes over all shaft
 angles, found stretch by stretch between the breaks of the contour's support function and those of the intent.
 """
 
@@ -28,16 +28,16 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array, Indices
 
-TRAVEL_STEPS = 3600  # of the turn: between two of them the place of contact hides 4e-7 of the radius
-NEAR = 1e-8  # mm: so near to a cubic is the intended motion between two places of a search
+TRAVEL_STEPS = 3600  # of the turn: between two of them the place of contact strays by 4e-7 of the radius at most
+NEAR = 1e-8  # mm, within which a cubic follows the intended motion between two places of a search
 
 
 @dataclass(frozen=True, eq=False)
 class OfFace:
-    """Distance at which a flat face rests on a contour, its normal `turned` ahead of the shaft angle.
+    """Distance from the shaft at which a flat face rests on a contour, along its line of travel.
 
-    Between two breaks it is that of one corner or one circle: q = R + C.u(theta), q'' = R - q. Along a line of travel
-    on which it stands askew it is q over `share`, the cosine.
+    The face's normal stands `turned`, rad, ahead of the shaft angle; the distance is q/`share`, the cosine of its angle
+    to the line. Between two breaks one corner, arc or Bezier piece bears: q'' = R - q, R its radius of curvature there.
     """
 
     bearing: FlatContacts
@@ -47,7 +47,7 @@ class OfFace:
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles, rad, in [0, 2 pi), at which the contact passes from one piece of the contour to the next."""
+        """Shaft angles (m,), rad, in [0, 2 pi), at which the contact passes from one piece to the next."""
         return np.mod(self.bearing.breaks - self.turned, TURN)
 
     def rows(self, phi: Array) -> Array:
@@ -59,23 +59,23 @@ class OfFace:
 
 @dataclass(frozen=True, eq=False)
 class FlatFace(Follower):
-    """A flat face on a line of travel, its normal ahead of that by its tilt; of a yoke the first of two.
+    """A flat face on a line of travel, its normal ahead of the line by its tilt; of a yoke the first of two.
 
-    Its position, of which `lift` is the intended one, is its distance from the shaft along the travel, mm: p over the
-    tilt's cosine; that of a lone face whose sense is -1 is what its distance leaves of its zero. Where beside the shaft
-    the line runs moves the place of contact on the face, not the face.
+    Its position, mm, of which `lift` is the intended one, is its distance p/cos(tilt) from the shaft along the line; of
+    a lone face whose sense is -1 its zero less that distance. The line's offset from the shaft moves the place of
+    contact on the face, not the face.
     """
 
     lift: Lift
 
     @property
     def motion(self) -> Lift:
-        """Intended lift; of a yoke that of face 1, mm."""
+        """Intended lift, mm, of a yoke the lift of face 1."""
         return self.lift
 
     @property
     def rests(self) -> Rests:
-        """Dwells of the lift."""
+        """Dwells of the lift, each a pair of shaft angles (from, to), rad."""
         return tuple(dwells(self.lift))
 
     @property
@@ -99,12 +99,12 @@ class FlatFace(Follower):
 
     @cached_property
     def _cells(self) -> Array:
-        """Shaft angles between which the intended distance has nothing narrow."""
+        """Shaft angles (m,), rad, between which cubics follow the intended distance."""
         return cubic_cells(self.distance.law, self.distance.breaks, NEAR)
 
     @property
     def _share(self) -> float:
-        """Distance of the face from the shaft for one along the line of travel."""
+        """Distance of the face from the shaft over its distance along the line of travel: cos(tilt)."""
         return float(np.cos(self.tilt))
 
     @cached_property
@@ -113,12 +113,12 @@ class FlatFace(Follower):
         return FlatEnvelope(LiftPitch(self.distance, self.tilt, self.contacts[0].turned))
 
     def drives(self, contour: Contour) -> list[OfFace]:
-        """Position of each face as it rests on the contour."""
+        """Own position of each face, m, over the shaft angle as it rests on the contour."""
         bearing = bearing_of(contour)
         return [OfFace(bearing, self.tilt + contact.turned, self._share) for contact in self.contacts]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """Pressure angle, rad, at which the face stands askew, and radius of curvature, mm, (n,) each."""
+        """Pressure angle, rad, minus the tilt, and radius of curvature of the contour, mm, (n,) each, at phi (n,)."""
         bearing, theta = bearing_of(contour), phi + self.ahead
         q, _, bend = bearing.derivatives(theta, bearing.find(theta))
         return np.full(phi.shape, -self.tilt), q + bend
@@ -138,7 +138,10 @@ class FlatFace(Follower):
         return [(direction - self.tilt - contact.turned, contact.position(own)) for contact in self.contacts]
 
     def judge(self, contour: Contour, theta: Array) -> Judged:
-        """Motion error, and of a yoke the play of the contour in the frame; extremes over the whole turn."""
+        """Motion error, and of a yoke the play of the contour in the frame; rms from shaft angles theta (n,), rad.
+
+        Extremes are over the whole turn. Raises UnsettledError where rounding hides them.
+        """
         bearing = bearing_of(contour)
         reach = self._reach(bearing)
         return Judged(self._error(bearing, theta, reach), self._play(bearing), reach)
@@ -171,7 +174,7 @@ class FlatFace(Follower):
         return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=fine)
 
     def motion_limit(self, tolerance: float) -> float:
-        """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
+        """Greatest motion error, mm, of a contour within `tolerance`, mm, of the exact one."""
         return tolerance / self._share
 
     def _play(self, bearing: FlatContacts) -> Play | None:  # noqa: ARG002 - a single face has none
@@ -180,7 +183,7 @@ class FlatFace(Follower):
 
 @dataclass(frozen=True, eq=False)
 class Yoke(FlatFace):
-    """Two parallel faces at a fixed breadth w, mm, the datum of face 2: a frame, which face 1 holds at p(theta).
+    """Two parallel faces of a frame at a fixed breadth w, mm, the zero of face 2; face 1 stands at p(theta).
 
     The intended p has p(theta) + p(theta + pi) = w, so face 2 makes the error that face 1 makes half a turn on.
     """
@@ -192,11 +195,11 @@ class Yoke(FlatFace):
 
     @property
     def closure(self) -> Closure:
-        """Rule for the play: checks on the contour's breadth, mm, for constancy and for its greatest value."""
+        """Rule for the play: checks that the contour's breadth, mm, is constant and nowhere too great."""
         return Closure(self.play_limit, "constant-breadth", "breadth-max", self.breadth)
 
     def play_limit(self, tolerance: float) -> float:
-        """Greatest play or interference of a contour within `tolerance` of the exact one, mm: both sides may be off."""
+        """Greatest play or interference, mm, of a contour within `tolerance`, mm: both sides may be off."""
         return 2.0 * tolerance
 
     def _play(self, bearing: FlatContacts) -> Play:
@@ -211,7 +214,10 @@ class Yoke(FlatFace):
 
 
 def lift_range(bearing: FlatContacts, begin: float, end: float) -> float:
-    """Greatest less least q over the angles [begin, end], mm."""
+    """Greatest less least support function q, mm, over the normals' angles [begin, end], rad.
+
+    Raises UnsettledError where rounding hides the extremes.
+    """
     nodes = bearing.nodes(begin, end, np.empty(0))
     stretch, at_low, at_high = bearing.between(nodes)
 

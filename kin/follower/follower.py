@@ -1,4 +1,4 @@
-"""Followers: what each one does on a given contour, by contact, against what it is meant to do."""
+"""Followers made from contacts and an intended motion, to be judged on contours by contact."""
 
 from __future__ import annotations
 
@@ -31,13 +31,15 @@ def follower_of(
 ) -> Follower:
     """Make the follower of contacts by its intended motion; the metal lies inside the contour (1) or outside (-1).
 
-    `law` is the follower's position over the shaft angle, mm or rad, and of two contacts on one arm the transmission.
-    Its positions count from where the contact `datum` would reach the shaft, that is the first of these where none is
-    given. Raises ValueError for contacts whose motion is not known here: whatever is given is judged, or refused.
+    `law` is the recipe's position over the shaft angle, mm or rad, and of two contacts on one arm the transmission. The
+    follower's positions count from where the own position of `datum` is 0: of the first contact where that is None.
+    Raises ValueError for contacts for which no follower is known, TypeError for a flat face on a line of travel
+    together with a contact of another kind.
     """
     first, *others = contacts
     flat, arm = isinstance(first.touch, Flat), isinstance(first.guide, Oscillating)
     _demand(side > 0 or not (flat or others), "a ring is followed by one roller")
+    # two contacts on one arm, which swings by a transmission
     if not isinstance(law, Piecewise):
         from kin.follower.faces_on_arm import FlatPair
         from kin.follower.roller import DoubleRoller
@@ -50,6 +52,7 @@ def follower_of(
             "the faces of a pair count from across the line",
         )
         return FlatPair(tuple(replace(contact, datum=contact.apart) for contact in contacts), law)
+    # contacts of a law: the follower's positions are counted from the datum's zero, the contacts' away from the metal
     alone = not others and side > 0 and not (flat and arm)
     pushes = first.sense == 1 and first.turned == 0.0
     _demand(alone or pushes, "contact 1 pushes the follower out, where the shaft stands")
@@ -60,6 +63,7 @@ def follower_of(
     zero = (datum or first).zero
     placed = tuple(contact.raised(zero).away_from(side) for contact in (first, *others))
     raised = law.raised(zero)
+    # two opposite contacts in a frame, or one
     if others:
         _demand(len(others) == 1 and _opposite(first, others[0]), "two contacts on a line are opposite")
         if flat:
@@ -79,9 +83,10 @@ def follower_of(
 
 
 def still_follower(contacts: Sequence[Contact[Guide, Touch]], side: Side = 1) -> Follower:
-    """Make the follower of contacts for a contour that no motion is known of: it is meant to stand still.
+    """Make the follower of contacts for a contour without an intended motion: its intended position is constant.
 
-    Raises ValueError for contacts for which no follower is known.
+    The metal lies inside the contour (side 1) or outside (-1). Raises ValueError for contacts for which no follower is
+    known, TypeError for a flat face on a line of travel together with a contact of another kind.
     """
     return follower_of(contacts, Piecewise(np.array([0.0, TURN]), (Constant(0.0),), TURN), side)
 
@@ -91,9 +96,10 @@ def followers_of(
 ) -> dict[str, Follower]:
     """Followers by the name of the surface on which they run, one for each surface in `sides`.
 
-    Each has the contacts that touch its surface, and is what that surface is judged by. `sides` gives the side of each
-    surface on which the metal lies. Raises ValueError for contacts for which no follower is known, for a contact on a
-    surface that is not in `sides` and for a surface without a contact.
+    Each has the contacts that touch its surface, and the surface is judged by it. `law` is the follower's position over
+    the shaft angle, mm or rad, or a transmission; `sides` gives for each surface whether the metal lies inside (1) or
+    outside (-1). Raises ValueError for contacts for which no follower is known, for a contact on a surface that is not
+    in `sides` and for a surface without a contact.
     """
     _demand(
         {contact.surface for contact in contacts} == set(sides), "each touches one of the surfaces, and each is touched"

@@ -2,9 +2,9 @@
 
 The contour drives the mechanism through contact with the frame's four faces (`kin.follower.frame_contact`). A real
 part is never of exactly constant breadth, so the frame can rest in four ways, or float between; the worst counts.
-Measured and intended output are compared at the same shaft angle, with the cam mounted as drawn. What is intended is
-the motion of the exact cam or, where the swing of the frame is prescribed, the law of that: then the lift counts for
-nothing but the zero of the shaft angle.
+Measured and intended output are compared at the same shaft angle, with the cam mounted as drawn. Intended is the motion
+by the exact cam or, where the swing of the frame is prescribed, by the law of the swing: then the lift sets nothing but
+the zero of the shaft angle.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ if TYPE_CHECKING:
 __all__ = ["DwellFound", "FrameError", "LinkageVerdict", "implied_limit", "judge_frame"]
 
 Over = Literal["shaft", "relative"]
-SHARE = 1e-6  # of the greatest error: what is resolved at least
+SHARE = 1e-6  # of the greatest error, to which it is resolved
 FINE_STEP = 2e-4  # rad: within this a Taylor polynomial of third order is good to rounding
-BESIDE = 1e-13  # rad: from a break, less than which is rounding
-LIMIT_STEPS = 720  # of a turn, from which the limit's extremes are looked for
+BESIDE = 1e-13  # rad: nearer to a break is rounding
+LIMIT_STEPS = 720  # of a turn, from which the search for the limit's extremes starts
 CORNERS = 4  # of a square of lifts that are off by 1, before the middles of its sides, opposite ones in turn
 OFF = np.array([[1.0, 1.0, -1.0, -1.0, 1.0, -1.0, 0.0, 0.0], [1.0, -1.0, 1.0, -1.0, 0.0, 0.0, 1.0, -1.0]])
 ALIKE = 6  # decimals of degrees to which dwells are as long as one another: their ends are found to 1e-7
@@ -50,7 +50,11 @@ ALIKE = 6  # decimals of degrees to which dwells are as long as one another: the
 
 @dataclass(frozen=True)
 class DwellFound:
-    """The longest dwell with the frame lying so (`rest`): `band` in degrees or mm, the shaft or the relative angle."""
+    """Longest dwell of the output while the frame rests in the way named `rest`.
+
+    `band`, degrees or mm, is the range that the output keeps; start and length are angles of the shaft, or relative
+    ones, as `over` says.
+    """
 
     over: Over
     band: float
@@ -61,7 +65,7 @@ class DwellFound:
 
 @dataclass(frozen=True)
 class LinkageVerdict:
-    """Motion of the mechanism as a contour drives it; output in degrees or mm as the mechanism has it.
+    """Motion of the mechanism as a contour drives it; the output is in degrees or mm.
 
     error         of the output, measured less intended at the same shaft angle: the worst of the ways the frame can
                   rest and of the centred frame, rms over all; dwell_flatness over the longest intended dwell
@@ -69,8 +73,8 @@ class LinkageVerdict:
     limit         greatest error that a contour within the tolerance can give; None where the mechanism binds within it
     play_across   between faces 1 and 3, mm; the places are shaft angles
     play_along    between faces 2 and 4
-    least_rate    least rate of the shaft over the relative angle, 1 - theta_3', of all ways
-    dwells        the longest in each way, the shortest of them first; empty unless asked for
+    least_rate    least rate of the shaft over the relative angle, 1 - theta_3', of all ways and of the centred frame
+    dwells        longest dwell in each way of resting, the shortest of them first; empty without a band
     """
 
     error: MotionError
@@ -84,12 +88,12 @@ class LinkageVerdict:
 
 @dataclass(frozen=True)
 class _Intended:
-    """The mechanism as meant: shaft angle and output (2, 4, n) at relative angles, with three derivatives."""
+    """Intended motion of the mechanism, by the exact cam."""
 
     mechanism: Mechanism
 
     def alike(self, error: Array) -> Array:
-        """Return errors of the output (n,) without whole turns, if it is an angle."""
+        """Errors of the output (n,), without whole turns if it is an angle."""
         return error - TURN * np.round(error / TURN) if self.mechanism.unit == "deg" else error
 
     def output(self, shaft: Array) -> Array:
@@ -97,14 +101,16 @@ class _Intended:
         return self.mechanism.output(shaft)
 
     def rows(self, theta: Array) -> Array:
+        """Shaft angle and output at relative angles theta (n,), with three derivatives by theta: (2, 4, n)."""
         at = self.mechanism.at(theta, 3)
         return np.stack([at.shaft, at.output])
 
     def error(self, theta: Array, measured: Array, near: Array) -> Array:
-        """Error of the output and its derivatives by theta (3, n), from what was `measured` (2, 3, n) at theta (n,).
+        """Error of the output and its derivatives by theta (3, n), from the `measured` rows (2, 3, n) at theta (n,).
 
-        `near` (2, 4, n) are the rows at theta. Intended is the output at that t where the intended shaft angle is the
-        measured one: from Taylor polynomials about theta, or about t where that is far or beyond a break.
+        `near` (2, 4, n) are the intended rows at theta. The intended output is taken at the relative angle t where the
+        intended shaft angle equals the measured one: by Taylor polynomials about theta, or about t where t is far from
+        theta or beyond a break.
         """
         (phi, phi_slope, phi_bend), output = measured
         step = _step(phi, near[0])
@@ -185,14 +191,14 @@ def judge_frame(
     over: Over = "shaft",
     overlap: float = 0.0,
 ) -> LinkageVerdict:
-    """Let a contour drive the mechanism: extremes over the whole turn, rms and increments from shaft angles (n,).
+    """Let a contour drive the mechanism: extremes over the whole turn, rms and increments from `shaft` angles (n,).
 
-    `swing` is the law prescribed for the frame, None where what the exact cam does is meant. `band`, rad or mm, asks
-    for dwells over the shaft angle or the relative one; None for none. `overlap`, mm, is what the metal is meant to
-    overlap each face by, which the faces give way to. Raises FrameError where the contour does not
-    drive it all round, or so suddenly that rounding hides the error, and BindingError where the intended cam does not
-    drive it. Cost: a position of the linkage for each break of the contour as each face has it, in
-    each way of resting.
+    `tolerance`, mm, is the contour's and sets the limit. `swing` is the law prescribed for the frame; without it the
+    motion by the exact cam is intended. `band`, rad or mm, is the range that a dwell keeps, over the shaft or the
+    relative angle; without it no dwells are looked for. `overlap`, mm, is the intended interference at each face,
+    which yields. Raises FrameError where the contour does not drive the mechanism all round, or so suddenly that
+    rounding hides the error, and BindingError where the intended cam does not drive it. Cost: a position of the
+    linkage for each break of the contour at each face, in each way of resting.
     """
     intended = _Intended(mechanism) if swing is None else _Prescribed(mechanism, swing)
     try:
@@ -204,13 +210,16 @@ def judge_frame(
 def _judged(
     bearing: FlatContacts, intended: _Intended, shaft: Array, tolerance: float, *, band: float | None, over: Over
 ) -> LinkageVerdict:
+    """Verdict on a contour that bears on the frame; `shaft` (n,), rad, are the angles of rms and increments."""
     mechanism = intended.mechanism
     unit: Unit = "deg" if mechanism.unit == "deg" else "mm"
     every = laid(mechanism, bearing, (*WAYS, CENTRED))
     *ways, centred = every
+    # many nodes are common to the ways: the intended rows are found at each once
     nodes = distinct(np.concatenate([way.nodes for way in every]))
     rows = intended.rows(nodes)
     worst = [_worst(way, intended, rows[:, :, np.searchsorted(nodes, way.nodes)]) for way in every]
+    # errors at the given shaft angles, and the range of the output over the longest intended dwell
     angles = with_steps(shaft)
     intended_output = intended.output(angles)
     errors = [intended.alike(way.over_shaft(angles, 0)[0] - intended_output) for way in every]
@@ -231,8 +240,8 @@ def _judged(
 def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float]:
     """Greatest absolute error of the output and the shaft angle there; `rows` are the intended ones at the nodes."""
     low, high = way.nodes[:-1], way.nodes[1:]
-    both = np.concatenate([way.low, way.high], axis=2), np.concatenate([rows[..., :-1], rows[..., 1:]], axis=2)
-    at_low, at_high = np.split(intended.error(np.concatenate([low, high]), *both), 2, axis=1)
+    ends = np.concatenate([way.low, way.high], axis=2), np.concatenate([rows[..., :-1], rows[..., 1:]], axis=2)
+    at_low, at_high = np.split(intended.error(np.concatenate([low, high]), *ends), 2, axis=1)
 
     def error(theta: Array, interval: Indices) -> Array:
         return intended.error(theta, way.rows(theta, interval), intended.rows(theta))
@@ -243,12 +252,13 @@ def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float
 
 
 def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
-    """Greatest error of the output that a contour within `tolerance` of the exact one can give; degrees or mm.
+    """Greatest error of the output, degrees or mm, by a contour within `tolerance`, mm, of the exact one.
 
-    Both lifts off by the tolerance, in the four combinations of signs: to first order the tolerance times the greatest
-    |d output/dS| + |d output/dS1| at fixed shaft angle, and the term of second order. Between these corners the error
-    can be greater by its curvature along either lift alone, which is added. None where the mechanism may bind within
-    it: not at a corner, perhaps, but between them, when the point of a dyad can get to either side of its ground pivot.
+    Both lifts are off by the tolerance, in the four combinations of signs: to first order the error is the tolerance
+    times the greatest |d output/dS| + |d output/dS1| at fixed shaft angle. Between these corners it can be greater by
+    its curvature along either lift alone, which is added. None where the mechanism may bind within the tolerance, also
+    where it binds between corners alone, as the point of a dyad can get to either side of its ground pivot. Raises
+    UnsettledError where rounding hides the error.
     """
     intended = _Intended(mechanism)
     nodes = apart(np.concatenate([mechanism.breaks, np.arange(LIMIT_STEPS) * (TURN / LIMIT_STEPS)]))
@@ -311,7 +321,7 @@ def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
 
 
 def _plays(bearing: FlatContacts, breadth: float, centred: Resting) -> tuple[Play, Play]:
-    """Play across and along the frame: one figure of the contour, a quarter turn on."""
+    """Play across and along the frame, mm: the same figures of the contour, at places a quarter turn apart."""
     breadths = bearing.breadth_extremes(RESOLUTION * breadth)
     least, most = breadth - 2.0 * bearing.back - breadths.greatest, breadth - 2.0 * bearing.back - breadths.least
 
@@ -323,7 +333,7 @@ def _plays(bearing: FlatContacts, breadth: float, centred: Resting) -> tuple[Pla
 
 
 def _extremes(way: Resting, mechanism: Mechanism, over: Over, begin: float, end: float) -> Extremes:
-    """Extremes of the output from one angle to another, less than a turn on."""
+    """Extremes of the output, rad or mm, from one angle to another, rad, less than a turn on."""
     output = way.over_shaft if over == "shaft" else way.over_relative
     return output.extremes(begin, end, resolution(mechanism, output.low[0]))
 
@@ -335,7 +345,7 @@ def _intended_dwell(mechanism: Mechanism, band: float) -> Array:
 
 
 def _dwells(ways: list[Resting], mechanism: Mechanism, band: float, over: Over) -> tuple[DwellFound, ...]:
-    """Return the longest dwell of each way, the shortest of them first; of those as short the first way's."""
+    """Longest dwell of each way, the shortest of them first, equal ones in the order of the ways."""
     width = float(np.degrees(band)) if mechanism.unit == "deg" else band
     longest = longest_dwells([_output(way, mechanism, over) for way in ways], band)
     dwells = [

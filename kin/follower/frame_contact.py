@@ -1,9 +1,10 @@
 """The square frame of a linkage resting on a contour read from a file: shaft angle and output over the relative angle.
 
-The contour's support function q is all that the frame feels: at relative angle theta its four faces stand at
+The frame depends on the contour's support function q alone: at relative angle theta its four faces would touch at
 q(theta), q(theta + pi/2), ... from the shaft. Held by face 1 the frame has S = q(theta), by face 3
-S = w - q(theta + pi), likewise S1 by face 2 or 4; the linkage does the rest. Between breaks of these q all is smooth.
-The intended lift is not used here, but for the zero of the shaft angle, which a drawing is mounted by.
+S = w - q(theta + pi), likewise S1 by face 2 or 4; the linkage turns S and S1 into shaft angle and output. Between
+breaks of these q all is smooth. The intended lift is used for nothing but the zero of the shaft angle, by which a
+drawing is mounted.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ QUARTER = 0.5 * np.pi
 COARSEST = 720  # intervals of a turn at least, however few the breaks
 RESOLUTION = 2e-13  # of the breadth: of lengths
 RESOLUTION_ANGLE = 1e-13  # rad
-ROUNDING = 64.0 * 2.0**-52  # of what is subtracted from one another, as a part of it
+ROUNDING = 64.0 * 2.0**-52  # of values that are subtracted from one another, relative
 HALVINGS = 16  # of an interval, until quintics follow the motion
 SHORT = 1e-6  # rad: over less, the mean rate of the shaft is rounding
 
@@ -74,7 +75,7 @@ class Resting:
     """A frame resting on a contour; m intervals of the relative angle between `nodes` (m + 1,), from 0 to 2 pi.
 
     `low` and `high` (2, 3, m) are shaft angle and output, rad or mm, with their derivatives by the relative angle at
-    the ends of the intervals, seen from within. These are so short that quintics follow both, over either angle.
+    the ends of the intervals, seen from within. The intervals are so short that quintics follow both functions.
     """
 
     rest: FrameRest
@@ -84,12 +85,12 @@ class Resting:
 
     @cached_property
     def shaft(self) -> Array:
-        """Shaft angles at the nodes (m + 1,), rising."""
+        """Shaft angles at the nodes (m + 1,), rad, rising."""
         return np.append(self.low[0, 0], self.high[0, 0, -1])
 
     @cached_property
     def least_rate(self) -> tuple[float, float]:
-        """Least rate of the shaft over the relative angle, 1 - theta_3', and where, rad; of cubics between nodes."""
+        """Least rate of the shaft over the relative angle, 1 - theta_3', by cubics between nodes, and where, rad."""
         h = np.diff(self.nodes)
         first, last = self.low[0, 1], self.high[0, 1]
         mean = (self.high[0, 0] - self.low[0, 0]) / h
@@ -105,7 +106,7 @@ class Resting:
 
     @cached_property
     def turned(self) -> Quintics:
-        """Shaft angle over the relative angle as quintics; it rises by whole turns."""
+        """Shaft angle, rad, over the relative angle, as quintics of one turn: beyond it whole turns are missing."""
         return Quintics(self.nodes, self.low[0], self.high[0])
 
     @cached_property
@@ -115,7 +116,7 @@ class Resting:
 
     @cached_property
     def over_shaft(self) -> Quintics:
-        """Output over the shaft angle as quintics between the nodes."""
+        """Output, rad or mm, over the shaft angle."""
         return Quintics(self.shaft, _by_shaft(self.low), _by_shaft(self.high))
 
     def rows(self, theta: Array, interval: Indices) -> Array:
@@ -126,13 +127,14 @@ class Resting:
 def laid(mechanism: Mechanism, bearing: FlatContacts, rests: Sequence[FrameRest]) -> list[Resting]:
     """The frame as it rests on the contour all round: a Resting for each of `rests`, in their order.
 
-    Raises FrameError where the mechanism binds or turns the shaft back, UnsettledError where rounding hides the motion.
-    All of them go through the linkage together.
+    `bearing` are the contour's contacts with flat faces. Raises FrameError where the mechanism binds or turns the shaft
+    back, UnsettledError where rounding hides the motion.
     """
+    # all ways of resting go through the linkage together
     shares = np.transpose([(rest.first, rest.second) for rest in rests])[:, None]
 
     def rows(theta: Array, way: Indices, stretch: Indices) -> Array:
-        """Shaft angle and output (2, 3, n) at theta (n,) in ways (n,), with that which bears on each face (4, n)."""
+        """Shaft angle and output (2, 3, n) at theta (n,) in ways (n,), the contour's stretches (4, n) on the faces."""
         faces = np.stack([bearing.derivatives(theta + k * QUARTER, stretch[k]) for k in range(4)])
         faces[2:] *= -1.0
         faces[2:, 0] += mechanism.breadth
@@ -143,6 +145,7 @@ def laid(mechanism: Mechanism, bearing: FlatContacts, rests: Sequence[FrameRest]
     begin, end = (np.concatenate([places[part] for places in nodes]) for part in (slice(-1), slice(1, None)))
     way = np.repeat(np.arange(len(rests)), [len(places) - 1 for places in nodes])
     stretch = np.stack([bearing.find(0.5 * (begin + end) + k * QUARTER) for k in range(4)])
+    # at the ends of the intervals; a shaft that turns back is refused first
     low, high = np.split(rows(np.concatenate([begin, end]), np.tile(way, 2), np.tile(stretch, 2)), 2, axis=2)
     allowed = np.empty(len(rests))
     for k, whole in enumerate(_parted(rests, way, begin, low, high)):
@@ -153,6 +156,7 @@ def laid(mechanism: Mechanism, bearing: FlatContacts, rests: Sequence[FrameRest]
                 f"1 - theta_3' is {least:.3g}"
             )
         allowed[k] = resolution(mechanism, whole.low[1, 0])
+    # intervals are halved until quintics meet the motion in their middles
     done: list[tuple[Indices, Array, Array, Array]] = []
     for _ in range(HALVINGS):
         middle = 0.5 * (begin + end)
@@ -173,7 +177,7 @@ def laid(mechanism: Mechanism, bearing: FlatContacts, rests: Sequence[FrameRest]
 
 
 def _parted(rests: Sequence[FrameRest], way: Indices, begin: Array, low: Array, high: Array) -> list[Resting]:
-    """Resting of each way, of those of the n intervals that are its own."""
+    """Resting of each way, from n intervals in the order of the ways (n,) that they belong to."""
     ends = np.searchsorted(way, np.arange(len(rests) + 1))
     parts = [slice(*pair) for pair in pairwise(ends.tolist())]
     return [
@@ -190,9 +194,9 @@ def _by_shaft(rows: Array) -> Array:
 
 
 def _missed(width: Array, low: Array, middle: Array, high: Array, allowed: Array) -> Flags:
-    """Whether quintics between the ends of intervals (n,) miss what is in the middle, rows (2, 3, n), by too much.
+    """Whether quintics between the ends of intervals (n,) miss the rows (2, 3, n) in the middle by too much.
 
-    `allowed` (n,) is what they may miss the output by, beside the rounding of the angle itself.
+    `allowed` (n,) is the error permitted in the output, beside the rounding of the angle itself.
     """
     turned, step, off = high[0, 0] - low[0, 0], middle[0, 0] - low[0, 0], np.zeros((3, len(width)))
     spans = ((width, 0.5 * width, low[0], high[0]), (width, 0.5 * width, low[1], high[1]))
@@ -214,9 +218,9 @@ def resolution(mechanism: Mechanism, output: Array) -> float:
 def driven(mechanism: Mechanism, theta: Array, s: Array, s1: Array, lies: Callable[[int], str] = lambda _: "") -> Array:
     """Shaft angle and output of a mechanism, with derivatives by the relative angle theta (n,): (2, order + 1, n).
 
-    `s` and `s1` (order + 1, n) are the distances of faces 1 and 2 from the shaft, with their derivatives by theta. The
-    shaft angle's zero is that of the intended mechanism. FrameError where it binds, which begins with how the frame
-    `lies` at the place of that index.
+    `s` and `s1` (order + 1, n), mm, are the distances of faces 1 and 2 from the shaft, with their derivatives by theta.
+    The shaft angle, rad, counts from the intended mechanism's zero. Raises FrameError where the mechanism binds; its
+    message begins with `lies(i)`, words for how the frame rests at theta[i].
     """
     scale = 1.0 / np.cumprod(np.maximum(np.arange(len(s)), 1.0))[:, None]
     try:
@@ -234,7 +238,7 @@ def driven(mechanism: Mechanism, theta: Array, s: Array, s1: Array, lies: Callab
 
 
 def _nodes(bearing: FlatContacts, rest: FrameRest, breaks: Array) -> Array:
-    """0, 2 pi and, between them, the breaks of all faces that place the frame, those of the intent, and equal steps."""
+    """0, 2 pi and between them equal steps, the breaks of q at all faces that place the frame, and the given breaks."""
     shares = (rest.first, rest.second, 1.0 - rest.first, 1.0 - rest.second)
     angles = [bearing.breaks - k * QUARTER for k, share in enumerate(shares) if share]
     # breaks of two faces that differ by rounding alone are one

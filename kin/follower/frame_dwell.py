@@ -1,9 +1,9 @@
 """The longest dwell of an output that has thousands of breaks, as a polygon gives it, without looking everywhere.
 
-Blocks of the period are separated by the least and greatest value at their nodes. Runs of whole blocks that surely
-stay within the band say how long the longest window is at least; runs that cannot be excluded and are long enough say
-where it may begin and end. Only there the output is followed exactly (`kin.numeric.longest_window`). What every such
-window contains counts by its extremes alone, and the rest of the period not at all.
+A block of the period is known by the least and greatest value at its nodes. Runs of whole blocks that surely stay
+within the band show how long the longest window is at least; runs that cannot be excluded and are long enough show
+where it may begin and end. Only there the output is followed exactly (`kin.numeric.longest_window`). The core that
+every such window contains counts by its extremes alone, and the other parts of the period not at all.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 BLOCKS = 1024
-# Where the output is not to be looked at it is led away by so many ranges, over a ridge between two straight slopes
-# that begins at 1 width of what is looked at.
+# Between spans that are looked at the output is replaced by a roof: it rises by ROOF ranges over a ridge between two
+# straight slopes, placed in widths of the span before it.
 ROOF, RIDGE = 16.0, (1.1, 1.25)
-# Shares of the core at which its extremes stand; no two slopes between them are alike, or many windows would be.
+# Shares of the core at which its extremes stand; no two slopes between them are equal, or many windows would be so.
 PASSING = (0.001, 0.0025, 0.996, 0.9983)
-ALIKE = 8  # decimals, rad, to which windows are as long as one another; of those the first counts
+ALIKE = 8  # decimals, rad, to which windows count as equally long; of such windows the first is taken
 
 
 class Output(NamedTuple):
-    """An output of a period, by its nodes x (m + 1,) and the values there; f is smooth between them.
+    """A periodic output, by its nodes x (m + 1,), rad, and the values (m + 1,) there; it is smooth between nodes.
 
-    f(x (n,)) gives (n,) at any x; `extremes(a, b)` its least and greatest value over [a, b]. Between nodes it strays
-    from the range of their values by `slack` at most.
+    f(x (n,)) gives values (n,) at any x, `extremes(a, b)` the least and greatest value over [a, b]. Between nodes the
+    output strays from the range of their values by `slack` at most.
     """
 
     f: Callable[[Array], Array]
@@ -59,12 +59,16 @@ class _Span(NamedTuple):
         return _Span(*(x + turn for x in self))
 
     def joined(self, other: _Span) -> _Span:
-        """Bounds that hold for the windows of both; `other` begins no earlier."""
+        """Span that holds for the windows of both spans; `other` begins no earlier."""
         return _Span(self.begin, max(self.core, other.core), min(self.rest, other.rest), max(self.end, other.end))
 
 
 def longest_dwells(outputs: Sequence[Output], band: float) -> list[Window]:
-    """Longest window of each output over which it stays within the band; each begins in one period from 0."""
+    """Longest window of each output over which it stays within the band; its start is reduced to [0, period).
+
+    Raises ValueError for a band that is not above 0 or is lost in the rounding of an output, RoughError for an output
+    that no polynomials follow.
+    """
     spans = [_spans(output, band) for output in outputs]
     within = _within([(output, span) for output, some in zip(outputs, spans, strict=True) for span in some], band)
     longest = []
@@ -152,6 +156,7 @@ def _within(spans: Sequence[tuple[Output, _Span]], band: float) -> Iterator[Wind
 
 def _spans(output: Output, band: float) -> list[_Span]:
     """Disjoint spans that hold every window that may be the longest; none if they would be all of the period."""
+    # blocks of about equal width, from node to node
     x, value, period = output.x, output.value, output.period
     count = min(BLOCKS, len(x) - 1)
     first = np.searchsorted(x, x[0] + period / count * np.arange(count))
@@ -162,6 +167,7 @@ def _spans(output: Output, band: float) -> list[_Span]:
     high = np.maximum(np.maximum.reduceat(value[:-1], first[:-1]), value[first[1:]])
     low = np.minimum(np.minimum.reduceat(value[:-1], first[:-1]), value[first[1:]])
     edge = np.concatenate([x[first[:-1]] - period, x[first[:-1]], x[first] + period]).tolist()
+    # the longest run that surely stays within the band; then runs that may stay within it and are as long
     sure = _runs(low, high, band - 2.0 * output.slack)
     least = max(edge[count + i + n] - edge[count + i] for i, n in enumerate(sure))
     spans: list[_Span] = []
@@ -187,7 +193,7 @@ def _runs(low: Array, high: Array, band: float) -> list[int]:
     lows, highs = doubled(np.tile(low, 2), np.minimum), doubled(np.tile(high, 2), np.maximum)
     runs, least, most = np.zeros(count, dtype=np.intp), np.full(count, np.inf), np.full(count, -np.inf)
     for level in range(count.bit_length() - 1, -1, -1):
-        place = np.minimum(begin + runs, len(lows[level]) - 1)  # beyond, too many blocks are asked
+        place = np.minimum(begin + runs, len(lows[level]) - 1)  # where this cuts off, the run is too long below
         further = np.minimum(least, lows[level][place]), np.maximum(most, highs[level][place])
         longer = (runs + 2**level <= count) & (further[1] - further[0] <= band)
         least, most = np.where(longer, further[0], least), np.where(longer, further[1], most)

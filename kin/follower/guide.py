@@ -6,8 +6,8 @@ Along a curve of arc length s, with u = r^2, a = P.T and c = P x T of its point 
 
     position' = 2 a/S,    phi' = (c + 2 a m/S)/u
 
-where S^2 is a polynomial in u and m is linear in u: all that a guide has to tell of its derivatives (position' is less
-that where the guide counts inwards). An arm of length l, its pivot at distance L from the shaft:
+where S^2 is a polynomial in u and m is linear in u: a guide gives these two for its derivatives (position' has the
+opposite sign where the guide counts inwards). An arm of length l, its pivot at distance L from the shaft:
 S^2 = 4 L^2 l^2 - (L^2 + l^2 - u)^2, 2 m = -side (u + l^2 - L^2); a line of travel displaced by e:
 S^2 = 4 (u - e^2), m = e.
 """
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from kin.law.contacts import Side, Unit
     from kin.numeric.arrays import Array
 
-SLACK = 1e-12  # of the guide's reach, by which neighbouring pieces may overlap, against rounding at their joints
+SLACK = 1e-12  # of the guide's size, by which neighbouring pieces may overlap, against rounding at their joints
 MOST_SHARE = 0.1  # of the arm, or of the cam: pieces that are searched for contact are shorter
 
 
@@ -37,8 +37,8 @@ MOST_SHARE = 0.1  # of the arm, or of the cam: pieces that are searched for cont
 class Arm:
     """A roller's arm: `length` l, `pivot` its distance L from the shaft, mm; `side` 1 trailing, -1 leading.
 
-    The position is the arm's lean, the angle at the pivot between shaft and roller centre, radians; less it where
-    `away` from the cam is inwards, in a ring.
+    The position is the arm's lean, the angle at the pivot between shaft and roller centre, rad; in a ring, where the
+    way `away` from the metal is inwards (-1), it is minus the lean.
     """
 
     length: float
@@ -62,11 +62,11 @@ class Arm:
         return self.length
 
     def slack(self, extent: float = 0.0) -> float:  # noqa: ARG002 - an arm knows its own size
-        """Greatest length, mm, that rounding may feign."""
+        """Greatest length, mm, that rounding may feign, whatever the cam's extent."""
         return SLACK * (self.length + self.pivot)
 
     def step(self, extent: float) -> float:  # noqa: ARG002
-        """Greatest length, mm, of the pieces in which a cam is searched."""
+        """Greatest length, mm, of the pieces in which a cam is searched, whatever its extent."""
         return MOST_SHARE * self.length
 
     def reach(self) -> tuple[float, float]:
@@ -74,7 +74,7 @@ class Arm:
         return abs(self.pivot - self.length), self.pivot + self.length
 
     def shaft_angle(self, points: Array) -> Array:
-        """Shaft angle at which the arm's end reaches points (n, 2): (n,); nan out of reach."""
+        """Shaft angles (n,), rad, at which the arm's end reaches points (n, 2), mm; nan out of reach."""
         r = np.hypot(points[:, 0], points[:, 1])
         with np.errstate(invalid="ignore", divide="ignore"):
             lead = np.arccos((r * r + (self.pivot - self.length) * (self.pivot + self.length)) / (2.0 * r * self.pivot))
@@ -84,7 +84,7 @@ class Arm:
     def lead(self, r: Array) -> Array:
         """Polar angle, rad (n,), of the roller's centre less the shaft angle, at its distance r (n,), mm.
 
-        A distance beyond the arm's reach counts as the end of it.
+        A distance beyond the arm's reach counts as the nearer end of the reach.
         """
         with np.errstate(invalid="ignore", divide="ignore"):
             w = (r * r + (self.pivot**2 - self.length**2)) / (2.0 * r * self.pivot)
@@ -92,7 +92,10 @@ class Arm:
         return lead
 
     def lead_slope(self, least: Array, most: Array) -> Array:
-        """Greatest change of the lead with r, rad/mm, between two distances (n,); infinite beyond the reach."""
+        """Greatest slope of the lead over r, rad/mm (n,), between distances `least` and `most` (n,), mm.
+
+        Infinite at and beyond the ends of the reach.
+        """
         # w = cos(phi - t) = (r^2 + L^2 - l^2)/(2 r L); its slope is steepest, and sqrt(1 - w^2) least, at an end
         excess = self.pivot**2 - self.length**2
 
@@ -109,45 +112,46 @@ class Arm:
 
     @property
     def turning(self) -> float:
-        """Distance of the centre from the shaft, mm, on either side of which the lead rises or falls all the way."""
+        """Distance of the centre from the shaft, mm, at which the lead turns: on either side of it it is monotone."""
         return float(np.sqrt(max(self.pivot**2 - self.length**2, 0.0)))
 
     def position(self, r: Array) -> Array:
         """Angle at the pivot between shaft and roller centre, rad (n,), at its distance r (n,), mm, from the shaft.
 
-        It is negative where `away` is -1. A distance beyond the arm's reach counts as the end of it.
+        It is negative where `away` is -1. A distance beyond the arm's reach counts as the nearer end of the reach.
         """
-        # Half-angle form: good digits at either end of the reach.
+        # the half-angle form keeps its digits at either end of the reach
         above = (r - (self.pivot - self.length)) * (r + (self.pivot - self.length))
         below = ((self.pivot + self.length) - r) * ((self.pivot + self.length) + r)
         angle: Array = 2.0 * np.arctan2(np.sqrt(np.maximum(above, 0.0)), np.sqrt(np.maximum(below, 0.0)))
         return self.away * angle
 
     def centre(self, phi: Array, position: Array) -> Array:
-        """Roller centre (n, 2) at shaft angles phi and positions (n,)."""
+        """Roller centre (n, 2), mm, at shaft angles phi and positions (n,), rad."""
         return self.pivot * unit(phi) - self.length * unit(phi - self._turn * position)
 
     def path(self, phi: Array, position: Array) -> tuple[Array, Array, Array]:
-        """Centre and two derivatives, (n, 2) each, from the rows (3, n) of phi and of the position."""
+        """Centre, mm, and two derivatives by a parameter, (n, 2) each, from rows (3, n) of phi and of the position."""
         pivot, arm = polar_rows(phi, self.pivot), polar_rows(phi - self._turn * position, -self.length)
         first, second, third = (p + a for p, a in zip(pivot, arm, strict=True))
         return first, second, third
 
     def along(self, phi: Array, position: Array) -> tuple[Array, Array]:
-        """First and second derivative (n, 2) of the centre by its position."""
+        """First and second derivative of the centre by its position, (n, 2) each, at phi and positions (n,), rad."""
         arm = -self.length * unit(phi - self._turn * position)
         return -self._turn * left(arm), -arm
 
     @property
     def _turn(self) -> int:
-        """Sense, clockwise, in which the arm turns as its position grows."""
+        """Sense in which the arm turns as its position grows: 1 clockwise, -1 counter-clockwise."""
         return -self.side * self.away
 
     def rates(self, phi: Array, centre: Array, tangent: Array, curvature: Array) -> tuple[Array, Array]:
-        """Two derivatives of the position by phi (n,), where the roller's centre (n, 2) runs on pieces of that shape.
+        """First and second derivative of the position by phi (n,), rad, with the roller's centre (n, 2) on pieces.
 
-        With X on a piece of curvature k and tangent t, X' = w t and X'' = w' t + w^2 k left(t), and the arm's length
-        stays: w and w' follow from (X - P)^2 = l^2, and the position's derivatives from those of X - P.
+        The pieces have tangents (n, 2) and curvatures (n,), 1/mm, there. With X on a piece of curvature k and tangent
+        t, X' = w t and X'' = w' t + w^2 k left(t). As the distance from X to the pivot P stays l, w and w' follow from
+        (X - P)^2 = l^2, and the position's derivatives from (X - P)' and (X - P)''.
         """
         pivot = self.pivot * unit(phi)
         pivot_rate, pivot_bend = left(pivot), -pivot
@@ -161,11 +165,12 @@ class Arm:
         return self._turn * (1.0 - cross(d, rate) / square), -self._turn * cross(d, bend) / square
 
     def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
-        """Both places (2, n, 2), seen from the starts of pieces, where the arm's circle meets theirs.
+        """Both places (2, n, 2), mm from the pieces' starts, where the arm's circle at phi (n,) meets theirs; else nan.
 
-        From the start of the piece, its circle is 2 y.m + k y^2 = 0 and the arm's |y - q| = l; their difference is the
-        line both intersections lie on, y.(m + k q) = k (q^2 - l^2)/2, also for k = 0. Where on that line they lie is
-        asked of the smaller of the two circles: of the other one it would be a difference of large numbers.
+        From the start of a piece, m its outward normal and q the pivot, the piece's circle is 2 y.m + k y^2 = 0 and the
+        arm's |y - q| = l; both intersections lie on the line y.(m + k q) = k (q^2 - l^2)/2, also for k = 0. Their
+        places on that line come from the smaller circle: by the larger one they would be differences of large numbers.
+        Circles that miss by `slack`, mm, or less touch.
         """
         q = self.pivot * unit(phi) - pieces.start
         small = np.abs(pieces.curvature) * self.length > 1.0
@@ -181,7 +186,7 @@ class Arm:
         return on_side
 
     def square(self, u: Array) -> Array:
-        """S^2, mm^4 (n,), at u = r^2, mm^2 (n,): (2 L l sin(lean))^2."""
+        """S^2 = (2 L l sin(lean))^2, mm^4 (n,), at u = r^2, mm^2 (n,)."""
         square: Array = (u - (self.pivot - self.length) ** 2) * ((self.pivot + self.length) ** 2 - u)
         return square
 
@@ -208,8 +213,8 @@ class Arm:
 class Line:
     """A line of travel at the shaft angle, displaced by `offset` e, mm, towards its left.
 
-    The position is the centre's distance along it from the foot of the shaft, mm, positive outwards; less it where
-    `away` from the cam is inwards, in a ring.
+    The position is the centre's distance along it from the foot of the shaft, mm; in a ring, where the way `away` from
+    the metal is inwards (-1), it is minus that distance.
     """
 
     offset: float = 0.0
@@ -235,7 +240,7 @@ class Line:
         return SLACK * (extent + abs(self.offset))
 
     def step(self, extent: float) -> float:
-        """Greatest length, mm, of the pieces in which a cam of that extent is searched."""
+        """Greatest length, mm, of the pieces in which a cam of an extent, mm, is searched."""
         return MOST_SHARE * extent
 
     def reach(self) -> tuple[float, float]:
@@ -243,7 +248,7 @@ class Line:
         return abs(self.offset), float("inf")
 
     def shaft_angle(self, points: Array) -> Array:
-        """Shaft angle at which the centre reaches points (n, 2): (n,); nan out of reach."""
+        """Shaft angles (n,), rad, at which the centre reaches points (n, 2), mm; nan out of reach."""
         r = np.hypot(points[:, 0], points[:, 1])
         with np.errstate(invalid="ignore"):
             along = np.sqrt((r - self.offset) * (r + self.offset))
@@ -256,7 +261,7 @@ class Line:
         return lead
 
     def lead_slope(self, least: Array, most: Array) -> Array:  # noqa: ARG002 - steepest where it is nearest
-        """Greatest change of the lead with r, rad/mm, from the distance least (n,) on."""
+        """Greatest slope of the lead over r, rad/mm (n,), from the distance `least` (n,), mm, on; else infinite."""
         e = abs(self.offset)
         with np.errstate(divide="ignore", invalid="ignore"):
             steepest: Array = np.where(least > e, e / (least * np.sqrt(least**2 - e**2)), np.inf)
@@ -268,32 +273,36 @@ class Line:
         return 0.0
 
     def position(self, r: Array) -> Array:
-        """Position (n,), mm, along the line of travel, from the centre's distance r (n,), mm, from the shaft."""
+        """Position (n,), mm, along the line of travel, at the centre's distance r (n,), mm, from the shaft.
+
+        A distance below the offset counts as the offset.
+        """
         along: Array = np.sqrt(np.maximum((r - self.offset) * (r + self.offset), 0.0))
         return self.away * along
 
     def centre(self, phi: Array, position: Array) -> Array:
-        """Roller centre (n, 2) at shaft angles phi and positions (n,)."""
+        """Roller centre (n, 2), mm, at shaft angles phi (n,), rad, and positions (n,), mm."""
         u = unit(phi)
         return self.away * position[:, None] * u + self.offset * left(u)
 
     def path(self, phi: Array, position: Array) -> tuple[Array, Array, Array]:
-        """Centre and two derivatives, (n, 2) each, from the rows (3, n) of phi and of the position."""
+        """Centre, mm, and two derivatives by a parameter, (n, 2) each, from rows (3, n) of phi and of the position."""
         u, du, ddu = polar_rows(phi, 1.0)
         p, dp, ddp = (self.away * row[:, None] for row in position)
         first, second = p * u + self.offset * left(u), dp * u + p * du + self.offset * left(du)
         return first, second, ddp * u + 2.0 * dp * du + p * ddu + self.offset * left(ddu)
 
     def along(self, phi: Array, position: Array) -> tuple[Array, Array]:
-        """First and second derivative (n, 2) of the centre by its position."""
+        """First and second derivative of the centre by its position, (n, 2) each, at phi (n,), rad: the second is 0."""
         u = unit(phi)
         return self.away * u + 0.0 * position[:, None], np.zeros_like(u)
 
     def rates(self, phi: Array, centre: Array, tangent: Array, curvature: Array) -> tuple[Array, Array]:
-        """Two derivatives of the position by phi (n,), where the centre (n, 2) runs on pieces of that shape.
+        """First and second derivative, mm, of the position by phi (n,), rad, with the centre (n, 2) on pieces.
 
-        Along the line of travel d the centre X has X' = p' d + left(X) and X'' = p'' d + 2 p' left(d) - X. Their parts
-        across the piece, of tangent t and curvature k, are 0 and (X'.t)^2 k.
+        The pieces have tangents (n, 2) and curvatures (n,), 1/mm, there. Along the line of travel d the centre X has
+        X' = p' d + left(X) and X'' = p'' d + 2 p' left(d) - X. Across a piece of tangent t and curvature k these have
+        the parts 0 and (X'.t)^2 k.
         """
         d, across = unit(phi), left(tangent)
         reach = dot(d, across)
@@ -304,10 +313,11 @@ class Line:
         return self.away * first, self.away * (along**2 * curvature - dot(bend, across)) / reach
 
     def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
-        """Both places (2, n, 2), seen from the starts of pieces, where the line of travel meets their circles.
+        """Both places (2, n, 2), mm from the pieces' starts, where the line of travel at phi (n,) meets their circles.
 
-        With y = q + x d on the line, q at its foot, the circle 2 y.m + k y^2 = 0 is k x^2 + 2 x (d.m + k q.d) + (2 q.m
-        + k q^2) = 0, also for k = 0.
+        With y = q + x d on the line, q its foot, m the piece's outward normal at its start, the circle 2 y.m + k y^2 =
+        0 is k x^2 + 2 x (d.m + k q.d) + (2 q.m + k q^2) = 0, also for k = 0. Where they do not meet it is nan; a circle
+        missed by `slack`, mm, or less is touched.
         """
         d, m, k = unit(phi), right(pieces.tangent), pieces.curvature
         q = self.offset * left(d) - pieces.start
@@ -326,7 +336,7 @@ class Line:
         return on_side
 
     def square(self, u: Array) -> Array:
-        """S^2, mm^2 (n,), at u = r^2, mm^2 (n,): (2 position)^2."""
+        """S^2 = (2 position)^2, mm^2 (n,), at u = r^2, mm^2 (n,)."""
         return 4.0 * (u - self.offset**2)
 
     def square_slope(self, u: Array) -> Array:
@@ -349,7 +359,10 @@ class Line:
 
 
 def led(guide: contacts.Guide, away: Side = 1) -> Arm | Line:
-    """Formulas of a guide whose position grows outwards, or inwards where the metal lies outside (-1)."""
+    """Formulas of a round touch's guide whose position grows outwards, or inwards where the metal lies outside (-1).
+
+    Raises ValueError for an arm without a length.
+    """
     if isinstance(guide, Oscillating):
         return Arm(guide.arm, guide.pivot, guide.side, away)
     return Line(guide.offset, away)
@@ -360,14 +373,14 @@ Guide: TypeAlias = Arm | Line
 
 
 def polar_rows(angle: Array, length: float) -> tuple[Array, Array, Array]:
-    """Give length u(angle) and two derivatives, each (n, 2), from the angle's own, (3, n)."""
+    """Vectors length u(angle) and two derivatives, each (n, 2), from an angle, rad, and its derivatives, (3, n)."""
     u = length * unit(angle[0])
     n = left(u)
     return u, angle[1][:, None] * n, angle[2][:, None] * n - (angle[1] ** 2)[:, None] * u
 
 
 def _on_arm(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
-    """Both crossings (2, n, 2), seen from the pieces' starts, nan where there are none; from the arm's circle."""
+    """Both crossings (2, n, 2), from the pieces' starts, nan without any; their places come from the arm's circle."""
     m, k = right(pieces.tangent), pieces.curvature
     v = m + k[:, None] * q
     size = np.hypot(v[:, 0], v[:, 1])
@@ -382,10 +395,7 @@ def _on_arm(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
 
 
 def _on_piece(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
-    """Both crossings (2, n, 2), seen from the pieces' starts, nan where there are none.
-
-    They come from the piece's own circle, which is the smaller one.
-    """
+    """Both crossings (2, n, 2), from the pieces' starts, nan without any; their places come from the piece's circle."""
     m, k = right(pieces.tangent), pieces.curvature
     v = m + k[:, None] * q
     size, away = np.hypot(v[:, 0], v[:, 1]), np.hypot(q[:, 0], q[:, 1])

@@ -31,10 +31,10 @@ ACROSS = 0.5 * math.pi
 class Bearing:
     """Where one contact bears at n shaft angles; complex numbers (n,) in the axes of the cam as it is drawn, mm.
 
-    `point` is where it touches, `normal` points out of the metal, `axis` is the x axis of the contact's guide and `arm`
-    the direction from an arm's pivot to its touch, on a stem that of the axis. `anchor` is the pivot of an arm, on a
-    stem the point of its axis at the roller's centre or on the face. `gain` is K, mm of normal per mm or rad of the
-    follower, `sense` that of the contact. `upper` is whether it bounds the follower's position from above.
+    `point` is where it touches; `normal`, `axis` and `arm` are unit vectors: the normal out of the metal, the x axis of
+    the contact's guide, and the direction from an arm's pivot to its touch, on a stem again the axis. `anchor` is the
+    pivot of an arm, on a stem the point of its axis at the roller's centre or on the face. `gain` is K, mm along the
+    normal per mm or rad of the follower, `sense` the contact's. `upper`: it bounds the follower's position from above.
     """
 
     point: Complexes
@@ -71,9 +71,10 @@ class Bearing:
 
 
 def bearing(contact: Contact[Guide, Touch], side: Side, shaft: Array, position: Array) -> Bearing:
-    """Where a contact bears at shaft angles (n,), from the follower's position and its derivative by that, (2, n).
+    """Where a contact bears at `shaft` angles (n,), rad; `position` (2, n) is the follower's, with its derivative.
 
-    The position is that from the zero of the contacts, mm or rad; the metal lies inside the contour (1) or outside.
+    The position, mm or rad, counts from the zero of the contacts, the derivative is by the shaft angle. The metal lies
+    inside the contour (side 1) or outside (-1). Raises ValueError for a round touch on an arm without a length.
     """
     own, slope = contact.own(position[0]), contact.sense * position[1]
     axis = np.exp(1j * (shaft + contact.turned))
@@ -82,6 +83,7 @@ def bearing(contact: Contact[Guide, Touch], side: Side, shaft: Array, position: 
         hand = guide.side
         arm, anchor = -axis * np.exp(1j * hand * own), guide.pivot * axis
         rate = 1.0 + hand * slope  # at which the arm turns in the axes of the cam
+        # the face is the tangent of the support function p = pivot sin(own) - nearer; a round touch stands off its path
         if isinstance(touch, Flat):
             normal = -arm * np.exp(-1j * hand * ACROSS)
             reach = guide.pivot * np.cos(own) * slope / rate
@@ -104,6 +106,6 @@ def bearing(contact: Contact[Guide, Touch], side: Side, shaft: Array, position: 
 
 
 def _across(path: Complexes, side: Side) -> Complexes:
-    """Normal out of the metal where the centre of a round touch runs counter-clockwise about the shaft along `path`."""
+    """Normal out of the metal, across the velocity `path` of a round touch's centre round the standing cam."""
     normal: Complexes = -1j * side * path / np.abs(path)
     return normal

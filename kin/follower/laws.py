@@ -1,4 +1,4 @@
-"""Intended motions of rollers as their tracking and their envelope need them."""
+"""Intended motions and pitch curves of rollers, in the forms that bounds of errors and envelopes take."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
-NEAR = 1e-7  # rad; a step of third order is good to rounding
+NEAR = 1e-7  # rad; up to here a step of third order is good to rounding
 
 
 def own_rows(contact: Contact[Any, Any], rows: Array) -> Array:
-    """Own position of a contact and its derivatives (m, n), mm or rad, of those of the follower (m, n)."""
+    """Own position of a contact and its derivatives (m, n), mm or rad, from the follower's `rows` (m, n)."""
     own: Array = contact.sense * rows
     own[0] += contact.zero
     return own
@@ -55,13 +55,14 @@ class GuidedPitch:
         return phi, own
 
     def points(self, tau: Array) -> tuple[Array, Array, Array]:
-        """Centre and two derivatives by the parameter, each (n, 2)."""
+        """Roller centre, mm, and two derivatives by the parameter tau (n,), each (n, 2)."""
         return self.guide.path(*self._own(tau))
 
     def rates(self, tau: Array) -> tuple[Array, Array]:
-        """First and second derivative of the distance from the pitch curve by the position, absolute, at tau: (n,).
+        """Absolute first and second derivative of the distance from the pitch curve, mm, by the position: (n,) each.
 
-        The first of an arm is l cos(pressure angle). Raises ContactError for a pressure angle of 90 degrees.
+        They are taken at parameters tau (n,). The first of an arm is l cos(pressure angle). Raises ContactError for a
+        pressure angle of 90 degrees.
         """
         phi, own = self._own(tau)
         _, first, second = self.guide.path(phi, own)
@@ -77,10 +78,10 @@ class GuidedPitch:
 
 
 def leeway(slope: Array, sag: Array, tolerance: float) -> Array:
-    """Travel (n,), rad or mm, at which a roller leaves the pitch curve by `tolerance`, mm, to second order.
+    """Travel (n,), rad or mm, by which a roller leaves the pitch curve by `tolerance`, mm, to second order.
 
-    `slope` and `sag` (n,) are the first and second derivative of the distance from the pitch curve by the position,
-    absolute.
+    `slope` and `sag` (n,) are the absolute first and second derivative of the distance from the pitch curve, mm, by the
+    position.
     """
     swing = tolerance / slope
     leeway: Array = swing + 0.5 * sag / slope * swing**2
@@ -102,7 +103,7 @@ class ByLaw:
         return steepness_of_law(self.law)
 
     def steepest(self, low: Array, high: Array) -> Array:
-        """Bounds of three derivatives over shaft angles from low to high, each (n,): (3, n)."""
+        """Bounds of the magnitudes of three derivatives over shaft angles from low to high, rad, each (n,): (3, n)."""
         return self._steepness.over(low, high)
 
 
@@ -142,5 +143,5 @@ class Swing:
         return steepness_of_transmission(self.transmission)
 
     def steepest(self, low: Array, high: Array) -> Array:
-        """Bounds of three derivatives over shaft angles from low to high, each (n,): (3, n)."""
+        """Bounds of the magnitudes of three derivatives over shaft angles from low to high, rad, each (n,): (3, n)."""
         return self.share * self._steepness.over(low, high)

@@ -46,13 +46,15 @@ class MeasuredMotion:
     phi       shaft angles (n,); the guide stands at these in the axes of the contour
     rows      position of contact 1 and two derivatives (3, n): the distance of its centre or face along the line of
               travel from the foot of the shaft, or the angle at the pivot between the line to the shaft and the arm
-    pressure  pressure angle, rad (n,), above 0 where the cam drives a rise
+    pressure  pressure angle, rad (n,), counter-clockwise from the normal out of the metal to the way in which the touch
+              moves away from the metal
     radius    radius of curvature of the contour where it is touched, mm (n,): 0 at a corner, negative in a hollow
     least     least position, and its shaft angle
     most      greatest position, and its shaft angle
     second    position with contact 2 held in place of contact 1 (n,); None of one contact
     apart     least and greatest of `second` less the position; None of one contact
-    travel    least and greatest place of contact on a flat face, mm: `Follower.contact_travel`; None of a round touch
+    travel    least and greatest place of contact on a flat face, mm, from the stem's axis or from the foot of the
+              pivot on the face; None of a round touch
     """
 
     unit: Unit
@@ -74,8 +76,8 @@ class MeasuredMotion:
     def dwells(self, reading: float) -> list[MeasuredDwell]:
         """Stretches of at least 10 degrees that rest within `reading`, mm or rad, of their middle position.
 
-        A stretch that is much longer at four times the depth is the top of a nose, and none. A dwell ends where the
-        follower leaves its level, the median, by half the reading.
+        They come in the order of their beginnings. A stretch that is much longer at four times the depth is the top of
+        a nose and no dwell. A dwell ends where the follower leaves its level, the median, by half the reading.
         """
         position, free = self.rows[0], np.ones(len(self.phi), dtype=bool)
         n, step = len(position), TURN / len(position)
@@ -86,18 +88,19 @@ class MeasuredMotion:
                 return sorted(dwells)
             within = np.arange(start, start + count) % n
             free[within] = False
-            rest = position[within]
-            middle = 0.5 * float(rest.max() + rest.min())
+            resting = position[within]
+            middle = 0.5 * float(resting.max() + resting.min())
+            # a nose is wider at four times the depth, seen from its top one reading above the middle
             near = np.abs(np.roll(position, -(start + count // 2)) - middle) <= (2.0 * DEEPER - 1.0) * reading
             if _ahead(near) + _ahead(near[::-1]) > WIDENS * count and count < n:
                 continue
-            level = float(np.sort(rest)[count // 2])
-            inner = np.flatnonzero(np.abs(rest - level) <= 0.5 * reading)
+            level = float(np.sort(resting)[count // 2])
+            inner = np.flatnonzero(np.abs(resting - level) <= 0.5 * reading)
             low, high = int(inner[0]), int(inner[-1])
             if (high - low) * step < LEAST_DWELL:
                 continue
             begin = start % n
-            flatness = float(np.ptp(rest[low : high + 1]))
+            flatness = float(np.ptp(resting[low : high + 1]))
             dwells.append(MeasuredDwell((begin + low) * step, (begin + high) * step, level, flatness))
 
 
@@ -108,11 +111,11 @@ def measured(
     side: Side = 1,
     outer: Contour | None = None,
 ) -> MeasuredMotion:
-    """Let a follower of one contact, or of two opposite ones, run on a contour about the shaft at the origin, mm.
+    """Let a follower of one contact, or of two opposite ones, run on a contour, mm, about the shaft at the origin.
 
-    The metal lies inside the contour (side 1) or outside (-1). `outer` is the outer flank of a groove, whose inner one
-    is `contour`: the roller rests on it as contact 2. Raises ContactError where the touch meets nothing, ValueError
-    for contacts for which no follower is known.
+    The motion comes at `steps` equal steps of the turn. The metal lies inside the contour (side 1) or outside (-1).
+    `outer` is the outer flank of a groove, whose inner one is `contour`: the roller rests on it as contact 2. Raises
+    ContactError where the touch meets nothing, ValueError for contacts for which no follower is known.
     """
     follower = still_follower(contacts, side)
     first, *others = follower.resting(contour)
@@ -132,6 +135,7 @@ def measured(
     phi = TURN * np.arange(steps) / steps
     rows = first.rows(phi) / follower.si
     pressure, radius = follower.pressed(contour, phi)
+    # extremes are also looked for beside each angle at which the contact may leap
     leaps = np.concatenate([drive.breaks for drive in (first, *others)])
     finer = np.concatenate([phi, leaps - LEAP, leaps + LEAP])
     step = TURN / steps
@@ -162,7 +166,7 @@ def positions(contour: Contour, contact: Contact[Guide, Touch], side: Side, phi:
 
 
 def _extreme(values: Callable[[Array], Array], angles: Array, step: float, sign: float) -> tuple[float, float]:
-    """Greatest of sign * values over shaft angles (n,) and up to `step` from the best of them: value and angle."""
+    """Greatest value (sign 1) or least (-1), and its angle, over shaft angles (n,) and within `step` of the best."""
     heights = sign * values(angles)
     best = int(np.argmax(heights))
     height, place = float(heights[best]), float(angles[best])
@@ -183,6 +187,7 @@ def _ahead(near: Mask) -> int:
 
 def _longest_flat(position: Array, free: Mask, span: float) -> tuple[int, int]:
     """First index and number of the longest run, among the free ones round the turn, that spans `span` at most."""
+    # a window slides over two turns; deques of indices hold its least and its greatest value first
     n = len(position)
     best, begin = (0, 0), 0
     low: deque[int] = deque()

@@ -29,8 +29,8 @@ class MotionError:
     at_deg          shaft angle of the greatest, [0, 360)
     increment       greatest change of the error while the shaft turns by `step_deg`, starting from each given angle
     dwell_flatness  greatest range of the measured position over a dwell of the intended motion; None without a dwell
-    extremes        "true": `max` is the greatest over all shaft angles; "sampled": over those that were looked at
-    remainder       by how much the greatest may exceed `max`: proved where extremes are true, else an estimate
+    extremes        "true": `max` is the greatest over all shaft angles; "sampled": over the angles looked at
+    remainder       amount by which the greatest may exceed `max`: proved where extremes are true, else an estimate
     """
 
     max: float
@@ -45,7 +45,7 @@ class MotionError:
 
     @property
     def bound(self) -> float:
-        """Proved upper bound of the motion error's size: `max` plus the remainder, mm or degrees."""
+        """Upper bound of the motion error's size, mm or degrees: `max` plus the remainder, proved where that is."""
         return self.max + self.remainder
 
     def less_sure(self, by: float) -> MotionError:
@@ -64,10 +64,10 @@ class MotionError:
 class Play:
     """Clearance between contour and follower over one turn, negative where they interfere.
 
-    A yoke: the breadth of the frame less that of the contour, mm. A double roller: the gap at the second roller while
-    the first is held in contact, mm. A flat pair: the angle by which the faces stand wider than they need, degrees.
-    The angles are shaft angles, [0, 360). `extremes` is "true" where they are those of all shaft angles, "sampled"
-    where they are those of the angles that were looked at.
+    A frame of faces: its breadth less the contour's, mm. A yoke of rollers, or a follower between two surfaces: its
+    free travel with the cam at rest, mm or degrees. A double roller: the gap at the second roller while the first is
+    held in contact, mm. A flat pair: the angle by which the faces stand wider than they need, degrees. The angles are
+    shaft angles, [0, 360). `extremes` is "true" for extremes over all of them, "sampled" over those looked at.
     """
 
     least: float
@@ -78,7 +78,7 @@ class Play:
     extremes: Extreme = "true"
 
     def less_sure(self, by: float) -> Play:
-        """Play with its least value lower and its greatest higher by `by`, a possible error in the unit of the play."""
+        """Play with its least value lower and its greatest higher by `by`, in its unit, the error that it may have."""
         return replace(self, least=self.least - by, most=self.most + by)
 
 
@@ -97,7 +97,7 @@ class Judged(NamedTuple):
 
 
 class ContactError(CamgeoError, ValueError):
-    """The follower finds no contact; `at` is the shaft angle in radians where it was looked for."""
+    """The follower finds no contact; `at` is the shaft angle, rad, at which contact was sought."""
 
     def __init__(self, message: str, angle: float) -> None:
         super().__init__(f"{message} at {degrees(angle):.6g} degrees")
@@ -105,7 +105,7 @@ class ContactError(CamgeoError, ValueError):
 
 
 def with_steps(phi: Array) -> Array:
-    """Return the given shaft angles (n,), and each of them an increment on: (2n,), for `motion_error`."""
+    """The given shaft angles (n,), rad, and after them each one an increment further: (2n,), for `motion_error`."""
     return np.concatenate([phi, phi + np.radians(STEP_DEG)])
 
 
@@ -118,20 +118,20 @@ def motion_error(
     remainder: float | None = 0.0,
     off: float = 0.0,
 ) -> MotionError:
-    """Sum up: `worst` error and where, `errors` (..., 2n) at `with_steps` of the given angles, dwell flatness.
+    """Motion error from the `worst` error and its shaft angle, and `errors` (..., 2n) at `with_steps` of n angles.
 
-    `remainder` is by how much the worst may be exceeded, proved; None where it is but the worst of samples. Radians
-    become degrees if the unit says so. `off`, mm or degrees, is how far arcs in place of splines put a
-    position off at most.
+    Errors and `flatness`, that of the dwells, are mm or rad; rad become degrees for the unit deg. `remainder` is the
+    proved amount by which the worst may be exceeded; None where it is the worst of samples alone. `off`, mm or degrees,
+    bounds the change of a position by arcs in place of splines.
     """
     scale = 180.0 / np.pi if unit == "deg" else 1.0
-    here, further = np.split(errors, 2, axis=-1)
+    given, further = np.split(errors, 2, axis=-1)
     return MotionError(
         max=scale * worst[0],
-        rms=scale * float(np.sqrt(np.mean(here * here))) + off,
+        rms=scale * float(np.sqrt(np.mean(given * given))) + off,
         unit=unit,
         at_deg=degrees(worst[1]),
-        increment=scale * float(np.abs(further - here).max()) + 2.0 * off,
+        increment=scale * float(np.abs(further - given).max()) + 2.0 * off,
         step_deg=STEP_DEG,
         dwell_flatness=None if flatness is None else scale * flatness + 2.0 * off,
         extremes="sampled" if remainder is None else "true",

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 CELLS = 16  # of a piece, in the table of shaft angles
-PARTS = 2  # of a piece, from which its bounds are sought
+PARTS = 2  # of a piece, with which the search for its bounds begins
 MOST_CUTS = 8  # in quarters, until the shaft angle is seen to rise
 STEPS = 12  # of Newton's method
 NEAR = 1e-6  # rad: from here a step of second order is good to rounding
@@ -58,9 +58,9 @@ class SplinePath:
 
     @staticmethod
     def of(contour: Contour, offset: float, guide: Guide, contact: Contact[Any, Any]) -> SplinePath:
-        """Path beside a contour, which for a guide that stands turned ahead is turned back.
+        """Path `offset` mm beside a contour, turned back by the angle that the contact's guide stands turned ahead.
 
-        UnsettledError where it is not smooth and one turn round, or not all of polynomials.
+        Raises UnsettledError where the path is not smooth, does not go once round, or is not all of polynomials.
         """
         if not contour.is_spline:
             raise UnsettledError("not all of the contour are polynomials")
@@ -78,7 +78,7 @@ class SplinePath:
         return RESOLUTION * (float(np.abs(self.beziers.control).max()) if self.guide.unit == "mm" else 1.0)
 
     def at(self, row: Indices, t: Array) -> tuple[CentreState, Array]:
-        """State of the centre on pieces `row` at t (n,), and the derivative of its path's arc length by t (n,)."""
+        """State of the centre on pieces `row` (n,) at t (n,), and the derivative of its path's length by t (n,), mm."""
         x, v, w = self.beziers.rows(row, t)
         speed = np.hypot(v[:, 0], v[:, 1])
         with np.errstate(divide="ignore", invalid="ignore"):  # at a cusp nothing is proved
@@ -90,12 +90,14 @@ class SplinePath:
 
     def demand_smooth(self) -> None:
         """Raise UnsettledError unless the path is smooth and the graph of a position over the shaft angle, proved."""
+        # a corner passes where the path keeps within rounding: ends that meet, and a tangent that hardly turns
         before, after = np.roll(self.beziers.velocity[:, -1], 1, axis=0), self.beziers.velocity[:, 0]
         turn = np.arctan2(cross(before, after), dot(before, after))
         gap = np.hypot(*(self.beziers.control[:, 0] - np.roll(self.beziers.control[:, -1], 1, axis=0)).T)
         extent = float(np.abs(self.beziers.control).max())
         if not (gap + (gap + abs(self.offset * turn)) * np.abs(turn) <= RESOLUTION * extent).all():
             raise UnsettledError("the contour has corners")
+        # parts are quartered until the shaft angle's slope in the middle exceeds all that it can change by
         row, low, high = self.parts()
         for _ in range(MOST_CUTS):
             state, rate = self.at(row, 0.5 * (low + high))
@@ -133,7 +135,7 @@ class SplinePath:
         return cell // CELLS, np.clip(cell % CELLS / CELLS + start, 0.0, 1.0)
 
     def reached(self, phi: Array) -> Array:
-        """Position of the roller, mm or rad (n,), at shaft angles phi (n,), rad.
+        """Own position of the roller, mm or rad (n,), at shaft angles phi (n,), rad.
 
         Raises UnsettledError where a contact is not found in `STEPS` steps.
         """
@@ -151,11 +153,13 @@ class SplinePath:
 
     @cached_property
     def ends(self) -> Array:
-        """Shaft angles, rad, at which the roller touches the ends and the middles of the pieces."""
+        """Shaft angles (2 m,), rad, at which the roller touches the starts and the middles of the m pieces."""
         return self._table.edges[:-1][:: CELLS // 2]
 
     def gap(self, centres: Array, phi: Array) -> Array:
-        """Gap (n,), mm, between the contour and a roller with its centre at (n, 2), near where it rests at phi (n,).
+        """Gap (n,), mm, between the contour and a roller with its centre at `centres` (n, 2), mm.
+
+        The nearest point of the contour is sought from where the roller rests at shaft angles phi (n,), rad.
 
         Raises UnsettledError for a gap above `MOST_PLAY` of the roller's radius, and where the foot is not found.
         """
@@ -172,6 +176,7 @@ class SplinePath:
                 if np.abs(gap).max() > MOST_PLAY * radius:
                     break
                 return gap
+            # a step that leaves the piece goes on over the next one by as much arc length
             t = t + step
             over, under = t > 1.0, t < 0.0
             beyond = np.where(over, (t - 1.0) * speed, t * speed)
@@ -188,13 +193,13 @@ class SplinePath:
         return self
 
     def parts(self) -> tuple[Indices, Array, Array]:
-        """Equal parts of all pieces: their rows, and the parameters at both ends, (n,) each."""
+        """Equal parts of all pieces: the index of the piece, and the parameters at both ends, (n,) each."""
         part = np.tile(np.arange(PARTS), self.beziers.count)
         return np.repeat(np.arange(self.beziers.count), PARTS), part / PARTS, (part + 1.0) / PARTS
 
 
 class _Table(NamedTuple):
-    """Shaft angles at the ends of n cells, rising, their widths, and the derivative of the parameter by it at both."""
+    """n cells of shaft angle: `edges` (n + 1,) rising, widths, the parameter's derivatives at both ends, within."""
 
     edges: Array
     width: Array
@@ -203,9 +208,11 @@ class _Table(NamedTuple):
 
 
 class CurvatureBounds(NamedTuple):
-    """Bounds over n stretches of a path: of its curvature, and of that's derivative by arc length; inf where unknown.
+    """Bounds over n stretches of a path, (n,) each; inf where unknown.
 
-    half, inner  bounds of the arc length from the middle to either end, from above and from below
+    curvature    of the curvature's magnitude, 1/mm
+    change       of the magnitude of its derivative by arc length, 1/mm^2
+    half, inner  of the arc length from the middle to either end, mm, from above and from below
     """
 
     curvature: Array
@@ -215,13 +222,15 @@ class CurvatureBounds(NamedTuple):
 
     @staticmethod
     def of(control: Array, offset: float) -> CurvatureBounds:
-        """Bounds of the path that lies `offset`, mm, beside stretches of a contour of control points (n, d + 1, 2)."""
+        """Bounds of the path `offset` mm to the right of stretches of a contour, control points (n, d + 1, 2), mm."""
         v = derivative(control)  # first to third derivative, as polynomials of the parameter
         w = derivative(v)
         u = derivative(w)
+        # the speed is at least its part along the chord, and at most the longest coefficient
         chord = control[:, -1] - control[:, 0]
         way = chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
         least, most = np.einsum("nkc,nc->nk", v, way).min(axis=1), np.hypot(v[:, :, 0], v[:, :, 1]).max(axis=1)
+        # curvature k = (v x w)/v^3 and k' = (v x u)/v^4 - 3 (v x w)(v.w)/v^6, on the path over 1 + k r and its cube
         turning = cross_product(v, w)
         low, high = turning.min(axis=1), turning.max(axis=1)
         along = bernstein_product(v[:, :, 0], w[:, :, 0]) + bernstein_product(v[:, :, 1], w[:, :, 1])
@@ -298,12 +307,15 @@ class BezierSpans:
         return state.limits(self.half, self.shape.curvature, self.shape.change)
 
     def bounds(self, state: CentreState, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
-        """Upper bounds of the absolute error, one reached in each span, and where, off the middle: (n,) each."""
+        """Upper bounds of the absolute error, one reached in each stretch, and where, mm off the middle: (n,) each.
+
+        `most` bounds the error's three derivatives, `rows` (3, n) are the law's at the middles.
+        """
         error = state.error(own_rows(self.path.contact, rows))
-        (up, high, at), (down, low, other) = (
+        (up, high, at_high), (down, low, at_low) = (
             bounds_of_error(sign * error, most, self.half, self.shape.inner) for sign in (1.0, -1.0)
         )
-        return np.maximum(up, down), np.maximum(high, low), np.where(high >= low, at, other)
+        return np.maximum(up, down), np.maximum(high, low), np.where(high >= low, at_high, at_low)
 
 
 def quartered(row: Indices, low: Array, high: Array, which: NDArray[np.bool_]) -> tuple[Indices, Array, Array]:

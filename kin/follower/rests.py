@@ -20,7 +20,7 @@ INSIDE = np.array([0.07, 0.25, 0.43, 0.6, 0.78, 0.94])  # of a stretch: places a
 
 
 def dwells(lift: Lift) -> Iterator[tuple[float, float]]:
-    """Dwells of a lift, over which p is constant: (from, to), rad, to > from."""
+    """Dwells of a lift, stretches of constant p: pairs (from, to) of shaft angles, rad, to > from."""
     ends = lift.breaks if len(lift.breaks) else np.zeros(1)
     begin, width = ends[lift.steady], np.diff(ends, append=ends[0] + TURN)[lift.steady]
     places = begin + width * np.array([[0.25], [0.6]])
@@ -30,7 +30,7 @@ def dwells(lift: Lift) -> Iterator[tuple[float, float]]:
 
 
 def dwells_of_law(law: Piecewise) -> Iterable[tuple[float, float]]:
-    """Stretches of a constant law over the shaft angle: from, to, in radians, to > from."""
+    """Dwells of a law, its constant stretches: pairs (from, to) of shaft angles, rad, to > from."""
     ends = law.breaks if len(law.breaks) else np.zeros(1)
     width = np.diff(ends, append=ends[0] + TURN)
     rates = law.derivatives((ends[:, None] + width[:, None] * INSIDE).ravel(), 2)[1:]
@@ -39,14 +39,14 @@ def dwells_of_law(law: Piecewise) -> Iterable[tuple[float, float]]:
 
 
 def dwells_of_transmission(transmission: Transmission) -> Iterator[tuple[float, float]]:
-    """Stretches of constant psi: from, to, as shaft angles in radians, to > from."""
+    """Dwells of a transmission, stretches of constant psi: pairs (from, to) of shaft angles, rad, to > from."""
     ends = transmission.breaks if len(transmission.breaks) else np.zeros(1)
     shaft = transmission.at(np.append(ends, ends[0] + TURN), 0)[0][0].tolist()
     return ((a, b) for a, b, steady in zip(shaft[:-1], shaft[1:], transmission.steady, strict=True) if steady)
 
 
 def dwell_angles(rests: Iterable[tuple[float, float]], phi: Array) -> Iterator[Array]:
-    """For each dwell its ends and the given shaft angles phi (n,) within it."""
+    """For each dwell (from, to), rad, its ends and those of the shaft angles phi (n,) within it, rising."""
     for begin, end in rests:
         inside = begin + np.mod(phi - begin, TURN)
         yield np.concatenate([[begin], np.sort(inside[inside < end]), [end]])

@@ -2,11 +2,11 @@
 
 Positions are mm or swings in radians, error figures mm or degrees. The greatest motion error is that over all shaft
 angles, with a proved remainder (`kin.follower.tracking`). A smooth contour of polynomials is followed itself
-(`kin.follower.on_spline`); for splines with corners, beside lines and arcs or rational stand arcs, whose distance is
-counted in. On a polygon of more than MOST_PIECES pieces, and where the proof does not succeed, the error is that of
-samples: at the given shaft angles, where a piece stands out most and, up to MOST_PIECES, where the roller passes from
-piece to piece and midway along each; more closely about the worst of them.
-So is the play between two rollers, without the closer look.
+(`kin.follower.on_spline`); arcs stand for splines that have corners, are rational or lie beside lines and arcs, and
+their distance is counted in. On a polygon of more than MOST_PIECES pieces, and where the proof does not succeed, the
+error is that of samples: at the given shaft angles, where a piece stands out most and, up to MOST_PIECES, where the
+roller passes from piece to piece and midway along each; more closely about the worst of them. The play between two
+rollers is likewise that of samples, without the closer look.
 """
 
 from __future__ import annotations
@@ -44,22 +44,21 @@ if TYPE_CHECKING:
     from kin.law.contacts import Contact, Side
     from kin.numeric.arrays import Array, Indices
 
-MOST_ARCS = 200_000  # in place of a spline, which repeats nothing
-MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
+MOST_ARCS = 200_000  # pieces in place of a spline, which repeats nothing
+MOST_PIECES = 20_000  # of a polygon: with more the error repeats itself many times between neighbouring shaft angles
 ONE_ANGLE = 1e-12  # rad; shaft angles this near are one
 CLOSER = 8  # places about which samples are looked at more closely, and steps to either side
 ROUNDS = 4  # of samples, each closer than the last
 SPLINE_ERROR = 1e-7  # mm, within which arcs stand in for a spline that drives a train
-INSET = 1e-6  # how far within an interval between two angles it is looked for the piece that is met there
+INSET = 1e-6  # of an interval between two angles, so far within which the piece met there is sought
 HALVINGS = 60  # of an interval, more than a number has bits: a passage is found to its last places
 
 
 @dataclass(frozen=True, eq=False)
 class OfRoller:
-    """Position of a guided roller that rests on a contour; `obstacle` is what the roller's centre cannot enter.
+    """Own position of a guided roller that rests on a contour; `obstacle` bounds what its centre cannot enter.
 
-    The guide stands at the shaft angle and what it is `turned` ahead. What a piece's curvature and tangent make of the
-    derivatives is the guide's to tell.
+    The guide stands `turned`, rad, ahead of the shaft angle.
     """
 
     obstacle: Arcs
@@ -76,10 +75,12 @@ class OfRoller:
 
     @cached_property
     def breaks(self) -> Array:
-        """Shaft angles, rad, at which the roller passes from piece to piece.
+        """Shaft angles (k,), rad, rising, where the centre can come to an end of a piece or passes from piece to piece.
 
-        Two passages within a millionth of an interval may be lost.
+        Two passages within a millionth of an interval may be lost. Raises ContactError where the roller touches
+        nothing.
         """
+        # between angles of ends one passage at most is expected: it is bisected
         ends = self.guide.shaft_angle(np.concatenate([self.obstacle.start, self.obstacle.ends])) - self.turned
         ends = np.unique(np.mod(ends[np.isfinite(ends)], TURN))
         width = np.diff(ends, append=ends[:1] + TURN)
@@ -95,19 +96,26 @@ class OfRoller:
         return np.sort(np.mod(np.concatenate([ends, low]), TURN))
 
     def rows(self, phi: Array) -> Array:
-        """Position, m or rad, and two derivatives by the shaft angle, (3, n), at angles phi (n,), not at breaks."""
+        """Position, m or rad, and two derivatives by the shaft angle, (3, n), at angles phi (n,), not at breaks.
+
+        Raises ContactError where the roller touches nothing.
+        """
         guide, angle = self.guide, phi + self.turned
         r, piece = self._touched(phi)
         met = self.obstacle.take(piece)
         position = guide.position(r)
         x = guide.centre(angle, position)
+        # the piece's circle is 2 y.m + k y^2 = 0 with y = x - start: its gradient m + k y points outwards
         outward = right(met.tangent) + met.curvature[:, None] * (x - met.start)
         tangent = left(outward / np.hypot(outward[:, 0], outward[:, 1])[:, None])
         rows: Array = guide.si * np.stack([position, *guide.rates(angle, x, tangent, met.curvature)])
         return rows
 
     def pressed(self, phi: Array) -> tuple[Array, Array]:
-        """Pressure angle, rad, and radius of curvature of the path of the roller's centre, mm, (n,) each."""
+        """Pressure angle, rad, and radius of curvature of the path of the roller's centre, mm, (n,) each, at phi (n,).
+
+        Raises ContactError where the roller touches nothing.
+        """
         angle = phi + self.turned
         r, piece = self._touched(phi)
         met = self.obstacle.take(piece)
@@ -124,7 +132,7 @@ class _Rollers(Moved):
     """Common part of a follower with one roller and one with two rollers of the same radius."""
 
     side: Side  # of the contour on which the metal lies: 1 inside, -1 outside
-    judged: ClassVar[int]  # the first so many contacts, by their motion error
+    judged: ClassVar[int]  # number of contacts, from the first, whose motion error counts
 
     @property
     def radius(self) -> float:
@@ -142,22 +150,26 @@ class _Rollers(Moved):
         return self.guides[0].lever
 
     def drives(self, contour: Contour) -> list[OfRoller]:
-        """Position of each roller on its guide; arcs within SPLINE_ERROR, or as fine as asked for, are its splines."""
+        """Own position of each roller; arcs stand for splines, within `contour.arcs_within` or SPLINE_ERROR, mm."""
         obstacle = self._obstacle(contour, contour.arcs_within or SPLINE_ERROR)
-        each = zip(self.contacts, self.guides, strict=True)
-        return [OfRoller(obstacle, guide, contact.turned) for contact, guide in each]
+        guided = zip(self.contacts, self.guides, strict=True)
+        return [OfRoller(obstacle, guide, contact.turned) for contact, guide in guided]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
         """Pressure angle at contact 1, rad, and radius of curvature of the contour there, mm, (n,) each, at phi (n,).
 
-        The angle counts counter-clockwise from the contour's outward normal to the way in which the roller travels
-        outwards. The radius is 0 at a corner, negative in a hollow and infinite on a line.
+        The angle counts counter-clockwise from the normal out of the metal to the way in which the roller moves away
+        from the metal. The radius is 0 at a corner, negative in a hollow and infinite on a line. Raises ContactError
+        where the roller touches nothing.
         """
         pressure, radius = self.drives(contour)[0].pressed(phi)
         return pressure, radius - self.radius
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
-        """Shaft angle, rad, and position, mm or rad, (n,) each, with each roller on metal at points, normals (n, 2)."""
+        """Shaft angle, rad, and position, mm or rad, (n,) each, with each roller on metal at points (n, 2), mm.
+
+        `normals` (n, 2) are outward of the contour. Out of reach the angle is nan.
+        """
         centres = points + self.side * self.radius * normals
         distance = np.hypot(centres[:, 0], centres[:, 1])
         return [
@@ -172,12 +184,12 @@ class _Rollers(Moved):
     @cached_property
     def pitches(self) -> tuple[GuidedPitch, ...]:
         """Intended path of each roller's centre."""
-        each = zip(self.contacts, self.guides, strict=True)
-        return tuple(GuidedPitch(contact, guide, self.breaks, self.over) for contact, guide in each)
+        guided = zip(self.contacts, self.guides, strict=True)
+        return tuple(GuidedPitch(contact, guide, self.breaks, self.over) for contact, guide in guided)
 
     @cached_property
     def _rates(self) -> tuple[tuple[Array, Array], ...]:
-        """Rates of each roller's distance from its pitch curve, all round, as limits need them."""
+        """Absolute derivatives of each roller's distance from its pitch curve by the position, (n,) each, all round."""
         tau = grid(self.breaks)
         return tuple(pitch.rates(tau) for pitch in self.pitches)
 
@@ -192,26 +204,29 @@ class _Rollers(Moved):
     def judge(self, contour: Contour, phi: Array) -> Judged:
         """Motion error with a roller in contact, and the play; rms and increments are from the shaft angles phi (n,).
 
-        ContactError where a roller meets nothing.
+        Raises ContactError where a roller meets nothing.
         """
         try:
             return self._judged_on_spline(contour, phi)
         except UnsettledError:
             pass  # arcs stand for it
         obstacle, steps, spread = self._obstacle(contour), with_steps(phi), contour.spread
+        # the rollers at the given angles, an increment further, and where few pieces end
         few = len(obstacle) <= (MOST_ARCS if contour.beziers.count else MOST_PIECES)
-        each = list(zip(self.contacts, self.guides, self._looked(obstacle, steps), strict=False))
+        judged = list(zip(self.contacts, self.guides, self._looked(obstacle, steps), strict=False))
         # a roller that stands turned meets the contour as one that does not meets it turned back
-        held = [hold_roller(obstacle.turned(-contact.turned), guide, at, contact, few) for contact, guide, at in each]
-        place = [there.contact.position(there.position[: len(steps)]) for there in held]
+        held = [hold_roller(obstacle.turned(-contact.turned), guide, at, contact, few) for contact, guide, at in judged]
+        place = [roller.contact.position(roller.position[: len(steps)]) for roller in held]
         errors = np.stack(place) - self.course.rows(steps)[0]
         worst, remainder = settled(held, self.course, errors, few=few)
+        # range of the position over each dwell
         dwells = list(dwell_angles(self.rests, phi))
         kept = np.empty((1, 0))
         if dwells:
-            kept = np.stack([held_position(there.search, there.contact, np.concatenate(dwells)) for there in held])
+            kept = np.stack([held_position(roller.search, roller.contact, np.concatenate(dwells)) for roller in held])
         ends = np.cumsum([len(angle) for angle in dwells])[:-1]
         flatness = [float(np.ptp(part, axis=1).max()) for part in np.split(kept, ends, axis=1) if part.size]
+        # arcs in place of splines may be off by `spread`
         off = self.motion_limit(spread) if spread else 0.0
         motion = motion_error(worst, errors, max(flatness, default=None), self.unit, remainder=remainder, off=off)
         play, closure = self._play(contour, obstacle, held, phi), self.closure
@@ -219,9 +234,10 @@ class _Rollers(Moved):
 
     def _judged_on_spline(self, contour: Contour, phi: Array) -> Judged:
         """Judge on the contour's own Bezier pieces, if these are smooth. UnsettledError where they are not."""
-        each = zip(self.contacts, self.guides, strict=True)
-        paths = [SplinePath.of(contour, self.side * self.radius, guide, contact) for contact, guide in each]
+        guided = zip(self.contacts, self.guides, strict=True)
+        paths = [SplinePath.of(contour, self.side * self.radius, guide, contact) for contact, guide in guided]
         steps, counted = with_steps(phi), paths[: self.judged]
+        # one search at all angles: the given ones, an increment further, ends of pieces, dwells
         angles = np.concatenate(
             [steps, *(path.ends for path in paths), *(rests := list(dwell_angles(self.rests, phi)))]
         )
@@ -242,10 +258,10 @@ class _Rollers(Moved):
         """Gaps (n,), mm, at shaft angles phi (n,) by positions (2, n) of both rollers; None for a single roller."""
 
     def motion_limit(self, tolerance: float) -> float:
-        """Greatest error, degrees or mm, of a contour within `tolerance` of the exact one.
+        """Greatest error, degrees or mm, of a contour within `tolerance` e, mm, of the exact one.
 
-        That is e/cos(pressure angle), of an arm over its length, the largest over the turn and of all rollers, and the
-        term of second order.
+        To first order it is e/cos(pressure angle), on an arm divided by its length; the largest over the turn and of
+        all rollers. The term of second order is added. Raises ContactError for a pressure angle of 90 degrees.
         """
         most = max(float(leeway(*rates, tolerance).max()) for rates in self._rates)
         return math.degrees(most) if self.unit == "deg" else most
@@ -286,20 +302,20 @@ class GuidedRoller(_Guided):
 class RollerYoke(_Guided):
     """Two rollers opposite each other in a frame that travels on a line through the shaft.
 
-    Their centres are w apart, mm, the datum of roller 2. The position is the distance p of roller 1's centre from the
+    Their centres are w apart, mm, the zero of roller 2. The position is the distance p of roller 1's centre from the
     shaft, of which `law` is the intended one; p(theta) + p(theta + pi) = w, so the pitch curve has constant diameters
     through the shaft, and roller 2 makes the error that roller 1 makes half a turn on.
     """
 
     @cached_property
     def _opposite_rates(self) -> tuple[tuple[Array, Array], ...]:
-        """Rates of both rollers, looked at wherever either passes a break."""
+        """Derivatives of both rollers' distances from the pitch curve, all round and where either passes a break."""
         tau = grid(np.sort(np.mod(np.concatenate([self.law.breaks, self.law.breaks + np.pi]), TURN)))
         return tuple(pitch.rates(tau) for pitch in self.pitches)
 
     @property
     def closure(self) -> Closure:
-        """The way that the frame can travel with the cam at rest."""
+        """Rule for the play: the way, mm, that the frame can travel with the cam at rest."""
         return Closure(self.play_limit, lever=2.0, radius=self.radius)
 
     def play_limit(self, tolerance: float) -> float:
@@ -341,9 +357,9 @@ class DoubleRoller(OfTransmission, _Rollers):
         return RollerEnvelope(TransmissionPitch(self.transmission), self.radius)
 
     def play_limit(self, tolerance: float) -> float:
-        """Greatest gap or interference at roller B, mm, of a contour within `tolerance`, with roller A in contact.
+        """Greatest gap or interference at roller B, mm, of a contour within `tolerance`, mm, with roller A in contact.
 
-        It sums the error at B and the travel of B that comes of the swing by an error at A.
+        It is the sum of the error at B and of the travel of B in the swing by an error at A.
         """
         first, (slope, bend) = self._rates
         swing = leeway(*first, tolerance)
@@ -367,7 +383,10 @@ class DoubleRoller(OfTransmission, _Rollers):
 
 
 def hold_roller(obstacle: Arcs, guide: Guide, looked: Array, contact: Contact[Any, Any], few: bool) -> Held:
-    """Hold a roller at shaft angles `looked` (n,) first, and where few pieces end. ContactError where it is loose."""
+    """Hold a roller in contact at shaft angles `looked` (n,), rad, and, if pieces are `few`, where each of them ends.
+
+    The given angles come first. Raises ContactError where the roller touches nothing.
+    """
     pieces, phi = obstacle, looked
     if few:
         pieces, _ = shortened(obstacle, guide)
@@ -381,8 +400,8 @@ def settled(
 ) -> tuple[tuple[float, float], float | None]:
     """Greatest absolute error of rollers held in contact, and its shaft angle; and by how much it may be exceeded.
 
-    `sampled` are the errors (k, n) at the first n angles of each. That is all that is known where pieces are not few;
-    where they are and no proof is found, all angles are looked at: None then.
+    Errors are mm or rad. `sampled` (k, n) are the errors of k rollers at their first n angles. Where pieces are `few` a
+    proof is sought; without it the error is the worst of samples, and None stands for the amount.
     """
     worst_sampled = Greatest(*greatest(np.abs(sampled).max(axis=0), rollers[0].phi[: sampled.shape[1]]), 0.0)
     passing: list[Array] = []
@@ -399,8 +418,8 @@ def settled(
 def _closely(rollers: Sequence[Held], law: IntendedLaw, looked: Array) -> tuple[float, float]:
     """Greatest absolute error, and its shaft angle, at shaft angles `looked` (n,) and more closely about the worst.
 
-    Among these is where a piece by itself, touched or not, would put the roller out the most: so much is sure. And
-    about the corners that turn the most: beside a dent in a fine polygon they stand out.
+    Added are angles at which a piece by itself, touched or not, would put the roller out the most, and the ends of the
+    pieces that turn the most: beside a dent in a fine polygon they stand out.
     """
     for roller in rollers:
         error, phi = outward(roller, law)
@@ -416,6 +435,7 @@ def _closely(rollers: Sequence[Held], law: IntendedLaw, looked: Array) -> tuple[
         ]
         error = np.max(errors, axis=0)
         worst = max(worst, greatest(error, looked))
+        # the highest local maxima, each looked at again over the wider of the gaps beside it
         order = np.argsort(np.mod(looked, TURN))
         at, height = np.mod(looked, TURN)[order], error[order]
         gap = np.diff(at, append=at[0] + TURN)
@@ -427,7 +447,7 @@ def _closely(rollers: Sequence[Held], law: IntendedLaw, looked: Array) -> tuple[
 
 
 def contact_distances(search: Search, phi: Array, turned: float = 0.0) -> tuple[Array, Indices]:
-    """Distance of a roller's centre from the shaft, mm, and index of the piece it touches, (n,) each, at phi (n,), rad.
+    """Distance of a roller's centre from the shaft, mm, and index of the piece touched, (n,) each, at phi (n,), rad.
 
     The contact is `turned`, rad, ahead of the shaft. Raises ContactError where the roller touches nothing.
     """
@@ -438,18 +458,21 @@ def contact_distances(search: Search, phi: Array, turned: float = 0.0) -> tuple[
 
 
 def held_position(search: Search, contact: Contact[Any, Any], phi: Array, turned: float = 0.0) -> Array:
-    """Position of the follower, mm or rad (n,), by one roller held in contact. ContactError where it meets nothing."""
+    """Position of the follower, mm or rad (n,), at phi (n,), rad, by one roller held in contact.
+
+    The contact is `turned`, rad, ahead of the shaft. Raises ContactError where the roller touches nothing.
+    """
     return contact.position(search.guide.position(contact_distances(search, phi, turned)[0]))
 
 
 def end_angles(pieces: Arcs, guide: Guide, angles: Array) -> Array:
-    """Shaft angles at which the roller's centre comes to an end of a piece, each once, without those known (n,)."""
+    """Shaft angles (m,), rad, at which the centre comes to an end of a piece, each once, without the known `angles`."""
     angle = guide.shaft_angle(np.concatenate([pieces.start, pieces.ends]))
     angle = np.concatenate([np.mod(angles, TURN), np.mod(angle[np.isfinite(angle)], TURN)])
     order = np.argsort(angle, kind="stable")
     new = np.diff(angle[order], prepend=-1.0) > ONE_ANGLE
     first = np.flatnonzero(new)
-    # the known ones stand first in the original order, and so does the least number of each group
+    # the known angles stand first in the original order, so the least number of a group shows whether one is known
     least = np.minimum.reduceat(order, first) if len(first) else order
     ends: Array = angle[least[least >= len(angles)]]
     return ends

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 CELLS = 256  # in a turn, besides those that breaks add
-TABLED = 2048  # in a turn, of the table of parameters
+TABLED = 2048  # cells in a turn, of the table of parameters
 ROUNDING = 1e-12  # rad; a break this near counts as inside
 SMOOTH = 1e-9  # of the derivative's greatest, below which a jump of it is rounding
 
@@ -56,9 +56,9 @@ class Steepness:
         return np.stack(levels)
 
     def over(self, low: Array, high: Array) -> Array:
-        """Bounds of the three derivatives over [low, high], each (n,): (3, n).
+        """Bounds of the magnitudes of the three derivatives over [low, high], rad, each (n,): (3, n).
 
-        Infinite for the derivative after one that jumps inside: there is no such bound.
+        Above a derivative that jumps inside the range the bounds are infinite.
         """
         count = self.most.shape[1]
         width = np.where(np.isfinite(high - low), high - low, np.inf)
@@ -77,7 +77,7 @@ class Steepness:
 
 
 def steepness_of_law(law: Piecewise) -> Steepness:
-    """Bounds of a law over the shaft angle itself."""
+    """Bounds of the first three derivatives of a law over the shaft angle."""
     edges, at_knot = _cells(law.knots)
     mid, rad = law.enclosure(edges[:-1], edges[1:], 3)
     at = edges[:-1][at_knot]
@@ -87,7 +87,7 @@ def steepness_of_law(law: Piecewise) -> Steepness:
 
 @lru_cache(maxsize=8)  # the files of one cam are judged one after another
 def steepness_of_transmission(transmission: Transmission) -> Steepness:
-    """Bounds of psi over the shaft angle, which rises with the parameter of the law."""
+    """Bounds of the first three derivatives of psi by the shaft angle, which rises with the law's parameter."""
     edges, at_knot = _cells(transmission.psi.knots)
     shaft, psi = transmission.jets(BallJet.variable(edges[:-1], edges[1:], 3))
     most = [row.rows[0].magnitude for row in derivatives_by(psi, shaft)[1:]]
@@ -122,7 +122,10 @@ class ParameterTable:
         return ParameterTable(phi, tau, 1.0 / after, 1.0 / before)
 
     def at(self, phi: Array) -> tuple[Array, Indices]:
-        """Parameter near that of shaft angles phi (n,), in the same stretch of the law, and its side if at a break."""
+        """Parameters (n,) near those of shaft angles phi (n,), rad, in the same stretch of the law; and sides (n,).
+
+        The side, 1 or -1, is the one from which a parameter at a break is seen.
+        """
         x = np.mod(phi - self.phi[0], self.phi[-1] - self.phi[0]) + self.phi[0]
         cell = np.clip(np.searchsorted(self.phi, x, side="right") - 1, 0, len(self.after) - 1)
         low, high, width = self.tau[cell], self.tau[cell + 1], self.phi[cell + 1] - self.phi[cell]

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
     from kin.numeric.extrema import Extremes
 
-ROUNDED = 1e-12  # rad: normals this close to 2 pi may be those of edges in one line with one at 0
+ROUNDED = 1e-12  # rad: a normal this close to 2 pi may belong to an edge in line with an edge of normal 0
 NEAR_CENTRE = 20.0  # of the extent; a point found from a centre farther away would lose too much to rounding
 FLATTEST = 1e9  # mm; larger radii of curvature are all alike
 
@@ -46,11 +46,11 @@ class FlatContacts:
     back: float = 0.0
 
     def find(self, theta: Array) -> Indices:
-        """Stretch of each angle (n,); at a break the one that begins there."""
+        """Index (n,) of the stretch of each angle theta (n,), rad; at a break of the stretch that begins there."""
         return (np.searchsorted(self.breaks, np.mod(theta, TURN), side="right") - 1) % len(self.breaks)
 
     def derivatives(self, theta: Array, stretch: Indices) -> Array:
-        """q, q', q'' (3, n) at angles theta (n,) as the corner or piece of the given stretches has them."""
+        """q, q', q'' (3, n), mm, at angles theta (n,), rad, of the corner or piece of the given stretches (n,)."""
         return self._rows(theta, stretch, unit(theta))
 
     def _rows(self, theta: Array, stretch: Indices, u: Array) -> Array:
@@ -79,7 +79,10 @@ class FlatContacts:
         return np.concatenate([low, high], axis=1)
 
     def breadth_extremes(self, resolution: float) -> Extremes:
-        """Extremes of the breadth q(theta) + q(theta + pi), over theta from 0 to pi, mm, to a resolution."""
+        """Extremes of the breadth q(theta) + q(theta + pi), mm, over theta from 0 to pi, to a `resolution`, mm.
+
+        Raises UnsettledError where rounding is larger than the resolution.
+        """
         nodes = self.nodes(0.0, np.pi, np.mod(self.breaks - np.pi, TURN))
         near, near_low, near_high = self.between(nodes)
         far, far_low, far_high = self.between(nodes, np.pi)
@@ -141,7 +144,10 @@ def _radius(beziers: Beziers, row: Indices, t: Array) -> Array:
 
 
 def bearing_of(contour: Contour) -> FlatContacts:
-    """Find what bears in every direction. Cost: one support evaluation for each break of the contour's support."""
+    """Contacts of a contour with flat faces in all directions, with `back` 0.
+
+    The cost is one support evaluation for each break of the contour's support function.
+    """
     breaks = contour.normals
     middle = np.mod(breaks + 0.5 * np.diff(breaks, append=breaks[:1] + TURN), TURN)
     if contour.is_convex and not _overlap(contour):
@@ -155,7 +161,7 @@ def bearing_of(contour: Contour) -> FlatContacts:
 
 
 def _overlap(contour: Contour) -> bool:
-    """Tell whether neighbours' normals overlap by so much, in rounding, that it is felt which of them bears there.
+    """Whether neighbours' normals overlap, by rounding, so much that it matters which of them bears there.
 
     The ends of an arc hardly longer than the rounding of its coordinates point anywhere; where the tangent turns back
     by b onto an arc of radius R, that arc reaches R b^2/2 farther than the short one.
@@ -168,7 +174,7 @@ def _overlap(contour: Contour) -> bool:
 
 
 def _of_convex(contour: Contour, breaks: Array, middle: Array) -> FlatContacts:
-    """In order: each piece bears over its own normals, its end from there to the first normal of the next piece."""
+    """Contacts of a convex contour: a piece bears over its own normals, its end up to the next piece's first normal."""
     first = np.mod(contour.directions[0] - 0.5 * np.pi, TURN)
     first = np.where(first > TURN - ROUNDED, first - TURN, first)
     # all round the normals rise, but for the step back where they pass 2 pi, and for the rounding of edges in one line

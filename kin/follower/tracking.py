@@ -7,7 +7,7 @@ f''' is bounded over an interval by magnitudes of its terms. About the middle of
     f <= max over |x| <= h of (f + f' x + f'' x^2/2) + B3 h^3/6,
 
 with B2 in place of f'' and B3 where the intended acceleration jumps inside. Intervals whose bound exceeds the greatest
-error found so far are cut in four. The roller's position is the greatest that any piece gives, so
+error reached so far are cut in four. The roller's position is the greatest that any piece gives, so
 
 - the greatest error is the greatest over all pieces, touched or not;
 - the error is nowhere below that of a piece which spans a range of shaft angles, whether it is touched there or not:
@@ -44,7 +44,7 @@ RESOLUTION = 1e-12  # of a radian, or of the cam's extent: what rounding leaves 
 OUTWARD = 1.0 + 1e-9  # by which bounds are widened against their own rounding
 MOST_CUTS = 30
 MOST_OPEN = 200_000  # intervals, beside four times those given, that may stay undecided
-MORE = 24  # contacts that may be added where pieces hide one another
+MORE = 24  # times that contacts may be added where pieces hide one another
 TRIES = 8  # to find the pieces that are touched between samples
 STEPS = 14  # towards the crossing of two pieces
 DOUBT = 1e-9  # of a radian, or of the cam's extent: pieces that are farther apart change over elsewhere
@@ -54,7 +54,7 @@ class IntendedLaw(Protocol):
     """Intended motion over the shaft angle, with bounds of its derivatives."""
 
     def rows(self, phi: Array) -> Array:
-        """Position, mm or radians, and two derivatives at shaft angles phi (n,): (3, n)."""
+        """Position, mm or rad, and two derivatives by the shaft angle at angles phi (n,), rad: (3, n)."""
 
     def steepest(self, low: Array, high: Array) -> Array:
         """Bounds of the magnitudes of three derivatives over shaft angles from low to high, each (n,): (3, n)."""
@@ -86,16 +86,16 @@ class Stretches(Protocol):
         """Stretch i alone."""
 
     def summit(self, law: IntendedLaw, where: float) -> Array:
-        """Shaft angles (2,) near the greatest error of a single one, about `where` off its middle."""
+        """Shaft angles (2,), rad, near the greatest error of a single stretch, about `where`, mm, off its middle."""
 
     def state(self) -> CentreState:
         """Roller centre and its derivatives at the middles of the stretches."""
 
     def limits(self, state: CentreState) -> DerivativeBounds:
-        """Bounds of the derivatives over the stretches, from the state at their middles."""
+        """Bounds of the derivatives of position and shaft angle over the stretches, from the state at their middles."""
 
     def bounds(self, state: CentreState, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
-        """Upper bounds of the error, an error reached in each, and where, off the middle: (n,) each.
+        """Upper bounds of the error, an error reached in each, and where, mm off the middle: (n,) each.
 
         `most` bounds the error's three derivatives, `rows` (3, n) are the law's at the middles.
         """
@@ -110,7 +110,7 @@ class Tracked(Protocol):
 
     @property
     def contact(self) -> Contact[Any, Any]:
-        """Contact of the follower, which says where the roller is meant to be."""
+        """Contact of the follower that the roller makes, which turns intended positions into its own."""
 
     def reached(self, phi: Array) -> Array:
         """Own position (n,), mm or rad, of the roller in contact at shaft angles phi (n,), rad."""
@@ -123,7 +123,12 @@ class Tracked(Protocol):
 
 
 class _Changes(NamedTuple):
-    """Contacts before and after each change of the piece touched: numbers, shaft angles a <= b, and pieces, (n,)."""
+    """Contacts before and after each of n changes of the piece touched, (n,) each.
+
+    change, after  numbers of the two contacts
+    a, b           their shaft angles, rad, a <= b
+    one, other     pieces touched before and after
+    """
 
     change: Indices
     after: Indices
@@ -135,10 +140,10 @@ class _Changes(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A guided roller held on short pieces (`kin.follower.contact.shortened`) that bound its centre, by their search.
+    """A guided roller held on short pieces (`kin.follower.contact.shortened`) that bound its centre.
 
-    At shaft angles phi (n,) it touches pieces `piece` (n,) at distances r (n,) from the shaft; among them are the ends
-    of all pieces. `contact` says where it is meant to be.
+    At shaft angles phi (n,), rad, it touches pieces `piece` (n,) at distances r (n,), mm, from the shaft; among these
+    are contacts at the ends of all pieces. `contact` is the follower's contact, `search` finds more of them.
     """
 
     search: Search
@@ -163,7 +168,7 @@ class Held:
         return self.guide.position(self.r)
 
     def reached(self, phi: Array) -> Array:
-        """Own position (n,), mm or rad, of the roller in contact at shaft angles phi (n,), rad."""
+        """Own position (n,), mm or rad, of the roller in contact at phi (n,), rad; nan where it meets nothing."""
         return self.guide.position(self.search.first(phi)[0])
 
     @cached_property
@@ -173,16 +178,19 @@ class Held:
 
     @cached_property
     def resolution(self) -> float:
-        """Greatest motion error, mm or rad, that rounding may feign; the former is a share of the extent."""
+        """Greatest motion error that rounding may feign: a share of the extent, mm, or a constant, rad."""
         return RESOLUTION * (extent(self.pieces) if self.guide.unit == "mm" else 1.0)
 
     @property
     def doubt(self) -> float:
-        """Difference of positions, mm or radians, that counts as one where pieces change over."""
+        """Least difference of positions, mm or rad, that counts where pieces change over."""
         return DOUBT / RESOLUTION * self.resolution
 
     def spans(self) -> Spans:
-        """Spans of all pieces for errors outwards, and of those that are touched for errors inwards."""
+        """Spans of all pieces for errors outwards, and of the touched ones for errors inwards.
+
+        Raises UnsettledError where the pieces touched between two contacts are not found.
+        """
         near = np.flatnonzero(within_reach(self.pieces, self.guide, self.slack))
         half = 0.5 * self.pieces.length[near]
         touched = self.touched()
@@ -195,7 +203,7 @@ class Held:
         )
 
     def looked_at_about(self, phi: Array) -> Held:
-        """Contacts at shaft angles (n,) added, and midway from there to the contacts before and after."""
+        """The roller with contacts added at phi (n,), rad, and midway to the known contacts before and after."""
         known = np.sort(np.mod(self.phi, TURN))
         at = np.mod(phi, TURN)
         before = known[np.searchsorted(known, at - DOUBT, side="left") - 1]
@@ -219,14 +227,15 @@ class Held:
         phi, r, piece = self.phi, self.r, self.piece
         for spare in reversed(range(TRIES)):
             change, after, a, b, one, other = changes = _changes(phi, piece)
+            # position on the piece before at b, and on the piece after at a: -inf where it does not reach so far
             far, near = spanned = self._meet(one, b), self._meet(other, a)
-            here, there = self.guide.position(r[change]), self.guide.position(r[after])
+            at_a, at_b = self.guide.position(r[change]), self.guide.position(r[after])
             leap = ~(np.isfinite(far) | np.isfinite(near))
             # a piece that spans the gap alone, and lies deep where it is not touched, stands behind a third one there
-            below = np.where(np.isfinite(far), there - far, here - near)
+            below = np.where(np.isfinite(far), at_b - far, at_a - near)
             deep = (np.isfinite(far) ^ np.isfinite(near)) & (below > self.doubt)
             if not (leap.any() or (spare and deep.any())):
-                return self._spans(changes, here, there, spanned)
+                return self._spans(changes, at_a, at_b, spanned)
             lone = 0.5 * (a + b)[leap | deep]  # between its ends a short arc stands out alone
             more, met = self.search.first(lone)
             if (met < 0).any():
@@ -235,15 +244,18 @@ class Held:
         raise UnsettledError("the motion error is not proved: the roller leaps from piece to piece")
 
     def _spans(self, changes: _Changes, here: Array, there: Array, spanned: tuple[Array, Array]) -> Spans:
-        """Spans of touched pieces: of each from where it comes to be touched to where it is left, and between."""
+        """Spans of touched pieces: of each between its first and last contact, and over the changes between pieces.
+
+        `here` and `there` are positions at a and b, `spanned` those of the first piece at b and of the second at a.
+        """
         _, _, a, b, one, other = changes
         far, near = spanned
         spans = [(one, np.roll(self._place(other, b, there), 1), self._place(one, a, here))]
-        both = np.isfinite(far) & np.isfinite(near)
+        span_both = np.isfinite(far) & np.isfinite(near)
         # where just one of them spans the gap it is taken over all of it, else each up to about the crossing
         switch = np.where(np.isfinite(far), b, a)
-        gaps = np.maximum(here - near, 0.0)[both], np.minimum(far - there, 0.0)[both]
-        switch[both] = self._crossing((one[both], other[both]), (a[both], b[both]), gaps)
+        gaps = np.maximum(here - near, 0.0)[span_both], np.minimum(far - there, 0.0)[span_both]
+        switch[span_both] = self._crossing((one[span_both], other[span_both]), (a[span_both], b[span_both]), gaps)
         for real, number, known, position in ((switch > a, one, a, here), (switch < b, other, b, there)):
             to = self._place(number[real], switch[real], self._meet(number[real], switch[real]))
             spans.append((number[real], self._place(number[real], known[real], position[real]), to))
@@ -255,13 +267,13 @@ class Held:
         return Spans(self, np.full(len(number), -1.0), number, 0.5 * (begin + end), half)
 
     def _crossing(self, pair: tuple[Indices, Indices], ends: tuple[Array, Array], gaps: tuple[Array, Array]) -> Array:
-        """About where the second of a pair of pieces comes to stand out beyond the first: shaft angles (n,).
+        """Shaft angles (n,) near which the second of a pair of pieces comes to stand out beyond the first.
 
-        `gaps` is how far the first stands beyond the second at both ends, >= 0 and <= 0. Any angle between is right.
+        `gaps` are the heights of the first above the second at both `ends`, >= 0 and <= 0. Any angle between would do.
         """
         (low, high), (f, g) = ends, gaps
         middle = 0.5 * (low + high)
-        both = np.concatenate(pair)
+        pieces = np.concatenate(pair)
         open_ = np.arange(len(middle))  # those that are still sought
         for _ in range(STEPS):
             if not len(open_):
@@ -269,14 +281,14 @@ class Held:
             with np.errstate(divide="ignore", invalid="ignore"):
                 at = low + (high - low) * np.where(f > g, f / (f - g), 0.5)
             middle[open_] = at
-            one, other = self._meet(both, np.tile(at, 2)).reshape(2, -1)
-            gap = one - other
+            first, second = self._meet(pieces, np.tile(at, 2)).reshape(2, -1)
+            gap = first - second
             if not np.isfinite(gap).all():
                 raise UnsettledError("the motion error is not proved: a piece is left between its ends")
             up, far = gap > 0.0, np.abs(gap) > 10.0 * self.resolution
             # Illinois: an end that stays is trusted half as much
             low, f, g = np.where(up, at, low)[far], np.where(up, gap, 0.5 * f)[far], np.where(up, 0.5 * g, gap)[far]
-            high, open_, both = np.where(up, high, at)[far], open_[far], both[np.tile(far, 2)]
+            high, open_, pieces = np.where(up, high, at)[far], open_[far], pieces[np.tile(far, 2)]
         return middle
 
     def _meet(self, piece: Indices, phi: Array) -> Array:
@@ -304,9 +316,9 @@ def _changes(phi: Array, piece: Indices) -> _Changes:
 
 @dataclass(frozen=True, eq=False)
 class Spans:
-    """Intervals middle +- half of arc length, each (n,), on the pieces of these numbers (n,) that a roller is held on.
+    """Intervals middle +- half of arc length, mm, (n,) each, on pieces `piece` (n,) that a roller is held on.
 
-    `sign` (n,) is -1 where errors inwards are asked for.
+    `sign` (n,) is 1 where errors outwards are bounded, -1 where errors inwards are.
     """
 
     held: Held
@@ -327,7 +339,7 @@ class Spans:
         return Spans(self.held, self.sign[[i]], self.piece[[i]], self.middle[[i]], self.half[[i]])
 
     def summit(self, law: IntendedLaw, where: float) -> Array:
-        """Shaft angles, (2,): `where` off the middle of a single span, and a Newton step on to its greatest error."""
+        """Shaft angles (2,), rad: at `where`, mm off the middle of a single span, and a Newton step to its summit."""
         state = replace(self, middle=self.middle + where).state()
         _, slope, bend = self.sign * state.error(own_rows(self.held.contact, law.rows(state.phi)))
         step = -slope / bend if bend[0] < 0.0 else np.zeros(1)
@@ -346,7 +358,10 @@ class Spans:
         return state.limits(self.half, np.abs(state.k))
 
     def bounds(self, state: CentreState, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
-        """Upper bounds of sign * error, one reached in each span, and where, off the middle: (n,) each."""
+        """Upper bounds of sign * error, one reached in each span, and where, mm off the middle: (n,) each.
+
+        `most` bounds the error's three derivatives, `rows` (3, n) are the law's at the middles.
+        """
         return bounds_of_error(self.sign * state.error(own_rows(self.held.contact, rows)), most, self.half, self.half)
 
 
@@ -357,15 +372,17 @@ def greatest(error: Array, phi: Array) -> tuple[float, float]:
 
 
 def greatest_error(rollers: Sequence[Tracked], law: IntendedLaw, sampled: Greatest, tries: int = MORE) -> Greatest:
-    """Greatest absolute error of rollers, which is at least that `floor`. UnsettledError where it is not proved.
+    """Greatest absolute error of rollers, mm or rad, no less than the `sampled` one, with its proved remainder.
 
-    Where pieces hide one another after all `tries`, what a hidden one could do is in the remainder.
+    Where pieces hide one another after all `tries`, the error that a hidden one could make is in the remainder. Raises
+    UnsettledError where the error has no bound or the pieces touched are not found.
     """
     groups = [roller.spans() for roller in rollers]
     resolution = rollers[0].resolution
     most = 4 * sum(len(group.piece) for group in groups) + MOST_OPEN
     error, best, ceiling = sampled.error, None, sampled.error
     for cut in range(MOST_CUTS + 1):
+        # bounds of the error over every stretch that is still open, and the greatest error reached
         states = [group.state() for group in groups]
         limits = [group.limits(state) for state, group in zip(states, groups, strict=True)]
         phi = np.concatenate([state.phi for state in states])
@@ -381,6 +398,7 @@ def greatest_error(rollers: Sequence[Tracked], law: IntendedLaw, sampled: Greate
             if i >= 0 and reached[i] > error:
                 error = float(reached[i])
                 best = number, group.one(i), float(where[i])
+        # stretches that may hold more are cut in four; the greatest bound of the others is the ceiling
         enough = error + max(SHARE * error, resolution)
         open_ = [~(bound <= enough) for bound in upper]
         ceiling = max(ceiling, *(float(b[~o].max(initial=ceiling)) for b, o in zip(upper, open_, strict=True)))
@@ -392,7 +410,7 @@ def greatest_error(rollers: Sequence[Tracked], law: IntendedLaw, sampled: Greate
             break
         groups = [group.quarters(which) for group, which in zip(groups, open_, strict=True)]
     if best is not None:
-        # a piece may stand back behind another one there: what counts is where the roller is
+        # the piece may be hidden behind another one there, so the error is taken where the roller itself rests
         number, span, off = best
         on, phi = rollers[number], span.summit(law, off)
         errors = np.abs(on.reached(phi) - on.contact.own(law.rows(phi)[0]))
@@ -408,7 +426,10 @@ def greatest_error(rollers: Sequence[Tracked], law: IntendedLaw, sampled: Greate
 
 
 def outward(roller: Held, law: IntendedLaw) -> tuple[Array, Array]:
-    """Error (n,) by which each of n pieces, touched or not, puts the roller out midway along it, and shaft angle."""
+    """Error (n,), mm or rad, by which each piece, touched or not, puts the roller out midway, and shaft angle (n,).
+
+    The error is -inf of pieces out of reach.
+    """
     spans = Spans(roller, np.ones(0), np.arange(len(roller.pieces)), 0.5 * roller.pieces.length, np.zeros(0))
     state = spans.state()
     error = state.error(own_rows(roller.contact, law.rows(state.phi)))[0]
@@ -418,7 +439,7 @@ def outward(roller: Held, law: IntendedLaw) -> tuple[Array, Array]:
 def bounds_of_error(
     error: Array, most: tuple[Array, Array, Array], half: Array, inner: Array
 ) -> tuple[Array, Array, Array]:
-    """Upper bounds of errors in spans, an error reached in each, and where, off the middle: (n,) each.
+    """Upper bounds of errors in spans, an error reached in each, and where, mm off the middle: (n,) each.
 
     `error` (3, n) has errors and two derivatives at the middles, `most` bounds three derivatives within `half` (n,) of
     there; each span reaches at least `inner` (n,) to either side.
@@ -426,11 +447,13 @@ def bounds_of_error(
     f, slope, bend = error
     first, second, third = most
 
+    # greatest of the parabola within h of the middle, and where
     def top(h: Array) -> tuple[Array, Array]:
         where = np.where(bend < 0.0, np.clip(-slope / bend, -h, h), np.copysign(h, slope))
         return where, f + where * (slope + 0.5 * where * bend)
 
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        # Taylor's formula of third, second and first order: the least bound counts
         bound = top(half)[1] + third * half**3 / 6.0
         bound = np.fmin(bound, f + np.abs(slope) * half + 0.5 * second * half**2)
         bound = np.fmin(bound, f + first * half)
@@ -447,7 +470,7 @@ class DerivativeBounds(NamedTuple):
     angle: tuple[Array, Array, Array]
 
     def of_error(self, steepest: Array) -> tuple[Array, Array, Array]:
-        """Bounds of the error's derivatives, from bounds (3, n) of the law's."""
+        """Bounds of the error's three derivatives by s, (n,) each, from bounds (3, n) of the law's by shaft angle."""
         (q, q_1, q_2), (phi_1, phi_2, phi_3) = self
         first, second, third = steepest
         with np.errstate(invalid="ignore", over="ignore"):
@@ -480,7 +503,10 @@ class CentreState:
 
     @staticmethod
     def of(point: Array, tangent: Array, k: Array, guide: Guide) -> CentreState:
-        """State at points (n, 2) where the path has tangents (n, 2) and curvatures k (n,): see the guide's module."""
+        """State at points (n, 2), mm, where the path has unit tangents (n, 2) and curvatures k (n,), 1/mm.
+
+        With u = r^2 position' = 2 a/S and phi' = (c + 2 a m/S)/u, S^2 and m being the guide's functions of u.
+        """
         a, c, r = dot(point, tangent), cross(point, tangent), np.hypot(point[:, 0], point[:, 1])
         b, u = 1.0 - k * c, r * r
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -508,6 +534,7 @@ class CentreState:
         The magnitudes of the curvature and of its derivative by s are at most k and `change`, (n,) each, there.
         """
         guide, h = self.guide, half * OUTWARD
+        # bounds of r, c, b and a within h of the middle, then of each derivative term by term
         far, near = self.r + h, np.maximum(self.r - h, 0.0)
         c = np.abs(self.c) + k * h * far
         b = np.abs(self.b) + (k * k * far + change * c) * h
