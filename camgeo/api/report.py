@@ -114,7 +114,7 @@ class Report(Mapping[str, JSON]):
 
     @property
     def missing(self) -> Mapping[str, str]:
-        """Reasons why files were left out for want of a package, by the names of the files."""
+        """Reasons why files were left out, by the names of the files: the package that each of them needs."""
         return {entry["what"]: entry["why"] for entry in self._document["skipped"] if entry.get("missing")}
 
     def _file(self, entry: dict[str, Any], index: int) -> File:

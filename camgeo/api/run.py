@@ -94,7 +94,7 @@ def verify(
     of one other, in the recipe's unit and at most the tolerance, are joined by a line; the gap is added to the errors
     of contour and motion. With `page` the report has the page that shows the files, `Report.page`. `options` are those
     of capabilities, as `camgeo verify --help` lists them: further checks, and how files that a capability judges are to
-    be read, such as points. A file that cannot be read as what it is raises nothing: the check `readable` fails.
+    be read, such as points. A file whose content is faulty raises nothing: the check `readable` fails.
 
     Raises RecipeErrors where there is no such cam, CallError for a path that is no file of a known kind, for a file
     given twice, points that cannot be judged, and a tolerance, gap or unit that makes no sense; UnitsError where a file

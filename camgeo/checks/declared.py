@@ -449,7 +449,7 @@ def declaration(name: str) -> Declared | None:
 
 
 def declarations(recipe: Recipe | None = None) -> list[Declared]:
-    """Declarations of the checks of a recipe, without one those of all recipes, and then those of limits of figures."""
+    """Declarations of the checks of a recipe, then of its limits of figures; without a recipe, of all there are."""
     if recipe is None:
         return [*CHECKS.values(), *(_of_figure(name, figure) for name, figure in FIGURES.items())]
     bounded = {limit.figure for limit in recipe.limits}

@@ -41,7 +41,7 @@ class BatchTask:
 class Result:
     """Outcome of one recipe: its report, None where a fault prevented it; a message for standard error; exit status.
 
-    The message is empty where there is nothing to say. `errors` are the faults of the recipe that it tells.
+    The message is empty without a fault and without a file left out. `errors` are the faults of the recipe in it.
     """
 
     report: Report | None

@@ -207,7 +207,7 @@ class _Stack:
     def slope(self, inner: tuple[Wire, ArcSpline, float], outer: tuple[Wire, ArcSpline, float]) -> None:
         """Add cones and planes at 45 degrees between an outline and its parallel inside.
 
-        `inner` is (loop, outline, height) of the parallel, `outer` that of the outline.
+        `inner` is (loop, parallel, height, mm) and `outer` (loop, outline, height, mm).
         """
         from OCP.BRep import BRep_Builder
         from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire

@@ -211,7 +211,7 @@ def _longest_last(points: Array, triangle: list[int]) -> list[int]:
 
 
 def _bounded(triangles: Triangles, ways: list[Indices]) -> bool:
-    """Whether each edge of triangles runs once, and those that do not run back as well are those of the loops."""
+    """Whether no directed edge of triangles occurs twice, and edges without a reverse are the edges of the loops."""
     start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     size = sum(map(len, ways))
     edges, backs = np.sort(paired(start, end, size)), paired(end, start, size)

@@ -1,8 +1,8 @@
 """Files and reports of one folder that do not belong together, found by the reports' checksums.
 
 No file system replaces several files in one step. A run that is killed between its commit and its last rename leaves
-new files beside the old report until the next run of that name goes on (`camgeo.output.output_folder`). Files are also
-changed by hand.
+new files beside the old report until the next run of that name completes it (`camgeo.output.output_folder`). Files are
+also changed by hand.
 """
 
 from __future__ import annotations

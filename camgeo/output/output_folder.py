@@ -174,9 +174,9 @@ class RunFolder:
     def commit(self, names: Iterable[str], *, keep: Iterable[str] = ()) -> Path:
         """Put the files `names` and the report of `folder` in the place of the last set; returns their new folder.
 
-        Files of the last set go, but for those of `keep`; files that are not of the last set stay. Raises ValueError
-        for a name that is not one of this recipe's files, and for a file not written; SurroundingsError, the last set
-        as it was, where the disk refuses or a file of the user's is in the way.
+        Files of the last set are removed, unless `keep` has them; files that are not of the last set stay. Raises
+        ValueError for a name that is not one of this recipe's files, and for a file not written; SurroundingsError, the
+        last set as it was, where the disk refuses or a file of the user's is in the way.
         """
         return self._replace(self._name, names, keep)
 
@@ -330,7 +330,7 @@ class RunFolder:
 
 
 def _is_plain_name(name: str) -> bool:
-    """Whether a name is one component of a path, not hidden, that means the same on every system."""
+    """Whether a name is a single component of a path on every system, not hidden and printable."""
     return bool(name) and not name.startswith(".") and name.isprintable() and not set(name) & set('/\\:*?"<>|')
 
 

@@ -1,6 +1,6 @@
 """Sets of files that are judged together, and the disc of the cam that each file holds.
 
-The end of a file's name says its disc, `-1` or `-2`; other files of a kind that holds one disc take the free discs in
+The end of a file's name gives its disc, `-1` or `-2`; other files of a kind that holds one disc take the free discs in
 their order. A set has files of one kind with the same requirement.
 """
 

@@ -1,1 +1,1 @@
-"""The part round the contour: each feature in a file of its own, its openings and walls, and what a file is held to."""
+"""The part round the contour: a module for each feature, openings, walls, and records for the judge."""

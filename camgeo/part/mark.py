@@ -26,7 +26,7 @@ MARGIN = 1e-9  # mm: rounding of a wall that is just held
 class Mark:
     """A slot on the ray at 0, engraved `depth` deep into the upper face or cut through; lengths in mm.
 
-    `radius` is the distance of its outer end from the shaft; None for as far out as the wall lets it.
+    `radius` is the distance of its outer end from the shaft; None for as far out as the wall permits.
     """
 
     kind: Literal["engrave", "cut"] = "engrave"
@@ -47,7 +47,7 @@ def _check(part: Values, reader: Reader) -> None:
 
 
 def _place(mark: Mark, site: Site) -> Placed:
-    """The mark where the recipe has it, or as far out on the ray as the wall lets it.
+    """The mark where the recipe has it, or as far out on the ray as the wall permits.
 
     Without room there is no opening, and the check names the greatest mark, or else the wall, that leaves some.
     """

@@ -130,7 +130,7 @@ class Form:
     takes     options of its files that other forms do not have
     check     notes what the recipe lacks for the form: (values of the file, values of the recipe, reader)
     make      writes and judges the file, where the format has no one way for all its forms
-    after     name of the core's form behind which that of a capability stands; empty: behind all
+    after     name of the core's form behind which the form of a capability stands; empty: behind all
     """
 
     name: str = ""

@@ -37,7 +37,7 @@ RESERVED_SUFFIX = ".rejected"  # of the folder that a failing run leaves
 
 
 class Complaint(ValueError):  # noqa: N818 - it never leaves the package
-    """Problem of a text, and its remedy; the remedy is empty where the one of the field is to be shown."""
+    """Problem of a text, and its remedy; with an empty remedy the remedy of the field is shown."""
 
     def __init__(self, problem: str, remedy: str = "") -> None:
         super().__init__(problem)

@@ -135,7 +135,7 @@ def _drawing_of(group: Sequence[outline.FileContours]) -> Drawn:
 
 
 def _on_face(disc_design: Disc) -> list[FilledShape]:
-    """Boss and timing mark of a disc, which a file's outline lacks or does not tell from other holes."""
+    """Boss and timing mark of a disc, which the outline read from a file lacks or has as a hole like others."""
     body = disc_design.body
     if body is None:
         return []

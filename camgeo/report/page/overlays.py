@@ -76,7 +76,7 @@ def overlay_bodies(names: Sequence[str], stage: Stage) -> list[MovingBody]:
 
 
 def _evolute(stage: Stage) -> list[MovingBody]:
-    """Centres of curvature of each contour, and that of contact 1; a roller's pitch curve, a parallel, has the same.
+    """Evolute of each contour, and the centre of curvature at contact 1; a roller's pitch curve has the same evolute.
 
     Where derivatives of the law jump the evolute leaps along the normal; where the curve is straight it is far away.
     """
@@ -168,9 +168,9 @@ def _arms(stage: Stage) -> Arms:
 
 
 def _chord_polygon(stage: Stage) -> list[MovingBody]:
-    """Adjacent positions of the arm, each with its A where B of the one before was: chords of 2 l sin alpha (W 4.6).
+    """Chords AB, 2 l sin alpha long, of successive positions of the arm, each with A where the last had B (W 4.6).
 
-    They close after 2 lambda steps, or sooner. Each is a body of its own, as the polygon changes its shape.
+    They close after 2 lambda steps, or sooner. Each chord is a body, as the polygon changes its shape.
     """
     arms, shaft = _arms(stage), SHAFT.copy()
     chord = FilledShape(CURVE, (_ring(np.array([0.0, 2.0 * arms.length * math.sin(arms.alpha)])),), "chord")

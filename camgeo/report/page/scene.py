@@ -1,6 +1,7 @@
 """A mechanism as bodies to be drawn: each has its shapes in its own axes, and its place over one turn of the shaft.
 
-Nothing here knows cams or followers. A page moves the bodies, a picture draws them once; both see the same shapes.
+This module is independent of cams and followers. A page moves the bodies, a picture draws them once, of the same
+shapes.
 """
 
 from __future__ import annotations
