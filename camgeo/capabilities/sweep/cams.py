@@ -1,4 +1,4 @@
-"""The cams of many designs, sampled: one lift evaluation a distinct cam, and none where harmonics or the shaft vary."""
+"""The cams of many designs, sampled; one lift serves all that differ in harmonics or shaft alone."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ EDGE = 1e-12  # of the breadth: a shaft on the cam's edge may lie outside by so 
 
 
 class CamBatch(NamedTuple):
-    """m cams, sampled: `support` has their support functions about the shaft.
+    """m sampled cams: `support` has their support functions about the shaft.
 
-    `radius` (m,) is the least radius of curvature, mm, `smooth` (m,) whether the second derivative of the support
-    function is continuous, and `fault` (m,) an index into REASONS, 0 for a cam without a fault.
+    `radius` (m,) is the least radius of curvature of the contour, mm, `smooth` (m,) whether the second derivative of
+    the support function is continuous, and `fault` (m,) an index into REASONS, 0 for a cam without a fault.
     """
 
     support: Support
@@ -61,7 +61,7 @@ class _CentredCam(NamedTuple):
 
     @staticmethod
     def sample(recipe: Recipe, count: int) -> _CentredCam:
-        """Sample the cam of a recipe."""
+        """Cam of a recipe at `count` angles, with a fault where it does not exist or its breadth varies."""
         from camgeo.cams.flat_faced import breadth_of, is_constant_breadth
         from camgeo.curve.curvature import least_radius
         from camgeo.curve.curve import CurveError
@@ -84,9 +84,9 @@ class _CentredCam(NamedTuple):
 
 
 class _Harmonic(NamedTuple):
-    """A harmonic that varies: its `order`, 0 for the mean radius, and whether it is of a sine.
+    """A harmonic that varies: its `order`, 0 for the mean radius, and whether it is a sine or a cosine.
 
-    `column` is that of its amplitude among the values of a design, `scale` is mm in the unit of the amplitude.
+    `column` is the place of its amplitude among the values of a design, `scale` is mm in the unit of the amplitude.
     """
 
     order: int
@@ -99,9 +99,10 @@ class _Harmonic(NamedTuple):
 class CamSampler:
     """Samples the cams of a sweep's designs.
 
-    `harmonics` are those that vary; they are 0 in `base`, but for the mean radius. `shaft` are the columns of its
-    place, or None with its value in mm. `others` are the columns of all else in the cam: for each of their values a cam
-    is made, and `base` is None.
+    `paths` are the fields that vary, a column of the values each, and `count` is the number of angles. `harmonics` are
+    those that vary; they are 0 in `base`, but for the mean radius. `shaft` has, for x and y, the column or None, and
+    the recipe's value in mm. `others` are the columns of all other fields of the cam: where there are any, each
+    distinct cam is made, `harmonics` are empty and `base` is None.
     """
 
     recipe: Recipe
@@ -114,7 +115,10 @@ class CamSampler:
 
     @staticmethod
     def prepare(recipe: Recipe, paths: Sequence[str], count: int) -> CamSampler:
-        """Sampler of cams that differ in the fields at `paths`, a column each, at `count` angles."""
+        """Sampler of cams that differ in the fields at `paths`, at `count` angles, a multiple of 4.
+
+        Paths outside the cam are left alone.
+        """
         cam, mm = recipe.cam, recipe.mm
         linear = cam.linear
         place = linear.shaft if linear is not None else (0.0, 0.0)
@@ -138,7 +142,7 @@ class CamSampler:
         return CamSampler(recipe, tuple(paths), count, tuple(harmonics), (shaft[0], shaft[1]), others, base)
 
     def sample(self, values: Array) -> CamBatch:
-        """Sample the cams of designs with the values (m, k), in the recipe's units."""
+        """Sample the cams of m designs; `values` (m, k) are those at the k paths, in the recipe's units."""
         m = len(values)
         shape = (m, self.count)
         if self.base is not None:
@@ -155,6 +159,7 @@ class CamSampler:
             for column, fixed in self.shaft
         )
         cosine, sine = np.cos(angles(self.count)), np.sin(angles(self.count))
+        # about the shaft (x, y) the support function is p - x cos t - y sin t
         shift = x * cosine
         shift += y * sine
         p, ddp = rows[0] - shift, rows[2] + shift
@@ -171,7 +176,7 @@ class CamSampler:
     ) -> tuple[Array, Array, Array]:
         """Rows p, p', p'' with the harmonics that vary; `breadth` and `fault` are changed in place.
 
-        They are added one after another: a sum by a library might round by the number of designs.
+        They are added one after another: a library's sum might round differently for another number of designs.
         """
         p, dp, ddp = (np.repeat(row, len(values), axis=0) for row in rows)
         t = angles(self.count)
@@ -193,7 +198,7 @@ class CamSampler:
 
     def _make_each(self, values: Array) -> tuple[Array, Array, Codes, Mask, tuple[Array, ...]]:
         """Breadths, radii, faults, smoothness and rows of the designs' cams, each distinct cam made once."""
-        distinct, which = np.unique(values[:, self.others], axis=0, return_inverse=True)
+        distinct, group = np.unique(values[:, self.others], axis=0, return_inverse=True)
         cams = []
         for row in distinct:
             numbers = {self.paths[column]: float(value) for column, value in zip(self.others, row, strict=True)}
@@ -203,11 +208,11 @@ class CamSampler:
                 cams.append(_CentredCam.missing(self.count))
             else:
                 cams.append(_CentredCam.sample(recipe, self.count))
-        which = which.reshape(-1)
+        group = group.reshape(-1)
         return (
-            np.array([cam.breadth for cam in cams])[which, None],
-            np.array([cam.radius for cam in cams])[which],
-            np.array([cam.fault for cam in cams], dtype=np.uint8)[which],
-            np.array([cam.smooth for cam in cams])[which],
-            tuple(np.stack([cam.rows[i] for cam in cams])[which] for i in range(3)),
+            np.array([cam.breadth for cam in cams])[group, None],
+            np.array([cam.radius for cam in cams])[group],
+            np.array([cam.fault for cam in cams], dtype=np.uint8)[group],
+            np.array([cam.smooth for cam in cams])[group],
+            tuple(np.stack([cam.rows[i] for cam in cams])[group] for i in range(3)),
         )

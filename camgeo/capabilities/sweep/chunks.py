@@ -69,7 +69,7 @@ class SweepJob:
     """A plan, and how the figures of its designs are computed; it travels to any worker.
 
     `compute(scene, values (m, axes))` gives the figures of m designs, arrays (m,) of float64 by name; it is a function
-    of a module, so that a worker finds it by name. `scene` is plain data, all of which has a bearing on a figure.
+    of a module, so that a worker finds it by name. `scene` is plain data, all of which some figure depends on.
     """
 
     plan: Plan
@@ -78,7 +78,10 @@ class SweepJob:
 
     @property
     def key(self) -> str:
-        """SHA-256 of the plan, the scene, the function's name, and revision and versions of what computes."""
+        """SHA-256 of the plan, the scene, the function's name, REVISION and the packages' versions, as 64 hex digits.
+
+        Raises ModuleNotFoundError for a plan by Sobol's sequence without scipy.
+        """
         parts = {
             "plan": repr(self.plan),
             "scene": repr(self.scene),
@@ -90,7 +93,10 @@ class SweepJob:
 
 
 def versions(plan: Plan) -> dict[str, str]:
-    """Versions of the packages that figures depend on, by name; scipy's only where it makes the plan."""
+    """Versions of the packages that figures depend on, by name; scipy's only where it makes the plan.
+
+    Raises ModuleNotFoundError where the plan needs scipy and it is missing.
+    """
     packages = {"camgeo": __version__, "numpy": np.__version__}
     if plan.method == "sobol":
         import scipy
@@ -100,18 +106,22 @@ def versions(plan: Plan) -> dict[str, str]:
 
 
 def result(job: SweepJob, number: int, key: str) -> bytes:
-    """Bytes of a chunk's file, computed here. Raises VersionsError where the job has another key here than `key`."""
+    """Bytes of the file of chunk `number`, computed in this process.
+
+    Raises VersionsError where the job has another key here than `key`.
+    """
     if job.key != key:
-        here = ", ".join(f"{name} {version}" for name, version in versions(job.plan).items())
-        raise VersionsError(f"a worker has other versions than this run, or reads the recipe otherwise: {here}")
+        packages = ", ".join(f"{name} {version}" for name, version in versions(job.plan).items())
+        raise VersionsError(f"a worker has other versions than this run, or reads the recipe otherwise: {packages}")
     first, last = job.plan.span(number)
     return encode(key, first, last, job.compute(job.scene, job.plan.values(first, last)))
 
 
 def encode(key: str, first: int, last: int, figures: Mapping[str, Array]) -> bytes:
-    """Bytes of a chunk's file: a line of JSON, the figures (last - first,) as little-endian float64, and a SHA-256.
+    """Bytes of the file of a chunk that has the designs `first` to `last` - 1.
 
-    Raises ValueError for figures of another shape or type.
+    They are a line that names the format, a line of JSON, the figures (last - first,) one after another as
+    little-endian float64, and a SHA-256. Raises ValueError for figures of another shape or type.
     """
     for name, values in figures.items():
         if values.shape != (last - first,) or values.dtype != np.float64:
@@ -123,7 +133,10 @@ def encode(key: str, first: int, last: int, figures: Mapping[str, Array]) -> byt
 
 
 def decode(data: bytes, key: str, first: int, last: int) -> dict[str, Array]:
-    """Figures (last - first,) by name; raises ChunkError for damaged bytes, and those of another chunk or sweep."""
+    """Figures (last - first,) by name from the bytes of a chunk's file.
+
+    Raises ChunkError for damaged bytes, and for bytes of a sweep with another key or of a chunk with other designs.
+    """
     body, checksum = data[:-32], data[-32:]
     if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != checksum:
         raise ChunkError("torn or changed")
@@ -144,9 +157,10 @@ class Chunks:
     plan: Plan
 
     def open(self, *, fresh: bool = False) -> None:
-        """Make the folder; remove files that killed runs left unfinished, and, where `fresh`, every chunk.
+        """Make the folder; remove unfinished files over an hour old, left by killed runs, and, if `fresh`, every chunk.
 
-        Raises SurroundingsError where something else is in the place of a folder, or of a chunk's file.
+        Raises SurroundingsError where something else is in the place of a folder, or of a chunk's file, OSError where
+        the disk refuses.
         """
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -168,13 +182,14 @@ class Chunks:
                     path.unlink()
 
     def path(self, number: int) -> Path:
-        """File of a chunk."""
+        """Path of the file of chunk `number`, counted from 0, whether or not it exists."""
         return self.folder / f"chunk-{number:07d}.bin"
 
     def read(self, number: int) -> dict[str, Array] | None:
-        """Figures (m,) of a chunk by name, or None without a file.
+        """Figures (m,) by name of the m designs of chunk `number`, or None without a file.
 
-        Raises ChunkError for a damaged file, SurroundingsError for what is no regular file.
+        Raises ChunkError for a damaged file, SurroundingsError for what is no regular file, OSError where the disk
+        refuses.
         """
         if not _is_regular_file(self.path(number)):
             return None
@@ -186,7 +201,10 @@ class Chunks:
         return decode(data, self.key, *self.plan.span(number))
 
     def missing_chunks(self) -> tuple[list[int], int]:
-        """Numbers of the chunks still to be computed, and how many of them had damaged files, which are removed."""
+        """Numbers of the chunks still to be computed, and how many of them had damaged files, which are removed.
+
+        Raises SurroundingsError where a chunk's file is no regular file, OSError where the disk refuses.
+        """
         missing, damaged = [], 0
         for number in range(self.plan.chunks):
             try:
@@ -199,7 +217,10 @@ class Chunks:
         return missing, damaged
 
     def write(self, number: int, data: bytes) -> None:
-        """Write the file of a chunk, whole or not at all; raises ChunkError for bytes that are not its result."""
+        """Write the file of chunk `number`, whole or not at all.
+
+        Raises ChunkError for `data` that are not its result, OSError where the disk refuses.
+        """
         decode(data, self.key, *self.plan.span(number))
         part = self.folder / f".chunk-{number:07d}.{os.getpid()}.part"
         try:
@@ -211,7 +232,10 @@ class Chunks:
 
 
 def _is_regular_file(path: Path) -> bool:
-    """Whether there is a file; raises SurroundingsError for another thing: a pipe waits, a device may have no end."""
+    """Whether a regular file is there; raises SurroundingsError for a folder, a pipe or a device.
+
+    Opening a pipe would wait, and a device may have no end.
+    """
     try:
         mode = path.stat().st_mode
     except FileNotFoundError:
@@ -223,7 +247,7 @@ def _is_regular_file(path: Path) -> bool:
 
 
 def chunks_of(job: SweepJob, folder: Path) -> Chunks:
-    """Chunks of a job, in a folder named by its key below the output folder of its recipe."""
+    """Chunks of a job; their folder, named by its key, lies below `folder`, the output folder of the recipe."""
     key = job.key
     return Chunks(folder / FOLDER / key[:_SHORT], key, job.plan)
 
@@ -241,10 +265,12 @@ class Work:
 def compute(
     job: SweepJob, chunks: Chunks, engine: Workers, *, fresh: bool = False, listener: Listener | None = None
 ) -> Work:
-    """Compute every chunk that is not on disk, or all where `fresh`; each is written as soon as it is done.
+    """Compute every chunk that is not on disk, or all if `fresh`, and return the counts of the run.
 
-    Raises EngineError where workers or a scheduler are missing or lost, VersionsError for workers of other versions,
-    ModuleNotFoundError for a missing package, OSError where the disk refuses; chunks written by then stay.
+    Each chunk is written as soon as it is done, and `listener` is called with the number of designs. Raises EngineError
+    where workers or a scheduler are missing or lost, VersionsError for workers of other versions, ModuleNotFoundError
+    for a missing package, SurroundingsError where something else is in the place of a chunk's file or folder, OSError
+    where the disk refuses; chunks written by then stay.
     """
     chunks.open(fresh=fresh)
     missing, damaged = chunks.missing_chunks()
@@ -264,10 +290,10 @@ def compute(
 def gather_chunks(
     job: SweepJob, chunks: Chunks, ranking: Ranking, slack: Callable[[Limit], float] | None = None
 ) -> Selection:
-    """The designs that a ranking selects, best first; they may miss a limit by its `slack`.
+    """The designs that a ranking selects, best first; they may miss a limit by its `slack`, in the figure's unit.
 
-    Chunks damaged or removed meanwhile are computed again. Raises FileNotFoundError where one is taken away as soon as
-    it is written.
+    Chunks damaged or removed meanwhile are computed again. Raises FileNotFoundError where one is removed as soon as it
+    is written, SurroundingsError where another thing is in its place, OSError where the disk refuses.
     """
     return gather(job.plan, ranking, (_figures(job, chunks, number) for number in range(job.plan.chunks)), slack)
 

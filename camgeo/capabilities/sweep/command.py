@@ -41,7 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe; return the exit status.
 
-    0 a design keeps the limits, 1 none does, 2 a wrong recipe, 3 the surroundings fail, 130 interrupted.
+    0 if a design keeps the limits, 1 if none does, 3 if the surroundings fail, 130 if interrupted. Raises RecipeErrors
+    for a wrong recipe, for which the command exits with 2.
     """
     from camgeo.capabilities.sweep.task import EXACT, SweepTask
     from camgeo.recipe.loading import load
@@ -70,7 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _search(task: SweepTask, arguments: argparse.Namespace) -> tuple[SweepOutcome | None, str, int]:
-    """Outcome or None, a message of what went wrong, and the exit status."""
+    """Outcome, None where the run failed; the message of the failure, else empty; and the exit status."""
     from camgeo.capabilities.sweep.chunks import EngineError
     from camgeo.capabilities.sweep.engines import Workers
     from camgeo.capabilities.sweep.search import search
@@ -127,7 +128,7 @@ def duration(seconds: float) -> str:
 
 
 def summary(report: Entry, folder: Path) -> str:
-    """Best design of a report, or why there is none, in a line with the folder of its files.
+    """Best design of a report (`sweep.json`), or why there is none, in a line with the folder of its files.
 
     The numbers of designs that break a limit overlap, as one may break several.
     """
@@ -144,7 +145,7 @@ def summary(report: Entry, folder: Path) -> str:
 
 
 def _nearest(report: Entry) -> str:
-    """The design that misses the limits by least, as a share of each, and the limit that it misses."""
+    """Text on the design that misses the limits by least: its values, and the limit that it misses most."""
     near = report["nearest"]
     bounds = report["sweep"]["limits"][near["breaks"]]
     least = "at_least" in bounds and near["value"] < bounds["at_least"]

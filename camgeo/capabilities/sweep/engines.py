@@ -41,7 +41,11 @@ class Workers:
     scheduler: str | None = None
 
     def results(self, job: SweepJob, numbers: Sequence[int]) -> Results:
-        """Numbers of chunks and bytes of their files, as they are done."""
+        """Pairs of a chunk's number, of those in `numbers`, and the bytes of its file, as they are done.
+
+        Iterating raises EngineError where a process is killed, or a scheduler or its workers are missing or lost,
+        VersionsError for workers of other versions, ModuleNotFoundError for a missing package.
+        """
         if self.scheduler is not None:
             return dask(job, numbers, self.scheduler)
         return spread(partial(result, job, key=job.key), numbers, self.processes)
@@ -55,14 +59,15 @@ class Workers:
 
     @property
     def processes(self) -> int:
-        """Greatest number of processes on this machine, also for the work after the chunks."""
+        """Greatest number of processes on this machine, also with a scheduler, for the work after the chunks."""
         return self.jobs or workers.available()
 
 
 def in_processes(function: Callable[[T], R], items: Iterable[T], count: int) -> Generator[tuple[T, R], None, None]:
-    """Each item with its result as soon as it is done, `count` at once in processes.
+    """Pairs of an item and the function's result, in the order of their ends, computed in `count` processes.
 
-    The function must be defined in a module, not inside another. Raises EngineError where a process is killed.
+    The function must be defined in a module, not inside another. Iterating raises EngineError where a process is
+    killed, and whatever the function raises.
     """
     from concurrent.futures.process import BrokenProcessPool
 
@@ -73,9 +78,10 @@ def in_processes(function: Callable[[T], R], items: Iterable[T], count: int) -> 
 
 
 def spread(function: Callable[[T], R], items: Sequence[T], count: int) -> Generator[tuple[T, R], None, None]:
-    """Each item with the function's result: one after another here, or `count` at once in processes of their own.
+    """Pairs of an item and the function's result: one after another here, or from `count` processes.
 
-    Processes are started once the time of the items done shows that the others take longer than that.
+    Processes are started once the items done show that the remaining ones would take over 2 s. Iterating raises
+    EngineError where a process is killed, and whatever the function raises.
     """
     started = time.perf_counter()
     for done, item in enumerate(items):
@@ -87,11 +93,11 @@ def spread(function: Callable[[T], R], items: Sequence[T], count: int) -> Genera
 
 
 def dask(job: SweepJob, numbers: Sequence[int], address: str) -> Results:
-    """Chunks computed by the workers of the Dask scheduler at `address`, which need camgeo, and no shared disk.
+    """Pairs of a chunk's number, of those in `numbers`, and the bytes of its file, from the workers of Dask.
 
-    Raises ModuleNotFoundError without the package distributed, VersionsError for workers of other versions, and
-    EngineError where the scheduler does not answer or goes away, has no workers or some without camgeo, or a chunk
-    kills its workers again and again.
+    The workers of the scheduler at `address` need camgeo, and no shared disk. Iterating raises ModuleNotFoundError
+    without the package distributed, VersionsError for workers of other versions, and EngineError where the scheduler
+    does not answer or goes away, has no workers or some without camgeo, or a chunk kills its workers again and again.
     """
     from distributed import wait
 
@@ -125,7 +131,7 @@ def _require_versions(workers: Mapping[str, dict[str, str] | Exception], ours: d
         if isinstance(theirs, Exception):
             raise EngineError(f"the worker at {worker} cannot run camgeo: {theirs}")
         if theirs != ours:
-            text, own = (", ".join(f"{name} {version}" for name, version in each.items()) for each in (theirs, ours))
+            text, own = (", ".join(f"{name} {version}" for name, version in pack.items()) for pack in (theirs, ours))
             raise VersionsError(f"a worker has other versions than this run: {worker} has {text}, this run {own}")
 
 

@@ -2,8 +2,9 @@
 
 Designs that differ in the place of the shaft, the lengths of a linkage and the harmonics of a cam are computed
 together, in blocks that stay in the cache; other fields of a cam cost one evaluation of its lift for each distinct cam.
-Dyads, and recipes without a linkage, are computed one by one (`single_designs`). All is sampled at the recipe's
-`angles`, a multiple of 4, and rounded so that it does not depend on which designs are computed together.
+Dyads are computed one by one (`single_designs`). These motions are sampled at the recipe's `angles`, raised to a
+multiple of 4, and no rounding depends on which designs are computed together. Recipes without a linkage are designed
+one by one, or estimated together (`screen`).
 """
 
 from __future__ import annotations
@@ -56,9 +57,9 @@ _HEAP = 3 << 20  # numbers, 24 MB
 
 
 class FigureTable(NamedTuple):
-    """Figures by name, (m,) each, in mm and degrees, rates by radian of shaft angle, and their reasons.
+    """Figures of m designs by name, (m,) each, in mm and degrees, derivatives by radian of the shaft angle.
 
-    `reason` (m,) is a code of why a design has no figures, or not all; 0 where it has.
+    `reason` (m,) is an index into REASONS, why a design lacks figures or breaks a limit, 0 for none.
     """
 
     figures: dict[str, Array]
@@ -67,9 +68,9 @@ class FigureTable(NamedTuple):
 
 @dataclass(frozen=True)
 class SweepScene:
-    """All data that decide the figures of a sweep's designs, as plain data for any worker; they are part of the key.
+    """All that decides the figures of a sweep's designs, as plain data for any worker; it is part of the key.
 
-    `recipe` has its sweep, without what has no bearing on a figure. `figures` are the names of those computed, by
+    `recipe` has its sweep, but nothing on which no figure depends. `figures` are the names of those computed, by
     estimates where `screened` is true. `variants` are the recipe's cams with each word that varies, whose tables are
     part of the key.
     """
@@ -81,8 +82,8 @@ class SweepScene:
 
     def __repr__(self) -> str:
         """All fields of the scene as text, from which the key is made; a recipe's own `repr` is only its name."""
-        rest = f"figures={self.figures!r}, screened={self.screened!r}, variants={self.variants!r}"
-        return f"Scene(recipe={full_text(self.recipe)}, {rest})"
+        fields = f"figures={self.figures!r}, screened={self.screened!r}, variants={self.variants!r}"
+        return f"Scene(recipe={full_text(self.recipe)}, {fields})"
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -112,7 +113,8 @@ def estimable_figures(recipe: Recipe) -> tuple[str, ...]:
 class Evaluator:
     """Computes the figures `names` of designs that differ at `paths`; what they share is prepared once.
 
-    A design that breaks one of the `limits` is computed no further. `count` is the number of samples of a turn.
+    A design that breaks one of the `limits` is computed no further. `count` is the number of samples of a turn. With
+    `screened`, cams without a linkage are estimated where they can be.
     """
 
     recipe: Recipe
@@ -133,9 +135,10 @@ class Evaluator:
     ) -> Evaluator:
         """Evaluator of designs in which the fields at `paths` differ.
 
-        `figures` are those computed besides those limited, all by default. `samples` is the number of samples of a
-        turn, by default that of the sweep, raised to a multiple of 4. With `screened`, figures of cams without a
-        linkage are estimated where an estimate exists. Raises ValueError for a path at which no number stands.
+        `figures` names the figures computed besides the limited ones, by default all that the recipe has, of estimates
+        all that can be estimated. `samples` is the number of samples of a turn, by default the sweep's `angles`, raised
+        to a multiple of 4. With `screened`, figures of cams without a linkage are estimated where that is possible.
+        Raises CallError for a path at which neither a number nor a varied word stands.
         """
         sweep = recipe.of(Sweep)
         limits = sweep.limits if sweep else ()
@@ -148,7 +151,7 @@ class Evaluator:
 
     @cached_property
     def word_columns(self) -> tuple[int, ...]:
-        """Columns of the words that vary."""
+        """Columns of the values that are indices of words."""
         words = single_designs.word_lists(self.recipe)
         return tuple(column for column, path in enumerate(self.paths) if path in words)
 
@@ -176,14 +179,14 @@ class Evaluator:
         return {}
 
     def _evaluate_by_words(self, values: Array) -> FigureTable:
-        """Figures of designs (m, k), those that share all words together."""
+        """Figures of designs with values (m, k); designs that share all words are computed together."""
         m = len(values)
         figures = {name: np.full(m, np.nan) for name in self.names}
         reason = np.full(m, IMPOSSIBLE, dtype=np.uint8)
-        distinct, which = np.unique(values[:, self.word_columns], axis=0, return_inverse=True)
+        distinct, group = np.unique(values[:, self.word_columns], axis=0, return_inverse=True)
         numbers = np.delete(values, self.word_columns, axis=1)
         for i, chosen in enumerate(distinct):
-            rows, evaluator = np.flatnonzero(which.reshape(-1) == i), self._with_words(tuple(chosen.tolist()))
+            rows, evaluator = np.flatnonzero(group.reshape(-1) == i), self._with_words(tuple(chosen.tolist()))
             if evaluator is not None:
                 part = evaluator.evaluate(numbers[rows])
                 reason[rows] = part.reason
@@ -193,14 +196,14 @@ class Evaluator:
 
     @cached_property
     def screen(self) -> Screen | str:
-        """Estimates of cams without a linkage, with the recipe's own words; or why there are none."""
+        """Screen that estimates cams without a linkage, with the recipe's own words; or the reason why it cannot."""
         from camgeo.capabilities.sweep.screen import Screen
 
         return Screen.prepare(self.recipe, self._numbers, self.names, self.count)
 
     @property
     def estimator(self) -> Screen | None:
-        """The screen, where figures are to be estimated and can be; else None."""
+        """The screen, if figures shall and can be estimated; else None."""
         screen = self.screen if self.screened else ""
         return None if isinstance(screen, str) else screen
 
@@ -211,15 +214,16 @@ class Evaluator:
 
     @property
     def slow(self) -> bool:
-        """Whether designs are made one by one."""
+        """Whether a recipe is made for each design, or for each distinct cam."""
         linkage = self.recipe.linkage
         return self.estimator is None if linkage is None else bool(linkage.dyads) or bool(self.cams.others)
 
     def evaluate(self, values: Array) -> FigureTable:
-        """Figures of designs with values (m, k) at the paths, in the recipe's units.
+        """Figures of m designs; `values` (m, k) are those at the paths, in the recipe's units, words by their index.
 
-        A design that does not exist or does not turn has nan for all figures. One that breaks a limit is computed no
-        further: its dwells are -inf.
+        A design that does not exist or does not turn has nan for all figures. With a linkage, a design that breaks a
+        limit is computed no further: its dwells are -inf, and other figures not computed by then nan. Raises ValueError
+        for a dwell in a recipe without a band.
         """
         m = len(values)
         values = np.asarray(values, dtype=float).reshape(m, len(self.paths))
@@ -235,6 +239,7 @@ class Evaluator:
             figures.update(computed)
             self._mark_broken(figures, reason)
             return FigureTable(figures, reason)
+        # mechanisms in blocks that stay in the cache: `_block` fills in all figures but dwells
         rows = max(1, BLOCK // self.count)
         blocks: list[tuple[Indices, dict[str, Ends]]] = []
         for first in range(0, m, rows):
@@ -244,6 +249,7 @@ class Evaluator:
             )
             if index.size:
                 blocks.append((index + first, dwells))
+        # dwells are measured from their ends for all designs at once, as their bisections take many small steps
         for name in DWELLS:
             if name in figures:
                 figures[name][reason == BROKEN] = -np.inf
@@ -265,7 +271,7 @@ class Evaluator:
         return dwell.band
 
     def _mark_broken(self, figures: Mapping[str, Array], reason: Codes) -> None:
-        """Set the reason of fine designs that break a limit on a figure known by now."""
+        """Set the reason BROKEN of fine designs that break a limit on a figure; nan, not yet computed, breaks none."""
         broken = np.zeros(len(reason), dtype=np.bool_)
         for limit in self.limits:
             values = figures[limit.figure]
@@ -280,6 +286,7 @@ class Evaluator:
         cams = self.cams.sample(values)
         support, smooth = cams.support, cams.smooth
         reason[:] = cams.fault
+        # figures of the cam alone, then those of the loop: each step leaves out the designs that failed before
         at_cam = {
             RADIUS: lambda: cams.radius,
             CONTACT_TRAVEL: lambda: greatest(support.dp, smooth) - least(support.dp, smooth),
@@ -304,6 +311,7 @@ class Evaluator:
         reason[index[~(margin > 0.0)]] = BINDS
         index, motion = self._keep(index, motion, figures, reason)
         if index.size:
+            # phi = theta - theta_3: a shaft that turns back makes a design of no use
             rate = least(1.0 - motion.frame_rate, smooth[index])
             reason[index[~(rate > 0.0)]] = REVERSES
             angles_at_d = {
@@ -367,7 +375,7 @@ class Evaluator:
         }
 
     def _lengths(self, linkage: Linkage, dimensions: tuple[str, ...], values: Array) -> Lengths:
-        """Dimensions, mm, of linkages that differ from this one in the values (m, k)."""
+        """Dimensions, mm, of m linkages that differ from the recipe's in the values (m, k); unused ones are 0."""
         columns = []
         for name in Lengths._fields:
             path = f"linkage.{name}"
@@ -387,7 +395,7 @@ def _fill(figures: dict[str, Array], index: Indices, columns: Mapping[str, Calla
 
 
 def _acute_angle(sine: Array | None, count: int, smooth: Mask) -> Array:
-    """Least angle, degrees (m,), from its signed sine (m, n); 90 degrees without one."""
+    """Least acute angle, degrees (m,), from its signed sine (m, n), 0 where that changes sign; 90 degrees for None."""
     if sine is None:
         return np.full(count, 90.0)
     smallest = np.maximum(least(np.abs(sine), smooth), 0.0)
@@ -397,7 +405,10 @@ def _acute_angle(sine: Array | None, count: int, smooth: Mask) -> Array:
 
 
 def compute_figures(scene: SweepScene, values: Array) -> dict[str, Array]:
-    """Figures (m,) of designs with the values (m, axes) of a scene's sweep; under REASON an index into `REASONS`."""
+    """Figures by name, (m,) each, of designs with `values` (m, axes) in the recipe's units.
+
+    Lengths are in mm, angles in degrees; REASON has the index into `REASONS`.
+    """
     table = _evaluator(scene).evaluate(values)
     return {**table.figures, REASON: table.reason.astype(np.float64)}
 

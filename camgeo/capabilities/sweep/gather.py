@@ -42,15 +42,18 @@ class Ranking:
     limits: tuple[Limit, ...] = ()
 
     def held(self, limit: Limit, figures: Mapping[str, Array], slack: float = 0.0) -> Mask:
-        """Whether a limit's figure is within its bounds, widened by a slack, (m,); nan is not."""
+        """Mask (m,) of the designs that keep a limit, its bounds widened by `slack`; nan keeps none.
+
+        `figures` (m,) are by name; `slack` is in the unit of the figure.
+        """
         least = -np.inf if limit.at_least is None else limit.at_least - slack
         most = np.inf if limit.at_most is None else limit.at_most + slack
         return (figures[limit.figure] >= least) & (figures[limit.figure] <= most)
 
     def miss(self, limit: Limit, figures: Mapping[str, Array]) -> Array:
-        """Excess (m,) of figures beyond a limit, 0 for figures within it.
+        """Excess (m,) of the limited figure beyond its bounds, 0 within them and for nan; `figures` (m,) are by name.
 
-        It is a share of the bound's magnitude, or in the figure's own unit where the bound is 0.
+        The excess is a share of the bound's magnitude, or in the figure's own unit where the bound is 0.
         """
         figure = figures[limit.figure]
         excess = np.zeros_like(figure)
@@ -60,22 +63,26 @@ class Ranking:
         return excess
 
     def nearest(self, figures: Mapping[str, Array], rows: Mask) -> tuple[int, Limit, float]:
-        """Row, of those of a mask (m,), that misses the limits by least; the limit it misses most; that miss."""
+        """Row that misses the limits by least, the limit that it misses most, and the excess beyond that limit.
+
+        `figures` (m,) are by name, `rows` (m,) is a mask of the rows that count. The excess is measured by `miss`.
+        """
         misses = np.array([self.miss(limit, figures) for limit in self.limits])
         row = int(np.argmin(np.where(rows, misses.max(axis=0), np.inf)))
         worst = int(np.argmax(misses[:, row]))
         return row, self.limits[worst], float(misses[worst, row])
 
     def score(self, figures: Mapping[str, Array]) -> Array:
-        """Figure of the ranking (m,), with the sign by which more is better."""
+        """The ranking's figure (m,), negative if the least is best, so that a greater score is better."""
         return figures[self.rank] if self.most else -figures[self.rank]
 
 
 @dataclass(frozen=True)
 class Counts:
-    """Numbers of designs: all; those without figures, which do not turn; those that break each limit; those kept.
+    """Numbers of designs: all; those without figures, which do not turn; those that break a limit; those kept.
 
-    `reasons` are pairs of a reason's code and the number of designs without figures for it.
+    `reasons` are pairs of a reason's code and the number of designs without figures for it, `failing` pairs of a
+    limit's figure and the number of designs that break it.
     """
 
     computed: int
@@ -89,7 +96,8 @@ class Counts:
 class Nearest:
     """The design that misses the limits by least where none keeps them, and the limit that it misses by most.
 
-    `index` of the design, its `values` (axes,) in the recipe's units; `value` of the limit's figure in mm or degrees.
+    The design has the `index` and the `values` (axes,), in the recipe's units; `value` is its figure that `limit`
+    limits, in mm or degrees.
     """
 
     index: int
@@ -100,9 +108,10 @@ class Nearest:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Number of designs whose exact figures keep the limits, of others by the reason, and errors of the estimates.
+    """Number of designs whose exact figures keep the limits, numbers of rejected ones, and errors of the estimates.
 
-    `errors` has for each figure the greatest error, in degrees or as a share of the value.
+    `rejected` is by the reason: a word of REASONS, or the figure of the limit that is broken. `errors` has for each
+    figure the greatest error, in degrees or as a share of the value.
     """
 
     designs: int = 0
@@ -114,8 +123,9 @@ class Certificate:
 class Selection:
     """The best designs of a sweep, best first, at most MOST_ROWS, with counts and cells of all.
 
-    index (n,); values (n, axes) in the recipe's units; figures (n,) each, in mm and degrees. Where these are estimates
-    the first `certificate.designs` have exact ones.
+    `index` (n,) is the index in the plan, `values` (n, axes) are in the recipe's units, `figures` (n,) by name in mm
+    and degrees. Where figures are estimates, the first `certificate.designs` rows have exact ones. `nearest` is None
+    where a design is kept, or none turns.
     """
 
     counts: Counts
@@ -140,9 +150,9 @@ def gather(
 ) -> Selection:
     """Select the best designs, at most MOST_ROWS, best first.
 
-    The chunks, in order of the index, have figures (m,) by name. A design is listed if it misses no limit by more than
-    its `slack`, in the figure's unit; without `slack`, if it keeps all limits. Raises ValueError unless the chunks have
-    the figures of all designs of the plan.
+    The chunks, in order of the index, have figures (m,) by name. `slack` gives for a limit an amount in the figure's
+    unit: a design is listed if it misses no limit by more; without `slack`, if it keeps all limits. Raises ValueError
+    unless the chunks have the figures of all designs of the plan.
     """
     cells = BestByCell(plan, most=ranking.most)
     failing = dict.fromkeys((limit.figure for limit in ranking.limits), 0)
@@ -156,6 +166,7 @@ def gather(
         table = np.stack([figures[name] for name in names], axis=1)
         last = first + len(table)
         values = plan.values(first, last)
+        # a design with a figure that is nan does not turn
         turns: Mask = np.logical_not(np.isnan(table).any(axis=1))
         kept_here, listed = turns.copy(), turns.copy()
         for limit in ranking.limits:
@@ -163,6 +174,7 @@ def gather(
             failing[limit.figure] += int((turns & ~within).sum())
             kept_here &= within
             listed &= within if slack is None else ranking.held(limit, figures, slack(limit))
+        # the nearest design is of interest only while none is kept
         if not (kept or kept_here.any()) and turns.any():
             row, worst, miss = ranking.nearest(figures, turns)
             if miss < missed:
@@ -176,6 +188,7 @@ def gather(
         cells.paint(values, score, np.where(kept_here, KEPT, np.where(turns, OUTSIDE, STUCK)).astype(np.uint8))
         index = np.arange(first, last)
         parts.append(_Rows(index[listed], score[listed], values[listed], table[listed]))
+        # worse rows are dropped now and then, so that memory is bounded
         waiting += len(parts[-1].index)
         if waiting > 2 * MOST_ROWS:
             parts = [_Rows.best(parts)]
@@ -216,8 +229,8 @@ class _Rows:
 class BestByCell:
     """The best design in each cell over the first one or two axes of a plan; designs are added by `paint`.
 
-    `edges` and `centres` are those of the cells along each axis. `state` (cells of axis 1, of axis 2 or 1) has NONE,
-    STUCK, OUTSIDE or KEPT. `most` says that the greatest figure is the best.
+    `edges` and `centres` have, for each axis, the ends and centres of its cells. `state` (cells of axis 1, of axis 2 or
+    1) has NONE, STUCK, OUTSIDE or KEPT. `most` says that the greatest figure is the best.
     """
 
     def __init__(self, plan: Plan, *, most: bool) -> None:
@@ -249,7 +262,7 @@ class BestByCell:
 
 
 class _AxisCells:
-    """Cells along an axis: one for each value where there are few, else equal ones."""
+    """Cells along an axis: one for each value where there are few, else equal ones, `count` of them for a range."""
 
     def __init__(self, axis: Axis, count: int) -> None:
         values = np.unique(axis.values)

@@ -46,7 +46,7 @@ class Axis:
 
     @cached_property
     def values(self) -> tuple[float, ...]:
-        """Values that it takes, both ends exact; of words their indices; none of a range without steps."""
+        """Values of the axis, both ends exact; indices of words; empty for a range without steps."""
         import numpy as np
 
         if self.words:
@@ -60,11 +60,11 @@ class Axis:
 
     @property
     def range(self) -> float:
-        """Difference of the ends, as the unit of distances between values; 1 for words, which so lie far apart."""
+        """Difference of the ends, the unit of distances between values; 1 for words, so that they lie apart."""
         return 1.0 if self.words else abs(self.high - self.low)
 
     def written(self, value: float) -> float | str:
-        """A value as the recipe writes it, a word by its index."""
+        """The value as the recipe writes it: a number, or the word with this index."""
         return self.words[int(value)] if self.words else value
 
 
@@ -114,9 +114,11 @@ RANGE = _range_table(None)
 
 
 def read_vary(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Axes of a sweep as written, each with the `path` of its number and its own place (`at`); None after a fault.
+    """Axes of a sweep as written, each with the `path` of its field and its own place (`at`).
 
-    Whether a number stands at that path is checked in `check_sweep`, once the whole recipe has been read.
+    An axis has besides `words`, `values` or the keys of a range; a faulty one is left out. None where there is no
+    mapping, or one with no or too many entries. Faults are added to the reader's. Whether a number stands at that path
+    is checked in `check_sweep`, once the whole recipe has been read.
     """
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
@@ -141,7 +143,7 @@ def read_vary(reader: Reader, field: Field, node: Node, path: str) -> list[Value
 
 
 def _read_words(reader: Reader, node: Node, path: str, place: str) -> tuple[str, ...]:
-    """Words listed for a field that holds a word; none for another node, or another field."""
+    """Words listed for a field that holds a word; empty for another node or field, or too many entries."""
     if not isinstance(node, Sequence) or path in reader.numbers or path not in dict(scalars(reader.source.root)):
         return ()
     words = [item.text for item in node.items if isinstance(item, Scalar) and not is_empty(item)]

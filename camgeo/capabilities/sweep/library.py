@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 class Candidate:
     """One of the best designs of a search: its recipe, the values that the search varied, and its figures.
 
-    `values` are by the paths of the recipe's fields and in its units, `figures` by name. `polished` tells whether the
-    values were improved beyond the grid of the search. `path` is the file of the recipe.
+    `values` are by the paths of the recipe's fields and in its units, `figures` by name. `polished` says whether the
+    values were improved beyond the designs of the search. `path` is the file of the recipe.
     """
 
     recipe: Recipe
@@ -57,7 +57,10 @@ class Search(Mapping[str, "JSON"]):
 
     @cached_property
     def best(self) -> tuple[Candidate, ...]:
-        """The best designs, the first the best of all; none where no design keeps the limits."""
+        """The best designs, best first; empty where no design keeps the limits.
+
+        Their recipes are read when this is first used; raises RecipeErrors where a file is gone or has faults.
+        """
         from camgeo.recipe.loading import load
 
         units = {name: figure["unit"] for name, figure in self._document["figures"].items()}
@@ -103,11 +106,12 @@ def search(
 ) -> Search:
     """Search the designs that a recipe's `sweep` spans; the best become recipes in the folder `out`/<name>.
 
-    `jobs` is the number of processes at once, as many as pay by default; `scheduler` the address of a Dask scheduler in
-    their place. What earlier runs computed is used again unless `fresh` is true. `progress` is called with lines such
-    as "64 of 825 designs". Where no design keeps the limits, `ok` of the result is False. Raises
-    RecipeErrors where the recipe has no sweep, or one that cannot be run, SurroundingsError where the disk, a package
-    or a scheduler is not what it should be, CallError for a number of processes below 1.
+    `jobs` is the greatest number of processes at once, by default one for each core; `scheduler` the address of a Dask
+    scheduler in their place. What earlier runs computed is used again unless `fresh` is true. `progress` is called with
+    lines such as "64 of 825 designs". Where no design keeps the limits, `ok` of the result is False and the files are
+    in `out`/<name>.rejected. Raises RecipeErrors where the recipe has faults, no sweep or one that cannot be run,
+    SurroundingsError where the disk refuses, a package is missing or a scheduler fails, CallError for a number of
+    processes below 1 or a path that no file can have, TypeError for arguments of other types.
     """
     from camgeo.capabilities.sweep.chunks import EngineError
     from camgeo.capabilities.sweep.command import missing_package

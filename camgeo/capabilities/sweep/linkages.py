@@ -1,9 +1,9 @@
 """Linkages driven by a cam in a square frame, many designs at once: `kin.linkage.four_bar` on plain arrays.
 
 A block holds m designs at n even relative angles, arrays (m, n), mm and rad; S and S1 are the support at theta and a
-quarter turn on. Everything but two angles a sample is algebra: theta_4 and its derivatives need AD^2 alone, and
-theta_3 is one arctangent of D X, so shaft angles need no unwrapping. Rounding near limit positions, of which
-`kin.linkage.four_bar` takes care, is left out: designs so near to binding are no good ones.
+quarter turn on, u and n the frame's axes. Everything but two angles a sample is algebra: theta_4 and its derivatives
+need AD^2 alone, and theta_3 is one arctangent (`turned`), so shaft angles need no unwrapping. The care that
+`kin.linkage.four_bar` takes of rounding near limit positions is left out: designs so near to binding are no good ones.
 """
 
 from __future__ import annotations
@@ -86,11 +86,12 @@ def _quarter_on(values: Array) -> Array:
 class LoopArrays:
     """Loops of m linkages of one kind at n relative angles, arrays (m, n).
 
-    `side` is -1 for crossed. `x`, `y` are D in the frame's axes, mm, `q` is AD^2. `near` and `far` are positive where
-    the loop closes, and 0 at its limits. Each kind gives `output` (rad or mm), `frame` (theta_3 but for a constant,
-    continuous round the turn, rad), `rate`, `second`, `frame_rate`, `frame_second`, their first and second derivatives
-    by the relative angle, the signed sine of the `transmission` angle at D, None where that is always a right angle,
-    and the sine of the `force` angle, at least 0 (`kin.linkage.forces`).
+    `side` is 1 for an open assembly, -1 for a crossed one. `x`, `y` are D in the frame's axes, mm, `q` is AD^2, mm^2.
+    `near` and `far` are positive where the loop closes, and 0 at its limits. Each kind gives `output` (rad or mm),
+    `frame` (theta_3 but for a constant, continuous round the turn, rad), `rate`, `second`, `frame_rate`,
+    `frame_second`, their first and second derivatives by the relative angle, the signed sine of the `transmission`
+    angle at D, None where that is always a right angle, and the sine of the `force` angle, at least 0
+    (`kin.linkage.forces`).
     """
 
     side: float
@@ -110,18 +111,18 @@ class LoopArrays:
         return _copy_cached(self, part, rows)
 
     def signed_root(self, square: Array) -> Array:
-        """Square root of an array (m, n), below 0 for a crossed assembly."""
+        """Square root of `square` (m, n), below 0 for a crossed assembly, in mm of mm^2 and mm^2 of mm^4."""
         root = np.sqrt(square)
         return root if self.side > 0 else -root
 
     @cached_property
     def root(self) -> Array:
-        """Signed root of near far, mm or mm^2: 2 r1 r4 sin theta_4, or r1 sin theta_4; of a slider-crank D_x."""
+        """Signed root of near far (m, n): 2 r1 r4 sin theta_4, mm^2; of an inverted slider-crank r1 sin theta_4."""
         return self.signed_root(self.near * self.far)
 
     @cached_property
     def output(self) -> Array:
-        """Output of the loop: the angle theta_4, rad, or the slide's position D_x, mm, (m, n)."""
+        """Output of the loop: the angle theta_4, rad (m, n)."""
         angle: Array = np.arctan(self.near / self.root)
         angle += angle
         return angle
@@ -137,13 +138,13 @@ class InvertedLoop(LoopArrays):
 
     @classmethod
     def from_lengths(cls, side: float, cams: Support, lengths: Lengths) -> Self:
-        """Loops of linkages with these lengths, driven by these cams."""
+        """Loops of linkages with these lengths, driven by these cams; `side` is -1 for crossed ones, else 1."""
         r1, r4 = lengths.ground, lengths.rocker
         y = cams.p - (0.5 * cams.breadth - lengths.joint_offset)
         return cls(side, cams, lengths, y, y, y, y + (r1 - r4), (r1 + r4) - y)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` gives row minima."""
+        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` gives row minima (m,)."""
         return np.minimum(extreme(self.near), extreme(self.far))
 
     @cached_property
@@ -181,7 +182,7 @@ class InvertedLoop(LoopArrays):
     def force(self) -> Array:
         """Sine of the force angle, at least 0, (m, n): the force acts along the line from B to P.
 
-        P = -S' u - S1' n is where the normals of the contacts meet.
+        P = -S' u - S1' n from the shaft is where the normals of the contacts meet.
         """
         cams = self.cams
         along, across = cams.dp + self.root, cams.dp1 + (self.y - self.lengths.rocker)
@@ -257,13 +258,13 @@ class FourBarLoop(CouplerLoop):
 
     @classmethod
     def from_lengths(cls, side: float, cams: Support, lengths: Lengths) -> Self:
-        """Loops of linkages with these lengths, driven by these cams."""
+        """Loops of linkages with these lengths, driven by these cams; `side` is -1 for crossed ones, else 1."""
         r1, r4 = lengths.ground, lengths.rocker
         x, y, q, near = cls.vector(cams, lengths, np.abs(r1 - r4))
         return cls(side, cams, lengths, x, y, q, near, (r1 + r4) ** 2 - q)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` gives row minima."""
+        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` gives row minima (m,)."""
         r1, r4 = self.lengths.ground[:, 0], self.lengths.rocker[:, 0]
         margin = self._beyond(np.abs(r1 - r4), extreme)
         far, most = extreme(self.far), r1 + r4
@@ -285,7 +286,7 @@ class FourBarLoop(CouplerLoop):
 
     @cached_property
     def _lean(self) -> Array:
-        """Q + r4^2 - r1^2: twice r4 times the cosine of the angle at D, times the root of Q."""
+        """Q + r4^2 - r1^2, mm^2 (m, n), with Q = AD^2: 2 r4 AD times the cosine of the angle ADB."""
         r1, r4 = self.lengths.ground, self.lengths.rocker
         return self.q - (r1 * r1 - r4 * r4)
 
@@ -329,12 +330,12 @@ class SliderLoop(CouplerLoop):
 
     @classmethod
     def from_lengths(cls, side: float, cams: Support, lengths: Lengths) -> Self:
-        """Loops of linkages with these lengths, driven by these cams."""
+        """Loops of linkages with these lengths, driven by these cams; `side` is -1 for crossed ones, else 1."""
         x, y, q, near = cls.vector(cams, lengths, np.abs(lengths.offset))
         return cls(side, cams, lengths, x, y, q, near, near)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` gives row minima."""
+        """Least distance from binding, mm (m,), 0 or less where the loop binds; `extreme` gives row minima (m,)."""
         return self._beyond(np.abs(self.lengths.offset[:, 0]), extreme)
 
     @cached_property

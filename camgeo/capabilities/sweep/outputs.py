@@ -55,10 +55,10 @@ _POINTS = 720  # of a curve, over a turn
 
 @dataclass(frozen=True)
 class Best:
-    """A best design: its place from 1, its index in the plan, or that of the design it was polished from.
+    """A best design: its `place`, counted from 1, and its `index` in the plan, which polishing leaves as it is.
 
-    `values` by path, in the recipe's units, words by their index; `figures` by name, in mm and degrees; `why` it could
-    not be polished.
+    `values` are by path, in the recipe's units, words by their index; `figures` by name, in mm and degrees. `why` says
+    why the design could not be polished, and is empty where it was, or polishing was not tried.
     """
 
     place: int
@@ -70,7 +70,7 @@ class Best:
 
     @property
     def file(self) -> str:
-        """Name of its recipe's file."""
+        """Name of the file of the design's recipe."""
         return f"best-{self.place}.yaml"
 
 
@@ -118,10 +118,10 @@ def _with_entries(text: str, entries: dict[str, str]) -> str:
 
 
 def curve_of(recipe: Recipe, label: str) -> tuple[OutputCurve, str]:
-    """Output of a recipe's linkage over the shaft angle, or without one its cam's lift or swing; name of that axis.
+    """Output of a recipe's linkage over the shaft angle, or without one its cam's lift or swing; label of that axis.
 
-    In degrees or the recipe's units. Raises PlaceError for a linkage that does not turn, TypeError for one on a cam
-    without a lift, which no recipe has, and IntentError for a motion that no cam can have.
+    The output is in degrees or the recipe's unit of length. Raises PlaceError for a linkage that does not turn,
+    TypeError for one on a cam without a lift, which no recipe has, and IntentError for a motion that no cam can have.
     """
     if recipe.linkage is None:
         from camgeo.synthesis.motion_table import motion_table
@@ -144,10 +144,10 @@ def curve_of(recipe: Recipe, label: str) -> tuple[OutputCurve, str]:
 
 
 def with_polished(designs: Selection, best: Sequence[Best], ranking: Ranking) -> tuple[Selection, Marks]:
-    """The designs kept and the polished ones, best first, at most MOST_ROWS; and marks of each (n,) by their names.
+    """The designs kept and the polished ones, best first, at most MOST_ROWS; and marks (n,) of the designs by name.
 
-    `polished`: the design has the index of that from which it was polished, whose own row stays. `certified`, where
-    figures are estimates: those of this design are exact; such designs come first.
+    The mark `polished` is of a polished design; its index is that of its start, whose own row stays. The mark
+    `certified`, there only where figures are estimates, is of a design with exact figures; such designs come first.
     """
     new = [design for design in best if design.polished]
     index = np.append([design.index for design in new], designs.index).astype(np.int64)
@@ -165,9 +165,9 @@ def with_polished(designs: Selection, best: Sequence[Best], ranking: Ranking) ->
 
 
 def columns(plan: Plan, designs: Selection, units: dict[str, Unit], marks: Marks | None = None) -> Columns:
-    """Columns (n,) by their heads: place from 1, index, the varied fields by their paths, figures with units.
+    """Columns (n,) by their heads: place from 1, index, the varied fields by their paths, figures in their units.
 
-    Marks are the last, 0 or 1.
+    `units` are by the figures' names; `marks` (n,) become the last columns, 0 or 1.
     """
     figures = {name: values / units[name].divisor for name, values in designs.figures.items()}
     return {
@@ -191,7 +191,7 @@ def _head(figure: str, unit: str) -> str:
 
 
 def as_csv(heads: Columns) -> bytes:
-    """The table as CSV, every number with as few digits as read back exactly."""
+    """The columns as CSV below their heads, every number with as few digits as read back exactly."""
     stream = io.StringIO(newline="")
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(heads)
@@ -200,7 +200,7 @@ def as_csv(heads: Columns) -> bytes:
 
 
 def as_parquet(heads: Columns, about: dict[str, str]) -> bytes:
-    """The table as Parquet, with `about` in the metadata of its schema. Raises ModuleNotFoundError without pyarrow."""
+    """The columns as Parquet, with `about` in the schema's metadata. Raises ModuleNotFoundError without pyarrow."""
     import pyarrow as pa
     from pyarrow import parquet
 
@@ -218,7 +218,7 @@ class Files:
     skipped: list[dict[str, str]] = field(default_factory=list)
 
     def add(self, names: Sequence[str], write: Callable[[], Sequence[bytes]]) -> None:
-        """Add files of these names, or, where a package is missing, an entry that says so."""
+        """Add files with the contents that `write` returns in the order of `names`; skip them without a package."""
         try:
             self.contents.update(zip(names, write(), strict=True))
         except ModuleNotFoundError as error:
@@ -229,9 +229,10 @@ class Files:
 def outputs(
     task: SweepTask, designs: Selection, best: Sequence[Best], run: Entry, reasons: Sequence[str] = ()
 ) -> tuple[dict[str, bytes], Entry]:
-    """All files of a sweep, `sweep.json` among them, and that report. Its `run` alone depends on how it was computed.
+    """Contents of all files of a sweep by name, `sweep.json` among them, and the report that `sweep.json` holds.
 
-    `reasons` are the words for the codes of why a design has no figures.
+    `run` becomes an entry of the report, the only one that depends on how the sweep was computed. `reasons` are words
+    for the codes of why a design has no figures. Raises RecipeErrors where a best design's recipe cannot be written.
     """
     files = Files()
     units = task.units(designs.figures)
@@ -247,6 +248,7 @@ def outputs(
         files.contents[design.file] = recipe_text(task, design).encode()
     if best:
         files.add(PICTURES[2:], lambda: _curve_pictures(task, best, files.contents))
+    # the report comes last, as it lists the files and those left out
     report = _report(task, designs, best, reasons)
     report["counts"]["rows"] = table.rows
     report["screen"] = None if task.recipe.linkage is not None else _screen(task, designs.certificate)
@@ -276,8 +278,8 @@ def _map_pictures(task: SweepTask, designs: Selection, best: Sequence[Best]) -> 
     if FIGURES[rank].needs is OF_DWELL:
         notes += f"; band of {_band(task)}"
     if len(paths) > 2:
-        others = " and ".join(filter(None, (", ".join(paths[2:-1]), paths[-1])))
-        notes += f"; each cell shows the best over {others}"
+        axes = " and ".join(filter(None, (", ".join(paths[2:-1]), paths[-1])))
+        notes += f"; each cell shows the best over {axes}"
     places = [[b.values[paths[0]], b.values[paths[1]] if flat else b.figures[rank] / unit.divisor] for b in best]
     pictures = draw_map(
         f"{task.recipe.name}: {FIGURES[rank].about.split(',')[0]}",

@@ -56,9 +56,9 @@ def draw_map(
 ) -> dict[str, bytes]:
     """Picture of the ranking's figure over the cells' one or two axes, as bytes: {"png": ..., "svg": ...}.
 
-    The figure is divided by the `divisor` of its unit. `label` is that of the figure and `names` are those of the axes,
-    with units; `best` (n, 2) are the coordinates of the best designs, best first. Raises ModuleNotFoundError without
-    matplotlib.
+    The figure is divided by the `divisor` of its unit and labelled `label`; `names` label the axes. `best` (n, 2) are
+    the coordinates of the best designs in the picture, best first; `notes` stand below the title. Raises
+    ModuleNotFoundError without matplotlib.
     """
     flat, values = len(cells.axes) == 2, cells.best * (1.0 / divisor)
     with _blank() as (figure, axes):
@@ -82,7 +82,11 @@ def draw_map(
 
 
 def draw_best(title: str, curves: Sequence[OutputCurve], label: str, *, notes: str = "") -> dict[str, bytes]:
-    """Picture of the best designs' output over a turn, as bytes by kind; the first is boldest, its dwell shaded."""
+    """Picture of the best designs' output over a turn, as bytes: {"png": ..., "svg": ...}.
+
+    The first curve is boldest, its dwell shaded. `label` is that of the output's axis; `notes` stand below the title.
+    Raises ModuleNotFoundError without matplotlib.
+    """
     with _blank() as (figure, axes):
         for number, curve in enumerate(curves):
             axes.plot(

@@ -34,8 +34,9 @@ _WORDS = 4  # random words that one step of Philox's counter gives
 class Plan:
     """The designs of a sweep, numbered from 0 to count - 1.
 
-    grid: every combination of the axes' values, the last axis running fastest; random: independent and even, by
-    Philox, a counter-based generator; sobol: Sobol's sequence as scipy scrambles it with the seed.
+    grid: every combination of the axes' values, the last axis running fastest; random: independent and uniform,
+    by Philox, a counter-based generator; sobol: Sobol's sequence as scipy scrambles it with the seed. Raises ValueError
+    for no axes, a count that is not 1 to MOST, and a grid whose axes have no values or whose designs are not `count`.
     """
 
     axes: tuple[Axis, ...]
@@ -56,7 +57,7 @@ class Plan:
 
     @property
     def chunk(self) -> int:
-        """Designs of one chunk, a power of two."""
+        """Number of designs of a chunk, a power of two; the last chunk may have fewer."""
         return min(max(1 << (self.count // CHUNKS).bit_length(), SMALLEST), GREATEST)
 
     @property
@@ -65,13 +66,14 @@ class Plan:
         return -(-self.count // self.chunk)
 
     def span(self, number: int) -> tuple[int, int]:
-        """Index of the first design of chunk `number`, and that behind its last."""
+        """Index of the first design of chunk `number`, counted from 0, and the index after its last."""
         return number * self.chunk, min((number + 1) * self.chunk, self.count)
 
     def values(self, first: int, last: int) -> Array:
         """Values of designs first .. last - 1, (last - first, axes), in the recipe's units.
 
-        Raises ValueError for designs that the plan does not have.
+        Words are given by their index. Raises ValueError for designs that the plan does not have, ModuleNotFoundError
+        for Sobol's sequence without scipy.
         """
         if not 0 <= first <= last <= self.count:
             raise ValueError(f"designs {first} to {last} of {self.count}")
@@ -85,14 +87,14 @@ class Plan:
 
 
 def _spread(axis: Axis, share: Array) -> Array:
-    """Values of an axis for shares in [0, 1): of a list each for an equal part, else even between the ends."""
+    """Values of an axis for shares in [0, 1): listed ones for equal parts, else linear between the ends."""
     if axis.values:
         return np.array(axis.values)[(share * len(axis.values)).astype(np.int64)]
     return axis.low * (1.0 - share) + axis.high * share
 
 
 def _random(first: int, last: int, width: int, seed: int) -> Array:
-    """Even numbers in [0, 1), shape (last - first, width), of which each depends on seed and place alone."""
+    """Uniform numbers in [0, 1), shape (last - first, width), of which each depends on seed and place alone."""
     per = -(-width // _WORDS)
     words = np.random.Philox(key=seed, counter=first * per).random_raw((last - first) * per * _WORDS)
     rows = words.reshape(last - first, per * _WORDS)[:, :width]

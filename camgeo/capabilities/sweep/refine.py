@@ -51,7 +51,11 @@ class PolishError(CamgeoError, ValueError):
 
 @dataclass(frozen=True)
 class _Goal:
-    """Loss of designs by their places in the unit cube of the `free` axes, which are ranges; other values stay."""
+    """Loss of designs by their places in the unit cube of the axes that are ranges; other values stay as in `start`.
+
+    `start` (axes,) are values in the recipe's units. `free` (f,) are the columns of the ranges, which run from `low`
+    (f,) to `low` + `span`. `rank` is the ranking's figure, the greatest is best if `most`.
+    """
 
     evaluator: Evaluator
     rank: str
@@ -63,7 +67,7 @@ class _Goal:
     span: Array
 
     def values(self, share: Array) -> Array:
-        """Values (m, axes) of designs at places (m, free) in the cube."""
+        """Values (m, axes) of designs at the places `share` (m, f) in the cube, 0 to 1 in each range."""
         values = np.repeat(self.start[None], len(share), axis=0)
         values[:, self.free] = self.low + self.span * share
         return values
@@ -89,10 +93,11 @@ class _Goal:
 def polish(task: SweepTask, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
     """Values by path of a design as good or better, and its figures by name, mm and degrees.
 
-    `values` are those of a design of the sweep by their paths. Only what varies over a range changes, within it; listed
-    values stay. The result keeps the sweep's limits, or is the start. Dwells are optimised within the band less
-    twice the output error within the tolerance of the files; the figures are those within the band itself. Raises
-    PolishError where that error leaves nothing of the band, and ModuleNotFoundError without scipy.
+    `values` are the values, by path, of a design of the sweep. Only what varies over a range changes, within it; listed
+    values stay. The result keeps the sweep's limits, or is the start. Dwells are optimised within the band less twice
+    the output error within the tolerance of the files; the figures are those within the band itself. Where a dwell
+    ranks or limits, raises PolishError if the mechanism may bind within the tolerance, or the error leaves nothing of
+    the band. Raises ModuleNotFoundError without scipy.
     """
     paths = [axis.path for axis in task.sweep.vary]
     start = np.array([values[path] for path in paths])
@@ -118,10 +123,10 @@ def polish(task: SweepTask, values: dict[str, float]) -> tuple[dict[str, float],
 
 
 def _optimise(task: SweepTask, goal: _Goal) -> tuple[_Goal, Array]:
-    """Search for the best values (axes,); return them with the goal, whose band is that of the last search.
+    """Search for the best values (axes,); return the goal, with the band of the last search, and the values.
 
     Where the result has a greater output error than the band allows for, the search starts again from there; after
-    some rounds the start is returned.
+    `_ROUNDS` searches the start of the last is returned.
     """
     if not {limit.figure for limit in goal.limits}.union({goal.rank}) & set(DWELLS):
         return goal, goal.values(_minimum(goal)[None])[0]
@@ -145,7 +150,8 @@ def _optimise(task: SweepTask, goal: _Goal) -> tuple[_Goal, Array]:
 def output_error(recipe: Recipe) -> float:
     """Greatest error of the output within the tolerance of a recipe's files, rad or mm.
 
-    Raises PolishError where the mechanism may bind within it, or twice the error fills the dwell's band.
+    The recipe has a linkage. Raises PolishError where the mechanism may bind within the tolerance, or twice the error
+    fills the dwell's band.
     """
     from kin.follower.frame import implied_limit
 
@@ -173,7 +179,7 @@ def _unlimited(task: SweepTask) -> Recipe:
 
 
 def _goal(task: SweepTask, paths: Sequence[str], start: Array) -> _Goal:
-    """Goal of a task from a start (axes,), within the recipe's own band."""
+    """Goal of a task from the values `start` (axes,), within the recipe's own band."""
     sweep = task.sweep
     free = np.array([i for i, axis in enumerate(sweep.vary) if axis.is_range], dtype=np.intp)
     low = np.array([axis.low for axis in sweep.vary])[free]
@@ -194,11 +200,12 @@ def _tightened(limit: Limit) -> Limit:
 
 
 def _minimum(goal: _Goal) -> Array:
-    """Place in the cube (free,) of the least loss near the start."""
+    """Place in the cube (f,) of the least loss near the start."""
     from scipy.optimize import differential_evolution, minimize
 
     start = np.clip((goal.start[goal.free] - goal.low) / goal.span, 0.0, 1.0)
     slow = goal.evaluator.slow
+    # differential evolution of a cloud about the start, one batch of designs per generation
     rng = np.random.default_rng(_SEED)
     cloud = np.clip(start + _CLOUD * rng.standard_normal((_MEMBERS, len(start))), 0.0, 1.0)
     cloud[0] = start
@@ -215,6 +222,7 @@ def _minimum(goal: _Goal) -> Array:
         updating="deferred",
         vectorized=True,
     )
+    # Nelder and Mead's simplex from its best, corners beyond the cube mirrored
     corners = evolved.x + 0.25 * _CLOUD * np.eye(len(start) + 1, len(start), k=-1)
     corners = np.where(corners > 1.0, 2.0 * evolved.x - corners, corners)
     simplex = minimize(
@@ -235,7 +243,7 @@ def _minimum(goal: _Goal) -> Array:
 
 
 def _rounded(goal: _Goal, values: Array) -> Array:
-    """Values rounded to a millionth of their ranges, within them."""
+    """Values (axes,), those of ranges rounded to a millionth of the range or finer, within it."""
     rounded = values.copy()
     for i, low, span in zip(goal.free, goal.low, goal.span, strict=True):
         digits = _DIGITS - math.floor(math.log10(span))

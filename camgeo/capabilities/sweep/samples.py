@@ -41,11 +41,11 @@ class CamSample(NamedTuple):
     counts: tuple[int, ...]
 
     def comparable(self, other: CamSample) -> bool:
-        """Whether both have the same sizes, and as many cells in each piece."""
+        """Whether both have sizes of the same names, and as many cells in each piece."""
         return tuple(self.sizes) == tuple(other.sizes) and self.counts == other.counts
 
     def plus(self, other: CamSample, factor: float) -> CamSample:
-        """Sum of the sample and a factor times another that is comparable."""
+        """Sum of the sample and `factor` times another that is comparable, number by number."""
         sizes = {name: value + factor * other.sizes[name] for name, value in self.sizes.items()}
         return CamSample(sizes, self.widths + factor * other.widths, self.rows + factor * other.rows, self.counts)
 
@@ -87,8 +87,8 @@ def _sizes(cam: Cam, exact: ExactCam) -> dict[str, float]:
 def sample_cam(cam: Cam, count: int, counts: tuple[int, ...] = ()) -> CamSample:
     """Sample a cam at about `count` angles of a turn.
 
-    `counts` has the number of cells of each piece; it counts only for a cam of as many pieces.
-    Raises IntentError for a cam that does not exist.
+    `counts` are the numbers of cells of the pieces; they are used only for a cam with as many pieces. Raises
+    IntentError for a cam that does not exist.
     """
     exact = cam.exact()
     repeats = min(surface.base.shape.repeats for surface in exact.surfaces)
@@ -126,9 +126,10 @@ class Template:
     def fit(
         sample_cells: Callable[[Array, tuple[int, ...]], CamSample | None], low: Array, high: Array
     ) -> Template | None:
-        """Template for numbers between ends (k,); None where no design is met.
+        """Template for numbers between `low` and `high` (k,); None where no design that is tried exists.
 
-        `sample_cells` samples the cam with some numbers, by the given counts of cells, if any.
+        `sample_cells` samples the cam with the numbers (k,) at given counts of cells, () for its own, and returns None
+        where there is no cam.
         """
         trials = (*(low + share * (high - low) for share in _TRIALS), *_random_numbers(low, high))
         centres = ((numbers, sample_cells(numbers, ())) for numbers in trials)
@@ -150,6 +151,7 @@ class Template:
 
     def _slope(self, column: int, low: float, high: float) -> CamSample | None:
         """Derivative of the cam by one number; None where it is not linear, or too few designs show it."""
+        # up to three designs along the column, the others at the centre
         seen: list[tuple[float, CamSample]] = []
         for share in (0.0, 1.0, 0.7, 0.3, 0.55, 0.45):
             numbers = self.centre.copy()
@@ -165,6 +167,7 @@ class Template:
                 break
         if len(seen) < 2:
             return None
+        # slopes from the first design; changes within rounding count as none
         step, cam = seen[0]
         change = cam.plus(self.centre_cam, -1.0)
         factor, sizes = 1.0 / step, dict[str, float]()
@@ -176,6 +179,7 @@ class Template:
             widths = 0.0 * widths
         if np.abs(rows * step).max() <= _ROUNDING * np.abs(self.centre_cam.rows).max():
             rows = 0.0 * rows
+        # the number acts linearly if the slopes give all the designs seen
         slopes = CamSample(sizes, widths, rows, cam.counts)
         return slopes if all(cam.equals(self.centre_cam.plus(slopes, step)) for step, cam in seen) else None
 
@@ -191,16 +195,19 @@ class Template:
         return len(self.slopes) < 2
 
     def sample_designs(self, values: Array) -> list[tuple[Indices, MotionBatch]]:
-        """Groups of the designs (m, k): their rows, and their cams. Designs that do not exist are in none."""
+        """Groups of designs with `values` (m, k), each as the rows of its designs and their cams.
+
+        Designs whose motion cannot be sampled are in no group.
+        """
         if not self.resampled:
             return [(np.arange(len(values)), self._shift(self.centre_cam, values, self.centre))]
-        distinct, which = np.unique(values[:, self.resampled], axis=0, return_inverse=True)
+        distinct, group = np.unique(values[:, self.resampled], axis=0, return_inverse=True)
         groups = []
         for i, shared in enumerate(distinct):
             numbers = self.centre.copy()
             numbers[list(self.resampled)] = shared
             cam = self.sample(numbers)
-            rows = np.flatnonzero(which.reshape(-1) == i)
+            rows = np.flatnonzero(group.reshape(-1) == i)
             if cam is None and self.slopes:  # it may exist beside the sizes of a design, if not beside the centre's
                 numbers = values[rows[0]]
                 cam = self.sample(numbers)

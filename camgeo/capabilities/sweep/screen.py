@@ -166,7 +166,7 @@ def _arm_face(sizes: Sizes, side: Side, rows: Array) -> Contours:  # noqa: ARG00
 def plate(rows: Array) -> Contours:
     """Contours of plates under a face at right angles to its travel.
 
-    `rows` are the support functions p, mm, and their derivatives by rad, (m, n) each.
+    `rows` are the support functions p, mm, and at least two derivatives by rad, (m, n) each.
     """
     p, q = rows[0], rows[1]
     outside = p.min(axis=1) < -EDGE * p.max(axis=1)
@@ -185,7 +185,10 @@ GUIDED: dict[tuple[str, bool], Callable[[Sizes, Side, Array], Contours]] = {
 
 @dataclass(frozen=True, eq=False)
 class ScreenedCams:
-    """Sampled cams of m designs at n places each, from which figures are estimated."""
+    """Sampled cams of m designs at n places each, from which figures are estimated.
+
+    `side` is 1 where the metal lies inside the contour, -1 outside, as of a ring.
+    """
 
     recipe: Recipe
     motion: MotionBatch
@@ -193,7 +196,7 @@ class ScreenedCams:
     side: Side
 
     def most(self, rows: Array) -> Array:
-        """Greatest value of rows (m, n) over the turn, (m,)."""
+        """Greatest value (m,) of rows (m, n) over the turn, between samples by parabolas."""
         left, middle, right = rows[:, :-2], rows[:, 1:-1], rows[:, 2:]
         bend, lean = 2.0 * middle - left - right, right - left
         crest = self.motion.inside & (bend > 0.0) & (np.abs(lean) <= 2.0 * bend)
@@ -202,11 +205,11 @@ class ScreenedCams:
         return greatest
 
     def least(self, rows: Array) -> Array:
-        """Least value of rows (m, n) over the turn, (m,)."""
+        """Least value (m,) of rows (m, n) over the turn, between samples by parabolas."""
         return -self.most(-rows)
 
     def greatest(self, rows: Array) -> Array:
-        """Greatest absolute value of rows (m, n) over the turn, (m,)."""
+        """Greatest absolute value (m,) of rows (m, n) over the turn, between samples by parabolas."""
         return np.maximum(self.most(rows), self.most(-rows))
 
     @property
@@ -228,7 +231,10 @@ class ScreenedCams:
 
     @cached_property
     def pitch(self) -> Array:
-        """Least radius of curvature that decides undercut, mm (m,): of the pitch curve, or of a flat face's contour."""
+        """Least radius of curvature that decides undercut, mm (m,): of the pitch curve, or of a flat face's contour.
+
+        Of a pitch curve that nowhere bends round the metal it is infinite.
+        """
         if self.contours.radius is not None:
             return self.least(self.contours.radius)
         with np.errstate(divide="ignore"):
@@ -241,12 +247,15 @@ class ScreenedCams:
 
     @property
     def hollow(self) -> Array:
-        """Least radius of curvature where the contour is concave, mm (m,); infinite where it is convex."""
+        """Least radius of curvature where the contour is concave, mm (m,); infinite where it is convex.
+
+        Raises TypeError for a flat face, whose contour is convex.
+        """
         with np.errstate(divide="ignore"):
             return 1.0 / self.bend[1] + self.size("radius")
 
     def size(self, name: str) -> Array:
-        """Size of this name of each cam, mm or rad (m,)."""
+        """Size of this name of each cam, mm or rad (m,); raises KeyError for a size that the follower lacks."""
         return self.motion.sizes[name][:, 0]
 
     @property
@@ -261,23 +270,26 @@ class ScreenedCams:
 
     @property
     def lean(self) -> Array | None:
-        """Tangent of the pressure angle at rest, (m,); None without a stem."""
+        """Tangent of the pressure angle at rest, at least 0, (m,); None without a round touch on a stem."""
         return None if self.contours.lean is None else self.contours.lean[:, 0]
 
     @property
     def contact(self) -> Array:
-        """Place of the contact along a face, mm (m, n)."""
+        """Place of the contact along a flat face, mm (m, n); raises TypeError for another follower."""
         rows = self.contours.contact
         if rows is None:
             raise TypeError("no contact travels along a face")
         return rows
 
     def peak(self, order: int, speed: float = 1.0) -> Array:
-        """Greatest derivative of the motion by the shaft angle, or by time at a speed in rad/s; mm or degrees (m,)."""
+        """Greatest absolute derivative of the motion, mm or degrees (m,), of `order` 1 to 3.
+
+        It is by radian of the shaft angle, or, at a `speed` in rad/s, by time in s.
+        """
         return self.scale * speed**order * self.greatest(self.motion.rows[order])
 
     def spin(self) -> Array:
-        """Greatest speed of the roller, turns per turn of the shaft (m,)."""
+        """Greatest speed of the roller, turns per turn of the shaft (m,); raises TypeError without a roller."""
         if self.contours.spin is None:
             raise TypeError("no roller turns")
         return self.greatest(self.contours.spin)
@@ -290,7 +302,8 @@ def _degrees(slope: Array) -> Array:
 class FigureEstimate(NamedTuple):
     """Estimate of a figure: `compute` gives it in mm and degrees, (m,).
 
-    `error` is the greatest seen, in degrees where `in_degrees`, else as a share of the value; None for an exact figure.
+    `error` is the greatest error measured, in degrees where `in_degrees`, else as a share of the value; None for an
+    exact figure.
     """
 
     compute: Callable[[ScreenedCams], Array]
@@ -339,7 +352,7 @@ function, with each law of the catalogue, at 360 angles.
 
 @cache
 def estimates() -> dict[str, FigureEstimate]:
-    """Estimates by the names of their figures, those of capabilities after the core's."""
+    """Estimates by the names of their figures: the core's, then those of the capabilities."""
     capabilities = registry.in_order(registry.names_with_record())
     return _CORE | {
         name: FigureEstimate(*estimate) for each in capabilities for name, estimate in each.estimates().items()
@@ -347,7 +360,7 @@ def estimates() -> dict[str, FigureEstimate]:
 
 
 def allowance(name: str, value: float) -> float:
-    """Greatest error, in the figure's unit, to be expected of an estimate near a value."""
+    """Greatest error to be expected of an estimate near `value`, in the figure's unit; 0 for an exact figure."""
     estimate = estimates().get(name)
     if estimate is None or estimate.error is None:
         return 0.0
@@ -360,7 +373,7 @@ def slack(limit: Limit) -> float:
 
 
 def error_of(name: str, estimate: float, exact: float) -> float:
-    """Error of an estimate, at least 0: in degrees of an angle, else as a share of the exact value."""
+    """Error of an estimate, at least 0, for nan 0: of an angle in degrees, else as a share of the exact value."""
     if estimate == exact or np.isnan(estimate):
         return 0.0
     return abs(estimate - exact) / (1.0 if estimates()[name].in_degrees else max(abs(exact), 1e-300))
@@ -368,7 +381,7 @@ def error_of(name: str, estimate: float, exact: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Screen:
-    """Estimates the figures `names` of a sweep's cams, whose metal lies on `side` of their contours."""
+    """Estimates the figures `names` of a sweep's cams, with metal inside their contours (`side` 1) or outside (-1)."""
 
     recipe: Recipe
     names: tuple[str, ...]
@@ -378,7 +391,7 @@ class Screen:
 
     @staticmethod
     def prepare(recipe: Recipe, paths: Sequence[str], names: Sequence[str], count: int) -> Screen | str:
-        """Screen of cams that differ at `paths`, at about `count` angles; or the reason why there can be none."""
+        """Screen of cams that differ at `paths`, at about `count` angles; or, in words, why there is none."""
         if recipe.linkage is not None:
             return "it has a linkage"
         if unknown := [name for name in names if name not in estimates()]:
@@ -395,6 +408,7 @@ class Screen:
             except (RecipeErrors, IntentError):
                 return None
 
+        # the followers, and the single closed contour, whose motion can be sampled
         ranges = {axis.path: axis for axis in varied_fields(recipe)}
         low, high = np.array([(ranges[path].low, ranges[path].high) for path in paths], dtype=float).reshape(-1, 2).T
         try:
@@ -419,7 +433,10 @@ class Screen:
         return Screen(recipe, tuple(names), side, contours, template)
 
     def estimate(self, values: Array) -> tuple[dict[str, Array], Codes]:
-        """Estimates by name, (m,) each, nan without a cam, and fault codes (m,), of designs with values (m, k)."""
+        """Estimates by name, (m,) each, and fault codes (m,), indices into REASONS, of designs with `values` (m, k).
+
+        Lengths are in mm, angles in degrees; designs with a fault have nan.
+        """
         m = len(values)
         figures, faults = {name: np.full(m, np.nan) for name in self.names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)
         step = max(1, _BLOCK // self.template.centre_cam.rows.shape[1])

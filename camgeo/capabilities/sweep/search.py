@@ -51,7 +51,10 @@ Measure: TypeAlias = "Callable[[SweepTask, Array], Mapping[str, Array]]"
 
 @dataclass(frozen=True)
 class Procedures:
-    """Functions that compute the figures of designs, all those of a few, and polish one; words for the reason codes."""
+    """Functions of a search: `compute` of a chunk's figures, `measure` of all figures of some designs, `polish` of one.
+
+    `reasons` are words for the codes of why a design has no figures.
+    """
 
     compute: Compute
     measure: Measure
@@ -82,8 +85,10 @@ def search(
 ) -> SweepOutcome:
     """Run the sweep of a recipe, by COMPUTING or other procedures, and write its files below `out`.
 
-    Raises RecipeErrors for a recipe whose sweep cannot be cut out; ModuleNotFoundError, EngineError, VersionsError and
-    SurroundingsError for what is missing around the run; OSError for a disk that refuses.
+    With `fresh`, chunks of earlier runs are computed again. `listener` is called with the progress. Raises RecipeErrors
+    for a recipe whose sweep cannot be cut out, ModuleNotFoundError for a missing package, EngineError for workers or a
+    scheduler that are missing or lost, VersionsError for workers of other versions, SurroundingsError for a file in the
+    way, or where another run of the recipe holds its folder for over 30 s, OSError where the disk refuses.
     """
     started = time.perf_counter()
     procedures = procedures or COMPUTING
@@ -124,7 +129,10 @@ def require_packages(task: SweepTask, engine: Workers) -> None:
 
 
 def require_free_names(task: SweepTask, out: Path) -> None:
-    """Raise SurroundingsError for a user's file in the place of one of the sweep: at once, not in the end."""
+    """Raise SurroundingsError where a file of the user bears a name that the sweep will write.
+
+    So the sweep stops at once, not in the end.
+    """
     folder = out / task.recipe.name
     if not folder.exists():
         return
@@ -142,10 +150,10 @@ def require_free_names(task: SweepTask, out: Path) -> None:
 def best_designs(
     task: SweepTask, selection: Selection, procedures: Procedures, engine: Workers, listener: Listener | None = None
 ) -> list[Best]:
-    """The best designs with all their figures, best first.
+    """The best designs with all their figures, best first, at most as many as the sweep keeps.
 
-    If the sweep refines, those that lie apart are polished; of polished ones that lie near to each other the best is
-    kept.
+    If the sweep refines, designs that lie apart are polished; of polished ones that lie near to each other the best is
+    kept. Raises EngineError where a process is killed.
     """
     rows = selection.rows if selection.certificate is None else selection.certificate.designs
     places = list(range(rows))
@@ -178,7 +186,7 @@ def best_designs(
 
 
 def _with_all_figures(task: SweepTask, designs: list[Best], measure: Measure) -> list[Best]:
-    """The designs, with the figures that the search did not compute."""
+    """The designs, with the figures added that the search did not compute."""
     if all(set(task.all_figures) <= set(design.figures) for design in designs):
         return designs
     columns = measure(task, np.array([list(design.values.values()) for design in designs]))
@@ -226,7 +234,10 @@ def _are_same(task: SweepTask, design: Best, other: Best) -> bool:
 
 
 class ExactDesign(NamedTuple):
-    """Exact figures of a design, mm and degrees; why it is rejected: of REASONS, or the figure of a limit."""
+    """Exact figures of a design, mm and degrees, and why it is rejected.
+
+    `fault` is a word of REASONS, without figures, or the figure of a limit that the design breaks; empty for none.
+    """
 
     figures: dict[str, float]
     fault: str
@@ -238,7 +249,8 @@ def certify(task: SweepTask, selection: Selection, engine: Workers, listener: Li
     Designs are computed exactly in the order of their estimates, until as many are certified as the sweep keeps. Then
     at most as many more are computed: those whose estimate, but for its possible error, is as good as the worst
     certified one. Where the sweep refines, only designs that lie apart are certified. Where no design is within the
-    limits the nearest one is computed. The listener hears of the number certified.
+    limits the nearest one is computed. `listener` is called with the number certified. Raises EngineError where a
+    process is killed.
     """
     started = time.perf_counter()
     if not selection.rows and (near := selection.nearest) is not None:
@@ -303,9 +315,9 @@ def _compute_exactly(task: SweepTask, selection: Selection, place: int) -> Exact
 
 
 def _nearest(task: SweepTask, selection: Selection, exact_designs: Mapping[int, ExactDesign]) -> Nearest | None:
-    """The exact design that misses the limits by least, where all of them were rejected.
+    """The exact design that misses the limits by least, where all were rejected.
 
-    It is the nearest of the estimates where no exact design has figures.
+    Where no exact design has figures it is the nearest by estimates, None without one.
     """
     places = [place for place, design in exact_designs.items() if design.figures]
     if not places or not task.ranking.limits:
@@ -344,7 +356,11 @@ def _reorder(
 
 
 def place_files(out: Path, name: str, files: dict[str, bytes], *, accepted: bool) -> Path:
-    """Write all files at once, in the folder of the recipe if accepted, else in that of rejected ones; return it."""
+    """Write all files at once to the folder `name` below `out`, if not accepted to `name`.rejected; return the folder.
+
+    `files` are contents by name. Raises BusyError where another run of the recipe holds the folder for over 30 s,
+    SurroundingsError for a file in the way or a disk that refuses.
+    """
     give_up = time.monotonic() + _WAIT
     while True:
         try:

@@ -34,7 +34,7 @@ class MotionRows:
 
     `output`, mm or rad, and `frame`, the frame's angle, rad, have the first derivatives `rate` and `frame_rate` and the
     second ones `second` and `frame_second` by the relative angle. `transmission` is the sine of the transmission angle,
-    with a sign, `force` that of the force angle, at least 0.
+    with a sign, `force` the sine of the force angle, at least 0.
     """
 
     output: Array
@@ -57,7 +57,10 @@ def word_lists(recipe: Recipe) -> dict[str, tuple[str, ...]]:
 
 
 def text_with(recipe: Recipe, values: Mapping[str, float]) -> str:
-    """Text of a recipe with values, in its units, at paths; of words their index. ValueError for a wrong path."""
+    """Text of a recipe with values, in its units, at paths; words are given by their index.
+
+    Raises CallError, a ValueError, for a path at which no number stands.
+    """
     words = word_lists(recipe)
     chosen = {path: words[path][int(value)] for path, value in values.items() if path in words}
     variant = replace(recipe, text=recipe.changed(chosen)) if chosen else recipe
@@ -65,7 +68,10 @@ def text_with(recipe: Recipe, values: Mapping[str, float]) -> str:
 
 
 def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | Array) -> Recipe:
-    """The recipe with values at paths. Raises RecipeErrors where that is no recipe, ValueError for a wrong path."""
+    """The recipe with values, in its units, at paths; words are given by their index.
+
+    Raises RecipeErrors where that is no recipe, CallError for a path at which no number stands.
+    """
     numbers = {path: float(value) for path, value in zip(paths, values, strict=True)}
     return load_text(text_with(recipe, numbers), recipe.path)
 
@@ -73,9 +79,10 @@ def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | 
 def evaluate(
     recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[str]
 ) -> tuple[dict[str, Array], Codes]:
-    """Figures by name, (m,) each, lengths in mm and angles in degrees, and fault codes (m,).
+    """Figures `names` of m designs, (m,) each, lengths in mm and angles in degrees, and fault codes (m,).
 
-    The part is left out but for the contour, as a bore has no bearing on these, unless a figure needs the part.
+    `values` (m, k) are those at the k paths, in the recipe's units, words by their index. A code is an index into
+    REASONS; a design with a fault has nan. Bores and other features are left out unless a figure needs the part.
     """
     from camgeo.measures.figures import design_figures
     from camgeo.synthesis.design import designed
@@ -104,9 +111,10 @@ def evaluate(
 
 
 def dyad_motions(recipe: Recipe, paths: Sequence[str], values: Array, count: int) -> tuple[Array, MotionRows]:
-    """Least margin of any loop, mm (m,), and the motions at `count` angles.
+    """Least margin of any loop, mm (m,), and the motions of m mechanisms at `count` angles.
 
-    Of a mechanism that binds the margin is -inf and the motion nan.
+    `values` (m, k) are those at the k paths, in the recipe's units. Of a mechanism that binds the margin is -inf and
+    the motion nan.
     """
     from kin.linkage.loop import BindingError
 

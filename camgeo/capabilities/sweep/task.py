@@ -38,7 +38,7 @@ _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 
 @dataclass(frozen=True)
 class Unit:
-    """Unit in which a figure is reported, and the divisor of its value in mm and degrees."""
+    """Unit in which a figure is reported, and the divisor that turns its value in mm or degrees into this unit."""
 
     name: str
     divisor: float = 1.0
@@ -46,7 +46,7 @@ class Unit:
 
 @dataclass(frozen=True)
 class SweepTask:
-    """A recipe that has a sweep, its plan and ranking, and the recipe with each of the words that vary."""
+    """A recipe that has a sweep, its plan and ranking; `variants` are the recipe with each of the words that vary."""
 
     recipe: Recipe
     sweep: Sweep
@@ -111,7 +111,7 @@ class SweepTask:
     def exact_figures(self, values: Array) -> FigureTable:
         """All figures of designs with the values (m, axes), each computed exactly, in mm and degrees.
 
-        Each design has a code of why figures of it are missing, 0 if none is.
+        The table's `reason` says why figures of a design are missing, 0 where none is.
         """
         scene = self.scene(self.all_figures)
         return Evaluator.prepare(scene.recipe, scene.paths, figures=scene.figures).evaluate(values)
@@ -122,12 +122,12 @@ class SweepTask:
 
     @property
     def all_figures(self) -> tuple[str, ...]:
-        """Names of the figures of the best designs: those that the recipe has with each word."""
+        """Names of the figures of the best designs: those that the recipe has whichever words it takes."""
         names = [figure_names(recipe) for recipe in (self.recipe, *self.variants)]
-        return tuple(name for name in names[0] if all(name in others for others in names))
+        return tuple(name for name in names[0] if all(name in variant for variant in names))
 
     def are_apart(self, values: Array, start: Array) -> Mask:
-        """Mask (n,) of the designs (n, axes) that lie so far from a start (axes,) that polishing leads them elsewhere.
+        """Mask (n,) of designs with `values` (n, axes) so far from `start` (axes,) that polishing leads elsewhere.
 
         All do where nothing is polished.
         """
@@ -159,7 +159,7 @@ class SweepTask:
         return SweepScene(recipe, figures, self.screened, tuple(variant.cam for variant in self.variants))
 
     def units(self, figures: Iterable[str]) -> dict[str, Unit]:
-        """Unit of each figure, lengths in the recipe's."""
+        """Unit of each of the figures by name, lengths in the recipe's unit."""
         length = Unit(_LENGTH_UNITS[self.recipe.units], self.recipe.mm)
         linkage, swings = self.recipe.linkage, self.recipe.cam.arrangement.unit == "deg"
         slides = not swings if linkage is None else output_slides(linkage)

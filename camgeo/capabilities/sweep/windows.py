@@ -32,7 +32,10 @@ _PRECISION = 1e-9  # of a cell: error of the place where a level is crossed
 
 
 def greatest(values: Array, smooth: Mask | bool = True) -> Array:
-    """Greatest value of each row (m,), in smooth rows that of the parabola through three samples."""
+    """Greatest value (m,) of each row of `values` (m, n), periodic, in their unit.
+
+    In smooth rows, a mask (m,) or all, it is the extreme of the parabola through three samples.
+    """
     return _parabola_extreme(values, values.argmax(axis=1), smooth)
 
 
@@ -50,7 +53,10 @@ def _parabola_extreme(values: Array, i: Indices, smooth: Mask | bool) -> Array:
 
 
 def least(values: Array, smooth: Mask | bool = True) -> Array:
-    """Least value of each row (m,), in smooth rows that of the parabola through three samples."""
+    """Least value (m,) of each row of `values` (m, n), periodic, in their unit.
+
+    In smooth rows, a mask (m,) or all, it is the extreme of the parabola through three samples.
+    """
     return _parabola_extreme(values, values.argmin(axis=1), smooth)
 
 
@@ -135,6 +141,7 @@ def longest_windows(samples: Samples, band: float) -> Windows:
     """
     value, low, high, abscissae = samples
     m, n = value.shape
+    # bounds over 2^k cells from each node, while such windows fit the band
     lows, highs, fits = [low], [high], [high - low <= band]
     while 2 ** len(fits) <= n and fits[-1].any():
         step = 2 ** (len(fits) - 1)
@@ -146,6 +153,7 @@ def longest_windows(samples: Samples, band: float) -> Windows:
     starts = np.zeros((m, n), dtype=np.bool_)
     for abscissa in abscissae:
         starts |= _possible_starts(fits, abscissa)
+    # from each start the greatest number of cells, its powers of two tried from the largest down
     row, i = np.nonzero(starts)
     cells = np.zeros(len(row), dtype=np.intp)
     bottom = value[row, i]
@@ -173,7 +181,7 @@ def longest_windows(samples: Samples, band: float) -> Windows:
 
 
 def _pairwise(extreme: np.ufunc, values: Array, step: int) -> Array:
-    """Least or greatest (m, n) of each value and the one `step` nodes on, round the turn."""
+    """Least or greatest (m, n) of each value and the value `step` nodes on, round the turn."""
     extremes = np.empty_like(values)
     flat = values.ravel()
     # as one long row, which is faster; what that takes from the next row is then set right
@@ -286,8 +294,9 @@ def window_ends(
     """Ends of windows, from which `window_lengths` measures them.
 
     `window` are first node and number of whole cells, (m,) each. `output` and `abscissa` are values and slopes by the
-    angle, (m, n); the abscissa rises, by 2 pi a turn. `bounds` are those of the output over each cell. The first and
-    the last cell are no part of the core, as a window may lose less at one end than it gains at the other.
+    angle, (m, n); the abscissa rises, by 2 pi a turn. `bounds` are the output's least and greatest value over each
+    cell, (m, n). The first and the last cell are no part of the core, as a window may lose less at one end than it
+    gains at the other.
     """
     take = np.take_along_axis
     start, cells = window
@@ -300,6 +309,7 @@ def window_ends(
     # where there is no cell in the core it is a node; else its cells' bounds hold its nodes' values
     low = np.where(count > 0, take(bounds[0], inner, axis=1).min(axis=1), at_first)
     high = np.where(count > 0, take(bounds[1], inner, axis=1).max(axis=1), at_first)
+    # three nodes outward from each end of the core, slopes by the cell
     sides = []
     for node, step in ((first, -1), (last, 1)):
         nodes = (node[:, None] + step * np.arange(3)) % n
@@ -350,6 +360,7 @@ def _reach(side: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """
     reach, reach_rate, inside = np.zeros_like(low), np.zeros_like(low), np.ones(len(low), dtype=np.bool_)
     for cell in (0, 1):
+        # values f and slopes g of the output, x and v of the distance, at both nodes of the cell
         f, g, x, v = side[:, :, cell]
         f1, g1, x1, v1 = side[:, :, cell + 1]
         output, abscissa = _Cubic.between(f, g, f1, g1), _Cubic.between(x, v, x1, v1)
