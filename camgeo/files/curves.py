@@ -117,7 +117,7 @@ def _demand_long(length: Array) -> None:
 def inset(outline: ArcSpline, distance: float) -> ArcSpline:
     """Parallel `distance` mm inside a smooth outline: of each arc an arc about the same centre.
 
-    Raises RegionError where pieces meet at an angle, or an arc has no greater radius than that.
+    Raises RegionError where pieces meet at an angle, or the radius of a convex arc is not above the distance.
     """
     length, radius, flat = measures(outline)
     half = 2.0 * np.arctan(np.where(flat, 0.0, outline.bulges))

@@ -27,8 +27,8 @@ MOST_PAIRS = 1 << 20  # of ears and vertices that are looked at together: 100 MB
 def clip_ears(points: Array, loops: Sequence[Indices]) -> Indices:
     """Triangles (t, 3), counter-clockwise, of the region left of loops of distinct points (n, 2), the outermost first.
 
-    A loop is the indices of its points in their order. Where loops cross or touch, the triangles may not cover the
-    region: the caller has to compare their edges with the loops.
+    Triangles and loops are indices of points; a loop has its points in their order. Where loops cross or touch, the
+    triangles may not cover the region: the caller has to compare their edges with the loops.
     """
     way = _bridge_holes(points, loops)
     place = points[way]

@@ -6,7 +6,7 @@ from kin.numeric.errors import CamgeoError
 
 
 class MissingExtraError(CamgeoError, ImportError):
-    """An extra of this package is not installed; the message has the command that installs it."""
+    """A package is missing or of another version; the message has the command that installs it."""
 
 
 class RegionError(CamgeoError, ValueError):

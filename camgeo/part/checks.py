@@ -57,7 +57,7 @@ def bore_check(
 def part_checks(
     body: Body, surfaces: Sequence[Looks], least: float | None, shaft_deg: Callable[[float], float]
 ) -> list[Check]:
-    """Checks of a part: its least wall, what features check of the contour, and the places that features had to find.
+    """Checks of a part: its least wall, what features check of the contour, and whether features found their places.
 
     `surfaces` are the contours of the disc. `least` is the recipe's least wall, mm; None where walls only have to be
     above 0. `shaft_deg` gives the shaft angle, degrees, of a parameter of the contour. A part without two edges has no
