@@ -38,7 +38,7 @@ class Solved(NamedTuple):
 
 
 class Carrier(NamedTuple):
-    """A link that a dyad hangs on: its name, and its pose in axes that the dyad's `point` is given in."""
+    """A link on which a dyad can hang: its name, and its pose, in whose axes the dyad's `point` is given."""
 
     name: str
     pose: Callable[[Solved], Link]
@@ -48,7 +48,8 @@ class Carrier(NamedTuple):
 class Chain:
     """A linkage, the breadth of its frame, mm, and dyads in the order in which they are reached.
 
-    Loop 0 is the linkage's, loop k that of the k-th dyad. ValueError if the first dyad hangs on a previous one.
+    Loop 0 is the linkage's, loop k the k-th dyad's, counted from 1. Raises ValueError if the first dyad hangs on a
+    previous one.
     """
 
     linkage: Linkage
@@ -65,10 +66,10 @@ class Chain:
         return self.dyads[-1].unit if self.dyads else self.linkage.unit
 
     def solve(self, s: Jet, s1: Jet, about: Sequence[float]) -> Solved:
-        """Solve for jets of the lifts S and S1, n points; dyad k takes its directions within pi of `about[k]`, rad.
+        """Solve for lifts S and S1, mm, jets at n points; dyad k takes its directions within pi of `about[k]`, rad.
 
-        `about` may be shorter than the dyads: the rest of them are left out. Raises BindingError where a loop does not
-        close, or stands in a limit position and derivatives are asked for.
+        Dyads beyond the length of `about` are left out. Raises BindingError where a loop does not close, or stands in a
+        limit position and the jets have derivatives.
         """
         solved = Solved((s, s1), self.linkage.solve(s, s1, self.breadth))
         for k, direction in enumerate(about):
@@ -77,7 +78,7 @@ class Chain:
         return solved
 
     def frame(self, solved: Solved) -> Link:
-        """Return the square frame: origin in its middle, x along u(theta_3)."""
+        """The square frame as a link: origin in its middle, x along u(theta_3)."""
         half = 0.5 * self.breadth
         s, s1 = solved.lifts
         angle = solved.linkage.frame
@@ -85,7 +86,7 @@ class Chain:
         return Link((c * x - n * y, n * x + c * y), angle)
 
     def output(self, loop: int) -> Carrier:
-        """Return the link that a loop drives: rocker or slide, that of a dyad with its number from 1."""
+        """Rocker or slide that a loop drives; in the name of a dyad's stands its number, from 1."""
         if loop == 0:
             return Carrier(self.linkage.driven, lambda solved: self.linkage.output_link(solved.linkage))
         dyad, k = self.dyads[loop - 1], loop - 1
@@ -97,7 +98,10 @@ class Chain:
         return self.output(k) if on == "previous" else self.carrier_of(on)
 
     def carrier_of(self, on: str) -> Carrier:
-        """Return the link of a name: the linkage's `coupler` and `output`, and the output link of `dyads[0]`, ..."""
+        """Link of a name: the linkage's `coupler` or `output`, or `dyads[0]`, ... for the output link of a dyad.
+
+        Raises ValueError for another name, IndexError for a dyad that the chain lacks.
+        """
         if on == "coupler":
             return Carrier(self.linkage.joined, lambda solved: solved.linkage.coupler)
         return self.output(0 if on == "output" else 1 + int(on.removeprefix("dyads[").removesuffix("]")))
@@ -107,7 +111,7 @@ class Chain:
         return self.carrier(k).pose(solved).point(*self.dyads[k].point)
 
     def rod(self, solved: Solved, k: int) -> Link:
-        """Return the bar of dyad k, from the point on which it hangs towards the joint Q."""
+        """Link from the point P on which dyad k hangs, its origin, towards the joint Q on its x axis."""
         return bar(self.hung(solved, k), solved.dyads[k].joint)
 
     def joints(self, solved: Solved, loop: int) -> dict[str, Joint]:
@@ -119,8 +123,8 @@ class Chain:
     def margins(self, loop: int, s: Array, s1: Array, about: Sequence[float]) -> Array:
         """Distances of a loop from its k limits, mm (k, n), below 0 where it binds.
 
-        Each is smooth where the lifts (n,) are. Dyad k takes its directions within pi of `about[k]`, rad. Raises
-        BindingError where an earlier loop binds.
+        Each is smooth where the lifts S and S1 (n,), mm, are. Dyad k takes its directions within pi of `about[k]`, rad.
+        Raises BindingError where an earlier loop binds.
         """
         if loop == 0:
             return self.linkage.margins(s, s1, self.breadth)

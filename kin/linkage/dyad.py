@@ -4,10 +4,10 @@ A point P of the earlier link drives each dyad: RRR (two bars to a ground pivot 
 line) and RPR (a block at P in a slotted rocker about G). All are triangles or right triangles, solved and
 differentiated as in `kin.linkage.loop`. Angles are counter-clockwise from the x axis.
 
-What a dyad reaches it also gives: `output_link` is the link that it drives, `driven` its name; `joints` are P, Q and G;
-`lengths` name its links' lengths, by field. For P on the closed path x, y (n,), the direction of GP is taken about the
-`middle` of its range, so that the output is continuous on it, and `turned` is the angle by which that direction turns
-once round the path: there must be none.
+Of each dyad `output_link` is the link that it drives, `driven` the name of that link, `joints` are P, Q and G, and
+`lengths` are the fields of its links' lengths. For P on the closed path x, y (n,), the direction of GP is taken about
+the `middle` of its range, so that the output is continuous on it, and `turned` is the angle by which that direction
+turns once round the path, which must be 0.
 """
 
 from __future__ import annotations
@@ -62,12 +62,12 @@ class _Pivoted:
         return rocker(self.ground, reached.output)
 
     def middle(self, x: Array, y: Array) -> float:
-        """Middle of the range of GP's directions, rad; a path once round G has none that is continuous."""
+        """Middle of the range of GP's directions, rad, for P on a path x, y (n,), mm, that does not circle G."""
         directions = np.unwrap(np.arctan2(y - self.ground[1], x - self.ground[0]))
         return float(directions.min() + directions.max()) / 2
 
     def turned(self, x: Array, y: Array) -> float:
-        """Angle, rad, by which GP turns as P runs once round a closed path: 0, or whole turns."""
+        """Angle, rad, by which GP turns as P runs once round a closed path x, y (n,), mm: 0, or whole turns."""
         x, y = x - self.ground[0], y - self.ground[1]
         steps = np.diff(np.arctan2(y, x), append=math.atan2(y[0], x[0]))
         return float(np.sum(steps - 2 * np.pi * np.round(steps / (2 * np.pi))))
@@ -102,7 +102,7 @@ class RRR(_Pivoted):
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:
         """Solve the triangle GQP for P at x, y; GP's direction is taken within pi of `about`, rad.
 
-        Raises BindingError where the triangle does not close, or is flat and derivatives are asked for.
+        Raises BindingError where the triangle does not close, or is flat and the jets have derivatives.
         """
         side = side_of(self.assembly)
         arm = _arm(x, y, self.ground)
@@ -124,7 +124,7 @@ class RRR(_Pivoted):
 class RRP:
     """A bar PQ of length `link`, mm, and a slide for Q on the line through `through` in `direction`, rad.
 
-    The output is how far Q stands from `through` along the direction, mm; open has Q farther along than the foot of P
+    The output is the distance of Q from `through` along the direction, mm; open has Q farther along than the foot of P
     on the line, crossed less far. The output link's origin is Q, its axes fixed.
     """
 
@@ -151,8 +151,8 @@ class RRP:
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:  # noqa: ARG002 - one call for all dyads
         """Solve along the line and across it: (output - along P)^2 = link^2 - (across P)^2.
 
-        Raises BindingError where P is farther from the line than the link is long, or as far and derivatives are asked
-        for.
+        Raises BindingError where P is farther from the line than the link is long, or as far and the jets have
+        derivatives.
         """
         c, s = math.cos(self.direction), math.sin(self.direction)
         x, y = x - self.through[0], y - self.through[1]
@@ -173,7 +173,7 @@ class RRP:
         return {"P": Joint("pin", Link(point, None)), "Q": Joint("slide", slide)}
 
     def middle(self, x: Array, y: Array) -> float:  # noqa: ARG002 - one call for all dyads
-        """Return 0: a slide's output has no angle to choose."""
+        """Return 0: the output of a slide has no direction."""
         return 0.0
 
     def turned(self, x: Array, y: Array) -> float:  # noqa: ARG002 - one call for all dyads

@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 __all__ = ["ExtremePlace", "Figures", "Quantities", "figures"]
 
-# What is resolved, as a part of the greatest value of each row.
+# Resolution of each row, as a part of its greatest value.
 _SHARE = 1e-12
 # Changes of the output below this part of it, or of 1 rad or mm, are rounding: an output may stand still but for that.
 _ROUNDED = 64.0 * 2.0**-52
 
 
 class ExtremePlace(NamedTuple):
-    """A value, rad or mm or their derivatives by rad, and where: relative angle and shaft angle, rad in [0, 2 pi)."""
+    """A value, rad or mm or a derivative by rad, and its relative angle and shaft angle, rad in [0, 2 pi)."""
 
     value: float
     relative: float
@@ -92,10 +92,12 @@ _OF_OUTPUT = {"output", "velocity_relative", "acceleration_relative", "velocity"
 
 
 def figures(rows: Callable[[Array], Quantities], shaft: Callable[[Array], Array], breaks: Array) -> Figures:
-    """Find the figures from `rows`, smooth between breaks (k,), at relative angles.
+    """Figures of a mechanism from `rows` at relative angles (n,), rad, smooth between breaks (k,).
 
-    `shaft` gives the shaft angles of these.
+    `shaft` gives the shaft angles (n,), rad, at relative angles (n,). Raises RoughError where no polynomials follow the
+    rows to rounding.
     """
+    # polynomials of all rows; an output below rounding counts as standing still
     places = between(0.0, TURN, breaks.tolist())
     size = max(1.0, float(np.abs(rows(0.5 * (places[:-1] + places[1:])).output).max()))
     rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Quantities._fields])
@@ -113,6 +115,7 @@ def figures(rows: Callable[[Array], Quantities], shaft: Callable[[Array], Array]
             return least[1]
         return greatest[1] if greatest[0] <= 0 else float(pieces(curves, row[name]).crossings(0.0)[0])
 
+    # acute angles are extreme where the sine or the cosine is nearest to 0
     acute = {
         "transmission_least": nearest_zero("transmission_sine"),
         "transmission_greatest": nearest_zero("transmission_cosine"),
@@ -127,6 +130,7 @@ def figures(rows: Callable[[Array], Quantities], shaft: Callable[[Array], Array]
         **dict(zip(acute, zip([*transmission[:2], force[2]], acute.values(), strict=True), strict=True)),
         **{name: peak(name) for name in ("velocity", "acceleration", "velocity_relative", "acceleration_relative")},
     }
+    # places of dead centres go on after the extremes, and the shaft angle of all is found at once
     still = [(0.0, angle) for angle in pieces(curves, row["offset"]).crossings(0.0).tolist()]
     values, angles = np.transpose([*extreme.values(), *still])
     angles = np.mod(angles, TURN)
@@ -137,9 +141,9 @@ def figures(rows: Callable[[Array], Quantities], shaft: Callable[[Array], Array]
 
 
 def _once(places: list[ExtremePlace]) -> tuple[ExtremePlace, ...]:
-    """Leave out the one at 2 pi where 0 has been found too; rising."""
+    """Places in rising order, each once: a place at 2 pi is left out where 0 is among them."""
     kept: list[ExtremePlace] = []
     for place in sorted(places, key=lambda place: place.relative):
-        if not any(abs(math.remainder(place.relative - other.relative, TURN)) < 1e-9 for other in kept):
+        if not any(abs(math.remainder(place.relative - known.relative, TURN)) < 1e-9 for known in kept):
             kept.append(place)
     return tuple(kept)

@@ -20,7 +20,7 @@ __all__ = ["ForceLine", "angle", "pushing"]
 
 
 class ForceLine(NamedTuple):
-    """A point of the line, mm, and its unit vector, each (n,): 0, 0 where there is no such line."""
+    """Lines of force at n places: a point, mm, and the unit vector, (n,) each; the vector is 0, 0 where none exists."""
 
     x: Array
     y: Array
@@ -29,14 +29,20 @@ class ForceLine(NamedTuple):
 
 
 def angle(lever: Array, along: Array, side: Array) -> tuple[Array, Array]:
-    """Sine and cosine (n,) of a force angle, turned where `side` is negative, so that the sine has the sign of phi'."""
+    """Sine and cosine (n,) of a force angle, from parts in their ratio: `lever` of the sine, `along` of the cosine.
+
+    Both are (n,), mm. Where `side` (n,) is negative both change their sign, so that the sine has the sign of phi'.
+    """
     size = np.hypot(lever, along)
     size = np.where(size > 0, size, 1.0) * np.where(side < 0, -1.0, 1.0)
     return lever / size, along / size
 
 
 def pushing(place: tuple[Array, Array], along: tuple[Array, Array], way: tuple[Array, Array], rate: Array) -> ForceLine:
-    """Line of force through `place`, along or against `along`: as a link is to be pushed that moves at `rate` `way`."""
+    """Line of force through `place`, along or against `along`, so that it pushes a link on in its motion.
+
+    Places, mm, and vectors are pairs (x, y) of arrays (n,). The link moves at `rate` times `way` there.
+    """
     size = np.hypot(*along)
     fx, fy = (np.divide(part, size, out=np.zeros_like(part), where=size > 0.0) for part in along)
     side = np.where((fx * way[0] + fy * way[1]) * rate < 0.0, -1.0, 1.0)

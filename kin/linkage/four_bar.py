@@ -1,20 +1,20 @@
 """Linkages driven by a constant-breadth cam in a square frame (AS sections 3 to 5): positions and their derivatives.
 
 The frame is the coupler. Its axes u(theta_3), n(theta_3) carry the joint D at X = w + r3 - S1, Y = S - w/2 + e from
-the shaft A, where S, S1 are the support of the cam at theta and a quarter turn on, and `joint_offset` e is how far D
-stands from the frame's mid-line towards face 1, whose lift S is. AS have e = 0 and say that a different point does as
-well: r4 - e then stands for the r4 of an inverted slider-crank's loop. So D = X u + Y n, and no cotangent of
+the shaft A, where S, S1 are the support of the cam at theta and a quarter turn on, and `joint_offset` e is the distance
+of D from the frame's mid-line towards face 1, whose lift is S. AS have e = 0 and state that a different point would do
+as well: r4 - e then stands for the r4 of an inverted slider-crank's loop. So D = X u + Y n, and no cotangent of
 theta_3 occurs anywhere (AS 11-13, 19, 22 have it). B = (r1, 0) is the fixed pivot, and theta_4 the angle at B from BA
 to BD, clockwise as in AS Figure 7. Each loop is a triangle or a right triangle, solved by half angles and
 differentiated implicitly (`kin.linkage.loop`); AS 34 is 0/0 at theta_3 = theta_4 and theta_4 + pi, the forms here are
 not.
 
-A linkage gives all that others ask of it; `lengths` name its links' lengths, by field. At positions that it has solved,
-`output_link` is the link that it drives, `driven` its name, and `joined` the name of the link that D is fixed in and
-whose axes are the frame's: the frame, or a block in it. `joints` are D and the pivot B. `transmission` is the sine and
-cosine (n,) of the angle from the frame's line u to the rocker BD, or to the slide's normal; `force_angle` those of the
-force angle, the sine of the sign of phi' (`kin.linkage.forces`), for the slopes S' and S1' (n,), the sine 0 where there
-is no line of force. `force_line` is that line.
+All linkages have the same methods. `lengths` are the fields of the links' lengths. At solved positions `output_link` is
+the link that a linkage drives, `driven` its name, and `joined` the name of the link in which D is fixed and whose axes
+are the frame's: the frame, or a block in it. `joints` are D and the pivot B. `transmission` is the sine and cosine (n,)
+of the angle from the frame's line u to the rocker BD, or to the slide's normal; `force_angle` the sine and cosine of
+the force angle (`kin.linkage.forces`) for the slopes S' and S1' (n,): the sine has the sign of phi' and is 0 where
+there is no line of force. `force_line` is that line.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ class FourBar:
 
         AS 20 takes theta_4 from its sine, which loses the branch beyond 90 degrees; here it is 2 atan2 of the roots of
         AD^2 - (r1 - r4)^2 and (r1 + r4)^2 - AD^2, and 2 r1 r4 sin theta_4 theta_4' = (AD^2)'. Raises BindingError where
-        the triangle does not close, or is flat and derivatives are asked for.
+        the triangle does not close, or is flat and the jets have derivatives.
         """
         r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
         ad = _frame_vector(s, s1, w, self.coupler, self.joint_offset)
@@ -144,8 +144,9 @@ class FourBar:
     ) -> Array:
         """Change of theta_4, rad (n,), for displacements (n,) and a longer rocker, `link`, mm.
 
-        Of the output, at a held shaft: `joint` is the displacement of D there, mm, `sweep` that per rad by which the
-        frame then turns, `pivot` that of B. Derived from the loop to first order; (dD - dB).h = dr4 along the rocker h.
+        The shaft is held. `joint` is the displacement of D, mm, with the frame's direction kept, `sweep` its further
+        displacement, mm, per rad of the frame's turn, `pivot` that of B. Derived from the loop to first order; (dD -
+        dB).h = dr4 along the rocker h.
         """
         away = np.exp(1j * (math.pi - positions.output.c[0]))  # from B to D
         x = (link - _dot(away, joint - pivot)) / _dot(away, sweep)
@@ -159,9 +160,10 @@ class FourBar:
         pivot: Complexes | complex,
         link: Array | float,
     ) -> tuple[Array, Array]:
-        """Distance from closing, mm, and output, rad or mm, for any place of D and direction of the frame, (n,).
+        """Gap, mm, by which the loop fails to close, and output, rad, (n,) each, for any D and direction of the frame.
 
-        `joint` is D, `along` u, `pivot` the displacement of B, `link` by how much the rocker is longer.
+        `joint` is D, mm, `along` the unit vector u, (n,) each; `pivot`, mm, is the displacement of B, `link`, mm, the
+        growth of the rocker's length.
         """
         arm = joint - self.ground - pivot
         return np.abs(arm) - self.rocker - link, math.pi - np.angle(arm)
@@ -181,7 +183,7 @@ class FourBar:
     def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
         """Line of the frame's force: along DP, in the sense in which it pushes the rocker on.
 
-        Positions are to first order.
+        Positions are jets of order 1 at least.
         """
         dx, dy = (row.c[0] for row in positions.joint)
         along = positions.from_instant_centre(slope, slope1)
@@ -226,7 +228,7 @@ class InvertedSliderCrank:
         """Solve r1 cos theta_4 = r4 - Y (AS 24-27), r1 sin theta_4 theta_4' = S' (AS 29).
 
         AS 30 has the wrong sign before r1 omega_4^2 cos theta_4; AS 31 is right. Raises BindingError where the loop
-        does not close, or stands in a limit position and derivatives are asked for.
+        does not close, or stands in a limit position and the jets have derivatives.
         """
         r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
         near_value, far_value = self.margins(s.c[0], s1.c[0], w)
@@ -256,8 +258,9 @@ class InvertedSliderCrank:
     ) -> Array:
         """Change of theta_4, rad (n,), for displacements (n,) and a longer rocker, `link`, mm.
 
-        Of the output, at a held shaft: `joint` is the displacement of D there, mm, `sweep` that per rad by which the
-        frame then turns, `pivot` that of B. Derived from the loop to first order; Y + r1 cos theta_4 = r4.
+        The shaft is held. `joint` is the displacement of D, mm, with the frame's direction kept, `sweep` its further
+        displacement, mm, per rad of the frame's turn, `pivot` that of B. Derived from the loop to first order; Y + r1
+        cos theta_4 = r4.
         """
         u = np.exp(1j * positions.frame.c[0])
         away = _dot(1j * u, joint - pivot) - link
@@ -271,9 +274,10 @@ class InvertedSliderCrank:
         pivot: Complexes | complex,
         link: Array | float,
     ) -> tuple[Array, Array]:
-        """Distance from closing, mm, and output, rad or mm, for any place of D and direction of the frame, (n,).
+        """Gap, mm, by which the loop fails to close, and output, rad, (n,) each, for any D and direction of the frame.
 
-        `joint` is D, `along` u, `pivot` the displacement of B, `link` by how much the rocker is longer.
+        `joint` is D, mm, `along` the unit vector u, (n,) each; `pivot`, mm, is the displacement of B, `link`, mm, the
+        growth of the rocker's length.
         """
         off = _dot(1j * along, joint - self.ground - pivot) - self.rocker - link
         return off, QUARTER - np.angle(along)
@@ -294,7 +298,7 @@ class InvertedSliderCrank:
     def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
         """Line of the frame's force: across the frame's line, through the foot of the instant centre P on that line.
 
-        Positions are to first order.
+        Positions are jets of order 1 at least.
         """
         frame = positions.frame.c[0]
         c, s = np.cos(frame), np.sin(frame)
@@ -335,7 +339,7 @@ class SliderCrank:
     def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
         """Solve D_x^2 = AD^2 - offset^2, D_x D_x' = (AD^2)'/2.
 
-        Raises BindingError where AD is shorter than the offset, or as short and derivatives are asked for, or is 0.
+        Raises BindingError where AD is shorter than the offset, or as short and the jets have derivatives, or is 0.
         """
         offset, side = self.offset + 0.0, side_of(self.assembly)  # no -0, whose polar angle is -pi
         ad = _frame_vector(s, s1, w, self.coupler, self.joint_offset)
@@ -364,8 +368,9 @@ class SliderCrank:
     ) -> Array:
         """Change of D_x, mm (n,), for displacements (n,) and a higher slide, `link`, mm.
 
-        Of the output, at a held shaft: `joint` is the displacement of D there, mm, `sweep` that per rad by which the
-        frame then turns, `pivot` that of the slide's line. Derived from the loop to first order; D_y is the offset.
+        The shaft is held. `joint` is the displacement of D, mm, with the frame's direction kept, `sweep` its further
+        displacement, mm, per rad of the frame's turn, `pivot` that of the slide's line. Derived from the loop to first
+        order; D_y is the offset.
         """
         x = (link - (joint - pivot).imag) / sweep.imag
         change: Array = (joint + sweep * x - pivot).real
@@ -378,9 +383,10 @@ class SliderCrank:
         pivot: Complexes | complex,
         link: Array | float,
     ) -> tuple[Array, Array]:
-        """Distance from closing, mm, and output, rad or mm, for any place of D and direction of the frame, (n,).
+        """Gap, mm, by which the loop fails to close, and output, mm, (n,) each, for any D and direction of the frame.
 
-        `joint` is D, `along` u, `pivot` the displacement of the slide's line, `link` by how much it is higher.
+        `joint` is D, mm, `along` the unit vector u, (n,) each; `pivot`, mm, is the displacement of the slide's line,
+        `link`, mm, its growth in height.
         """
         place = joint - pivot
         return place.imag - self.offset - link, place.real
@@ -397,7 +403,7 @@ class SliderCrank:
     def force_line(self, positions: Positions, slope: Array, slope1: Array) -> ForceLine:
         """Line of the frame's force: along DP, in the sense in which it pushes the slide on.
 
-        Positions are to first order.
+        Positions are jets of order 1 at least.
         """
         dx, dy = (row.c[0] for row in positions.joint)
         way = np.ones_like(dx), np.zeros_like(dx)

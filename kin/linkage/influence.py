@@ -2,12 +2,12 @@
 
 The frame bears on the cam with two of its faces: face 1, by whose lift S its mid-line stands, and the one opposite face
 2, so that the joint D stands at X = w + r3 - S1, Y = S - w/2 + e in the axes of the frame, theta_3 its direction u and
-A the shaft. At a held shaft angle the cam turns against the frame as that turns, by x: D moves by dD + V x with
+A the shaft. At a held shaft angle the cam turns against the frame as the frame turns, by x: D moves by dD + V x with
 
     V = u (-S1' - Y + i (X + S')),      dD = u (dX + i dY),
 
-and the loop says which x closes it (`deviation` of each linkage). Contacts on the faces opposite make the same changes
-or lesser ones: of a breadth, those of X are then none. Plane as complex numbers, x.y = Re(conj(x) y).
+and the loop sets the x that closes it (`deviation` of each linkage). Contacts on the opposite faces make the same
+changes or lesser ones: a change of the breadth then leaves X as it is. Plane as complex numbers, x.y = Re(conj(x) y).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ QUARTER = 0.5 * math.pi
 
 @dataclass(frozen=True, eq=False)
 class FrameBearing:
-    """A mechanism of one loop at n relative angles, where its frame bears: changes of its output, rad or mm, (n,)."""
+    """A mechanism without dyads at n relative angles, its frame on the cam: changes of its output, rad or mm, (n,)."""
 
     mechanism: Mechanism
     motion: LinkageMotion
@@ -46,9 +46,9 @@ class FrameBearing:
 
         The shaft is held.
 
-        along, across  of the frame on the cam, dX and dY
-        pivot, joint   of B, and of D in the ground, as complex numbers
-        link           by which the output link is longer, mm
+        along, across  displacement of the frame on the cam, dX and dY
+        pivot, joint   displacement of B, and of D, in fixed axes, as complex numbers
+        link           growth of the output link's length, of a slide of its height
         """
         positions = self.motion.solved.linkage
         (s, slope), (_, slope1) = self.motion.faces
@@ -87,7 +87,10 @@ class FrameBearing:
 
 
 def frame_bearing(mechanism: Mechanism, relative: Array) -> FrameBearing:
-    """Bearing of the frame at relative angles (n,); raises ValueError for a linkage with dyads."""
+    """Bearing of the frame at relative angles (n,), rad.
+
+    Raises ValueError for a linkage with dyads, PlaceError where the loop binds.
+    """
     if mechanism.dyads:
         raise ValueError("the influence of dyads is not known")
     return FrameBearing(mechanism, mechanism.at(relative, 1))

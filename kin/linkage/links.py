@@ -1,4 +1,4 @@
-"""Moving links and the joints in which they meet, at n points: what a linkage and its dyads tell of themselves."""
+"""Moving links and the joints in which they meet, at n points, as a linkage and its dyads give them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Link:
 class Joint(NamedTuple):
     """A pin, a `pivot` (a pin on the ground), a `slide` (a pin in a block on the ground) or a `slot` (in a link).
 
-    `place` has its origin in the pin, and its x axis along the line on which a block slides: None where nothing does.
+    `place` has its origin in the pin, and its x axis along the line on which a block slides; no direction without one.
     """
 
     kind: Literal["pin", "pivot", "slide", "slot"]
@@ -39,15 +39,15 @@ class Joint(NamedTuple):
 
 
 def bar(p: Place, q: Place) -> Link:
-    """Return the link from P, its origin, to Q, which is on its x axis; its direction within [-pi, pi]."""
+    """Link from P, its origin, to Q, which is on its x axis; its direction lies within [-pi, pi]."""
     return Link(p, atan2(q[1] - p[1], q[0] - p[0]))
 
 
 def rocker(ground: tuple[float, float], direction: Jet) -> Link:
-    """Return the link that turns about a fixed point, which is its origin."""
+    """Link that turns about the fixed point `ground`, mm, its origin; `direction`, rad, is that of its x axis."""
     return Link((direction.constant(ground[0]), direction.constant(ground[1])), direction)
 
 
 def pivot(ground: tuple[float, float], like: Jet) -> Joint:
-    """Return a pin on the ground, as jets of the order and number of `like`."""
+    """A pin on the ground at `ground`, mm, as jets of the order and number of points of `like`."""
     return Joint("pivot", Link((like.constant(ground[0]), like.constant(ground[1])), None))

@@ -1,7 +1,7 @@
 """Closing a loop of links: triangles of two fixed sides and one that varies, their limits, and their derivatives.
 
-Limit positions are where a square root vanishes. What stands under the root is worked out so that its sign is right,
-by exact arithmetic where rounding leaves it in doubt; and angles are differentiated implicitly, root times rate =
+Limit positions are where a square root vanishes. The value under the root is computed so that its sign is right, by
+exact arithmetic where rounding leaves it in doubt; and angles are differentiated implicitly, root times rate =
 rate of the given length, so that nothing is divided by the difference of two roundings.
 """
 
@@ -35,9 +35,9 @@ _STILL = 1e-30
 
 
 class BindingError(CamgeoError, ValueError):
-    """A loop that cannot be closed, or one in a limit position asked for its derivatives.
+    """A loop that cannot be closed, or whose derivatives are wanted in a limit position.
 
-    `message` says by how much; `indices` (k,) are the points, out of the n asked for, at which it is so.
+    `message` says by how much the links miss each other; `indices` (k,) are the points concerned, out of n.
     """
 
     def __init__(self, message: str, indices: NDArray[np.intp]) -> None:
@@ -47,9 +47,9 @@ class BindingError(CamgeoError, ValueError):
 
 
 def demand_mobile(margin: Array, *, order: int, fixed: NDArray[np.bool_] | None = None) -> None:
-    """Raise BindingError where the margin (n,), mm, is negative, or is 0 and derivatives are asked for.
+    """Raise BindingError where the margin (n,), mm, is negative, or is 0 and the order is above 0.
 
-    `fixed` (n,) marks the points whose direction is undefined, which are refused to any order.
+    `order` is the number of derivatives wanted; `fixed` (n,) marks points without a direction, refused to any order.
     """
     bound = margin < 0 if order == 0 else margin <= _STILL
     if fixed is not None:
@@ -77,10 +77,10 @@ def total(*terms: Term) -> Array:
 
 
 def excess(x: Sequence[Term], y: Sequence[Term], z: Sequence[Term]) -> Array:
-    """Give x^2 + y^2 - z^2, each of the three the sum of its terms, numbers or (n,); its sign is right.
+    """x^2 + y^2 - z^2 (n,), each of the three the sum of its terms, numbers or (n,); its sign is right.
 
-    Terms of z may be columns (k, 1): (k, n) is the result. x^2 - z^2 is taken as a product; where little is left of the
-    squares, all is done in rational arithmetic.
+    With terms of z in columns (k, 1) the result is (k, n). x^2 - z^2 is taken as a product; where little is left of the
+    squares, the sum is formed in rational arithmetic.
     """
     a, b, c = total(*x), total(*y), total(*z)
     value = np.atleast_1d(total(*x, *(-term for term in z)) * total(*x, *z) + b * b)
@@ -105,7 +105,7 @@ def with_value(jet: Jet, value: Array) -> Jet:
 
 @dataclass(frozen=True, eq=False)
 class Vector:
-    """A vector of jets, each of whose values is the sum of the given terms."""
+    """A vector of jets, mm, whose values are the sums of the given terms."""
 
     x: Jet
     y: Jet
@@ -172,7 +172,7 @@ class Triangle:
 
     @cached_property
     def beside(self) -> Jet:
-        """Angle between a and the third side, 0 to pi: its rate is (b cos - a)-fold of the other's, by b over q."""
+        """Angle between a and the third side, 0 to pi: its rate is b (a cos C - b)/q times the rate of `between`, C."""
         value = np.arctan2(self.root.c[0], self.along.c[0])
         if not self.q.order:
             return Jet(value[None])
@@ -181,7 +181,10 @@ class Triangle:
 
 
 def triangle_margins(a: float, b: float, q: Array, near: Array, far: Array) -> Array:
-    """Distances of the third side from its limits |a - b| and a + b, mm (2, n), negative out of reach."""
+    """Distances of the third side from its limits |a - b| and a + b, mm (2, n), negative out of reach.
+
+    `q` is its square, `near` q - (a - b)^2 and `far` (a + b)^2 - q, mm^2 (n,).
+    """
     side, least = np.sqrt(q), abs(a - b)
     with np.errstate(invalid="ignore"):
         inner = np.where(side + least > 0, near / (side + least), 0.0)
@@ -189,7 +192,7 @@ def triangle_margins(a: float, b: float, q: Array, near: Array, far: Array) -> A
 
 
 def bearing(x: Jet, y: Jet, q: Jet, about: float = 0.0) -> Jet:
-    """Polar angle of the vector (x, y) of squared length q, within pi of `about`."""
+    """Polar angle, rad, of the vector (x, y), mm, of squared length q, within pi of `about`, rad."""
     value = np.arctan2(y.c[0], x.c[0])
     if about:
         value = value - 2 * np.pi * np.round((value - about) / (2 * np.pi))
@@ -210,7 +213,7 @@ def longer(q: Array, square: Array, offset: float) -> Array:
 
 
 def side_of(assembly: Assembly) -> float:
-    """Sign of a root: 1 open, -1 crossed."""
+    """Sign of the root of an assembly: 1 open, -1 crossed."""
     return 1.0 if assembly == "open" else -1.0
 
 

@@ -1,8 +1,8 @@
 """A cam in a square frame driving a linkage: its motion over the relative angle and over the shaft angle.
 
-theta is the cam's angle relative to the frame, which AS plot over. The frame itself turns by theta_3, so the shaft has
-turned by phi = theta - (theta_3(theta) - theta_3(0)), clockwise positive: phi' = 1 - theta_3'. Results are given over
-either angle. Derivatives are exact (`kin.numeric.elementary`), extremes and roots those of monotone pieces
+theta is the cam's angle relative to the frame, the abscissa of AS's plots. The frame itself turns by theta_3, so the
+shaft has turned by phi = theta - (theta_3(theta) - theta_3(0)), clockwise positive: phi' = 1 - theta_3'. Results are
+given over either angle. Derivatives are exact (`kin.numeric.elementary`), extremes and roots those of monotone pieces
 (`kin.numeric.monotone`).
 """
 
@@ -45,12 +45,15 @@ __all__ = ["LinkageMotion", "Mechanism", "OutsideError", "PlaceError"]
 QUARTER = 0.5 * math.pi
 # Rounding of a lift's own constants, as a part of the breadth.
 _ROUNDED = 1e-9
-_EDGE = 1e-12
+_EDGE = 1e-12  # of the breadth, by which the shaft may lie outside; rad, within which two breaks are one
 _LOOKS = 256  # relative angles at which the direction of a dyad's point is looked at
 
 
 class PlaceError(BindingError):
-    """A mechanism that binds, or would turn its shaft back, at the relative angle `at`, rad."""
+    """A mechanism that binds, or would turn its shaft back, at the relative angle `at`, rad.
+
+    `indices` (k,) are the points concerned; empty where the whole turn is.
+    """
 
     def __init__(self, message: str, angle: float, indices: Indices) -> None:
         super().__init__(message, indices)
@@ -61,7 +64,7 @@ class PlaceError(BindingError):
 
 
 class OutsideError(IntentError):
-    """A shaft that lies outside the cam, by `depth` mm in the direction `at_deg`."""
+    """A shaft that lies outside the cam, by `depth` mm in the direction `at_deg`, degrees."""
 
     def __init__(self, depth: float, at_deg: float) -> None:
         what = f"the shaft lies outside the cam, by {depth:.6g} mm in the direction of {at_deg:.6g} degrees"
@@ -73,8 +76,7 @@ class OutsideError(IntentError):
 class LinkageMotion:
     """A mechanism at relative angles theta (n,): derivatives by theta, (order + 1, n) each; rad and mm.
 
-    `shaft` is phi; `joints` (2, order + 1, n) each are in the fixed axes; `faces` (2, order + 1, n); `solved` has all
-    as jets.
+    `shaft` is the shaft angle phi, rad; `solved` has the positions of all links as jets.
     """
 
     theta: Array
@@ -112,7 +114,7 @@ class LinkageMotion:
         return self.outputs[-1]
 
     def over_shaft(self, row: Array) -> Array:
-        """Derivatives by the shaft angle, of what has the derivatives `row` (order + 1, n) by theta."""
+        """A quantity's derivatives by the shaft angle, (order + 1, n), from its derivatives `row` by theta, as many."""
         scale = factorials(len(row) - 1)
         return np.stack([f.c[0] for f in derivatives_by(Jet(row / scale), Jet(self.shaft[: len(row)] / scale))])
 
@@ -121,10 +123,10 @@ class LinkageMotion:
 class Mechanism:
     """A linkage whose frame holds the cam of a lift, and further links.
 
-    `breadth` is that of the frame and the cam, mm; `chain` is all the links. ValueError if the first dyad hangs on a
-    previous one. IntentError if the breadth is not above 0 or p(theta) + p(theta + pi) is not the breadth all round
-    (field "p"), or if the shaft is not within the cam (field "shaft"): on its edge is allowed; or if the point a dyad
-    is attached to circles the dyad's ground pivot (field "dyads").
+    `breadth` of frame and cam is in mm; `chain` has all the links. Raises ValueError if the first dyad hangs on a
+    previous one; IntentError if the breadth is not above 0 or p(theta) + p(theta + pi) is not the breadth all round
+    (field "p"), if the shaft lies outside the cam (field "shaft"), or if the point to which a dyad is attached circles
+    the dyad's ground pivot (field "dyads").
     """
 
     linkage: Linkage
@@ -143,7 +145,7 @@ class Mechanism:
 
     @property
     def unit(self) -> str:
-        """Unit of the output as reported, deg or mm; in here it is rad or mm."""
+        """Unit of the last output as reported, deg or mm; the methods give rad or mm."""
         return self.chain.unit
 
     @property
@@ -153,7 +155,7 @@ class Mechanism:
 
     @cached_property
     def breaks(self) -> Array:
-        """Relative angles in [0, 2 pi), rising, at which a derivative may jump: breaks of S or of S1."""
+        """Relative angles (m,), rad, in [0, 2 pi), rising, at which a derivative may jump: breaks of S or of S1."""
         own = self.lift.breaks
         turned = np.mod(own - QUARTER, TURN)
         near = np.abs(turned[:, None] - own) <= _EDGE  # one break, found from both sides
@@ -169,9 +171,9 @@ class Mechanism:
         return float(frame.c[0, 0])
 
     def at(self, theta: float | Array, order: int, side: Side = 1) -> LinkageMotion:
-        """Give the motion at relative angles theta (n,); at a break the right-hand limits, or left (side -1).
+        """Motion at relative angles theta (n,), rad, with derivatives to `order`; at a break from the right, or left.
 
-        PlaceError where a loop cannot be closed, or has no derivative.
+        `side` -1 means the left. Raises PlaceError where a loop cannot be closed, or has no derivative.
         """
         theta = np.atleast_1d(np.asarray(theta, dtype=float))
         s, s1 = self._lifts(theta, order, side)
@@ -189,13 +191,16 @@ class Mechanism:
     def driven(self, s: Jet, s1: Jet) -> tuple[Jet, Jet]:
         """theta_3, rad, and output, rad or mm, for any lifts of the frame's faces 1 and 2, mm, as jets at n points.
 
-        Raises BindingError where a loop does not close, or stands in a limit position and derivatives are asked for.
+        Raises BindingError where a loop does not close, or stands in a limit position and the jets have derivatives.
         """
         solved = self.chain.solve(s, s1, self.about)
         return solved.linkage.frame, solved.outputs[-1]
 
     def relative(self, shaft: float | Array) -> Array:
-        """Relative angles (n,) at shaft angles (n,), any real numbers. PlaceError unless the mechanism turns."""
+        """Relative angles (n,), rad, at shaft angles (n,), rad, any real numbers.
+
+        Raises PlaceError unless the mechanism turns.
+        """
         shaft = np.atleast_1d(np.asarray(shaft, dtype=float))
         turns = np.floor(shaft / TURN) * TURN
         cell, share = self._relation.reach(shaft - turns)
@@ -203,7 +208,10 @@ class Mechanism:
         return low + share * (high - low) + turns
 
     def output(self, shaft: Array) -> Array:
-        """Output (n,), rad or mm, at shaft angles (n,), any real numbers, to its rounding by polynomials."""
+        """Output (n,), rad or mm, at shaft angles (n,), rad, any real numbers, by polynomials good to rounding.
+
+        Raises PlaceError unless the mechanism turns.
+        """
         cell, share = self._relation.reach(np.mod(shaft, TURN))
         return values(self._relation.coefficients[1, cell], share)
 
@@ -227,26 +235,31 @@ class Mechanism:
         return margins
 
     def mobility(self) -> Mobility:
-        """Tell where the mechanism binds or turns back, or how far it is from that."""
+        """Where the mechanism binds or turns back, or how far it is from that.
+
+        Raises RoughError where no polynomials follow a margin.
+        """
         return self._mobility
 
     def figures(self) -> Figures:
-        """Give the extremes of the motion over a turn.
+        """Extremes of the motion over a turn.
 
-        PlaceError unless the mechanism turns; RoughError where it comes so close to binding that rounding hides them.
+        Raises PlaceError unless the mechanism turns, and RoughError where it comes so close to binding that rounding
+        hides them.
         """
         self._demand_turning()
         return figures(self._rows, lambda theta: self.at(theta, 0).shaft[0], self.breaks)
 
     @cached_property
     def _dwells(self) -> dict[tuple[float, str, int], tuple[Window, ...]]:
-        """Dwells that were found, by band, angle and number: the judge of a file asks for those of the design."""
+        """Dwells known so far, by band, angle and number: the judge of a file needs those of the design again."""
         return {}
 
     def dwells(self, band: float, over: Literal["shaft", "relative"] = "shaft", most: int = 8) -> tuple[Window, ...]:
-        """Find the longest dwells of the output, band in rad or mm, over either angle (`longest_window.dwells`).
+        """The longest dwells of the output within a band, rad or mm, over either angle: at most `most`, longest first.
 
-        PlaceError unless the mechanism turns (over the relative angle: unless its loops can be closed all round).
+        Dwells do not overlap. Raises PlaceError unless the mechanism turns, ValueError for a band that is not above 0
+        or is lost in rounding.
         """
         key = band, over, most
         if key not in self._dwells:
@@ -285,7 +298,7 @@ class Mechanism:
         return Jet(c[:, : len(theta)]), Jet(c[:, len(theta) :])
 
     def _driven(self, theta: Array, order: int) -> tuple[Jet, Jet]:
-        """theta_3 and the linkage's own output as jets."""
+        """theta_3, rad, and the linkage's own output, rad or mm, as jets; PlaceError where it binds."""
         s, s1 = self._lifts(theta, order)
         try:
             at = self.linkage.solve(s, s1, self.breadth)
@@ -301,7 +314,7 @@ class Mechanism:
 
     @cached_property
     def about(self) -> tuple[float, ...]:
-        """Directions, rad, one a dyad: the angle of its point counts within half a turn of it, so as not to jump.
+        """Direction, rad, for each dyad, within half a turn of which its point's angle is taken so as not to jump.
 
         Raises IntentError for a dyad whose point circles its ground pivot: its output would rotate.
         """
@@ -325,7 +338,7 @@ class Mechanism:
 
     @cached_property
     def _relation(self) -> Cells:
-        """Shaft angle and output over the relative angle, to their rounding."""
+        """Shaft angle, rad, and output, rad or mm, over the relative angle, as polynomials good to rounding."""
         self._demand_turning()
 
         def rows(theta: Array) -> Array:

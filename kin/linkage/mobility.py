@@ -35,16 +35,16 @@ _BESIDE = 1e-9
 class Mobility:
     """Where and by how much a mechanism binds or turns back; angles are relative ones, rad.
 
-    margin      least distance from binding of any loop, mm, negative or lost in rounding where one binds; of the loops
-                after a binding one nothing is known
-    margin_at   where in [0, 2 pi)
+    margin      least distance from binding of any loop, mm, negative or lost in rounding where one binds; loops after
+                a binding one are not looked at
+    margin_at   relative angle of that, in [0, 2 pi)
     loop        which loop it is: 0 the linkage, k the k-th dyad
     binds       spans (from, to) in which that loop cannot be closed; those that run through 0 end beyond 2 pi
-    least_rate  least 1 - theta_3'; nan where the linkage binds, and there is no least, or is so close to that that the
-                rate is lost in rounding
-    rate_at     where in [0, 2 pi)
+    least_rate  least 1 - theta_3'; nan where the linkage binds, which leaves no least, or comes so close to binding
+                that the rate is lost in rounding
+    rate_at     relative angle of that, in [0, 2 pi); nan where the linkage binds
     reverses    spans in which the shaft would turn back, as far as the linkage can be closed
-    nearest     of each loop, as far as one that binds, where it is nearest to each of its limits
+    nearest     of each loop, up to the first that binds, the angles at which it is nearest to each of its limits
     """
 
     margin: float
@@ -69,12 +69,15 @@ def mobility(
     breaks: Array,
     breadth: float,
 ) -> Mobility:
-    """Find the margins of the loops, and the rate of the shaft, all round.
+    """Where a mechanism binds or turns back, from the margins of its loops and the rate of the shaft all round.
 
     `margins` give the distances of a loop from its limits, mm (k, n), at relative angles (n,), each called only where
     those before it do not bind; `rate` gives 1 - theta_3', called only where the linkage does not bind anywhere;
-    `sense` is a bounded function of its sign, called where the linkage can be closed.
+    `sense` is a bounded function of the same sign, called where the linkage can be closed. `breaks` (m,) are relative
+    angles at which derivatives jump, `breadth`, mm, is the frame's. Raises RoughError where no polynomials follow a
+    margin.
     """
+    # the loops in order, until one binds
     nearest_binding: tuple[float, float, int] = (math.inf, math.nan, 0)
     binds: tuple[Span, ...] = ()
     nearest: tuple[tuple[float, ...], ...] = ()
@@ -91,6 +94,7 @@ def mobility(
         if binds:
             binds = _merged(sorted(binds))
             break
+    # where the linkage itself binds, the rate has no bound beside that: only its sign is sought between
     if binds and nearest_binding[2] == 0:
         free = _others(binds)
         reverses = tuple(_reduced(span) for begin, end in free for span in _reversing(sense, begin, end, breaks))

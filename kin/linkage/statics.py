@@ -57,10 +57,12 @@ class FrameForces(NamedTuple):
 def frame_forces(
     mechanism: Mechanism, motion: LinkageMotion, demand: Array, coupler: Coupler | None = None
 ) -> FrameForces:
-    """Forces of the cam on the frame for a demand on the last output, N mm or N (n,), in its growing sense.
+    """Forces of the cam on the frame for a `demand` on the last output, N mm or N (n,), in the sense in which it grows.
 
-    `motion` is of order 2. `joint` is the force on the output link of a linkage without dyads.
+    `motion` is of order 2. The force at `joint` holds for a linkage without dyads. Raises BindingError in a limit
+    position of a loop.
     """
+    # inertia of the coupler by the shaft angle; then Q_S and Q_S1 from the rates of the output by either lift
     still = np.zeros_like(motion.theta)
     inertia, spin = np.zeros((2, len(still))), still
     if coupler is not None:
@@ -78,6 +80,7 @@ def frame_forces(
             need = need + inertia[0] * x.c[1] + inertia[1] * y.c[1]
         needs.append(need)
         turned.append(turn)
+    # the torque first, from which V and H follow
     slope, slope1 = motion.faces[:, 1]
     torque = (slope * needs[0] + slope1 * needs[1]) / motion.shaft[1]
     across, along = needs[0] + turned[0] * torque, 0.0 - (needs[1] + turned[1] * torque)

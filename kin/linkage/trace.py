@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array
 
-_REST = 1e-9  # of the path's reach: a point slower than this by radian stands still
-_SHARE = 1e-3  # of the tolerance: to this polynomials stand for the path
+_REST = 1e-9  # of the path's reach per radian: a slower point stands still
+_SHARE = 1e-3  # of the tolerance, within which polynomials stand for the path
 
 
 class Traced(NamedTuple):
-    """A point at n angles, in the fixed axes: x, y, mm; speed, mm by radian of the shaft; curvature, 1/mm.
+    """A point at n angles, in the fixed axes: x, y, mm; speed, mm per rad of shaft; curvature, 1/mm; (n,) each.
 
     The curvature is above 0 where the path turns to its left, nan where the point stands still.
     """
@@ -33,10 +33,10 @@ class Traced(NamedTuple):
 
 
 def traced(mechanism: Mechanism, on: str, point: tuple[float, float], theta: Array, side: Side = 1) -> Traced:
-    """Follow a point of a link (`Chain.carrier_of`) at relative angles (n,); at a break from `side`.
+    """Follow the point `point`, mm, of the link `on` at relative angles theta (n,), rad; at a break from `side`.
 
-    With dots for derivatives by the relative angle the curvature is (x. y.. - y. x..)/v^3, whatever the parameter; the
-    speed is v over the shaft's rate.
+    `on` is coupler, output or dyads[0], ... Raises PlaceError where a loop binds. With dots for derivatives by the
+    relative angle the curvature is (x. y.. - y. x..)/v^3, whatever the parameter; the speed is v over the shaft's rate.
     """
     motion = mechanism.at(theta, 2, side)
     x, y = _rows(mechanism, on, point, motion.solved)
@@ -48,11 +48,13 @@ def traced(mechanism: Mechanism, on: str, point: tuple[float, float], theta: Arr
 
 
 def flattened(mechanism: Mechanism, on: str, point: tuple[float, float], tolerance: float) -> Array:
-    """Points (n, 2) of the path over a turn, the first again at the end; chords within `tolerance` mm of it.
+    """Points (n, 2), mm, of the path of `point` of the link `on` over a turn, the first again at the end.
+
+    `on` is coupler, output or dyads[0], ...; chords between the points keep within `tolerance`, mm, of the path.
 
     Between breaks the path is followed by polynomials in Bernstein form, to a thousandth of the tolerance. Their second
     differences bound the second derivative M, and a chord over a part h of the parameter is off by M h^2/8 at most.
-    Raises RoughError where no polynomials follow.
+    Raises RoughError where no polynomials follow, PlaceError where a loop binds.
     """
 
     def place(theta: Array) -> Array:
