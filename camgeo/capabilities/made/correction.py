@@ -41,17 +41,18 @@ if TYPE_CHECKING:
     from kin.made.points import Deviations
 
 
-BELOW = 0.9  # of the greatest share that is within reach to first order
-LOOKS = 1440  # places round a contour at which curves are looked at
+BELOW = 0.9  # of the greatest share to first order: a margin
+LOOKS = 1440  # places round a contour at which curves are evaluated
 
 
 @dataclass(frozen=True, eq=False)
 class RunMade:
-    """Result of a run of parts: the number of points on each surface, by its name, and its smoothed deviation.
+    """Result of a run of parts, from its `files`; the mappings are by the name of the surface.
 
-    `curves` are the means of the files' deviations; they are on the same spans in all runs, so that they can be added.
-    `error` is the greatest stated for its files, expanded (k = 2), mm: it is common to all points and does not average.
-    `scatter` is the standard deviation of the files' curves about their mean, mm, all round; None for a single file.
+    `points` is the number of points. `curves` are the smoothed deviations, means over the files, mm; they have the same
+    spans in all runs, so that they can be added. `scatter` is the standard deviation of the files' curves about their
+    mean, mm, root mean square all round; None for a single file. `error` is the greatest expanded uncertainty (k = 2)
+    of a point that the files state, mm, 0 without; it is common to all points and does not average.
     """
 
     files: tuple[str, ...]
@@ -62,7 +63,7 @@ class RunMade:
 
 
 class _FilePoints(NamedTuple):
-    """Deviations of the points in a file of a run, by surface; `place` is that of the file in the recipe."""
+    """Deviations of the points in a file, by surface name; `place` is the path of its entry in the recipe."""
 
     recipe: Recipe
     place: str
@@ -70,16 +71,20 @@ class _FilePoints(NamedTuple):
     deviations: Mapping[str, Deviations]
 
     def smooth(self, surface: str, spans: int | None = None) -> Smooth:
-        """Smoothed deviation of a surface over a number of spans; raises RecipeErrors where the points leave a gap."""
+        """Smoothed deviation of a surface, mm, over a number of spans, by default that of cross-validation.
+
+        Raises RecipeErrors where the points are too few for it or leave a gap.
+        """
         points = self.deviations[surface]
         with refused_at(self.recipe, self.place, self.name):
             return fit(points.parameter, points.e, spans).curve
 
 
 def runs_made(recipe: Recipe, design: Design) -> list[RunMade]:
-    """Smoothed deviations of all runs of a recipe, each against the exact contour.
+    """Smoothed deviations of all runs of a recipe, each against the exact contour; empty without `made.points`.
 
-    Raises RecipeErrors at the file's place in the recipe for points that are none of this part or leave a gap.
+    Raises RecipeErrors, at the file's entry in the recipe, for files without points, for points that are not of this
+    part, are too few or leave a gap, and for a disc without points.
     """
     made = recipe.of(Made)
     listed = () if made is None else made.points
@@ -95,21 +100,21 @@ def _run(files: Sequence[_FilePoints], spans: Mapping[str, int], error: float) -
     points, curves, scatter = {}, {}, {}
     for name, count in spans.items():
         own = [file for file in files if name in file.deviations]
-        each = [file.smooth(name, count) for file in own]
+        smoothed = [file.smooth(name, count) for file in own]
         points[name] = sum(len(file.deviations[name].e) for file in own)
-        curves[name] = Smooth.total(each).times(1.0 / len(own))
-        scatter[name] = _scatter(each) if len(own) > 1 else None
+        curves[name] = Smooth.total(smoothed).times(1.0 / len(own))
+        scatter[name] = _scatter(smoothed) if len(own) > 1 else None
     return RunMade(tuple(file.name for file in files), points, curves, scatter, error)
 
 
 def _scatter(curves: Sequence[Smooth]) -> float:
-    """Standard deviation of curves about their mean, all round, mm."""
+    """Standard deviation of curves about their mean, root mean square all round, mm."""
     rows = np.stack([curve.rows(equal_steps(LOOKS))[0] for curve in curves])
     return float(np.sqrt(np.mean(np.var(rows, axis=0, ddof=1))))
 
 
 def _spans(surface: str, files: Sequence[_FilePoints]) -> int:
-    """Spans of a surface's curves: the most that any file calls for, and no more than each has points for."""
+    """Spans of a surface's curves: the most of any file by cross-validation, as far as all have the points."""
     own = [file for file in files if surface in file.deviations]
     return min(
         max(file.smooth(surface).spans for file in own),
@@ -135,13 +140,16 @@ def _files(recipe: Recipe, design: Design, run: Run, place: str) -> list[_FilePo
 
 
 def total_deviations(runs: Sequence[RunMade]) -> dict[str, Smooth]:
-    """Sum over all runs of the smoothed deviation of each surface, by its name, mm."""
+    """Sum over at least one run of the smoothed deviation of each surface, by its name, mm."""
     return {name: Smooth.total([run.curves[name] for run in runs]) for name in runs[0].curves}
 
 
 @dataclass(frozen=True, eq=False)
 class CorrectedCam(AlteredCam):
-    """An exact cam whose surfaces lie at smooth deviations from the nominal ones, above 0 for metal too much, mm."""
+    """An exact cam whose surfaces lie off the nominal ones by smooth `deviations`.
+
+    These are by the name of the surface, mm along the normal, above 0 for too much metal.
+    """
 
     deviations: Mapping[str, Smooth]
 
@@ -151,6 +159,7 @@ class CorrectedCam(AlteredCam):
         return tuple(self._corrected(surface) for surface in self.nominal.surfaces)
 
     def _corrected(self, surface: Surface) -> Surface:
+        """A surface moved by its deviation: its support function under a flat face, its pitch curve under others."""
         by = PeriodicPolynomials(surface.side * self.deviations[surface.name].pieces)
         if not self.follower.contacts[0].touch.centred:
             return replace(surface, curve=Curve.whole(BySupport(surface.curve.shape, by)))
@@ -159,31 +168,32 @@ class CorrectedCam(AlteredCam):
 
     @cached_property
     def on_metal(self) -> dict[str, Corrected]:
-        """Gauges of the follower on metal that lies at the deviations, by surface."""
+        """Followers on metal that is off by the deviations, by the name of the surface."""
         sides = {surface.name: surface.side for surface in self.nominal.surfaces}
         gauges = self.nominal.gauges.items()
         return {name: Corrected.of(gauge, sides[name], self.deviations[name]) for name, gauge in gauges}
 
     @cached_property
     def gauges(self) -> dict[str, Gauge]:
-        """Gauges by which kin judges the corrected surfaces, by surface."""
+        """Followers by which kin judges the corrected surfaces, by the name of the surface."""
         return dict(self.on_metal)
 
     @cached_property
     def running(self) -> dict[str, Gauge]:
-        """Gauges of the follower itself on the corrected surfaces, by surface, where `gauges` are wider."""
+        """The real follower on the corrected surfaces, by name, where `gauges` are wider; empty where they are not."""
         return {name: self.on_metal[name].run_by(follower) for name, follower in self.nominal.running.items()}
 
     def grow(self, out: float, scale: float) -> ExactCam:
-        """The nominal cam grown by `out` mm and scaled, with deviations scaled by the same factor."""
+        """The cam grown by `out` mm and scaled, its deviations scaled by the same factor."""
         curves = {name: curve.times(scale) for name, curve in self.deviations.items()}
         return CorrectedCam(self.nominal.grow(out, scale), curves)
 
 
 def corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:
-    """A cam less a share of what the runs of a recipe show too much, drawn at a scale.
+    """The cam `exact` less a share of the summed deviations of a recipe's runs, which are scaled as `exact` is.
 
-    Raises CallError where there are sharp corners, or the follower would not reach into a hollow.
+    Raises CallError where there are sharp corners, or where the follower would not reach into a hollow; RecipeErrors
+    for points of a run that are not of this part or cannot be smoothed.
     """
     if not all(surface.curve.closed for surface in exact.surfaces):
         raise CallError(

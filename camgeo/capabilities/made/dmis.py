@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 WORDS, MM = {"mm": "MM", "inch": "INCH"}, {"mm": 1.0, "inch": 25.4}
-SAME = 1e-9  # mm: places that two contacts have in common are measured once
+SAME = 1e-9  # mm: places nearer to each other are one, such as those that two contacts share
 
 
 def _check(file: Values, _: Values, reader: Reader) -> None:
@@ -55,7 +55,11 @@ def _make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
 
 class _Disc(NamedTuple):
-    """A disc to be measured: width of its profile's zone, mm, half its height, mm, its contours, and its turn, rad."""
+    """A disc to be measured.
+
+    `zone` is the width of its profile's zone, mm, None without one; `height` the z of the points, mm; `turned` the
+    angle by which the disc is turned, rad counter-clockwise as drawn for `cw`.
+    """
 
     zone: float | None
     height: float
@@ -65,7 +69,7 @@ class _Disc(NamedTuple):
 
 
 def program(recipe: Recipe, design: Design, step: float | None = None) -> Iterator[str]:
-    """Lines of a DMIS program that measures a part at places a step of the shaft, rad, apart.
+    """Lines of a DMIS program that measures a part at places a `step` of the shaft, rad, apart, in the recipe's unit.
 
     Without a step there are as many places a turn as the recipe's `verify.angles` says.
     """
@@ -95,6 +99,7 @@ def _write_shaft(recipe: Order, cams: Sequence[ShaftCam], request: FileRequest, 
 
 
 def _program(recipe: Order, discs: Iterable[_Disc], step: float | None, units: Length) -> Iterator[str]:
+    # header, and a tolerance for each width of zone: plus and minus half of it
     name, mm = one_line(escaped(recipe.name)).replace("'", " "), MM[units]
     yield f"DMISMN/'{name}'"
     yield f"UNITS/{WORDS[units]},ANGDEC"
@@ -104,6 +109,7 @@ def _program(recipe: Order, discs: Iterable[_Disc], step: float | None, units: L
     for zone, label in zones.items():
         half = f"{0.5 * zone / mm:.12g}"
         yield f"T({label})=TOL/PROFP,-{half},{half}"
+    # each place: nominal feature, measurement, and output with its tolerance; + 0.0 turns -0.0 into 0
     shaft = equal_steps(recipe.verify.angles if step is None else round(TURN / step))
     rank = 0
     for disc in discs:
@@ -122,7 +128,7 @@ def _program(recipe: Order, discs: Iterable[_Disc], step: float | None, units: L
 
 
 def _places(recipe: Order, disc: _Disc, shaft: Array) -> Iterator[tuple[list[float], list[float]]]:
-    """Places, mm, and outward normals of what is touched on a disc over a turn, as the part is drawn; each once."""
+    """Places [x, y], mm, and outward unit normals where a disc is touched over a turn, as drawn, each once."""
     known: set[tuple[float, ...]] = set()
     for points in contact_points(disc.design, shaft, disc.contours):
         drawn = points.as_drawn(disc.turned, recipe.rotation)

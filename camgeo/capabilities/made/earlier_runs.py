@@ -33,7 +33,10 @@ NOTE = "Smoothed deviations, above 0 where metal is too much; of their sum over 
 
 
 def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
-    """Give the section `made`; nothing without points. Raises RecipeErrors for points that are none of this part."""
+    """Section `made` of an export's report on the runs; no section without `made.points` or without a contour.
+
+    Raises RecipeErrors for points that are not of this part, and for a contour with trimmed undercut.
+    """
     made = recipe.of(Made)
     if made is None or not made.points or not design.contours:
         return Results()
@@ -56,7 +59,7 @@ def examine(recipe: Recipe, design: Design, clock: Clock) -> Results:
 
 
 def _run(recipe: Recipe, design: Design, run: RunMade) -> dict[str, Any]:
-    """Give the report of a run: each surface's deviation, and the scatter of several files about their mean."""
+    """Report entry of a run: deviation of each surface, and the scatter of several files about their mean."""
     surfaces = []
     for name, curve in run.curves.items():
         entry = {"points": run.points[name], "spans": curve.spans, **_surface(recipe, design, name, curve, run.error)}
@@ -67,7 +70,10 @@ def _run(recipe: Recipe, design: Design, run: RunMade) -> dict[str, Any]:
 
 
 def _surface(recipe: Recipe, design: Design, name: str, curve: Smooth, error: float) -> dict[str, Any]:
-    """The smoothed deviation of a surface: its greatest, where, its mean size, and expanded uncertainty."""
+    """Report entry of a surface's smoothed deviation: greatest, its shaft angle, root mean square, uncertainty (k = 2).
+
+    `error`, mm, is the expanded uncertainty that is common to all points.
+    """
     t = equal_steps(LOOKS)
     e = curve.rows(t)[0]
     worst = int(np.argmax(np.abs(e)))
@@ -96,19 +102,19 @@ def _correction(
     """Report entry of a correction: its share and its files, the contour's change, and the motion.
 
     The greatest change of the contour and its uncertainty are in the recipe's unit. The motion is that of a part made
-    exactly as those files are drawn, in the recipe's unit or degrees. `error`, mm, is the sum of what is stated for the
-    probes of all runs.
+    exactly as those files are drawn, in the recipe's unit or degrees. `error`, mm, is the sum of the expanded
+    uncertainties that the runs state. `corrected` is the share and the names of the files.
     """
     (share, names), t = corrected, equal_steps(LOOKS)
     shaft = equal_steps(recipe.verify.angles)
-    each, greatest, uncertain = {}, 0.0, 0.0
+    by_surface, greatest, uncertain = {}, 0.0, 0.0
     for surface in design.exact.surfaces:
         gauge, curve = design.exact.gauges[surface.name], totals[surface.name].times(-share)
-        each[surface.name] = paired(gauge, contact_errors(gauge, surface.side, curve, shaft))
+        by_surface[surface.name] = paired(gauge, contact_errors(gauge, surface.side, curve, shaft))
         e = curve.rows(t)[0]
         greatest = max(greatest, float(e.max()), float(e.min()), key=abs)
         uncertain = max(uncertain, COVERAGE * float(curve.standard_deviations(t).max()))
-    motion, _ = follower_motion(design, each)
+    motion, _ = follower_motion(design, by_surface)
     scale, unit = report_unit(recipe, design.exact.gauge.unit)
     worst = int(np.argmax(np.abs(motion.remaining)))
     return {
@@ -129,7 +135,7 @@ def _correction(
 
 
 def _rows(section: dict[str, Any]) -> list[tuple[str, ...]]:
-    """Rows below `HEAD`: each run's surfaces, the sums over all runs, and what each share of them takes off."""
+    """Rows of cells below `HEAD`: surfaces of each run, sums over all runs, and each correction with its motion."""
     runs = [(", ".join(run["files"]), surface) for run in section["runs"] for surface in run["surfaces"]]
     rows = [_row(files, surface) for files, surface in runs]
     rows += [_row("sum", surface) for surface in section["systematic"]]
@@ -143,6 +149,7 @@ def _rows(section: dict[str, Any]) -> list[tuple[str, ...]]:
 
 
 def _row(name: str, surface: dict[str, Any]) -> tuple[str, ...]:
+    """Cells of a surface's entry, `name` the first of them."""
     differ = surface.get("files_differ_by")
     figures = f"{surface['greatest']:+.4g}", f"{surface['at_deg']:.2f} deg", f"{surface['rms']:.4g}"
     points = str(surface.get("points", ""))
@@ -151,7 +158,7 @@ def _row(name: str, surface: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _section(report: dict[str, Any]) -> dict[str, Any] | None:
-    """The section of an export; None of a report without runs."""
+    """The section `made` of an export's report; None without runs."""
     section: dict[str, Any] = report.get("made", {})
     return section if "runs" in section else None
 

@@ -35,8 +35,8 @@ ANGLES, DURATION = ("opens_deg", "closes_deg", "centre_deg"), "duration_crank_de
 class StatedLift(NamedTuple):
     """A lift at which there are events.
 
-    `lift` is the stated lift, mm or rad, of what is `moved`, or of the follower where that is None. `follower` is the
-    follower's lift there, mm or rad.
+    `lift` is the stated lift, mm or rad, of the body `moved`, or of the follower where that is None. `follower` is the
+    follower's lift at the same time, mm or rad.
     """
 
     moved: MovedBody | None
@@ -45,7 +45,10 @@ class StatedLift(NamedTuple):
 
 
 def stated_lifts(recipe: Recipe, design: Design, events: float | None = None) -> list[StatedLift]:
-    """Lifts at which a recipe has figures, and `events`, the lift of a shaft's events; each once, above 0."""
+    """Lifts above 0 at which a recipe has figures, and `events`, the lift of a shaft's events, mm; each once.
+
+    Lifts of the follower come first, then those of moved bodies, each rising.
+    """
     moved = {name: registry.capability(name).moved(recipe, design) for name in recipe.uses}
     lifts: list[tuple[MovedBody | None, float]] = []
     for limit in recipe.limits:
@@ -68,10 +71,10 @@ def events_section(
     options: PointOptions,
     shaft: tuple[float | None, float] = (None, 0.0),
 ) -> dict[str, Any]:
-    """Section `events` of the report: greatest lift and velocity, and the angles of each stated lift.
+    """Section of the report under the key `events`: greatest lift and velocity, and the angles of each stated lift.
 
-    It is empty where no lift is stated. `shaft` has the lift of a shaft's events, mm or None, and the shaft angle, rad,
-    at which the lobe's motion begins.
+    Empty where no lift is stated. `result` is the part as made. `shaft` has the lift of a shaft's events, mm or None,
+    and the shaft angle, rad, at which the lobe's motion begins.
     """
     events, zero = shaft
     lifts = stated_lifts(recipe, design, events)
@@ -98,12 +101,13 @@ def _name(moved: MovedBody | None) -> str:
 
 
 def _row(scale: float, made: float, intended: float, uncertainty: float) -> dict[str, Any]:
+    """A figure as made and as intended, and its expanded uncertainty, each times a scale."""
     return {"made": scale * made, "intended": scale * intended, "uncertainty": scale * uncertainty}
 
 
 def _greatest_lift(moved: MovedBody | None, highest: Estimate, options: PointOptions, scale: float) -> dict[str, Any]:
     made, intended = (_moving(moved, np.array([[lift], [1.0], [0.0]])) for lift in highest[:2])
-    ratio = float(made[1, 0])  # velocity of what is moved, by that of the follower
+    ratio = float(made[1, 0])  # velocity of the moved body over that of the follower
     return _row(scale, float(made[0, 0]), float(intended[0, 0]), ratio * options.expanded(highest.influence))
 
 
@@ -117,15 +121,15 @@ def _greatest_velocity(moved: MovedBody | None, motion: MadeMotion, scale: float
 
 
 def _moving(moved: MovedBody | None, rows: Array) -> Array:
-    """Lift, velocity and acceleration (3, n) of what is moved, from those of the follower; by rad of the shaft."""
+    """Lift, velocity and acceleration (3, n) of a moved body, from those of the follower; by rad of the shaft."""
     return rows if moved is None else moved.rows(rows)
 
 
 def _above(row: StatedLift, motion: MadeMotion, design: Design, options: PointOptions, zero: float) -> dict[str, Any]:
     """Angles at which a lift is crossed, degrees of the shaft, and the duration, degrees of the crank.
 
-    Each entry has the made and the intended value and the uncertainty. It is None where the lift is not crossed just
-    twice.
+    Each entry has the made and the intended value and the expanded uncertainty. All are None where the lift is not
+    crossed once upwards and once downwards. `zero` is the shaft angle, rad, at which the lobe's motion begins.
     """
     try:
         event = event_of(design.exact, row.follower)

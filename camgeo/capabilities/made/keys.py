@@ -1,4 +1,4 @@
-"""Key `made` of a recipe: the zone of the profile, mm, the datum of its axes, and files of points of earlier runs."""
+"""Key `made` of a recipe: the zone of the profile, the datum of its axes, and files of points of earlier runs."""
 
 from __future__ import annotations
 
@@ -35,12 +35,13 @@ UNITS = {"mm": 1.0, "inch": 25.4}
 
 @dataclass(frozen=True)
 class PointFile:
-    """A file of points, its path as seen from the recipe.
+    """A file of points; None for what its entry does not give.
 
-    units   mm in its unit where its heading states none; None for that of the recipe
-    align   unknowns that are placed by least squares: of g, x, y
-    ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
-    face    width of an indicator's flat face, mm
+    file    its path as seen from the recipe
+    units   mm in its unit where its heading states none; None for the recipe's unit
+    align   unknowns of a placing by least squares: letters of g (turn), x, y (shifts)
+    ball    radius of the probe, mm; None for points of the metal, and for lifts of the follower itself
+    face    width of the flat face of an indicator of lifts, mm
     error   expanded uncertainty (k = 2) of a point, mm
     """
 
@@ -57,9 +58,9 @@ Run = tuple[PointFile, ...]
 
 @dataclass(frozen=True)
 class Made:
-    """Key `made`: width of the profile's zone, mm, and its datum; None where the recipe gives none.
+    """Key `made`: width of the profile's zone, mm, and its datum; None where the recipe does not give them.
 
-    `points` are the points of parts that were made, run by run.
+    `points` are the files of points of earlier runs, in the order in which the parts were made.
     """
 
     profile: float | None = None
@@ -92,7 +93,7 @@ POINT_FILE = FieldTable(
 
 
 def _read(reader: Reader, field: Field, node: Node, path: str) -> tuple[Run, ...] | None:
-    """Read runs: a file each, or a list of files that are taken together."""
+    """Read runs, each a file or a list of files that are taken together; None for an empty list or a fault."""
     runs = []
     for i, run in enumerate(reader.items(field, node, path, MOST_FILES)):
         below = join(path, i)
@@ -105,6 +106,7 @@ def _read(reader: Reader, field: Field, node: Node, path: str) -> tuple[Run, ...
 
 
 def _point_file(reader: Reader, field: Field, node: Node, path: str) -> PointFile | None:
+    """Read a file of points, a path or a mapping; None where a fault was noted."""
     if isinstance(node, Mapping):
         values: Values | None = reader.field(Field("", Kind.TABLE, "", table=POINT_FILE), node, path)
         if values is None or "file" not in values:
@@ -145,7 +147,7 @@ POINTS_PATH = f"made.{POINTS.name}"
 
 
 def files_of_run(run: Run, place: str) -> list[tuple[str, PointFile]]:
-    """Each file of a run with its place in the recipe, by that of the run, such as `made.points[1]`."""
+    """Pairs of the path in the recipe and the file, for each file of a run; `place` is the run's, `made.points[1]`."""
     return [(f"{place}[{k}]" if len(run) > 1 else place, file) for k, file in enumerate(run)]
 
 
@@ -158,12 +160,12 @@ _OPTION = re.compile(rf"--({'|'.join(_OPTION_KEYS)})((?: (?:{'|'.join((*UNITS, *
 
 
 def in_recipe(text: str) -> str:
-    """Say by keys of a file's entry what a text says by options of `verify`."""
+    """A text with the options of `verify` in it replaced by the keys of a file's entry, such as `probe.radius`."""
     return _OPTION.sub(lambda option: f"{option[1].replace('-', '.')}{option[2] and ':'}{option[2]}", text)
 
 
 def fields() -> Sequence[Field]:
-    """Give the key."""
+    """The field `made` of a recipe's top level."""
     zone = length("profile", "width of the tolerance zone of the contour, ISO 1101: half of it to either side")
     about = "what fixes the axes of the profile: part as measured, bore leaves it to turn, none to shift as well"
     datum = Field("datum", Kind.CHOICE, about, default="by the bore", choices=DATUMS)
@@ -185,7 +187,7 @@ CORRECT = Field(
 
 
 def offered(record: Format) -> bool:
-    """Files that show the contour itself, or cut or grind it, may be corrected; of tables, those that do."""
+    """Whether files of a format may be corrected: files with the contour, and tables of which a form has it."""
     return record.contour or any(_is_contour(form) for form in record.forms.values())
 
 
@@ -195,7 +197,7 @@ def _is_contour(form: TableForm) -> bool:
 
 
 def check(values: Values, reader: Reader) -> None:
-    """Note files of points that are not there."""
+    """Note entries of `made.points` whose file does not exist."""
     for i, run in enumerate(values.get("made", {}).get("points", ())):
         for place, file in files_of_run(run, f"{POINTS_PATH}[{i}]"):
             if not (Path(reader.source.file).parent / file.file).is_file():
@@ -207,6 +209,7 @@ def check_corrected(request: FileRequest, values: Values, reader: Reader, path: 
     """Note faults of a file that is to be corrected.
 
     They are a file without a contour, a recipe without points of earlier runs, and a contour whose undercut is cut off.
+    `path` is that of the file's entry in the recipe.
     """
     place = f"{path}.{request.kind}.{CORRECT.name}"
     if not (request.format.contour or _is_contour(request.form)):
@@ -226,13 +229,16 @@ def build(values: Values) -> Made | None:
 
 
 def zone_of(recipe: Recipe) -> float | None:
-    """Width of the zone that the profile is held to, mm; None for a recipe without `made.profile`."""
+    """Width of the tolerance zone of the profile, mm; None for a recipe without `made.profile`."""
     made = recipe.of(Made)
     return None if made is None else made.profile
 
 
 def datum_of(made: Made | None, part: Part) -> Datum:
-    """Datum of a recipe: the one it gives, else `part`, `bore` or `none`, by what fixes the part on its shaft."""
+    """Datum of the profile that a recipe gives, else one by what fixes the part on its shaft.
+
+    `part` where a feature fixes the angle, else `bore`, or `none` without a bore.
+    """
     if made is not None and made.datum is not None:
         return made.datum
     fixed = bool(part.sides) or any(feature.locates for feature, _ in with_records(part.features))

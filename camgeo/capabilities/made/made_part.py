@@ -32,12 +32,12 @@ if TYPE_CHECKING:
     from kin.made.points import Datum, Placing, Profile
     from kin.numeric.arrays import Array
 
-TURNED = math.radians(0.25)  # from which on lifts, and cams of a shaft, are said to be turned
+TURNED = math.radians(0.25)  # lifts, and cams of a shaft, that are turned by more have a remark
 
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMade:
-    """Result for one surface: its points, its smoothed deviation, the errors of its follower, and the play.
+    """Result for one surface: its points, its smoothed deviation, the motion errors of its follower, and the play.
 
     `play` is None unless two contacts on the surface hold the follower from both sides.
     """
@@ -49,7 +49,7 @@ class SurfaceMade:
 
     @property
     def gauge(self) -> Gauge:
-        """Follower of the surface as meant."""
+        """Follower of the surface with its intended motion."""
         return self.measured.gauge
 
 
@@ -57,11 +57,12 @@ class SurfaceMade:
 class DiscMade:
     """Result for one disc, from its measured points.
 
+    part         the disc as intended
     surfaces     results of each of its surfaces
     profile      deviation of the profile over all their points, by the datum
-    placing      shift and turn that were taken out before (`align`)
+    placing      turn and shift that `align` took out of the points before
     turned       known turn of the disc, rad: its points are turned back by it, its motion is not
-    uncertain    expanded uncertainty of every point's deviation (n,), mm
+    uncertain    expanded uncertainty of the deviation of all points (n,), surface by surface, mm
     smoothed     greatest magnitude of the smoothed deviation as the datum places it, mm
     """
 
@@ -78,9 +79,9 @@ class DiscMade:
 class PartMade:
     """Result for a part, from all points of a call; mm and rad.
 
-    motion, play   errors of the follower and its play: midway where two contacts or surfaces hold it
+    motion, play   errors of the follower, midway where two contacts or surfaces hold it, and its play, else None
     output         errors of a linkage's output; None without a linkage
-    lifts          zero of the readings, and their lateness that was turned back; None of points that are not lifts
+    lifts          zero of the readings, and the lateness that was taken out of them, rad; None for points x, y
     remarks        sentences for the report
     """
 
@@ -98,22 +99,22 @@ class PartMade:
 
     @property
     def motion_unit(self) -> str:
-        """Unit of the follower's motion: mm, or deg of one that swings."""
+        """Unit in which the follower's motion is reported: mm, or deg where it swings."""
         return self.surfaces[0].gauge.unit
 
     @property
     def output_unit(self) -> str:
-        """Unit of a linkage's output: mm, or deg of one that turns; of the follower without a linkage."""
+        """Unit in which a linkage's output is reported: mm, or deg where it turns; the follower's without a linkage."""
         linkage = self.discs[0].part.linkage
         return self.motion_unit if linkage is None else linkage.mechanism.unit
 
 
 def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], options: PointOptions) -> PartMade:
-    """Judge a part by its measured points; give deviations, errors of the motion, and remarks.
+    """Judge a part by the points in files; the result has deviations, errors of the motion, and remarks.
 
     Raises CallError for files without points and a disc without any, UnlikePointsError for points of something else,
-    UnsettledError and GapError for points that are too few or too far apart, ContactError and FrameError where the
-    follower does not run on the metal that they show.
+    ValueError for a number of spans that the points do not permit, UnsettledError and GapError for points that are too
+    few or too far apart, ContactError and FrameError where the follower does not run on the metal that they show.
     """
     datum = datum_of(recipe.of(Made), recipe.part)
     points = part_points(recipe, design, read_tables(paths), options.probing)
@@ -121,15 +122,18 @@ def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], options: Po
 
 
 def part_of_points(recipe: Recipe, design: Design, points: PartPoints, options: PointOptions, datum: Datum) -> PartMade:
-    """Judge a part by its points, with the datum of its profile; give deviations, errors of the motion, and remarks.
+    """Judge a part by its points and the datum of its profile; the result has deviations, motion errors, and remarks.
 
-    Raises CallError where a disc has no points, UnsettledError and GapError for points that are too few or too far
-    apart, ContactError and FrameError where the follower does not run on the metal that they show.
+    Raises CallError where a disc has no points, ValueError for a number of spans that the points do not permit,
+    UnsettledError and GapError for points that are too few or too far apart, ContactError and FrameError where the
+    follower does not run on the metal that they show.
     """
     demand_points(points.missing)
     discs = [_disc(recipe, disc, options, datum) for disc in points.discs]
-    each = {surface.measured.intent.name: (surface.errors, surface.play) for disc in discs for surface in disc.surfaces}
-    motion, play = follower_motion(design, each)
+    errors = {
+        surface.measured.intent.name: (surface.errors, surface.play) for disc in discs for surface in disc.surfaces
+    }
+    motion, play = follower_motion(design, errors)
     remarks = [*points.remarks, *_remarks(recipe, discs, options, points.lifts)]
     if points.lifts is not None and not options.probing.align and options.probing.turned is None:
         late = motion.phase[0]
@@ -140,6 +144,7 @@ def part_of_points(recipe: Recipe, design: Design, points: PartPoints, options: 
 
 def _disc(recipe: Recipe, points: DiscPoints, options: PointOptions, datum: Datum) -> DiscMade:
     """Smooth the points of a disc, and let the followers run on each surface."""
+    # by the datum `part` the profile has the placing of `align`; other datums find their own
     standing = [
         surface.points.placed(points.placing) if datum == "part" else surface.points for surface in points.surfaces
     ]
@@ -151,6 +156,7 @@ def _disc(recipe: Recipe, points: DiscPoints, options: PointOptions, datum: Datu
         smooth = fit(deviations.parameter, deviations.e, options.spans)
         errors = contact_errors(surface.gauge, surface.intent.side, smooth.curve, shaft, points.turned)
         surfaces.append(SurfaceMade(surface, smooth, *paired(surface.gauge, errors)))
+    # smoothed deviations once more, of the points as the datum places them
     smoothed = [
         float(np.abs(fit(placed.parameter, placed.e, own.fit.curve.spans).curve.rows(placed.parameter)[0]).max())
         for placed, own in zip(profiled.deviations, surfaces, strict=True)
@@ -160,7 +166,7 @@ def _disc(recipe: Recipe, points: DiscPoints, options: PointOptions, datum: Datu
 
 
 def _uncertain(surface: SurfaceMade, options: PointOptions) -> Array:
-    """Expanded uncertainty (n,) of every point, mm: as stated, else of the scatter alone; with that of the axes."""
+    """Expanded uncertainty (n,) of every point, mm, as stated, else by the scatter, with that of the axes."""
     deviations = surface.measured.deviations
     point = COVERAGE * surface.fit.curve.sigma if options.error is None else options.error
     square = np.full(len(deviations.e), point**2)
@@ -173,7 +179,10 @@ def _uncertain(surface: SurfaceMade, options: PointOptions) -> Array:
 def follower_motion(
     design: Design, each: Mapping[str, tuple[Errors, MadePlay | None]]
 ) -> tuple[Errors, MadePlay | None]:
-    """Motion errors and play of the follower: on its only surface, or midway between the two that hold it."""
+    """Motion errors and play of the follower, from those on each surface, by the name of the surface.
+
+    Where two surfaces hold the follower they are midway between both; else they are those of its only surface.
+    """
     for closure in closures_between(design):
         return between(each[closure.pushes][0], each[closure.stops][0])
     (motion,) = each.values()
@@ -190,7 +199,7 @@ def _output(disc: DiscMade) -> OutputErrors | None:
 
 
 def motion_uncertainty(result: PartMade, options: PointOptions) -> Array:
-    """Expanded uncertainty of the motion over its shaft angles (n,), mm or rad."""
+    """Expanded uncertainty of the motion error at its shaft angles (n,), mm or rad: noise, probe and axes."""
     turning = options.axes_turn * np.abs(result.motion.intended[1])
     expanded: Array = np.hypot(result.motion.uncertainty(options.systematic), turning)
     return expanded
@@ -200,9 +209,9 @@ def motion_uncertainty(result: PartMade, options: PointOptions) -> Array:
 
 
 def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[list[Check], dict[str, str]]:
-    """Checks on the profile of each disc, the motion and the output, where there is a limit; verdicts by name of check.
+    """Checks on the profile of each disc, the motion and the output, where the recipe limits them, and the verdicts.
 
-    A verdict is `ok`, `failed` or `not proved`.
+    Verdicts are by the name of the check, for a disc with its name: `ok`, `failed` or `not proved`.
     """
     checks, verdicts = [], {}
     zone, limits = zone_of(recipe), permitted(recipe, recipe.export.tolerance)
@@ -232,7 +241,8 @@ def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[
 def _held(name: str, value: Array, uncertain: Array, limit: float, *, unit: str, at: float) -> tuple[Check, str]:
     """A check by the rule of ISO 14253-1, and its verdict: ok, failed, or not proved where neither is certain.
 
-    `at` is the shaft angle, rad, at which the values (n,) are greatest.
+    `value` (n,) and its expanded uncertainty (n,) are in `unit`, as the limit is; `at` is the shaft angle, rad, at
+    which the value is greatest.
     """
     sure, above = bool((value + uncertain <= limit).all()), bool((value - uncertain > limit).any())
     verdict = "ok" if sure else "failed" if above else "not proved"
@@ -245,7 +255,7 @@ def _held(name: str, value: Array, uncertain: Array, limit: float, *, unit: str,
 def _remarks(
     recipe: Recipe, discs: Sequence[DiscMade], options: PointOptions, lifts: tuple[float, float] | None
 ) -> list[str]:
-    """Remarks in sentences: what is assumed, what the points cannot show, and which points were left out."""
+    """Remarks in sentences: what is assumed, what the points cannot show, and which points are outliers."""
     remarks = []
     limits = permitted(recipe, recipe.export.tolerance)
     if zone_of(recipe) is None and limits.motion is None:

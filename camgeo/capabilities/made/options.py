@@ -30,7 +30,7 @@ MOST_LENGTH = 1e3  # mm, of a probe and its errors
 
 
 def claims(path: Path, options: Mapping[str, object]) -> bool:
-    """Whether a file holds measured points.
+    """Whether a file holds measured points; raises OSError for a file that cannot be read.
 
     The option `as` decides. Without it a file holds them if it is neither a list of points of a curve nor rows for a
     drive or a grinder.
@@ -49,10 +49,10 @@ def claims(path: Path, options: Mapping[str, object]) -> bool:
 class Probing:
     """Way in which points were measured.
 
-    align   unknowns that are placed by least squares before all else: letters of "gxy", the turn and the shift
-    ball    radius of the probe, mm; None for points of the metal, and for the follower's own of lifts
-    face    width of an indicator's flat face, mm
-    units   mm in a unit of files whose headings state none; None for that of the recipe
+    align   unknowns of a placing by least squares before the motion is judged: letters of g (turn), x, y (shifts)
+    ball    radius of the probe, mm; None for points of the metal, and for lifts of the follower itself
+    face    width of the flat face of an indicator of lifts, mm; None without one
+    units   mm in a unit of files whose headings state none; None for the recipe's unit
     turned  known turn, rad, of a cam on a shaft against the others; None for a part of its own
     """
 
@@ -67,8 +67,9 @@ class Probing:
 class PointOptions:
     """Options of a call on files of points, mm and radians; None for an option that is not given.
 
-    error        expanded uncertainty (k = 2) of a point
-    axes         expanded uncertainty of the part's axes: shift, and turn
+    probing      how the points were measured
+    error        expanded uncertainty (k = 2) of a point along its normal
+    axes         expanded uncertainty of the part's axes: shift, mm, and turn, rad
     spans        number of spans of the smoothed deviation
     out          folder for a page, a drawing and a table
     """
@@ -91,22 +92,22 @@ class PointOptions:
 
     @property
     def systematic(self) -> float:
-        """Expanded uncertainty of the metal that does not average out, mm: of the probe and of the axes' shift."""
+        """Expanded uncertainty of the probe and of the axes' shift together, mm, which does not average out."""
         return math.hypot(self.error or 0.0, self.axes_shift)
 
     def expanded(self, influence: Influence) -> float:
         """Expanded uncertainty (k = 2) of a figure: root sum of squares of noise, probe and shift of the axes.
 
-        The probe's error acts at worst, as it is common to all points. The result is in the unit of the figure.
+        The probe's error counts with its sign the worst at every place. The result is in the unit of the figure.
         """
         shifted = math.hypot(*influence.shifted.tolist())
         return math.hypot(COVERAGE * influence.sd, influence.worst * (self.error or 0.0), shifted * self.axes_shift)
 
 
 def read_options(options: Mapping[str, object], recipe: Recipe, units: float | None = None) -> PointOptions:
-    """Read the options of a call, with the unit of its files, mm.
+    """Read the options of a call by their names; `units` is mm in the unit of files that state none.
 
-    Raises CallError with a line for each that makes no sense.
+    Lengths without a unit are in the recipe's. Raises CallError with a line for each option of a wrong value.
     """
     faults: list[str] = []
 
@@ -147,7 +148,7 @@ def read_options(options: Mapping[str, object], recipe: Recipe, units: float | N
 
 
 def _read_axes(value: object, recipe: Recipe, faults: list[str]) -> tuple[float, float] | None:
-    """Shift, mm, and turn, rad, of an option `L,DEG`; None, and one more of `faults`, where it has not these two."""
+    """Shift, mm, and turn, rad, of an option `L,DEG`; None, and one more of `faults`, for another value."""
     cells = [str(cell) for cell in value] if isinstance(value, (tuple, list)) else str(value).split(",")
     try:
         shift = read_quantity(cells[0], recipe.units) * recipe.mm

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order, Recipe
     from kin.numeric.arrays import Array
 
-LOOKS = 1440  # places of a curve round the contour or over the shaft angle
+LOOKS = 1440  # places at which a curve is drawn, round the contour or over the shaft angle
 SHARE = 0.12  # of the cam's greatest radius: how long the greatest deviation is drawn
 WIDE, HIGH, LEFT, FOOT = 860.0, 240.0, 70.0, 40.0  # px of a plot, and of its margins
 MOST_DOTS = 4000  # of points in a plot: more hide one another
@@ -45,7 +45,7 @@ STYLE = (
 
 
 def write_part(recipe: Recipe, result: PartMade, section: dict[str, Any], options: PointOptions) -> list[str]:
-    """Write page, drawing and table of points; returns their paths in this order.
+    """Write page, drawing and table of points into the folder `options.out`; returns their paths in this order.
 
     Raises SurroundingsError where the file system refuses.
     """
@@ -60,7 +60,7 @@ def write_part(recipe: Recipe, result: PartMade, section: dict[str, Any], option
 
 
 def write_shaft(recipe: Order, result: ShaftMade, section: dict[str, Any], options: PointOptions) -> list[str]:
-    """Write the page of a shaft and the files of each cam; returns their paths.
+    """Write the page of a shaft and the files of each cam into the folder `options.out`; returns their paths.
 
     Raises SurroundingsError where the file system refuses.
     """
@@ -77,7 +77,7 @@ def write_shaft(recipe: Order, result: ShaftMade, section: dict[str, Any], optio
 
 
 def _write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Let a file take its place when all of it is written; raises SurroundingsError where the file system refuses."""
+    """Write a file under another name, then rename it; raises SurroundingsError where the file system refuses."""
     partial = path.with_name(f".{path.name}.partial")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -91,7 +91,7 @@ def _write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def _write_points(recipe: Recipe, result: PartMade, path: Path) -> None:
-    """Every place with its foot, deviation and residual, as the file is drawn, in the recipe's unit."""
+    """Write a table of every place with its foot, deviation and residual, as drawn, in the recipe's unit."""
     unit, sign = UNIT_NAMES[recipe.units], -1.0 if recipe.rotation == "ccw" else 1.0
     names = ["surface", "file", "line", f"x_{unit}", f"y_{unit}", "shaft_deg", f"foot_x_{unit}", f"foot_y_{unit}"]
     names += [f"deviation_{unit}", f"residual_{unit}", "outlier"]
@@ -112,7 +112,7 @@ def _write_points(recipe: Recipe, result: PartMade, path: Path) -> None:
 
 
 def _drawing(recipe: Recipe, result: PartMade) -> str:
-    """The exact contours, and the smoothed deviation magnified along their normals, with where metal is too much."""
+    """SVG of the exact contours, with the smoothed deviation magnified along their normals, red for too much metal."""
     sign = np.array([1.0, 1.0 if recipe.rotation == "ccw" else -1.0])  # of a drawing whose y axis points down
     t = equal_steps(LOOKS)
     size, most = 0.0, 0.0
@@ -122,6 +122,7 @@ def _drawing(recipe: Recipe, result: PartMade) -> str:
         e = surface.fit.curve.rows(t)[0]
         size, most = max(size, float(np.abs(frame.points).max())), max(most, float(np.abs(e).max()))
         curves.append((frame.points * sign, surface.measured.points.side * frame.normals * sign, e))
+    # scale, rounded to one digit, by which the greatest deviation is drawn as SHARE of the size
     magnified = float(f"{SHARE * size / max(most, 1e-9):.1g}")
     reach = size * (1.0 + 1.3 * SHARE)
     thin = reach / 400.0
@@ -220,7 +221,7 @@ def _over_shaft(recipe: Recipe, surface: SurfaceMade) -> str:
 def _plot(
     x: Array, y: Array, band: Array, *, dots: tuple[Array, Array] | None = None, zone: float | None = None
 ) -> str:
-    """A curve over 360 degrees with its uncertainty as a band, points behind it, and the limits of a zone."""
+    """SVG of a curve over 360 degrees with its uncertainty as a band, points behind it, and lines at +- `zone`."""
     reach = max(
         float(np.abs(y).max() + band.max()),
         0.0 if dots is None else float(np.abs(dots[1]).max()),
@@ -238,6 +239,7 @@ def _plot(
     def line(value: Array) -> str:
         return "M" + "L".join(f"{a:.2f},{b:.2f}" for a, b in zip(across(x), up(value), strict=True))
 
+    # band, points, lines of the zone and of 0, the curve, and the scales
     upper = [f"{a:.2f},{b:.2f}" for a, b in zip(across(x), up(y + band), strict=True)]
     lower = [f"{a:.2f},{b:.2f}" for a, b in zip(across(x), up(y - band), strict=True)][::-1]
     parts = [f'<path d="M{"L".join(upper + lower)}Z" fill="{BAND}"/>']
@@ -266,7 +268,7 @@ def _plot(
 def _excesses(surface: SurfaceMade) -> list[tuple[float, float, float, float]]:
     """Stretches of a surface with certainly too much metal, as (begin, end, greatest excess, its angle).
 
-    Angles are degrees of the shaft, the excess is in mm; it exceeds twice its standard deviation all along.
+    Angles are degrees of the shaft; the excess, mm, is above twice its standard deviation all along.
     """
     t = equal_steps(LOOKS)
     e, band = surface.fit.curve.rows(t)[0], COVERAGE * surface.fit.curve.standard_deviations(t)

@@ -1,4 +1,4 @@
-"""Points of a part, out of the files that hold them: on its surfaces, in the drawing's axes, placed as a call asks."""
+"""Points of a part, out of the files that hold them: on its surfaces, in the drawing's axes, placed as `align` says."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
     from kin.read.points import PointTable
 
-REPEATED = 0.02  # of the mean step: points nearer than this are one place, measured again
-FEWER = 0.8  # of the points: as many places or less, and they are repeats
+REPEATED = 0.02  # of the mean step between points: points that are nearer are one place, measured again
+FEWER = 0.8  # of the points: with more places than this nothing was measured again on purpose
 BORE = 0.05  # of its diameter: points so near to it are on the bore
 LIFT_KINDS = "a lift is of a cam with one surface and one contact; give points x,y of this one"
 MIXED = "some files have lifts and others places: give them in calls of their own"
@@ -54,11 +54,11 @@ NO_SHIFT = "lifts tell no shift: --align rotation is all that they can be placed
 class MeasuredSurface:
     """Points on one surface (n), and where they come from.
 
-    intent         the surface as it is meant
-    points         held against the surface's exact contour
-    files, lines   of each point: index of its file among those of the call, and its line (n,)
-    repeats        points that were averaged into these; as many as these where none was
-    spread         standard deviation of repeats about their mean, mm; None without any
+    intent         the surface as intended
+    points         the points, with the exact contour from which they deviate
+    files, lines   index of each point's file in the call, and its line (n,); of a mean those of its first point
+    repeats        number of points before those of one place were averaged
+    spread         standard deviation of repeats about their means, mm; None where none were averaged
     """
 
     intent: SurfaceIntent
@@ -83,9 +83,10 @@ class MeasuredSurface:
 class DiscPoints:
     """Points of one disc.
 
-    surfaces   each of its surfaces with its points; empty where no file is of this disc
-    placing    turn and shift that were taken out (`align`)
-    turned     known turn of the disc, rad: its points are placed by it too
+    part       the disc as intended
+    surfaces   each of its surfaces with its points
+    placing    turn and shift that `align` took out
+    turned     known turn of the disc, rad, which is taken out of the points too
     """
 
     part: PartIntent
@@ -100,8 +101,8 @@ class PartPoints:
 
     discs      each disc of the part that has points
     missing    names of its discs without points
-    lifts      zero of the readings, mm or rad, and by how much they are late and turned back, rad, of lifts alone
-    remarks    sentences
+    lifts      zero of the readings, mm or rad, and the lateness that was taken out, rad; None for points x, y
+    remarks    sentences for the report
     unit       mm in the unit of the files
     """
 
@@ -113,7 +114,7 @@ class PartPoints:
 
 
 def read_tables(paths: Sequence[Path]) -> list[tuple[Path, PointTable]]:
-    """Read all files; raises CallError for a file that holds no points."""
+    """Path and table of each file; raises CallError, with a line for each file that holds no points."""
     tables, faults = [], []
     for path in paths:
         try:
@@ -130,12 +131,13 @@ def part_points(
 ) -> PartPoints:
     """Points of a part, out of files and their tables, by disc and surface, and placed as `probing` says.
 
-    `first` is the rank of the first file among those of a run, from 0: a file with no number in its name is of the disc
-    of its rank. Raises CallError for files that do not go together or with the part, UnlikePointsError for points that
-    are not on its contours.
+    `first` is the rank of the first file among those of a run, from 0: a file without a number in its name belongs to
+    the disc of its rank. Raises CallError for files that do not go together or with the part, UnlikePointsError for
+    points that are not on its contours, UnsettledError where the foot of a point is not found.
     """
     parts, tables = intents(recipe, design), [table for _, table in files]
     scale, remarks = scale_of(recipe, tables, probing.units)
+    # lifts have a lateness of their own; without `align` it is given as a turn and put back
     if any(table.measured == "lift" for table in tables):
         lifts, surfaces = _lift_points(parts, tables, scale, probing)
         turned = 0.0 if probing.align else lifts.late
@@ -158,21 +160,21 @@ def part_points(
 
 
 def name_of(part: PartIntent) -> str:
-    """Name of one of several discs, that of its surface, such as `disc 2`; empty where a part is the only one."""
+    """Name of a disc: of its only surface, such as `disc 2`, else its own; empty where a part has one disc."""
     return part.surfaces[0].name if len(part.surfaces) == 1 else part.name
 
 
 def demand_points(missing: Sequence[str]) -> None:
-    """Raise CallError where there are surfaces, by their names, without points."""
+    """Raise CallError where names of surfaces without points are given."""
     if missing:
         raise CallError(f"points of {' and '.join(missing)} are missing: give a file for each disc")
 
 
 def scale_of(recipe: Recipe, tables: Sequence[PointTable], units: float | None) -> tuple[float, list[str]]:
-    """Mm in a unit of the points, and remarks: what their headings state, else `units`, else the recipe's unit.
+    """Mm in a unit of the points, and remarks: the unit that headings state, else `units`, else the recipe's.
 
-    There is a remark only on the recipe's unit. Raises CallError where headings state different units, or another one
-    than `units`.
+    There is a remark only where the recipe's unit is taken. `units` is in mm. Raises CallError where headings state
+    different units, or another unit than `units`.
     """
     stated = {table.unit for table in tables if table.unit is not None}
     if len(stated) > 1:
@@ -188,7 +190,7 @@ def scale_of(recipe: Recipe, tables: Sequence[PointTable], units: float | None) 
 
 
 def label_of(name: str) -> str:
-    """The name of a surface as tables have it."""
+    """A name as tables have it: lower case, with underscores for blanks."""
     return name.strip().lower().replace(" ", "_")
 
 
@@ -202,9 +204,10 @@ def by_label(names: Sequence[str], table: PointTable) -> Indices | None:
 
 
 def by_disc(names: Sequence[Sequence[str]], table: PointTable, path: Path, place: int) -> list[tuple[int, PointTable]]:
-    """Rows of a file by disc index: by the surface that each row names, else by the file's name or place.
+    """Pairs of a disc's index and its rows of a file, by the surface that each row names, else by the file.
 
-    `names` are those of the surfaces of each disc. Raises CallError where the cam has no such disc.
+    `names` has the names of each disc's surfaces. A file belongs to the disc of the number that ends its name, else of
+    its `place` in the call, from 0. Raises CallError where the cam has no such disc.
     """
     if len(names) == 1:
         return [(0, table)]
@@ -216,7 +219,7 @@ def by_disc(names: Sequence[Sequence[str]], table: PointTable, path: Path, place
 
 
 def _disc_of_file(path: Path, place: int, discs: int) -> int:
-    """Index of the disc that a file is of, from 0: the end of its name, `-1` or `-2`, else its place in the call.
+    """Index of the disc of a file, from 0: by the end of its name, `-1` or `-2`, else by its place in the call.
 
     Raises CallError where the cam has no such disc.
     """
@@ -228,7 +231,10 @@ def _disc_of_file(path: Path, place: int, discs: int) -> int:
 
 
 def places_of(table: PointTable, scale: float, *, mirrored: bool) -> tuple[Array, Array | None]:
-    """Points (n, 2), mm, and unit normals (n, 2) of a table, None without normals, as if it were not mirrored."""
+    """Points (n, 2), mm, of a table in units of `scale` mm, and unit normals (n, 2) or None, as if not mirrored.
+
+    `mirrored` says that the table is, as of a cam with `rotation: ccw`: then y changes its sign.
+    """
     sign = np.array([1.0, -1.0 if mirrored else 1.0])
     columns = table.columns
     places = np.column_stack([columns["x"], columns["y"]]) * (scale * sign)
@@ -268,7 +274,7 @@ def surface_points(
 
 
 def joined(pieces: Sequence[tuple[Array, Array | None]]) -> tuple[Array, Array | None]:
-    """Places (n, 2) of several pieces, and their normals; None where a piece has none."""
+    """Places (n, 2) of several pieces, one after the other, and their normals (n, 2); None where a piece has none."""
     normals = [normal for _, normal in pieces if normal is not None]
     return np.concatenate([places for places, _ in pieces]), (
         np.concatenate(normals) if len(normals) == len(pieces) else None
@@ -298,8 +304,12 @@ def _surface_of_each(part: PartIntent, table: PointTable, places: Array) -> Indi
 
 
 def _placed_disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[MeasuredSurface], probing: Probing) -> DiscPoints:
-    """Place the points of a disc by the unknowns of `align`, and average those that were measured again."""
+    """Place the points of a disc by the unknowns of `align`, and average those that were measured again.
+
+    Raises UnlikePointsError for points that are on the bore, do not go round the shaft, or are not of this contour.
+    """
     _demand_not_on_bore(recipe, surfaces)
+    # a known turn first, then that of best likeness, then turn and shifts by least squares
     align = probing.align
     placing, turned = Placing(), probing.turned or 0.0
     points = [surface.points.placed(Placing(turned)) for surface in surfaces]
@@ -324,7 +334,8 @@ def _demand_not_on_bore(recipe: Recipe, surfaces: Sequence[MeasuredSurface]) -> 
 
 
 def _average_repeats(surface: MeasuredSurface) -> MeasuredSurface:
-    """Points with those that were measured again at one place taken together."""
+    """Points whose repeats at one place are averaged; the points as they are where hardly any were measured again."""
+    # a group is a run of points whose feet are hardly apart
     turn = np.mod(surface.deviations.parameter, TURN)
     order = np.argsort(turn, kind="stable")
     apart = REPEATED * TURN / len(order)
@@ -336,6 +347,7 @@ def _average_repeats(surface: MeasuredSurface) -> MeasuredSurface:
     count = np.bincount(group)
     if len(count) > FEWER * len(order):
         return surface
+    # means of places and normals, and the scatter of the deviations about the mean of each group
     points, e = surface.points, surface.deviations.e
     means = np.column_stack([np.bincount(group, column) / count for column in points.places.T])
     directions = None
@@ -356,9 +368,10 @@ def _average_repeats(surface: MeasuredSurface) -> MeasuredSurface:
 def _lift_points(
     parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, probing: Probing
 ) -> tuple[Lifts, list[MeasuredSurface]]:
-    """Lifts of an indicator, and their points on the surface.
+    """Lifts of an indicator, and their points on the cam's only surface.
 
-    Raises CallError for lifts that do not go with the part, or with the way they were measured.
+    Raises UnlikePointsError for lifts of something else, CallError for lifts that do not go with the part, or with the
+    way they were measured.
     """
     from kin.made.lifts import points_of_lifts
 
@@ -370,7 +383,7 @@ def _lift_points(
 
 
 def readings_of(parts: Sequence[PartIntent], tables: Sequence[PointTable], scale: float, probing: Probing) -> Readings:
-    """Readings of an indicator, from tables of lifts.
+    """Readings of an indicator, from tables of lifts in units of `scale` mm; swings are degrees.
 
     Raises CallError for a cam of several contacts or with a linkage, for places among the lifts, `align` of shifts,
     lifts in degrees of a follower on a stem, and a flat indicator elsewhere than on a stem outside the cam.

@@ -84,7 +84,7 @@ def _shown(report: dict[str, Any], everything: bool) -> str:
 
 
 def _profile(recipe: Recipe) -> tuple[str, float] | None:
-    """Zone that a measured contour is held to."""
+    """Field and width, mm, of the tolerance zone of a measured contour; None for a recipe without it."""
     zone = zone_of(recipe)
     return None if zone is None else ("made.profile", zone)
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def as_call_errors(paths: Sequence[Path], name: str = "") -> Iterator[None]:
     """Turn ContactError, FrameError, UnsettledError and ValueError into CallErrors that name the files of points.
 
-    They name the cam too where `name` gives it, and then a CallError gets its name as well.
+    With the `name` of a cam they name it too, also in CallErrors that pass through.
     """
     files, lobe = ", ".join(escaped(str(path)) for path in paths), f"{name}: " if name else ""
     try:
@@ -43,8 +43,8 @@ def as_call_errors(paths: Sequence[Path], name: str = "") -> Iterator[None]:
 def refused_at(recipe: Recipe, place: str, file: str = "", path: Path | None = None) -> Iterator[None]:
     """Turn CallError, ContactError, UnsettledError and ValueError into RecipeErrors at `place` in the recipe.
 
-    RecipeErrors pass as they are.
-    Messages that name the file by its `path` name it as the recipe does; remedies are keys of the entry.
+    RecipeErrors pass unchanged. A message that begins with the `path` of the file begins with its name in the recipe,
+    `file`, instead; options of `verify` in remedies become keys of the file's entry.
     """
     try:
         yield

@@ -37,7 +37,7 @@ DERIVATIVES = ("error", "velocity", "acceleration")
 def section(
     recipe: Recipe, paths: Sequence[Path], result: PartMade, options: PointOptions, verdicts: Mapping[str, str]
 ) -> dict[str, Any]:
-    """Section `made` of the report on a part, lengths in the recipe's unit, angles in degrees."""
+    """Section `made` of the report on a part as plain data, lengths in the recipe's unit, angles in degrees."""
     entry: dict[str, Any] = {
         "files": [path.name for path in paths],
         "unit": UNIT_NAMES[recipe.units],
@@ -46,6 +46,7 @@ def section(
         "surfaces": [_surface(recipe, paths, surface) for surface in result.surfaces],
         "motion": _motion(recipe, result, options),
     }
+    # keys of followers held from both sides, of linkages and of lifts
     scale, unit = report_unit(recipe, result.motion_unit)
     if (play := result.play) is not None:
         entry["play"] = {"unit": unit}
@@ -70,7 +71,7 @@ def section(
 
 
 def add_figures(entry: dict[str, Any], recipe: Recipe, design: Design, result: PartMade) -> None:
-    """Add `figures` and `remarks` of other capabilities on the part's motion to a section.
+    """Add `figures` and `remarks` of other capabilities on the part's motion to a section `entry`.
 
     Raises RecipeErrors where a capability cannot compute its figures, as under a load that has no bound.
     """
@@ -85,6 +86,7 @@ def add_figures(entry: dict[str, Any], recipe: Recipe, design: Design, result: P
 
 
 def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
+    """Report entry of one disc: its profile, placings, causes and cure, lengths in the recipe's unit."""
     mm, profile = recipe.mm, disc.profile
     worst = int(np.argmax(np.abs(profile.e)))
     surface, index = _surface_of(disc, worst)
@@ -108,6 +110,7 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
         entry["certificate"] = 2.0 * profile.certified.certificate / mm
         entry["multipliers"] = profile.certified.multipliers.tolist()
     entry["causes"] = _causes(recipe, disc)
+    # more than half the zone of metal is lacking: all round it could only be made smaller
     zone = zone_of(recipe)
     lack = 0.0 if zone is None else -float(profile.e.min()) - 0.5 * zone
     if lack > 0.0:
@@ -118,7 +121,7 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
 
 
 def _reduction(recipe: Recipe, disc: DiscMade, lack: float) -> dict[str, Any]:
-    """Least reduction all round that leaves no metal lacking, and what it does to the motion: offset, and change."""
+    """Reduction all round by `lack`, mm, the least by which no metal is lacking, and its effect on the motion."""
     scale, unit = report_unit(recipe, disc.surfaces[0].gauge.unit)
     moved = -lack * disc.surfaces[0].errors.gain
     offset = float(moved.mean())
@@ -158,7 +161,7 @@ def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
 
 
 def _surface_of(disc: DiscMade, index: int) -> tuple[int, int]:
-    """Surface, and index among its points, of a point among all of a disc."""
+    """Index of the surface, and index among its points, of a point by its index among all of a disc."""
     for rank, surface in enumerate(disc.surfaces):
         if index < len(surface.measured.points):
             return rank, index
@@ -167,7 +170,7 @@ def _surface_of(disc: DiscMade, index: int) -> tuple[int, int]:
 
 
 def _drawn(recipe: Recipe) -> float:
-    """Sign of y and of turns as the file is drawn, by those of a drawing that is not mirrored."""
+    """Sign of y and of turns in the file: -1 where it is drawn mirrored, for `rotation: ccw`."""
     return -1.0 if recipe.rotation == "ccw" else 1.0
 
 
@@ -213,6 +216,7 @@ def _motion(recipe: Recipe, result: PartMade, options: PointOptions) -> dict[str
 
     Each error and the phase have their expanded uncertainty; lengths in the recipe's unit, angles in degrees.
     """
+    # position less its offset, velocity and acceleration; a common error moves the offset by its mean effect
     scale, unit = report_unit(recipe, result.motion_unit)
     errors = result.motion
     uncertain = motion_uncertainty(result, options)
@@ -270,6 +274,7 @@ def shaft_section(
 
 
 def _phase(phase: Phase) -> dict[str, float]:
+    """Report entry of a phase, in degrees of the shaft."""
     return {
         "late_deg": math.degrees(phase.late),
         "uncertainty_deg": math.degrees(phase.uncertainty),

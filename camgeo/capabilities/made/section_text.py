@@ -10,7 +10,7 @@ PER = {"error": "motion, error", "velocity": "  velocity", "acceleration": "  ac
 
 
 def shown(report: dict[str, Any], *, everything: bool) -> str:
-    """Report on measured points in lines of text; with `everything` also spans, multipliers and each outlier."""
+    """Text of several lines on a report with measured points; `everything` adds spans, multipliers and outliers."""
     section, verdict = report["made"], "ok" if report["ok"] else "FAILED"
     if not report["ok"] and "failed" not in section["verdicts"].values():
         if any(not check["ok"] and not check["name"].startswith("made-") for check in report["checks"]):
@@ -30,8 +30,9 @@ def shown(report: dict[str, Any], *, everything: bool) -> str:
 
 
 def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, str]]:
-    """Rows of text (label, value) on what was measured; with `everything` all of them."""
+    """Rows of text (label, value) on a part's section `made`; `everything` adds spans, multipliers and outliers."""
     unit, rows = section["unit"], []
+    # points and smoothing of each surface
     for surface in section["surfaces"]:
         on = f" on {surface['name']}" if surface["name"] else ""
         words = f"{surface['points']}{on}"
@@ -45,6 +46,7 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
         point, wave, over = surface["least_fault_point"], surface["least_fault_span"], 2.0 * surface["span_deg"]
         faults = f"{point:.2g} at one point, {wave:.2g} over {over:.3g} degrees"
         rows.append(("  least fault that is found", f"{faults} {unit}"))
+    # profile, causes and cure of each disc
     for disc in section["discs"]:
         ending = f" of {disc['name']}" if len(section["discs"]) > 1 else ""
         value = f"{disc['profile']:.4g} +- {disc['uncertainty']:.2g} {unit}"
@@ -67,6 +69,7 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
             cure = disc["reduction"]
             words = f"{cure['size']:.3g} {unit}: the motion by {cure['offset']:+.3g} {cure['unit']}"
             rows.append(("  good if smaller all round by", f"{words}, within {cure['change']:.2g} of that"))
+    # motion, figures, events, play and output
     motion = section["motion"]
     for name, label in PER.items():
         error = motion[name]
@@ -95,7 +98,7 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
 
 
 def _events(events: dict[str, Any]) -> list[tuple[str, str]]:
-    """Lift, velocity and durations, each as made, its uncertainty, and as intended."""
+    """Rows of text (label, value) on greatest lift and velocity, and on durations, made against intended."""
     rows = []
     for name, event in events.items():
         if name != "above":
@@ -112,7 +115,7 @@ def _events(events: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _against(own: dict[str, Any], unit: str) -> str:
-    """A figure as made, its uncertainty, the intended one, and the difference."""
+    """Text of a figure as made, its uncertainty, the intended figure, and the difference."""
     made, off = f"{own['made']:.6g} +- {own['uncertainty']:.2g} {unit}", own["made"] - own["intended"]
     return f"{made}, intended {own['intended']:.6g}: {off:+.2g}"
 
@@ -139,7 +142,7 @@ def shaft_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
 
 
 def _axis(axis: dict[str, Any]) -> list[tuple[str, str]]:
-    """Rows of text (label, value): lean and shift of the shaft's axis, and cams certainly eccentric to it."""
+    """Rows of text (label, value): lean and shift of the shaft's axis, and cams that are certainly eccentric to it."""
     x, y = axis["shifted"]
     unit = axis["unit"]
     lean = f"{axis['leans_deg']:.3g} +- {axis['uncertainty_deg']:.2g} degrees towards {axis['towards_deg']:.0f}"
@@ -153,7 +156,7 @@ def _axis(axis: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _late(degrees: float) -> str:
-    """Lateness in words, above 0 for late."""
+    """An angle in words: late above 0, early below."""
     return f"{'early' if degrees < 0.0 else 'late'} by {abs(degrees):.4g}"
 
 

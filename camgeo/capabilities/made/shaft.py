@@ -1,4 +1,4 @@
-"""Points of several cams on one shaft: which each is of, all judged about its axis, and the phases between them.
+"""Points of several cams on one shaft: which cam each is on, the cams judged about its axis, and their phases.
 
 A cam's points are known by their column `z` or `lobe`, turned back by the angle at which the cam stands, and judged as
 those of a part of its own. The axis is that of the shaft, so that the profile of a cam may turn about it alone, and
@@ -61,14 +61,14 @@ MOST_NAMES = 8  # named in a message
 SHIFTED = "shifted along the shaft: count z from the recipe's zero, {0:+.6g} {1}"
 TURNED_OVER = "measured from the other end: z is {0:.6g} {1} less the column, and y turned round"
 TWO = 2
-ROUNDS = 3  # of taking out the lean and finding it anew: each leaves the square of a share
-CERTAIN = 4.0  # times the uncertainty
+ROUNDS = 3  # of taking out the lean and fitting it anew: the error shrinks with its square
+CERTAIN = 4.0  # a turn above so many times its uncertainty has a remark
 WITHIN = 1e-6  # mm, by which a height may lie beyond a cam's end: rounding of what is written
 
 
 @dataclass(frozen=True, eq=False)
 class CamPoints:
-    """Points of one cam: the files that have any, each with the rows that are on this cam."""
+    """Points of one cam: each file that has any, with its rows on this cam."""
 
     cam: ShaftCam
     files: tuple[tuple[Path, PointTable], ...]
@@ -84,13 +84,13 @@ class CamPoints:
         return tuple(table for _, table in self.files)
 
     def heights(self, scale: float) -> Array:
-        """Height of each point (n,), mm: the middle of the cam where no column has it."""
+        """Height of each point (n,), mm, in files with units of `scale` mm; without a column z the cam's middle."""
         middle = 0.5 * (self.cam.low + self.cam.high)
         tables = (table.columns.get("z", np.full(len(table), middle / scale)) for table in self.tables)
         return scale * np.concatenate(list(tables))
 
     def moved(self, axis: Axis, scale: float) -> CamPoints:
-        """Copy with the points shifted back by an axis's shift at each height, turned into the cam's own axes."""
+        """Copy with points moved back by the shift of an axis at their heights; files have units of `scale` mm."""
         sign, files, first = np.array([1.0, -1.0 if self.cam.recipe.rotation == "ccw" else 1.0]), [], 0
         shifts = turned(axis.shifts(self.heights(scale)), np.array(-self.cam.at)) * sign / scale
         for path, table in self.files:
@@ -101,7 +101,7 @@ class CamPoints:
         return replace(self, files=tuple(files))
 
     def halved(self) -> CamPoints:
-        """Copy of lifts with half the angles, for angles of the crank."""
+        """Copy of lifts at angles of the crank, with these halved."""
         files = (
             (path, replace(table, columns={**table.columns, "angle": table.columns["angle"] / CRANK}))
             for path, table in self.files
@@ -116,9 +116,9 @@ class CamPoints:
 
 @dataclass(frozen=True, eq=False)
 class Phase:
-    """Lateness of a cam's motion, rad of the shaft, above 0 for later than meant, and its expanded uncertainty.
+    """Lateness of a cam's motion, rad of the shaft, above 0 for later than intended, and its expanded uncertainty.
 
-    `against` is that lateness less the one of the first cam that was measured.
+    `against` is this lateness less that of the first cam that was measured, with its own expanded uncertainty.
     """
 
     late: float
@@ -141,8 +141,8 @@ class ShaftMade:
 
     cams     results of the cams that were measured, in the order of the recipe
     missing  names of the cams that were not measured
-    late     lateness of the whole shaft that was taken out, rad; None where none was to be
-    leaning  axis of the shaft by the points; None of lifts, and of cams at fewer than three heights
+    late     lateness of the whole shaft that `align` took out, rad; None without `align`
+    leaning  axis of the shaft by the points; None for lifts, and for cams at fewer than three heights
     remarks  sentences for the report
     """
 
@@ -154,9 +154,10 @@ class ShaftMade:
 
 
 def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOptions) -> ShaftMade:
-    """Judge the cams of a shaft by their measured points; give each cam's result and phase, and the axis of the shaft.
+    """Judge the cams of a shaft by their measured points: each cam's result and phase, and the axis of the shaft.
 
-    Raises CallError for points that cannot be judged.
+    Raises CallError for files without points, points on no cam, too few points of a cam, points of something else or
+    that cannot be smoothed, a cam without a contour, and a lean that cannot be taken out.
     """
     files, probing = read_tables(paths), options.probing
     tables = [table for _, table in files]
@@ -164,6 +165,7 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOp
         raise CallError(MIXED)
     scale, _ = scale_of(cams[0].recipe, tables, probing.units)
     lifts, without_lean = tables[0].measured == "lift", probing.align == "gxy"
+    # points of each cam, turned back by the angle at which it stands
     measured, halved = _by_cam(cams, files, scale), ""
     if lifts:
         measured, halved = _at_cam_degrees(measured, scale, probing)
@@ -172,6 +174,7 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOp
     def rows() -> LobeRows:
         return _lift_rows(measured, scale, probing) if lifts else _radii(cams, measured, scale, probing)
 
+    # `align`: the shaft turned back as one, by the cams that stand together
     late, together = None, []
     if probing.align:
         with as_call_errors(paths):
@@ -180,6 +183,7 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOp
         measured = [points.turned(-late) for points in measured]
     with as_call_errors(paths):
         lone = lone_turns(rows(), aligned=late is not None)
+    # lean and shift of the axis taken out, then each cam judged with its own turn
     turns = [lone.get(rank, 0.0) for rank in range(len(measured))]
     leaning = None
     if without_lean and late is not None:
@@ -195,6 +199,7 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOp
         firsts = [result.surfaces[0] for result in results]
         shifts = [shift_of([first.measured.deviations], [first.fit.curve]) for first in firsts]
         leaning = _leaning(measured, turns, shifts, scale)
+    # phases, and remarks on the shaft
     phases = _phases(measured, [result.motion for result in results], options)
     names = {points.cam.name for points in measured}
     missing = tuple(cam.name for cam in cams if cam.name not in names)
@@ -209,7 +214,7 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOp
 
 
 def _judge_cam(points: CamPoints, options: PointOptions) -> PartMade:
-    """Judge a cam by its points; raises CallError where there is no contour to hold them against."""
+    """Judge a cam by its points; raises CallError without a contour, and for points that cannot be judged."""
     cam = points.cam
     if not cam.design.contours:
         raise CallError(f"{cam.name}: there is no exact contour to hold points against: a check of its recipe fails")
@@ -226,7 +231,7 @@ def _judge_cam(points: CamPoints, options: PointOptions) -> PartMade:
 
 
 def _by_cam(cams: Sequence[ShaftCam], files: Sequence[tuple[Path, PointTable]], scale: float) -> list[CamPoints]:
-    """Points of each cam that has any; raises CallError for points of none, and for too few of a cam."""
+    """Points of each cam that has any; raises CallError for points on no cam, and for too few of a cam."""
     pieces: list[list[tuple[Path, PointTable]]] = [[] for _ in cams]
     for path, table in files:
         owner = _owners(cams, path, table, scale)
@@ -242,7 +247,7 @@ def _by_cam(cams: Sequence[ShaftCam], files: Sequence[tuple[Path, PointTable]], 
 
 
 def _owners(cams: Sequence[ShaftCam], path: Path, table: PointTable, scale: float) -> Indices:
-    """Index (n,) of the cam that each point of a file is on, by its label or z; raises CallError where none is sure."""
+    """Index (n,) of the cam that each point of a file is on, by its label or z; CallError for no or several cams."""
     name, z = escaped(str(path)), table.columns.get("z")
     by_label = _by_label(cams, name, table) if table.labels else None
     if z is None:
@@ -276,7 +281,7 @@ def _owners(cams: Sequence[ShaftCam], path: Path, table: PointTable, scale: floa
 
 
 def _height_advice(cams: Sequence[ShaftCam], height: Array) -> str:
-    """End of a message on heights (n,), mm, off the cams: how all would be on one, scaled, turned or shifted."""
+    """End of a message on heights (n,), mm, off the cams: the unit or shift that puts all on them, or nothing."""
     levels = np.unique(np.round(height, 3))
     low, high = np.array([[cam.low, cam.high] for cam in cams]).T
 
@@ -309,13 +314,14 @@ def _by_label(cams: Sequence[ShaftCam], name: str, table: PointTable) -> Indices
 
 
 def _plain(label: str) -> str:
-    """A label as names have it; a number such as 2.0 as 2."""
+    """A label in the form of names; a number such as 2.0 as 2."""
     plain = label_of(label)
     whole, point, rest = plain.partition(".")
     return whole if point and whole.isdigit() and not rest.strip("0") else plain
 
 
 def _names(cams: Sequence[ShaftCam]) -> str:
+    """Names of the cams for a message, of many the first and the last."""
     first, *_ = names = [label_of(cam.name) for cam in cams]
     return ", ".join(names) if len(names) <= MOST_NAMES else f"{first} to {names[-1]}"
 
@@ -336,7 +342,7 @@ def _turn_table(table: PointTable, drawn: float, angle: float) -> PointTable:
 
 
 def _shaft_turn(measured: Sequence[CamPoints], scale: float, probing: Probing) -> float:
-    """Angle, rad, by which the shaft as one stands later than meant, by least squares over all its points."""
+    """Angle, rad, by which the shaft as one stands later than intended, by least squares over all its points."""
     if measured[0].tables[0].measured == "lift":
         from kin.made.lifts import lateness
 
@@ -345,7 +351,7 @@ def _shaft_turn(measured: Sequence[CamPoints], scale: float, probing: Probing) -
 
 
 def _on_surface(points: CamPoints, scale: float, probing: Probing) -> MeasuredSurface:
-    """Points of a cam, which has one surface, held against its exact contour."""
+    """Points of a cam, which has one surface, with its exact contour."""
     (part,) = intents(points.cam.recipe, points.cam.design)
     (surface,) = surface_points(part, list(enumerate(points.tables)), scale, probing)
     return surface
@@ -379,7 +385,7 @@ def _radii(cams: Sequence[ShaftCam], measured: Sequence[CamPoints], scale: float
 
 
 def _lift_rows(measured: Sequence[CamPoints], scale: float, probing: Probing) -> LobeRows:
-    """Lifts, mm or rad, over the shaft's angle of each cam that was measured, as read and as meant."""
+    """Lifts, mm or rad, over the shaft's angle of each cam that was measured, as read and as intended."""
     from kin.made.lifts import rows_of_lifts
 
     readings = [_readings(points, scale, probing) for points in measured]
@@ -402,9 +408,10 @@ def _readings(points: CamPoints, scale: float, probing: Probing) -> Readings:
 
 
 def _at_cam_degrees(measured: Sequence[CamPoints], scale: float, probing: Probing) -> tuple[list[CamPoints], str]:
-    """Lifts of an engine over two turns whose heading names no shaft: halved where they fit only so, with a remark.
+    """Lifts at angles of the cams, and a remark where those of an engine were halved, else an empty one.
 
-    Raises CallError for other lifts that are at the angles of another shaft than their heading says.
+    Angles are halved only where the heading names no shaft and the lifts fit the crank's angles alone. Raises CallError
+    for other lifts that are at the angles of another shaft than their heading says.
     """
     from kin.made.lifts import of_other_shaft
 
@@ -428,7 +435,8 @@ def _without_lean(
 ) -> tuple[list[CamPoints], Leaning]:
     """Points with the lean and the shift of the shaft's axis taken out, and that axis.
 
-    `turns`, rad, are those of each cam by itself. Raises CallError for lifts, and for cams at fewer than three heights.
+    `turns` are the angles by which each cam is turned on the shaft, rad. Raises CallError for lifts, and for cams at
+    fewer than three heights.
     """
     if measured[0].tables[0].measured == "lift":
         raise CallError(NO_SHIFT)
@@ -457,7 +465,7 @@ def _leaning(
     *,
     removed: bool = False,
 ) -> Leaning | None:
-    """The axis of the shaft by the shift of each cam, in the axes of its own points."""
+    """The axis of the shaft by the shift of each cam in its own axes; None for cams at fewer than three heights."""
     rows = [
         (float(points.heights(scale).mean()), points.cam.at + turn, shift)
         for points, turn, shift in zip(measured, turns, shifts, strict=True)
@@ -469,7 +477,7 @@ def _leaning(
 
 
 def _phases(measured: Sequence[CamPoints], motions: Sequence[Errors], options: PointOptions) -> list[Phase]:
-    """Phase of each cam, by the turn that explains most of its motion's error; the first is the datum of the others."""
+    """Phase of each cam, by the turn that explains most of its motion's error, also against the first cam."""
     lates = [errors.phase[0] for errors in motions]
     parts = [
         _on_shaft(errors.influence(errors.phase_weights), points.cam.at)
@@ -507,7 +515,7 @@ def _lone_remarks(measured: Sequence[CamPoints], phases: Sequence[Phase]) -> lis
 def _remarks(
     measured: Sequence[CamPoints], results: Sequence[PartMade], late: float | None, missing: Sequence[str]
 ) -> list[str]:
-    """Remarks: one that all cams have stands once, one of some cams with their names."""
+    """Remarks of all cams, each once, with the names of the cams where not all have it; and those on the shaft."""
     cams_of: dict[str, list[str]] = {}
     for points, result in zip(measured, results, strict=True):
         for text in result.remarks:

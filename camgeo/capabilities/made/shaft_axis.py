@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from kin.made.axis import Axis
     from kin.numeric.arrays import Array
 
-CERTAIN = 2.0  # times its expanded uncertainty: from which on a lean is remarked
+CERTAIN = 2.0  # a lean above so many times its expanded uncertainty has a remark
 
 
 class Leaning(NamedTuple):
-    """The axis of a shaft as its points have it, in the shaft's axes as if not mirrored.
+    """The axis of a shaft by its points, in the shaft's axes as if not mirrored.
 
-    `names` are those of the cams, `removed` says that lean and shift were taken out of the points.
+    `names` are the names of the cams; `removed` is whether lean and shift were taken out of the points.
     """
 
     axis: Axis
@@ -36,12 +36,12 @@ class Leaning(NamedTuple):
     removed: bool
 
     def after(self, later: Leaning) -> Leaning:
-        """Axis with the lean and the shift of a later round added."""
+        """The axis that is left in a `later` round, with the lean and the shift of this one added."""
         axis = replace(later.axis, shift=self.axis.shift + later.axis.shift, lean=self.axis.lean + later.axis.lean)
         return self._replace(axis=axis)
 
     def section(self, recipe: Order) -> dict[str, Any]:
-        """Section `axis`: as drawn, lengths in the recipe's unit, angles in degrees."""
+        """Report entry `axis`: as drawn, lengths in the recipe's unit, angles in degrees, uncertainties with k = 2."""
         axis, mm, drawn = self.axis, recipe.mm, np.array([1.0, -1.0 if recipe.rotation == "ccw" else 1.0])
         x, y = (drawn * axis.lean).tolist()
         return {
@@ -66,7 +66,7 @@ class Leaning(NamedTuple):
         }
 
     def remarks(self) -> list[str]:
-        """Say that the axis leans, where that is certain, and what is done about it; cams that stand off it."""
+        """Remark on a lean that was taken out, or that is certain; else empty."""
         axis = self.axis
         lean, unsure = float(np.hypot(*axis.lean)), COVERAGE * axis.lean_deviation
         amount = f"{math.degrees(lean):.3g} +- {math.degrees(unsure):.2g} degrees"
@@ -85,8 +85,9 @@ def leaning_of(
 ) -> Leaning | None:
     """Axis of a shaft by the shift of each cam; None where cams stand at fewer than three heights.
 
-    Each of `cams` has its height, mm, the angle by which its shift was turned back, rad, and its shift, mm, with the
-    covariance.
+    Each of `cams` has its height, mm, the angle of its own axes in the shaft's, rad, and its shift in its own axes
+    (2,), mm, with the covariance (2, 2), mm^2. `names` are the names of the cams; `removed` is whether lean and shift
+    are taken out of the points.
     """
     shifts = []
     for height, angle, (shift, covariance) in cams:

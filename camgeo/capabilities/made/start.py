@@ -61,15 +61,15 @@ if TYPE_CHECKING:
     from kin.read.points import PointTable
 
 READING = 0.02  # mm within which dwells rest and laws fit, where the recipe gives no zone of its profile
-MOST_LEFT = 2.0  # readings that laws may leave: beyond, the motion is a table
-ROUND = (1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001)  # what numbers are written to
-MOST_UNEVEN = 0.02  # of the motion: what is off the symmetry of its kind by more is of another kind
+MOST_LEFT = 2.0  # readings by which laws may be off: beyond, the motion is a table
+ROUND = (1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001)  # steps of written numbers, coarsest first
+MOST_UNEVEN = 0.02  # of the motion: points farther off the symmetry of a kind of cam are of another kind
 AT_ZERO = 3.0  # degrees: a stroke that ends or begins so near the turn's beginning is tried as one that does so there
-BESIDE = 8  # points about one by their polar angle, among which the flanks of a groove are told apart
+BESIDE = 8  # points to either side by polar angle, among which the flanks of a groove are told apart
 
 
 class Started(NamedTuple):
-    """Text of a new recipe; `beside` has the texts of further files by name, `lines` remarks for the terminal."""
+    """Text of a new recipe; `beside` has the texts of files beside it by name, `lines` are for the terminal."""
 
     text: str
     beside: collections.abc.Mapping[str, str]
@@ -78,10 +78,11 @@ class Started(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _MeasuredCam:
-    """A measured cam: its motion, its strokes where it has any, base radius and its expanded uncertainty (k = 2), mm.
+    """A measured cam: its motion, its strokes (`programme`, None without any), and its base radius, mm.
 
-    `reading`, mm or rad, is how near the motion's rows are held. `base` is None where other lengths fix the size.
-    `base_by_wave`, mm, is what a form as high as the reading adds to it, of the waves that are most taken for motion.
+    `reading`, mm or rad, is how near dwells and laws hold the motion. `base` is None where other lengths fix the size;
+    `base_uncertainty`, mm, is its expanded uncertainty (k = 2). `base_by_wave`, mm, is how far a form as high as the
+    reading moves the base radius, at the number of waves that is most taken for motion.
     """
 
     recipe: Recipe
@@ -95,10 +96,10 @@ class _MeasuredCam:
 
 
 def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
-    """Make a recipe, to stand in a file of that name, of files of points.
+    """Make a recipe, for a file called `name`, from files of points.
 
     `recipe` states follower, guide, units and part; its base radius and motion are replaced. Raises CallError for
-    points and recipes of which none is made, RecipeErrors for a faulty recipe, OSError for a file that cannot be read.
+    points from which no recipe can be made, RecipeErrors for a faulty recipe, OSError for a recipe that cannot be read.
     """
     names = ", ".join(escaped(str(path)) for path in paths)
     rough = _placeholders(recipe, paths)
@@ -173,7 +174,7 @@ def _with(source: Source, path: str, value: Value) -> Source:
 
 
 def _with_motion(source: Source, keys: ByMotion, key: str, value: Value) -> Source:
-    """Recipe with a motion under `key`, in place of the former one."""
+    """Recipe with a motion under `key`, in place of the former motion."""
     for other in (keys.motion, *keys.instead):
         if other != key and other in _cam_keys(source):
             return Source.of(replace_entry(source, f"cam.{other}", key, value), source.file)
@@ -186,9 +187,10 @@ def _cam_keys(source: Source) -> collections.abc.Mapping[str, Node]:
 
 
 class _Rough(NamedTuple):
-    """Text of a recipe with a base radius, mm, and hardly any motion; how it has these; the points; remarks.
+    """A recipe, and its text, with a provisional base radius `base`, mm, and hardly any motion; remarks on the points.
 
-    `points` are each surface's places (n, 2), mm, and their normals or None, by its name.
+    `keys` are those of base radius and motion. `points` has each surface's places (n, 2), mm, and their normals (n, 2)
+    or None, by its name.
     """
 
     recipe: Recipe
@@ -202,7 +204,8 @@ class _Rough(NamedTuple):
 def _placeholders(path: Path, paths: Sequence[Path]) -> _Rough:
     """Complete a recipe with a provisional base radius, sized by the points, and nearly no motion.
 
-    Raises CallError for lifts, which show no base radius.
+    Raises CallError for lifts, which show no base radius, and for files without points or surfaces without any;
+    RecipeErrors for a faulty recipe, OSError for a recipe that cannot be read.
     """
     source = Source.of(path.read_text("utf-8"), str(path))
     keys = _keys(source)
@@ -226,7 +229,7 @@ def _placeholders(path: Path, paths: Sequence[Path]) -> _Rough:
 
 
 def _keys(source: Source) -> ByMotion:
-    """Keys by which a recipe's kind of cam has size and motion."""
+    """Keys that state size and motion of a recipe's kind of cam."""
     kind = _cam_keys(source).get("kind")
     word = kind.text if isinstance(kind, Scalar) else ""
     return FAMILIES[word if word in FAMILIES else "disc"].by_motion  # a faulty kind is refused as the recipe is read
@@ -235,7 +238,7 @@ def _keys(source: Source) -> ByMotion:
 def _by_surface(
     recipe: Recipe, exact: ExactCam, files: Sequence[tuple[Path, PointTable]], scale: float
 ) -> dict[str, tuple[Array, Array | None]]:
-    """Points of each surface, mm, and their normals; raises CallError where one has none."""
+    """Points (n, 2), mm, and normals (n, 2) or None of each surface; raises CallError for one without points."""
     discs: dict[int, list[str]] = {}
     for surface in exact.surfaces:
         discs.setdefault(surface.disc, []).append(surface.name)
@@ -253,11 +256,12 @@ def _by_surface(
 
 
 def _flanks(table: PointTable, names: Sequence[str], places: Array) -> Indices:
-    """Index (n,) of each point's surface, counted from the shaft: by its label, else by the gap between flanks."""
+    """Index (n,) of each point's surface: by its label, else 0 within the gap between flanks, 1 beyond it."""
     if len(names) == 1:
         return np.zeros(len(places), dtype=np.intp)
     if (owner := by_label(names, table)) is not None:
         return owner
+    # among the radii of the points beside one, the widest step is the gap
     radius, angle = np.hypot(places[:, 0], places[:, 1]), np.arctan2(places[:, 1], places[:, 0])
     order = np.argsort(angle)
     about = np.sort(np.stack([np.roll(radius[order], k) for k in range(-BESIDE, BESIDE + 1)]), axis=0)
@@ -269,15 +273,20 @@ def _flanks(table: PointTable, names: Sequence[str], places: Array) -> Indices:
 
 
 def _measured_cam(rough: _Rough) -> _MeasuredCam:
-    """The measured cam: its motion, its strokes where they are recognised, and its base radius with the uncertainty."""
+    """The measured cam: its motion, its strokes where they are recognised, and its base radius with the uncertainty.
+
+    Raises CallError for points of another kind of cam, and ContactError, GapError or UnsettledError for points that
+    give no motion.
+    """
     recipe, keys = rough.recipe, rough.keys
     exact = recipe.cam.exact()
     gauges = exact.gauges
-    if keys.series and recipe.linkage is None:  # one face tells it all, of constant breadth or not; a frame needs that
+    if keys.series and recipe.linkage is None:  # one face shows the whole series; only a frame needs both
         gauges = {name: replace(gauge, contacts=gauge.contacts[:1]) for name, gauge in gauges.items()}
     runs = [SurfaceRun(gauges[surface.name], surface.side, *rough.points[surface.name]) for surface in exact.surfaces]
     motion = measured_motion(runs, recipe.cam.motion_span, opposed=keys.opposed, lag=keys.lag)
     _demand_symmetry(recipe, motion)
+    # half the zone, as a motion of the follower
     zone = zone_of(recipe)
     reading = READING if zone is None else 0.5 * zone
     unit = motion.gauge.unit
@@ -286,6 +295,7 @@ def _measured_cam(rough: _Rough) -> _MeasuredCam:
     cam = _MeasuredCam(recipe, keys, motion, reading, programme)
     if keys.series or not keys.base:
         return cam
+    # base radius: by the lowest level, where the motion's displacement is 0
     lowest = float(motion.position.min() if motion.closed else motion.position[0])
     uncertainty, wave = COVERAGE * motion.sd, 1.0
     if programme is not None:
@@ -300,7 +310,7 @@ def _measured_cam(rough: _Rough) -> _MeasuredCam:
 
 
 def _demand_symmetry(recipe: Recipe, motion: PointMotion) -> None:
-    """Raise CallError for points of another kind of cam, and of one whose swing is not 0 where the turn begins."""
+    """Raise CallError for points of another kind of cam, and for a swing that is not 0 at the beginning of the turn."""
     swing = float(np.ptp(motion.turn))
     scale, unit = report_unit(recipe, motion.gauge.unit)
     unit = "degrees" if unit == "deg" else unit
@@ -323,12 +333,12 @@ def _in_unit(measured: _MeasuredCam, value: float) -> float:
 
 
 def _unit(measured: _MeasuredCam) -> str:
-    """Unit of displacements: that of the recipe, or deg."""
+    """Unit of displacements: mm or in, or deg for a follower that swings."""
     return report_unit(measured.recipe, measured.motion.gauge.unit)[1]
 
 
 def _number(value: float, uncertainty: float) -> float:
-    """The roundest number within an uncertainty of a value."""
+    """The roundest number within an uncertainty of a value, to nine digits where no step of `ROUND` is."""
     for step in ROUND:
         near = round(value / step) * step
         if abs(near - value) <= max(uncertainty, 0.5 * ROUND[-1]):
@@ -337,7 +347,7 @@ def _number(value: float, uncertainty: float) -> float:
 
 
 def _rounded(value: float, unsure: float) -> float:
-    """The roundest number within an uncertainty of a value, with six digits where there is none; 0 of noise."""
+    """The roundest number within an uncertainty of a value, else six digits; 0 for a value within its noise."""
     if abs(value) <= STANDS_OUT * unsure:
         return 0.0
     rounded = _number(value, unsure)
@@ -345,7 +355,7 @@ def _rounded(value: float, unsure: float) -> float:
 
 
 def _segments(measured: _MeasuredCam, programme: Programme) -> tuple[list[Value] | None, str]:
-    """Segments of the motion from angle 0 on, in the recipe's units and degrees; None with the reason why not."""
+    """Segments of the motion from angle 0 on, in the recipe's unit and degrees; else None, and the reason."""
     motion, whole = measured.motion, math.degrees(measured.motion.span)
     angles = [
         _angle(measured, float(k), float(off))
@@ -354,6 +364,7 @@ def _segments(measured: _MeasuredCam, programme: Programme) -> tuple[list[Value]
     order = sorted(programme.strokes, key=lambda stroke: angles[stroke.first])
     if any(0.0 < angles[stroke.last] < angles[stroke.first] for stroke in order):
         return None, "the turn begins within a stroke: turn the points so that it begins in a dwell"
+    # rounded, the strokes must still fit the points
     heights = _heights(measured, programme)
     unit = math.radians(1.0) if motion.gauge.unit == "deg" else measured.recipe.mm
     levels = _zero(measured, programme) + unit * np.array(heights)
@@ -376,7 +387,7 @@ def _segments(measured: _MeasuredCam, programme: Programme) -> tuple[list[Value]
 
 
 def _angle(measured: _MeasuredCam, boundary: float, uncertainty: float) -> float:
-    """A boundary in degrees, from 0 to less than the turn's part, as round as its uncertainty lets it be."""
+    """A boundary in degrees, as round as its uncertainty permits: from 0 to less than 360, or to the end of a part."""
     motion = measured.motion
     if not motion.closed and abs(math.degrees(boundary - motion.span)) <= AT_ZERO:
         return math.degrees(motion.span)
@@ -390,7 +401,7 @@ def _zero(measured: _MeasuredCam, programme: Programme) -> float:
 
 
 def _heights(measured: _MeasuredCam, programme: Programme) -> list[float]:
-    """Levels from where displacements are 0, in the recipe's unit or degrees, as round as they are certain."""
+    """Levels above the zero of displacements, in the recipe's unit or degrees, rounded by their uncertainty."""
     above = programme.levels - _zero(measured, programme)
     pairs = zip(above.tolist(), programme.uncertainty[1].tolist(), strict=True)
     return [_number(_in_unit(measured, height), _in_unit(measured, unsure)) for height, unsure in pairs]
@@ -419,7 +430,7 @@ def _stroke_lines(measured: _MeasuredCam, programme: Programme) -> list[str]:
 
 
 def _hidden(measured: _MeasuredCam, programme: Programme) -> str:
-    """Sentence on the form of few waves a turn that the recipe takes for motion: its share, and what it moves."""
+    """Sentence on the form of few waves a turn that is taken for motion the most: its share, and what it moves."""
     waves, share, boundaries, levels = programme.hidden
     high, unit = _in_unit(measured, measured.reading), _unit(measured)
     moved = [f"heights by {levels.max() * high:.2g} {unit}"]
@@ -464,7 +475,7 @@ def _lifts(measured: _MeasuredCam) -> str:
 
 
 def _verified(text: str, beside: collections.abc.Mapping[str, str], name: str, paths: Sequence[Path]) -> list[str]:
-    """Export the new recipe's cam, in mind, and hold the points against it; raises CallError where there is none."""
+    """Design the new recipe's cam and judge the points by it: a line of text; raises CallError for a cam that fails."""
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         for other, data in beside.items():
             (Path(folder) / other).write_text(data, encoding="utf-8")
