@@ -44,7 +44,9 @@ def camshaft_mesh(
 ) -> tuple[Mesh, Bound, int]:
     """Closed, oriented mesh of the whole shaft, the bound of its contours (mm), and how many edges the lobes have.
 
-    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where it does not close.
+    `fits` gives the fits of a lobe's contour; `tolerance`, mm, covers fit and rounding to the file's `precision`.
+    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where the mesh does not
+    close.
     """
     from camgeo.files.prism import bore_polygon, rounded_contour
     from camgeo.files.solid import manifold, mesh_of_body, prism
@@ -60,6 +62,7 @@ def camshaft_mesh(
 
     shaft, *journals = recipe.bars
     placed = [(part.low, part.high) for part in recipe.bars] + [(part.low, part.high) for part in recipe.lobes]
+    # z is written as numbers of the file, so each height may be rounded by no more than the tolerance
     for height in {z for ends in placed for z in ends}:
         precision.within("a height", abs(precision.number(height) - height), tolerance)
     body = cylinder(shaft.diameter, shaft.low, shaft.high)
@@ -85,7 +88,8 @@ def camshaft_outlines(
 ) -> tuple[list[tuple[ArcSpline, float, float]], Bound, int]:
     """Stretches of the shaft from below, each a chain of arcs from z to z, mm; bound and arcs of the lobes' contours.
 
-    Raises ToleranceError where a fit cannot hold the tolerance, RegionError where outlines that meet at a height cross.
+    `fits` gives the fits of a lobe's contour, each within `tolerance`, mm. Raises ToleranceError where a fit cannot
+    hold it, RegionError where outlines that meet at a height cross.
     """
     bound, count = Bound(0.0, 0.0), 0
     shaft, *journals = recipe.bars
@@ -95,6 +99,7 @@ def camshaft_outlines(
         bound, count = bound.wider(outline.bound), count + outline.count
         parts.append((outline, lobe.lobe.low, lobe.lobe.high))
     parts += [(circle(bar.diameter), bar.low, bar.high) for bar in journals]
+    # between neighbouring heights the shaft has one outline: of the lobe or journal there, else its own circle
     levels = sorted({shaft.low, shaft.high, *(z for _, low, high in parts for z in (low, high))})
     stretches: list[tuple[ArcSpline, float, float]] = []
     for low, high in pairwise(levels):
@@ -103,6 +108,7 @@ def camshaft_outlines(
             stretches[-1] = (*stretches[-1][:2], high)
         else:
             stretches.append((own, low, high))
+    # two outlines do not cross if one lies within the other's least radius
     for (below, _, z), (above, _, _) in pairwise(stretches):
         least, most = zip(*(_reach(outline) for outline in (below, above)), strict=True)
         if max(least) < min(most):
@@ -112,7 +118,7 @@ def camshaft_outlines(
 
 
 def _same(first: ArcSpline, other: ArcSpline) -> bool:
-    """Whether two outlines are one, but for the rounding of the angles that they are turned by."""
+    """Whether two outlines are equal, but for the rounding of the angles by which they are turned."""
     return first.points.shape == other.points.shape and bool(
         np.abs(first.points - other.points).max() <= SAME and np.abs(first.bulges - other.bulges).max() <= SAME
     )
@@ -125,13 +131,13 @@ def _reach(outline: ArcSpline) -> tuple[float, float]:
 
 
 def _along(outline: ArcSpline) -> Array:
-    """Points on every piece of an outline (n, 2)."""
+    """Points on every piece of an outline, mm (n, 2)."""
     starts, ends = outline.points, np.roll(outline.points, -1, axis=0)
     pieces = zip(starts, ends, outline.bulges.tolist(), strict=True)
     return np.concatenate([steps_along(start, end, bulge, LOOKS) for start, end, bulge in pieces])
 
 
 def circle(diameter: float) -> ArcSpline:
-    """Circle about the shaft of a diameter, mm, as two arcs."""
+    """Circle about the shaft's axis, of a diameter in mm, as two arcs."""
     radius = 0.5 * diameter
     return ArcSpline(np.array([[radius, 0.0], [-radius, 0.0]]), np.ones(2), Bound(0.0, 0.0))

@@ -50,7 +50,8 @@ OUTER, RIM = 138.0, 150.0  # px of the crank's wheel: the outer ring's middle, a
 def diagram(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], form: str | None) -> str:
     """Return the SVG of a form: `timing`, `bars`, `cam-wheel`, `crank-wheel` or `shaft`.
 
-    `timing` is the wheel of the camshaft's turn for an engine, and bars for other shafts; wheels are of engines alone.
+    `timing`, or None, is the wheel of the camshaft's turn for an engine, and bars for other shafts; wheels are of
+    engines alone, and other shafts have bars in their place.
     """
     engine = recipe.engine
     if form == "shaft":
@@ -71,9 +72,10 @@ def page_diagrams(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> list[s
 
 
 def bars(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
-    """Return a row for each lobe: its lift over the shaft's angle, below it a bar for each rise, dwell and return.
+    """Return an SVG, a row for each lobe: its lift over the shaft's angle, a bar for each rise, dwell and return.
 
-    What passes 360 degrees is split there. Of an engine a line besides shows where a lobe is beyond the lift of events.
+    A bar that passes 360 degrees is split there. For an engine a line shows where the lobe is beyond the lift of
+    events.
     """
     span, base = WIDTH - LEFT - RIGHT, TOP + LOBE * len(lobes)
     parts = [text(LEFT, 24.0, f"{recipe.name}: lifts over the shaft's angle", size=15.0)]
@@ -126,7 +128,7 @@ def _bar(stretch: Stretch, y: float, colour: str, name: str) -> list[str]:
 
 
 def _end(degrees: float) -> float:
-    """The end of a stretch, degrees, as a reading of the shaft: from 0 to 360, where 360 stays."""
+    """The end of a stretch, degrees up to 720, as a shaft angle up to 360, where 360 stays."""
     return degrees if degrees <= 360.0 else degrees - 360.0
 
 
@@ -139,7 +141,10 @@ def _split(begin: float, end: float) -> list[tuple[float, float]]:
 
 
 def opened(lobes: Sequence[PlacedLobe], engine: Engine) -> dict[int, dict[str, Event]]:
-    """Return the events of each cylinder's valves, `intake` before `exhaust`, cylinders in the order of firing."""
+    """Return the events by cylinder and valve, `intake` before `exhaust`, cylinders in the order of firing.
+
+    A lobe that does not pass its event lift in one stretch is left out, as is a cylinder without events.
+    """
     events = {(lobe.lobe.cylinder, lobe.lobe.valve): lobe.event(lobe.event_lift(engine)) for lobe in lobes}
     rows = {
         cylinder: {valve: event for valve in DEAD_CENTRES if (event := events.get((cylinder, valve))) is not None}
@@ -149,7 +154,7 @@ def opened(lobes: Sequence[PlacedLobe], engine: Engine) -> dict[int, dict[str, E
 
 
 def crank_wheels(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], engine: Engine) -> list[str]:
-    """Return a wheel of one turn of the crank, 360 degrees, for each cylinder; of cylinders alike one.
+    """Return an SVG for each cylinder, a wheel of one turn of the crank, 360 degrees; cylinders alike share one.
 
     Events are counted from the dead centres of the cylinder itself. Its four strokes are two turns: the exhaust opens
     about the lower dead centre, both valves move about the upper one.
@@ -166,7 +171,7 @@ def crank_wheels(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], engine: En
 def _crank_wheel(
     recipe: CamshaftRecipe, engine: Engine, events: Sequence[tuple[str, float, float]], cylinders: Sequence[int]
 ) -> str:
-    """Return the wheel of cylinders; an event is a valve, and crank degrees at which it opens and for how long."""
+    """Return the wheel of cylinders alike; an event is (valve, opening, duration), crank degrees."""
     named = f"cylinder{'s' * (len(cylinders) > 1)} {', '.join(map(str, cylinders))}"
     lift = f"{engine.lift / recipe.mm:.4g} {UNIT_NAMES[recipe.units]}{' of the valve' if engine.at_valve else ''}"
     middle = 0.5 * WIDTH, 262.0
@@ -183,6 +188,7 @@ def _crank_wheel(
             parts.append(text(place[0], place[1] + 3.5, f"{degree}", size=10.0, anchor="middle"))
     parts.append(text(middle[0], middle[1] - RIM - 8.0, "TDC", anchor="middle"))
     parts.append(text(middle[0], middle[1] + RIM + 18.0, "BDC", anchor="middle"))
+    # an arc for each valve, its opening and closing labelled outside the rim, its duration in the middle
     labels, inside = [], []
     for rank, (valve, opens, lasts) in enumerate(events):
         radius = OUTER - 24.0 * rank - 10.0
@@ -192,6 +198,7 @@ def _crank_wheel(
             x, y = on_wheel(middle, RIM + 14.0, angle)
             labels.append((y, x, words, valve))
         inside.append((f"{valve} {lasts:.1f}°", valve))
+    # labels on one side are moved down so that none covers another
     for right in (False, True):
         last = -math.inf
         for y, x, words, valve in sorted(label for label in labels if (label[1] > middle[0]) == right):
@@ -206,7 +213,7 @@ def _crank_wheel(
 
 
 def cam_wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], engine: Engine) -> str:
-    """Return a wheel of one turn of the camshaft, 360 cam degrees, with a ring for each lobe, and its events below.
+    """Return an SVG wheel of one turn of the camshaft, 360 degrees, with a ring for each lobe, and its events below.
 
     It begins at the firing dead centre of the first cylinder in the order.
     """
@@ -273,7 +280,7 @@ def _span(event: Event) -> str:
 def _overlap(spans: Mapping[str, tuple[float, float]], scale: float) -> list[str]:
     """Words for how long both valves are open, by where each opens and closes, crank degrees; none for one valve alone.
 
-    `scale` is how many of the shown degrees one of the crank is. An overlap below 0 is how long neither is open.
+    `scale` is the number of shown degrees per crank degree. Below 0 the overlap is how long neither valve is open.
     """
     if len(spans) < len(DEAD_CENTRES):
         return []

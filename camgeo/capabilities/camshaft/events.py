@@ -27,7 +27,8 @@ Phase: TypeAlias = Literal["rise", "dwell", "return"]
 class Event(NamedTuple):
     """Stretch of a turn in which a lobe lifts its follower beyond a lift.
 
-    Shaft angles are degrees from 0 to below 360; the duration is in degrees of the shaft.
+    `opens`, `closes` and `centre` are shaft angles, degrees from 0 to below 360; the duration is in degrees of the
+    shaft.
     """
 
     opens: float
@@ -45,7 +46,12 @@ class Stretch(NamedTuple):
 
 
 class Valves(NamedTuple):
-    """An engine's events at a lift, crank degrees before or after dead centre; the lobes' separation in cam degrees."""
+    """Events of a cylinder's valves at a lift, crank degrees.
+
+    The intake opens before top and closes after bottom dead centre, the exhaust opens before bottom and closes after
+    top; negative values lie on the other side. The overlap is below 0 where both valves are shut between. `separation`
+    is the angle between the lobes' centres, cam degrees.
+    """
 
     intake_opens: float
     intake_closes: float
@@ -71,9 +77,8 @@ def event(exact: ExactCam, zero: float, lift: float) -> Event | None:
 def stretches(exact: ExactCam, zero: float) -> tuple[Stretch, ...]:
     """Rises, dwells and returns of a lobe whose motion begins at `zero`, rad, in their order round the turn.
 
-    They are found in the motion, whatever its source: segments that follow one another in one direction are one
-    stretch, and waves below a thousandth of the stroke are a dwell. The result is empty for a motion too rough to be
-    followed.
+    They follow from the motion, whatever its source: successive segments in one direction are one stretch, and waves
+    below a thousandth of the stroke are a dwell. The result is empty for a motion too rough to be followed.
     """
     try:
         followed = lift_pieces(exact)
@@ -101,7 +106,8 @@ def stretches(exact: ExactCam, zero: float) -> tuple[Stretch, ...]:
 def event_words(valve: str, opens: float, lasts: float) -> tuple[str, str]:
     """Name a valve's opening and closing by its dead centres, crank degrees: `IVO 9.8° ATDC`, `IVC 30.2° ABDC`.
 
-    `opens` is counted from the cylinder's firing dead centre, `lasts` is how long the valve is open.
+    `valve` is intake or exhaust. `opens` is counted from the cylinder's firing dead centre, `lasts` is the duration;
+    both are crank degrees.
     """
     words = []
     for name, degrees, (dead, letters) in zip(("O", "C"), (opens, opens + lasts), DEAD_CENTRES[valve], strict=True):
@@ -111,7 +117,7 @@ def event_words(valve: str, opens: float, lasts: float) -> tuple[str, str]:
 
 
 def valves_of(intake: Event, exhaust: Event, fires: float) -> Valves:
-    """Events of a cylinder that fires at a crank angle, degrees, by those of its two lobes."""
+    """Events of a cylinder that fires at the crank angle `fires`, degrees, from the events of its two lobes."""
     # crank degrees after the cylinder's own firing dead centre; 360 is the dead centre of the overlap
     opens, closes = crank_after(intake.opens, fires), crank_after(intake.closes, fires)
     opened, closed = crank_after(exhaust.opens, fires), crank_after(exhaust.closes, fires)
@@ -128,7 +134,7 @@ def valves_of(intake: Event, exhaust: Event, fires: float) -> Valves:
 
 
 def crank_after(cam: float, fires: float) -> float:
-    """Crank degrees in [0, 720) after a firing dead centre at which the camshaft stands at an angle, degrees."""
+    """Crank degrees, in [0, 720), after the firing dead centre `fires` when the camshaft stands at `cam` degrees."""
     return (2.0 * cam - fires) % CYCLE
 
 

@@ -109,12 +109,12 @@ class CamshaftRecipe(Order):
 
     @property
     def parts(self) -> tuple[Path, ...]:
-        """The recipes of its lobes, each once."""
+        """Paths of the lobes' recipes, each once."""
         return tuple(dict.fromkeys(lobe.recipe.path for lobe in self.lobes))
 
     @property
     def trims(self) -> bool:
-        """Whether undercut of a lobe is cut off."""
+        """Whether the undercut of some lobe is cut off."""
         return any(lobe.recipe.trims for lobe in self.lobes)
 
 
@@ -122,7 +122,7 @@ class CamshaftRecipe(Order):
 
 
 def _rows(table: FieldTable, reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Read a list of mappings with the keys of one table."""
+    """Rows of a list of mappings with the keys of one table; None where one of them is faulty."""
     row = Field("", Kind.TABLE, field.about, table=table)
     items = enumerate(reader.items(field, node, path, MOST_LOBES))
     rows = [reader.mapping(row, item, join(path, i)) for i, item in items]
@@ -283,7 +283,11 @@ SHAFT = FieldTable(
 
 
 def read_camshaft(source: Source, path: Path) -> CamshaftRecipe:
-    """Read the recipe of a camshaft and those of its lobes; raises RecipeErrors with all faults of one of them."""
+    """Read the recipe of a camshaft and those of its lobes.
+
+    Raises RecipeErrors with all faults of the camshaft's own fields, else of the first lobe's recipe that has any, and
+    for lobes or journals that overlap or reach beyond the shaft.
+    """
     reader = Reader(source, READERS, SHAFT)
     root = source.root
     reader.survey(root, "")
@@ -401,10 +405,11 @@ def _built(values: Values, document: Document) -> CamshaftRecipe:
 
 
 class ShaftHeights:
-    """Heights along a shaft, mm, of which two that differ by no more than rounding are one.
+    """Heights along a shaft, mm, of which two that differ by rounding alone are made equal.
 
     A lobe that ends where the next begins is given by a sum, such as 20.1 + 12.3, that need not round to the 32.4 of
-    the next. Heights that are stated come first, so that a sum is taken for one of them and not the other way round.
+    the next. Heights that are stated come first, so that a sum is replaced by a stated height and not the other way
+    round.
     """
 
     def __init__(self, stated: Iterable[float]) -> None:
@@ -413,7 +418,7 @@ class ShaftHeights:
             self(height)
 
     def __call__(self, height: float) -> float:
-        """Give the first height within ROUNDING of this one; this one where there is none."""
+        """First known height, mm, within ROUNDING of `height`, else `height`, which is then known."""
         for known in self._heights:
             if abs(known - height) <= ROUNDING:
                 return known
@@ -435,9 +440,9 @@ def _engine(values: Values | None) -> Engine | None:
 
 
 def _cam(document: Document, name: str, field: str) -> Recipe:
-    """Read a lobe's recipe; raises RecipeErrors at the field, with each of its faults or for what is no lobe's.
+    """Read a lobe's recipe; raises RecipeErrors at the field for each fault in it, and for a file that is no lobe's.
 
-    Of a file that is no recipe nothing is repeated: whoever reads the message need not be allowed to read the file.
+    No message repeats text of a file that is no recipe: its reader need not be allowed to read the file.
     """
     path, remedy = document.path.parent / name, "give the recipe of a cam"
     if not path.is_file():
@@ -459,7 +464,7 @@ def _cam(document: Document, name: str, field: str) -> Recipe:
 
 
 def of_a_lobe(document: Document, field: str, errors: RecipeErrors) -> RecipeErrors:
-    """Give the faults of a lobe's recipe as faults of the camshaft's field that names it; its own stay as they are."""
+    """Faults of a lobe's recipe as faults of the camshaft's `field` that names it; the camshaft's own stay."""
     own = str(document.path)
     placed = (
         [error] if error.file == own else document.error(field, error.statement, error.value, error.remedy).errors
@@ -469,7 +474,7 @@ def of_a_lobe(document: Document, field: str, errors: RecipeErrors) -> RecipeErr
 
 
 def _names(rows: list[Values], cams: dict[str, Recipe]) -> list[str]:
-    """Name each lobe: by cylinder and valve, or by its recipe; alike ones are counted."""
+    """Name each lobe: by cylinder and valve, or by its recipe; equal names are numbered."""
     names = [
         f"cylinder {row['cylinder']} {row['valve']}" if "cylinder" in row else cams[row["recipe"]].name for row in rows
     ]

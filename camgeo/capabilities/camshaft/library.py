@@ -1,4 +1,4 @@
-"""Camshafts from a recipe to files and a verdict, imported where a recipe is of one."""
+"""Designs of camshafts, exact and without files, and the text of a failed check."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class CamshaftDesign:
 
     @cached_property
     def lobes(self) -> Mapping[str, Design]:
-        """The design of each lobe by its name, in the order of the recipe; lobes of one recipe share its cam."""
+        """The design of each lobe by its name, in the order of the recipe; lobes of one recipe share the exact cam."""
         return {lobe.lobe.name: Design(lobe.lobe.recipe, lobe.design) for lobe in self._placed}
 
     @property
@@ -58,7 +58,7 @@ class CamshaftDesign:
 
     @property
     def ok(self) -> bool:
-        """Whether all these checks hold."""
+        """Whether all checks that need no file hold."""
         return all(check.ok for check in self.checks)
 
     @cached_property
@@ -75,8 +75,9 @@ class CamshaftDesign:
     def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array:
         """Positions of all followers at shaft angles theta, rad, or a derivative by the shaft angle, up to the sixth.
 
-        A row for each lobe in the recipe's order, each of the shape of `theta`: mm, or rad where the follower swings.
-        Raises CallError for another order, and for angles that are not finite.
+        A row for each lobe in the recipe's order, each of the shape of `theta`: lift above the lowest position in mm,
+        or rad where the follower swings. Raises CallError for another order, and for angles that are not finite or rows
+        of them that differ in length, TypeError for angles that are no numbers.
         """
         angle, order = numbers_of("theta", theta), whole_of("derivative", derivative)
         if not np.isfinite(angle).all():
@@ -106,7 +107,10 @@ class CamshaftDesign:
 
 
 def designed(recipe: CamshaftRecipe) -> CamshaftDesign:
-    """Design the cams of a camshaft; raises RecipeErrors where there is no such motion or curve."""
+    """Design the cams of a camshaft.
+
+    Raises RecipeErrors where a lobe has no such motion or curve, its cam cannot be a lobe, or a part is too thin.
+    """
     return CamshaftDesign(recipe, placed(recipe, Clock(stage_reporter(recipe))))
 
 

@@ -41,7 +41,10 @@ STROKE_STEPS = 3600  # of a turn, over which the ends of a stroke are looked for
 
 @dataclass(frozen=True)
 class PlacedLobe:
-    """A lobe, its exact design, and the angle, rad, by which its metal is turned; counter-clockwise, drawn for `cw`."""
+    """A lobe, its exact design, and the angle `at`, rad, by which its metal is turned.
+
+    The angle is counter-clockwise in a drawing for the rotation `cw`. `events` are computed so far, by lift.
+    """
 
     lobe: Lobe
     design: Design
@@ -75,7 +78,7 @@ class PlacedLobe:
 
     @property
     def moved(self) -> MovedBody | None:
-        """Motion of the part that its follower drives, such as a valve; None without one."""
+        """Motion of the part that the follower drives, such as a valve; None where the recipe names none."""
         return moved_by(self.lobe.recipe, self.design)
 
     @property
@@ -86,8 +89,8 @@ class PlacedLobe:
     def event_lift(self, engine: Engine | None) -> float:
         """Lift of the lobe's follower, mm or rad, at which its events are stated.
 
-        It is the engine's, converted where that is of a valve; without an engine, or of a follower that swings, the
-        middle of the stroke.
+        It is the engine's lift, converted to the follower where it is that of a valve; without an engine, or for a
+        follower that swings, the middle of the stroke.
         """
         if engine is None or self.swings:
             lift = self.design.motion.rows(equal_steps(STROKE_STEPS), 0)[0]
@@ -96,11 +99,14 @@ class PlacedLobe:
 
     @property
     def stretches(self) -> tuple[Stretch, ...]:
-        """Rises, dwells and returns of the lobe over the shaft's angle."""
+        """Rises, dwells and returns of the lobe over the shaft's angle; empty for a motion too rough to be followed."""
         return stretches(self.design.exact, self.zero)
 
     def rows(self, shaft: Array, order: int) -> Array:
-        """Lift above the lowest position, mm or rad, and derivatives by the shaft angle, at shaft angles (n,), rad."""
+        """Lift above the lowest position, mm or rad, and its derivatives by rad up to `order`, (order + 1, n).
+
+        They are at the shaft angles `shaft` (n,), rad.
+        """
         return self.design.motion.rows(np.mod(shaft - self.zero, TURN), order)
 
 
@@ -189,7 +195,7 @@ def _tappet_lift(recipe: CamshaftRecipe, engine: Engine, lobe: Lobe, design: Des
 
 
 def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:
-    """Events of a cylinder with an intake and an exhaust lobe; None without both."""
+    """Events of the valves of `cylinder`; None unless it has an intake and an exhaust lobe that each have an event."""
     own = {lobe.lobe.valve: lobe.event(lobe.event_lift(engine)) for lobe in lobes if lobe.lobe.cylinder == cylinder}
     intake, exhaust = own.get("intake"), own.get("exhaust")
     if intake is None or exhaust is None:
@@ -203,7 +209,10 @@ def lifts(lobes: Sequence[PlacedLobe], shaft: Array) -> Array:
 
 
 def lobe_checks(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...]) -> list[Check]:
-    """Check the exact cam of each lobe, held against its own recipe's limits, and that it stands out of the shaft."""
+    """Checks of the exact cam of each lobe, of its own recipe's limits, and that it stands out of the shaft.
+
+    Lobes of one recipe and one length are checked once, under the name of the first.
+    """
     checks: list[Check] = []
     judged: set[tuple[Path, float | None]] = set()
     for lobe in lobes:
@@ -221,7 +230,7 @@ def lobe_checks(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...]) -> list[C
 
 
 def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
-    """Checks that are sure to come, each once, however many lobes it is made of.
+    """Checks that the report is sure to have, each once, however many lobes it is made of.
 
     Raises IntentError for a lobe whose intended motion no cam can have.
     """

@@ -96,8 +96,9 @@ def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = No
 def judged(
     recipe: CamshaftRecipe, paths: list[Path], *, tolerance: float | None = None, units: float | None = None
 ) -> dict[str, Any]:
-    """Report on solids of any origin, held against a camshaft's lobes.
+    """Report on solids of any origin, judged against a camshaft's lobes.
 
+    `tolerance`, mm, is that of the files, by default the recipe's; `units` is mm in the unit of files that name none.
     Raises RecipeErrors for a lobe without a curve and for a file that is no solid, ValueError for an unknown suffix.
     """
     from camgeo.recipe.export import FileRequest
@@ -144,7 +145,7 @@ def judged_by(recipe: CamshaftRecipe, name: str, call: FileCall) -> dict[str, An
 def _produced(
     recipe: CamshaftRecipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock
 ) -> tuple[Findings, tuple[PlacedLobe, ...]]:
-    """Write and judge the requested files in a folder; returns what was found of them, and the lobes."""
+    """Write and judge the requested files in a folder; return the findings and the lobes."""
     lobes = placed(recipe, clock)
     checks = lobe_checks(recipe, lobes)
     files: list[FileResult] = []
@@ -177,7 +178,7 @@ def _produced(
 
 
 def _demand_packages(request: FileRequest) -> None:
-    """Raise MissingExtraError where a package is missing that makes such a solid."""
+    """Raise MissingExtraError where a package is missing that makes the requested solid."""
     if not SHAFT_FILES[request.kind].solid:
         return
     if request.format.numbers is None:
@@ -222,7 +223,7 @@ _UNJUDGED: Mapping[str, Callable[[_Job, FileRequest, Path], FileResult]] = {"csv
 
 
 def _unit(request: FileRequest) -> float:
-    """Mm in the unit of a file's lengths."""
+    """Millimetres in the unit of a file's lengths."""
     return INCH if request.units == "inch" else 1.0
 
 

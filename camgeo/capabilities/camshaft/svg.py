@@ -41,7 +41,7 @@ SHEET = """\
 
 
 def colour_of(valve: str) -> str:
-    """Return the name of the colour of a lobe by the valve that it opens."""
+    """Return the name of a lobe's colour: the valve that it opens, `other` for the empty text."""
     return valve or "other"
 
 
@@ -57,7 +57,7 @@ def stroked(name: str, width: float = 1.0, dashes: str = "") -> str:
 
 
 def edged(name: str, opacity: float, width: float = 1.0) -> str:
-    """Return the attributes of a shape filled at an opacity and edged, px wide, in the colour of a name."""
+    """Return the attributes of a shape in a colour by name: filled at an opacity, 0 to 1, its edge `width` px wide."""
     edge = f'stroke="{COLOURS[name]}" stroke-width="{width:g}"'
     return f'class="{name} {name}-line" fill="{COLOURS[name]}" fill-opacity="{opacity:g}" {edge}'
 
@@ -72,7 +72,7 @@ def text(
     colour: str = "ink",
     turned: float = 0.0,
 ) -> str:
-    """Return a line of words at (x, y), px, turned clockwise by degrees about that."""
+    """Return a line of words at (x, y), px, its letters `size` px, turned clockwise about (x, y) by degrees."""
     turn = f' transform="rotate({turned:g} {x:.2f} {y:.2f})"' if turned else ""
     return (
         f'<text x="{x:.2f}" y="{y:.2f}" font-size="{size:g}" text-anchor="{anchor}" {filled(colour)} {FONT}{turn}>'
@@ -86,13 +86,16 @@ def line(name: str, x1: float, y1: float, x2: float, y2: float, *, width: float 
 
 
 def on_wheel(middle: tuple[float, float], radius: float, degrees: float) -> tuple[float, float]:
-    """Return the place at a radius, px, and an angle, degrees clockwise from the top."""
+    """Return the place (x, y), px, at a radius, px, about `middle`, and an angle, degrees clockwise from the top."""
     angle = math.radians(degrees)
     return middle[0] + radius * math.sin(angle), middle[1] - radius * math.cos(angle)
 
 
 def arc(middle: tuple[float, float], radius: float, start: float, sweep: float, look: str) -> str:
-    """Return an arc about a middle, from `start` over `sweep`, degrees clockwise from the top; a circle of a turn."""
+    """Return an arc about a middle, from `start` over `sweep`, degrees clockwise from the top.
+
+    `look` are its attributes; a sweep of a turn or more is a circle.
+    """
     if sweep >= 360.0:
         return f'<circle cx="{middle[0]:.2f}" cy="{middle[1]:.2f}" r="{radius:.2f}" {look}/>'
     (x0, y0), (x1, y1) = (on_wheel(middle, radius, degrees) for degrees in (start, start + sweep))
@@ -101,7 +104,7 @@ def arc(middle: tuple[float, float], radius: float, start: float, sweep: float, 
 
 
 def sheet(height: float, title: str, parts: Sequence[str], width: float = WIDTH) -> str:
-    """Return a diagram as an SVG text of a size, px."""
+    """Return a diagram as an SVG text of `width` by `height` px, from its parts in SVG."""
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{height:g}" '
         f'viewBox="0 0 {width:g} {height:g}" role="img"><title>{one_line(title)}</title>'
@@ -111,7 +114,7 @@ def sheet(height: float, title: str, parts: Sequence[str], width: float = WIDTH)
 
 
 def stacked(sheets: Sequence[str]) -> str:
-    """Return sheets of one width as one, below one another."""
+    """Return sheets, at least one, as one SVG text, below one another; all have the width WIDTH."""
     if len(sheets) == 1:
         return sheets[0]
     heights = [float(re.findall(r'height="([0-9.]+)"', words)[0]) for words in sheets]

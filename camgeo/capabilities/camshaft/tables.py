@@ -28,12 +28,12 @@ STEP = 1.0  # degree of the shaft
 
 
 def column(name: str) -> str:
-    """A lobe's name as a column has it."""
+    """A lobe's name for the head of a column: ASCII letters and digits, `_` in place of others."""
     return "".join(letter if letter.isalnum() and letter.isascii() else "_" for letter in name)
 
 
 def write_csv(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], request: FileRequest) -> None:
-    """Write the table that a file is to be."""
+    """Write the table that the request's form names: events, inspection, else motion."""
     if request.as_ == "events":
         write_events(path, recipe, lobes)
     elif request.as_ == INSPECTION:
@@ -43,7 +43,10 @@ def write_csv(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], r
 
 
 def write_motion(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> None:
-    """Write lifts at every degree of the shaft, in the recipe's unit or degrees; of an engine also the crank angle."""
+    """Write lifts at every degree of the shaft, in the recipe's unit or degrees.
+
+    An engine has the crank angle besides, a lobe with a driven part, such as a valve, that part's motion.
+    """
     angle = np.arange(0.0, 360.0 + STEP, STEP)
     heads, columns = ["shaft_deg"], [angle]
     if recipe.engine is not None:
@@ -90,8 +93,9 @@ def write_events(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
 def write_inspection(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], step: float | None) -> None:
     """Write places on every lobe to be measured, as the shaft is drawn, with their normals and limits.
 
-    `lobe` is a number, from 1 as they are listed, and z the middle of its length; `step`, rad, is that of the shaft,
-    None for that of `verify.angles`. Cells of limits are empty for a lobe whose recipe gives none.
+    `lobe` is a number, from 1 as they are listed, and z the middle of its length; `step`, rad, is the shaft angle
+    between places, None for `verify.angles` places a turn. Cells of limits are empty for a lobe whose recipe gives
+    none.
     """
     shaft = equal_steps(recipe.verify.angles if step is None else round(TURN / step))
     rows, limited = [], any(lobe.lobe.recipe.profile is not None for lobe in lobes)
