@@ -49,7 +49,8 @@ def _seconds(text: str) -> float:
 def run(arguments: argparse.Namespace) -> int:
     """Study one recipe; return the exit status.
 
-    0 all checks of the exact cam and of every file hold, 1 one fails, 2 a wrong recipe, 3 the surroundings fail.
+    0 if all checks of the exact cam and of every file hold, 1 if one fails, 3 if the disk refuses. Raises RecipeErrors
+    for a wrong recipe, for which the command exits with 2.
     """
     from camgeo.capabilities.study.document import document, table
     from camgeo.capabilities.study.margins import margins
@@ -85,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _climb_all(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | End]:
-    """Rungs and ends of the ladders of all forms; none without a contour."""
+    """Rungs and ends of the ladders of all forms; empty without a contour."""
     import tempfile
 
     from camgeo.capabilities.study.tolerance_ladder import climb

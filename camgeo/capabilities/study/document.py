@@ -30,8 +30,8 @@ def document(
 ) -> Entry:
     """Content of study.json, figures in the recipe's units.
 
-    `steps` are the rungs and ends of all ladders, `skipped` what is left out and why, `failed` the checks of the exact
-    cam that fail, `names` those of its surfaces where there are several.
+    `steps` are the rungs and ends of all ladders, `skipped` pairs of what is left out and why, `failed` the checks of
+    the exact cam that fail, `names` the names of its surfaces where there are several.
     """
     length = in_units(recipe, None, "mm")[1]
     rungs = [rung for rung in steps if isinstance(rung, Rung)]
@@ -91,7 +91,7 @@ def _margin(recipe: Recipe, margin: FailureMargin) -> Entry:
 
 
 def table(study: Entry) -> str:
-    """The study as text for a terminal: a row for each file, ends of the ladders, margins, failures and omissions."""
+    """Text of `study` for a terminal: a row for each file, ends of the ladders, margins, failures and omissions."""
     linkage = any("output_error" in row for row in study["rows"])
     errors = ["tolerance", "geometry", "motion", *(["output"] if linkage else [])]
     times = ["fit ms", "write ms", "judge ms"]

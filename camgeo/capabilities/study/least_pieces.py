@@ -21,7 +21,7 @@ FREE_ARCS = 124.7  # tangent-continuous arcs with joints off the curve: the inte
 
 
 def least_pieces(form: str, curve: Curve, tolerance: float) -> float:
-    """Least number of pieces of a form within `tolerance` mm, counted as the report counts them.
+    """Least number of pieces within `tolerance` mm, to leading order: edges, arcs or cubic spans by the form.
 
     At least one is counted for each smooth stretch, as the arcs' integral vanishes on a dwell. Raises ValueError for an
     unknown form.

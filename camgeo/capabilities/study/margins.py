@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
-SMALL = 1e-7  # mm: an error of the profile that stands for the limit of small ones
+SMALL = 1e-7  # mm: an error of the profile small enough that its effect is linear
 EPS = float(np.finfo(np.float64).eps)
 
 
@@ -87,7 +87,7 @@ def _linkage_margins(design: Design) -> list[FailureMargin]:
 
 
 def _error_factors(recipe: Recipe, design: Design) -> list[FailureMargin]:
-    """Factors by which errors of the profile act on the follower, by surface; tolerance over rounding error."""
+    """Factors by which errors of the profile act on the follower, for each gauge; tolerance over rounding error."""
     if not design.contours:
         return []
     factors = []

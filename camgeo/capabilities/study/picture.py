@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 COLOURS = {"polyline": "#0072B2", "arcs": "#D55E00", "spline": "#009E73", "stl": "#CC79A7"}
 MARKS = {"polyline": "o", "arcs": "s", "spline": "^", "stl": "D"}
 SLOPES = {"polyline": 2, "arcs": 3, "spline": 5}  # error falls as pieces to the minus this
-DOTS = 150
+DOTS = 150  # per inch
 
 
 def picture(study: Entry) -> bytes:
-    """Bytes of the study's PNG, under matplotlib's own defaults; raises ModuleNotFoundError without matplotlib."""
+    """Bytes of a PNG of `study`, the content of study.json; raises ModuleNotFoundError without matplotlib."""
     prepare_home()
     import matplotlib as mpl
     from matplotlib.figure import Figure

@@ -2,8 +2,8 @@
 
 Each rung writes a file into a private folder and judges it there, as an export does, then repeats the work to time it
 warm: the exact curve and its bounds are made once, as stages of the design. A ladder ends where the form cannot hold
-the tolerance, with the reason and what can be held, or at a run (fit, write and judge) that takes longer than the
-patience.
+the tolerance, with the reason and what can be held, or at a run (fit, write and judge) that takes longer than
+allowed.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Rung:
     """Figures of one form at one tolerance; lengths in mm.
 
     geometry_error  two-sided distance of the file's contour from the exact one, as the judge measured it
-    proved          bound of that distance which the fit proved
+    proved          bound of that distance which the fit proved; None where a file has none
     motion_error    greatest error of the follower by contact, in `motion_unit`
     output_error    greatest error of a linkage's output, in `output_unit`; None without one
     seconds         median of the repeats, the sum of `stages`: fit, write, judge
@@ -94,7 +94,8 @@ def climb(
     """Rungs of one form from a tenth of the recipe's unit downward, then the end of the ladder.
 
     Files are written into `folder`, one over the other; `patience` is the longest run in seconds; `listener` is called
-    with the form and tolerance of each rung before it begins. Raises ValueError for an unknown form.
+    with the form and tolerance of each rung before it begins. Iterating raises ValueError for an unknown form, and for
+    a design without a contour.
     """
     for exponent in range(FIRST_EXPONENT, LAST_EXPONENT - 1, -1):
         tolerance = 10.0**exponent * recipe.mm
@@ -128,6 +129,7 @@ def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: P
     begun = time.perf_counter()
     files, _, failed = _run_once(recipe, design, request, path)
     first_run = time.perf_counter() - begun
+    # warm runs are timed, fewer the longer the first took
     repeats = REPEATS if first_run < QUICK else 2 if first_run < SLOW else 1
     runs = [_run_once(recipe, design, request, path)[1] for _ in range(repeats)]
     medians = {name: statistics.median(run[name] for run in runs) for name in runs[0]}
