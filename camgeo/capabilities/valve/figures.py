@@ -10,7 +10,7 @@ from camgeo.schema.fields import Kind
 LIFT, DURATION, SEATING = "valve-lift", "valve-duration", "valve-seating"
 VELOCITY, ACCELERATION = "valve-velocity", "valve-acceleration"
 OF_VALVE = Need("valve", lambda _, paths: "valve" in paths)
-AT, SEAT = 1.0, 0.0  # mm of valve lift at which durations are given, and of the seat
+AT, SEAT = 1.0, 0.0  # mm of valve lift at which durations are given, and at which the valve is on its seat
 
 _of_valve = partial(DesignFigure, needs=OF_VALVE, dear=True)
 

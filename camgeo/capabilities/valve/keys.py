@@ -31,7 +31,7 @@ _ROWS = FieldTable(
 
 
 def fields() -> tuple[Field, ...]:
-    """Give the keys that the capability adds to a recipe."""
+    """The key `valve` of a recipe, with the keys below it."""
     ratio = OwnForm(
         "a ratio",
         "a number above 0, or {table: rocker.csv} with tappet lifts and ratios",
@@ -53,7 +53,7 @@ def _ratio_schema(_: Field) -> Schema:
 
 
 def _read_ratio(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[float, float], ...] | None:
-    """Read a ratio as one row at a lift of 0, or rows of a tappet's lift, mm, and the ratio there."""
+    """Rows of a tappet's lift, mm, and the ratio there, a constant ratio as one row at 0; None after a fault."""
     if not isinstance(node, Mapping):
         ratio = reader.readers[Kind.NUMBER](reader, _NUMBER, node, path)
         return None if ratio is None else ((0.0, ratio),)
@@ -105,7 +105,7 @@ def _rows(origin: Origin, reader: Reader) -> list[tuple[float, float]]:
 
 
 def check(values: Values, reader: Reader) -> None:
-    """Note a valve of a follower that is no tappet."""
+    """Add a fault for a valve whose follower is no tappet, or whose tappet drives a linkage."""
     if "valve" not in values:
         return
     if reader.offers.isdisjoint({"stem", "stem-face"}):
@@ -116,6 +116,6 @@ def check(values: Values, reader: Reader) -> None:
 
 
 def build(values: Values) -> Valve | None:
-    """Make the valve of values without a fault; None for a recipe without `valve`."""
+    """Valve of a recipe without faults; None without the key `valve`."""
     entry = values.get("valve")
     return None if entry is None else Valve(entry["ratio"], entry.get("lash", 0.0))

@@ -1,4 +1,4 @@
-"""What the figures of a valve are, in mm and degrees, with their places; lifts are those of the valve."""
+"""Values of a valve's figures, in mm and degrees, with their cam angles; lifts are of the valve."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ class GreatestDerivative(NamedTuple):
 
 
 def valve_event(valve: Valve, design: Design, lift: float) -> LobeEvent:
-    """Stretch of a turn in which the valve is above a lift, mm: shaft angles, rad.
+    """Stretch of a turn in which the valve is above a lift, mm: opening and closing as shaft angles, rad.
 
-    Raises EventError unless it crosses that lift once upward and once downward.
+    Raises EventError unless the valve crosses that lift once upward and once downward.
     """
     most = greatest_lift(valve, design)
     if lift > most or most == 0.0:
@@ -47,7 +47,7 @@ def valve_event(valve: Valve, design: Design, lift: float) -> LobeEvent:
 
 
 def extremes(valve: Valve, design: Design) -> dict[int, GreatestDerivative]:
-    """Greatest velocity (1), mm/rad, and acceleration (2), mm/rad^2 of the cam, while the valve is open.
+    """Greatest magnitudes while the valve is open: under 1 the velocity, mm/rad of the cam, under 2 the acceleration.
 
     Raises EventError unless the valve opens and closes once in a turn, and for a motion too abrupt to be followed.
     """
@@ -65,6 +65,7 @@ def extremes(valve: Valve, design: Design) -> dict[int, GreatestDerivative]:
         followed = cells(rows, between(event.opening, event.closing, breaks), share=SHARE)
     except RoughError as error:
         raise EventError(ABRUPT) from error
+    # row k - 1 of `rows` is derivative k of the valve's lift by the cam angle
     peaks = {}
     for k in (1, 2):
         row = pieces(followed, k - 1)
@@ -74,7 +75,10 @@ def extremes(valve: Valve, design: Design) -> dict[int, GreatestDerivative]:
 
 
 def measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measured:
-    """Measure a figure at a lift of the valve, mm; without a value where that is not crossed just twice."""
+    """Duration, crank degrees, or else seating velocity, mm per degree of the cam, at a lift of the valve, mm.
+
+    The value is None where the recipe has no valve, or the valve does not cross the lift just twice.
+    """
     valve = valve_of(recipe, design)
     if valve is None:
         return Measured(None, _UNITS[name], detail="valve is not given")
@@ -92,7 +96,10 @@ def measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measur
 
 
 def measure(recipe: Recipe, design: Design, names: Sequence[str]) -> dict[str, Measured]:
-    """Measure figures by name; a figure at a lift is measured at that of the recipe's first limit, or the usual one."""
+    """Measure the figures `names` of a valve, by name; a value is None where the figure does not exist.
+
+    A figure at a lift is measured at the lift of the recipe's first limit on it, else at its usual lift.
+    """
     valve, figures = valve_of(recipe, design), dict[str, Measured]()
     for name in names:
         usual = FIGURES[name].at_lift
@@ -109,7 +116,7 @@ def measure(recipe: Recipe, design: Design, names: Sequence[str]) -> dict[str, M
 
 
 def greatest_lift(valve: Valve, design: Design) -> float:
-    """Greatest lift of the valve, mm, at least 0."""
+    """Greatest lift of the valve, mm, 0 if it never opens; raises EventError for a motion too rough to follow."""
     most = tappet_lift(design)
     return max(float(valve.travel(np.array([most]))[0, 0]) - valve.lash, 0.0)
 

@@ -26,7 +26,8 @@ TITLES = ("Valve lift", "Valve velocity", "Valve acceleration")
 def section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
     """Section `valve` of the report; None without a valve.
 
-    Lift and lash are in the recipe's unit, events in degrees of the cam and of the crank, peaks by rad of the cam.
+    Lift and lash are in the recipe's unit, events in degrees of the cam, durations in degrees of the crank, peaks by
+    rad of the cam.
     """
     valve = valve_of(recipe, design)
     if valve is None:
@@ -73,7 +74,7 @@ def _event(valve: Valve, design: Design, lift: float, mm: float) -> dict[str, An
 
 
 def panel(report: dict[str, Any]) -> str:
-    """The section of the page, empty where the report has no valve."""
+    """HTML section of the page on the valve, empty where the report has no valve."""
     entry = report.get("valve")
     if entry is None:
         return ""

@@ -1,4 +1,4 @@
-"""The lift of a valve by that of its tappet: ratio times lift, less the lash, at least 0."""
+"""The lift of a valve by the lift of its tappet: ratio times lift, less the lash, at least 0."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
 
-ORDER = 2  # derivatives of a valve's lift that are told: its velocity and its acceleration
+ORDER = 2  # derivatives of a valve's lift that are computed: its velocity and its acceleration
 _LOOKS = 2001  # places over the lift at which a table's slope is looked at
 _HALVINGS = 100
 _WITHIN = 1e-9  # of the greatest lift: so far a table may end before it
@@ -38,7 +38,7 @@ class Valve:
         return np.array([ratio[0] * lift, ratio[1] * lift + ratio[0], ratio[2] * lift + 2.0 * ratio[1]])
 
     def rows(self, tappet: Array) -> Array:
-        """Lift of the valve, velocity and acceleration (3, n), by lift, velocity and acceleration of the tappet (3, n).
+        """Lift of the valve, mm, velocity and acceleration (3, n), from those of the tappet (3, n), by one variable.
 
         All are 0 where the valve is on its seat.
         """
@@ -49,9 +49,9 @@ class Valve:
         return np.where(lift > 0.0, np.array([lift, velocity, acceleration]), 0.0)
 
     def follower_lift(self, lift: float) -> float:
-        """Lift of the tappet, mm, at which the valve has a lift, mm, of 0 or more.
+        """Lift of the tappet, mm, at which the valve has `lift`, mm, 0 or more.
 
-        By bisection, as the travel rises.
+        With a table it is found by bisection, as the travel rises; beyond the table it is the last row's lift.
         """
         wanted = lift + self.lash
         if len(self.ratios) == 1:
@@ -81,7 +81,7 @@ def valve_of(recipe: Recipe, design: Design) -> Valve | None:
 
 
 def tappet_lift(design: Design) -> float:
-    """Greatest lift of the tappet, mm, from its lowest place."""
+    """Greatest lift of the tappet, mm, above its lowest place; raises EventError for a motion too rough to follow."""
     from camgeo.measures.lobe import lift_pieces
 
     lift = lift_pieces(design.exact)
@@ -93,6 +93,7 @@ def _spline(rows: tuple[tuple[float, float], ...]) -> tuple[Array, Array]:
     """Places (m + 1,) and coefficients (4, m) of a natural cubic spline about each place, the constant first."""
     x, y = np.array(rows).T
     width, count = np.diff(x), len(x)
+    # second derivatives `bend` at the rows, 0 at both ends, from the continuity of the slope
     matrix, right = np.eye(count), np.zeros(count)
     for i in range(1, count - 1):
         matrix[i, i - 1 : i + 2] = width[i - 1], 2.0 * (width[i - 1] + width[i]), width[i]
@@ -103,7 +104,7 @@ def _spline(rows: tuple[tuple[float, float], ...]) -> tuple[Array, Array]:
 
 
 def _ratio(rows: tuple[tuple[float, float], ...], lift: Array) -> Array:
-    """Ratio with two derivatives by the tappet's lift, (3, n); beyond the table as in its last part."""
+    """Ratio with two derivatives by the tappet's lift, (3, n); the spline's end pieces go on beyond the table."""
     if len(rows) == 1:
         return np.array([np.full_like(lift, rows[0][1]), np.zeros_like(lift), np.zeros_like(lift)])
     places, (a, b, c, d) = _spline(rows)
