@@ -26,7 +26,8 @@ def _pocketed(scene: CheckFacts, file: FileRequest) -> bool:
 def other_entry(check: Entry, _report: Entry, recipe: Recipe) -> str:
     """Remedy in words: another place where the cutter comes to the path.
 
-    Empty for a check without a value, as where a hub is cut into, and for a recipe without `manufacture`.
+    It is empty for a check without a value, as where the cutter runs into a hub, and for a recipe without
+    `manufacture`.
     """
     if check["value"] is None or recipe.manufacture is None:
         return ""

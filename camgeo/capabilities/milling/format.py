@@ -35,7 +35,7 @@ def _make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
 
 def _intent(recipe: Recipe, design: Design) -> PartIntent:
-    """Give the part as it is milled.
+    """Intent by which a program is judged: the part as it is milled.
 
     Raises RecipeErrors without `manufacture` or a thickness, and where the exact contour or the cutter's path fails.
     """

@@ -1,7 +1,7 @@
 """Programs for milling machines: plain RS-274 with arcs by their centres, nothing a controller may read in two ways.
 
-Absolute places, feeds by the minute, no cutter compensation, no cycles, no variables. Every number has its decimal
-point and as many places as `places` says; centres are worked out from the ends as they are written.
+Absolute places, feeds by the minute, no cutter compensation, no cycles, no variables. Coordinates
+have as many decimals as `places` gives; centres are computed from the ends as they are written.
 """
 
 from __future__ import annotations
@@ -41,12 +41,14 @@ class Cutting:
 
 
 def places(tolerance: float, mm: float, lengths: Sequence[float] = ()) -> int:
-    """Decimal places that keep the rounding of ends and centres within `SHARE` of a tolerance in mm.
+    """Number of decimals, at least 3, that keeps the rounding of ends and centres within `SHARE` of a tolerance, mm.
+
+    The program's unit is `mm` millimetres.
 
     An end, a centre and so a radius are each off by up to 0.71, 0.71 and 1.42 of the last place's half, in a machine
     that takes the arc from any of them: together less than 2.5 times the last place. Nor do `lengths`, mm, by which
-    places lie apart (a pass above another, a rough path beside a fine one) lose more than `KEPT` of themselves. And
-    however coarse the tolerance, a centre off by 0.71 of the last place makes the two radii of an arc differ by up to
+    places lie apart (a pass above another, a rough path beside a fine one), change by more than `KEPT` of themselves.
+    However coarse the tolerance, a centre off by 0.71 of the last place makes the two radii of an arc differ by up to
     1.42 of it: beyond `ARC_MM` controllers refuse the arc.
     """
     last = min([SHARE * tolerance / 2.5, ARC_MM / 1.42, *(KEPT * length for length in lengths)])
@@ -54,7 +56,7 @@ def places(tolerance: float, mm: float, lengths: Sequence[float] = ()) -> int:
 
 
 def rounding(count: int, mm: float) -> float:
-    """Greatest error of a path by numbers of `count` decimals in units of `mm`, mm."""
+    """Greatest error of a path, mm, whose numbers have `count` decimals in a unit of `mm` millimetres."""
     return 2.5 * mm * 10.0**-count
 
 
@@ -67,9 +69,9 @@ def write_gcode(
     count: int,
     mm: float = 1.0,
 ) -> None:
-    """Write the passes of each feature, by name and in order, as a program in units of `mm` mm.
+    """Write the passes of each feature, by name and in order, as a program in a unit of `mm` millimetres.
 
-    `count` are the decimal places. Raises OSError where the file system refuses.
+    `remarks` become comments at the top. `count` is the number of decimals. Raises OSError where the disk refuses.
     """
     number = _Numbers(count, mm)
     lines = [f"({_comment(text)})" for text in remarks]

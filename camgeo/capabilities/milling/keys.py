@@ -23,7 +23,7 @@ LEAST_TOLD |= dict.fromkeys(("cutter", "depth_of_cut", "safe_height", "lead_in",
 
 
 def check_milling(path: str, reader: Reader) -> None:
-    """Note what a program for a machine lacks."""
+    """Add faults, some at the file's `path`, for what a program needs and the recipe lacks."""
     if "manufacture" not in reader.marks:
         remedy = f"give manufacture with cutter, {', '.join(NEEDED[:-1])} and {NEEDED[-1]}, or leave gcode out"
         reader.fault_at(path, "gcode needs manufacture", None, remedy)
@@ -35,7 +35,7 @@ def check_milling(path: str, reader: Reader) -> None:
 
 
 def check_slight(values: Values, reader: Reader) -> None:
-    """Note machine settings, and a thickness, below the least that the decimals of a program can state."""
+    """Add faults for machine settings, and a thickness, below the least that the decimals of a program can state."""
     for table, least_told in (("manufacture", LEAST_TOLD), ("part", {"thickness": SHORTEST})):
         for name, least in least_told.items():
             unit, mm = ("turns a minute", 1.0) if name == "spindle" else (reader.units, reader.mm)
@@ -46,7 +46,7 @@ def check_slight(values: Values, reader: Reader) -> None:
 
 
 def check_boss(values: Values, reader: Reader) -> None:
-    """Note a safe height at which rapid moves would run into a boss on the upper side."""
+    """Add a fault for a safe height at which rapid moves would run into a boss on the upper side."""
     boss, safe = boss_of(values_read(values.get("part", {}))), values.get("manufacture", {}).get("safe_height")
     if boss is None or not boss.above or safe is None or safe > boss.above:
         return

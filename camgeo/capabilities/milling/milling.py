@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kin.judge.intent import PartIntent
 
 MOST_PASSES = 2000  # through the part
-LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled_contours
+LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled
 
 
 class RoundHole(NamedTuple):
@@ -34,7 +34,10 @@ def pocket_of(design: Design) -> float | None:
 
 
 def few_passes(recipe: Recipe, depth: float | None, paths: int = 1) -> None:
-    """Raise RecipeErrors for a depth of cut so slight that a program of so many paths would not come to an end."""
+    """Raise RecipeErrors where `paths` paths through `depth`, mm, make more than MOST_PASSES passes.
+
+    Nothing is checked without a depth, or without a depth of cut.
+    """
     manufacture = recipe.manufacture
     if depth is None or manufacture is None or manufacture.depth_of_cut is None:
         return
@@ -47,7 +50,10 @@ def few_passes(recipe: Recipe, depth: float | None, paths: int = 1) -> None:
 
 
 def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
-    """Features of the part that a program leaves unmade, with the reasons; a program cuts straight down into a disc."""
+    """Pairs of a feature of the part that a program leaves unmade, and the reason.
+
+    A program cuts straight down into a disc.
+    """
     part = recipe.part
     items = list(milled_holes(recipe, design)[1])
     if part.outer is not None:
@@ -59,7 +65,7 @@ def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
 
 
 def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
-    """Holes that the cutter goes round, and the names of those that it does not, with the reason."""
+    """Holes that the cutter goes round, and pairs of the name of a hole that is not milled, and the reason."""
     _, manufacture = milled_contours(recipe, design)
     boss = recipe.part.boss
     reach, within = (0.0, "") if boss is None else (0.5 * boss.diameter, f"within the {boss.name}")
@@ -80,7 +86,10 @@ def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[
 
 
 def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
-    """Intent by which kin judges a milling program: the part without what is not milled, and the machine's side."""
+    """Intent by which kin judges a milling program: the part without features not milled, and the cutter's data.
+
+    Raises CurveError where the cutter's path fails.
+    """
     from kin.judge.intent import Milling
 
     _, manufacture = milled_contours(recipe, design)

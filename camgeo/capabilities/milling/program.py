@@ -41,13 +41,13 @@ if TYPE_CHECKING:
 
 FEATURE = "contour"
 ROUGH = 0.1  # of the allowance, or of what a rough path leaves, within which it runs
-ONE = 0.2  # of the tolerance: two paths that lie no farther apart are milled as one in their middle
-LEAD = 0.4  # of the room between two paths, at most, for the ways to either
+ONE = 0.2  # of the tolerance: two paths no farther apart are milled as one path in their middle
+LEAD = 0.4  # greatest share of the distance between two paths that the ways in and out take
 LEAST_LEAD = 1e-2  # mm: radius of a way in below which there is none
 
 
 def make_gcode(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    """Fit, write, read back and judge one program; none is made for a cutter that does not reach all it must.
+    """Fit, write, read back and judge one program; none is made where the cutter does not reach all it must.
 
     Raises RecipeErrors without `manufacture`, for a value that the program needs and the recipe lacks, for so slight a
     depth of cut that there are too many passes, and where the tolerance cannot be held.
@@ -95,7 +95,7 @@ def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
 
 
 def _contour(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
-    """Passes along the contour, round a disc or within a ring, and the path that makes it."""
+    """Passes along the contour, round a disc or within a ring, and the path, in a list, that makes the contour."""
     thickness, (surface, _) = job.recipe.part.thickness, job.design.contours[0]
     if thickness is None:
         raise job.recipe.error("part.thickness", "gcode needs a thickness")
@@ -109,9 +109,9 @@ def _contour(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list
 
 
 def _lap(job: Job, manufacture: Manufacture, path: ArcSpline, side: Side, room: float = math.inf) -> ClosedPath:
-    """A path along a surface with ways in and out for which there is `room`, mm.
+    """A path along a surface, with ways in and out within the free distance `room`, mm.
 
-    Where the room is too small for such ways the path has none, and the cutter comes down on it.
+    Where that distance is too small the path has none, and the cutter comes down on it.
     """
     begun = begun_at(path, manufacture.start)
     drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
@@ -125,7 +125,7 @@ def _lap(job: Job, manufacture: Manufacture, path: ArcSpline, side: Side, room: 
 def _pocket(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[Pass], list[ArcSpline]]:
     """Passes between two surfaces, down the middle first and along both last, and the paths along the surfaces.
 
-    Where the paths along both are one within the tolerance, that in the middle makes both.
+    Where both paths coincide within the tolerance, a path in the middle makes both surfaces.
     """
     (inner, _), (outer, _) = job.design.contours
     pitch, radius, depth = inner.base.shape, manufacture.radius, pocket_of(job.design)
@@ -143,6 +143,7 @@ def _pocket(job: Job, manufacture: Manufacture, tolerance: float) -> tuple[list[
         middle = path_at(0.5 * (least + greatest), tolerance - 0.5 * max(play, 0.0))
         fine = [replace(middle, bound=middle.bound.widened(0.5 * max(play, 0.0)))]
         return passes([], [_lap(job, manufacture, middle, inner.side, 0.0)], manufacture, depth), fine
+    # paths side by side clear the middle; each runs in the sense of the nearer surface
     offsets = side_by_side(least, greatest, radius, manufacture.allowance or 0.0)
     if not manufacture.allowance and len(offsets) > 1:
         del offsets[-2:]  # the flanks' own

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
-BESIDE = 1.6  # of the cutter's radius: two paths lie no farther apart, so that nothing stands between them
+BESIDE = 1.6  # of the cutter's radius: greatest distance of two paths, so that no stock is left between them
 SAME = 1e-9  # mm: a path that begins this near to a joint begins in it
 QUARTER = math.tan(math.pi / 8.0)  # bulge of a quarter turn
 
@@ -45,7 +45,7 @@ class Pass:
 
 
 def begun_at(path: ArcSpline, direction: float) -> ArcSpline:
-    """Closed path that begins in its point farthest in a direction, rad; a piece is cut in two there where needed."""
+    """Path that begins in its point farthest in a direction, rad; the piece there is cut in two unless at a joint."""
     contour = Contour.from_bulges(path.points, path.bulges)
     support = contour.support(np.array([direction]))
     piece, point = int(support.piece[0]), support.point[0]
@@ -74,16 +74,16 @@ def bend_at_begin(path: ArcSpline) -> float:
 
 
 def circle(centre: tuple[float, float], radius: float, direction: float) -> ArcSpline:
-    """A circle in four arcs, begun in a direction (rad)."""
+    """A counter-clockwise circle, mm, in four arcs, begun in a direction, rad from its centre."""
     angle = direction + 0.5 * math.pi * np.arange(4)
     points = np.array(centre) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
     return ArcSpline(points, np.full(4, QUARTER), EXACT)
 
 
 def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> ClosedPath:
-    """A closed counter-clockwise path, run the way asked for, with quarter turns of radius `lead` to it and from it.
+    """A closed counter-clockwise path, run as `clockwise` says, with quarter turns of radius `lead`, mm, to and from it.
 
-    Both touch the path in its first point, from without it (`side` 1) or from within (-1).
+    Both touch the path in its first point, from outside it (`side` 1) or from inside (-1).
     """
     first = float(Contour.from_bulges(path.points, path.bulges).directions[0][0])
     points, bulges = _run(path, clockwise=clockwise)
@@ -103,22 +103,22 @@ def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> ClosedP
 
 
 def plunged(path: ArcSpline, *, clockwise: bool) -> ClosedPath:
-    """A closed counter-clockwise path, run the way asked for, in whose first point the cutter comes down."""
+    """A closed counter-clockwise path, run as `clockwise` says, in whose first point the cutter comes down."""
     points, bulges = _run(path, clockwise=clockwise)
     return ClosedPath(np.concatenate([points, points[:1]]), bulges, 0, len(points))
 
 
 def _run(path: ArcSpline, *, clockwise: bool) -> tuple[Array, Array]:
-    """Points and bulges of a closed counter-clockwise path, run the way asked for."""
+    """Points (n, 2) and bulges (n,) of a closed counter-clockwise path, run as `clockwise` says."""
     if not clockwise:
         return path.points, path.bulges
     return np.roll(path.points[::-1], 1, axis=0), -path.bulges[::-1]
 
 
 def side_by_side(near: float, far: float, radius: float, allowance: float) -> list[float]:
-    """Places from one flank's path to the other's at which a cutter clears what lies between, mm.
+    """Offsets, mm, between the flanks' paths `near` and `far` at which a cutter of `radius` clears the stock between.
 
-    The middle comes first, then pairs outward; the last stand `allowance` off the flanks' paths, without one on them.
+    The middle comes first, then pairs outward; the last pair lies `allowance` off the flanks' paths.
     """
     middle, half = 0.5 * (near + far), 0.5 * (far - near) - math.copysign(allowance, far - near)
     if half * (far - near) <= 0.0:
@@ -136,7 +136,10 @@ def depths(thickness: float, depth_of_cut: float) -> list[float]:
 def passes(
     rough: Sequence[ClosedPath], fine: Sequence[ClosedPath], manufacture: Manufacture, depth: float
 ) -> list[Pass]:
-    """Passes down to a depth: round all paths at each height, or round rough ones and last, with an allowance, fine."""
+    """Passes down to `depth`, mm: rough and fine paths at each height.
+
+    With rough paths and an allowance, fine paths follow last, at the full depth alone.
+    """
     levels = depths(depth, manufacture.depth_of_cut or depth)
     if not rough or manufacture.allowance is None:
         return [Pass(z, loop) for z in levels for loop in (*rough, *fine)]
