@@ -16,8 +16,8 @@ class ByMotion:
 
     motion    key of the motion
     base      key of the base circle's radius, where displacements are 0; empty where other lengths fix the size
-    instead   keys that give the motion otherwise
-    still     an entry that gives hardly any motion
+    instead   keys that give the motion in another way
+    still     key and value of an entry that gives hardly any motion
     opposed   whether size and motion fix how far two opposite contacts are apart
     lag       share of the swing to take off the shaft angle: over the rest the swing changes sign each section
     series    whether the motion is a Fourier series of the support function, of which `base` is the mean

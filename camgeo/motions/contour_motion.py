@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.sources.motion import Motion
 
-ANGLES = 720  # shaft angles at which the follower's position on the contour is taken
-_DIGITS = 3  # beyond that of the reading, to which positions are rounded
+ANGLES = 720  # shaft angles at which the follower's position on the contour is found
+_DIGITS = 3  # decimals beyond the first digit of the reading, to which positions are rounded
 
 DRAWING = OwnForm(
     "the path of a drawing, or of points",
@@ -29,7 +29,7 @@ DRAWING = OwnForm(
 
 
 class CamDrawing(NamedTuple):
-    """Closed contours about the shaft at the origin, as those of a cam that turns clockwise; or one pitch curve."""
+    """Contours of a drawing, mm, the shaft at the origin, for a cam that turns clockwise; or one `pitch` curve."""
 
     file: str
     contours: tuple[Contour, ...]
@@ -39,9 +39,10 @@ class CamDrawing(NamedTuple):
 def read_contours(
     reader: Reader, file: str, path: str, *, mirrored: bool, unit: float, pitch: bool = False
 ) -> CamDrawing | None:
-    """Read the contours of a drawing or of points; `unit`, mm, is that of a file that states none.
+    """Read the contours of a drawing, or the contour through points; `file` is relative to the recipe's folder.
 
-    None where the file cannot be read, and the fault is noted.
+    `unit`, mm, is the unit of a file that states none; `mirrored` says that the cam turns counter-clockwise, `pitch`
+    that the curve is a pitch curve. Where the file cannot be read, the fault is noted at `path` and the result is None.
     """
     from kin.read.errors import ReadError
     from kin.read.files import read_drawing
@@ -76,8 +77,9 @@ def motion_on_drawing(
 ) -> Motion:
     """Motion of least mean square jerk within `reading`, mm or rad, of a follower's positions on the drawing.
 
-    The follower runs on the contour that lies `within` so many others round the shaft; -1 is the innermost, of a ring.
-    Raises kin's IntentError where there is no such contour, or the follower finds no contact.
+    The follower runs on the contour that lies within `within` others round the shaft; -1 is the innermost, of a ring.
+    Raises kin's IntentError, at `field`, where there is no such contour, for a pitch curve of a touch without a centre,
+    where the follower finds no contact, and where no motion follows from its positions.
     """
     import numpy as np
 

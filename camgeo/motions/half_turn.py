@@ -48,11 +48,11 @@ class HalfTurnCam:
 
     @cached_property
     def half_turn(self) -> Motion:
-        """The motion over the half turn; the other half follows in the opposite sense."""
+        """The motion over the half turn; the other half follows, falling. IntentError where it cannot be made."""
         return self.motion.motion(math.pi, "motion", -1)
 
     def joints(self) -> tuple[DerivativeJump, ...]:
-        """Joints of the half turn's motion; the other half has the same in the opposite sense."""
+        """Jumps of derivatives in the half turn's motion; the other half has the same with the opposite sign."""
         return self.half_turn.joints
 
     def kept(self) -> Kept | None:

@@ -28,7 +28,10 @@ _FIELD = "table"
 
 
 class Origin(NamedTuple):
-    """Source of a table's rows: the path of a file, or their text where they stand in the recipe."""
+    """Source of a table's rows: the path of a file, or a name and the rows' text where they stand in the recipe.
+
+    `text` is None for a file.
+    """
 
     name: str
     text: str | None = None
@@ -36,10 +39,10 @@ class Origin(NamedTuple):
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of a table: angles of the cam in rad, displacements in mm or rad, and their lines in the file.
+    """Rows of a table: cam angles `theta`, rad, displacements `s`, mm or rad, or loads, and their lines in the file.
 
-    `unit` is one unit of the file's displacements, in mm or rad; angles that were rounded may be off by `slack` rad,
-    and `turned` units of the file's angles are one degree.
+    `unit` is the file's unit of displacement in mm or rad; rounding may have moved angles by up to `slack`, rad; one
+    degree is `turned` units of the file's angles.
     """
 
     theta: tuple[float, ...]
@@ -50,7 +53,7 @@ class Rows:
     turned: float = 1.0
 
     def samples(self) -> Samples:
-        """Rows as the arrays that kin's laws take."""
+        """Rows as arrays (n,), in the form that kin's laws take."""
         import numpy as np
 
         from kin.law.sources.ring import Samples
@@ -60,7 +63,7 @@ class Rows:
 
 
 def read_path(reader: Reader, field: Field, node: Node, path: str) -> str | None:
-    """Read the path of a file, as written; None where it is no path, and the fault is noted."""
+    """Read the path of a file, as written; where it is no path, note the fault and return None."""
     if isinstance(node, Scalar) and 0 < len(node.text) <= MOST_TEXT and node.text.isprintable():
         return node.text
     reader.fault(node.mark, path, "not the path of a file", describe(node), reader.wanted(field))
@@ -68,7 +71,7 @@ def read_path(reader: Reader, field: Field, node: Node, path: str) -> str | None
 
 
 def _read_origin(reader: Reader, field: Field, node: Node, path: str) -> Origin | None:
-    """Read the path of a file, or rows in the recipe itself, of two numbers or more each."""
+    """Read the path of a file, or rows of two numbers or more in the recipe itself; None after a fault."""
     if not isinstance(node, Sequence):
         name = read_path(reader, field, node, path)
         return None if name is None else Origin(name)
@@ -102,7 +105,7 @@ TABLE = OwnForm(
 
 
 def _read_columns(reader: Reader, field: Field, node: Node, path: str) -> tuple[Column, Column] | None:
-    """Read two columns, each by its heading or its number."""
+    """Read two columns, each by its heading or its number; None after a fault."""
     columns: list[Column] = []
     for i, item in enumerate(reader.items(field, node, path, 2)):
         if not isinstance(item, Scalar) or not 0 < len(item.text) <= MOST_TEXT or not item.text.isprintable():
@@ -149,9 +152,10 @@ SHEET = (
 def read_rows(
     reader: Reader, values: Values, path: str, *, quantity: Quantity, instead: str
 ) -> tuple[Rows, float] | None:
-    """Read the table of a recipe, and the unit of its last digit; notes what is wrong at the recipe's own field.
+    """Read the rows of a recipe's table, and the size of their last digit, mm or rad, or the unit of another quantity.
 
-    `instead` is the unit of the values where neither the recipe nor a heading says.
+    `path` is the field of the table, `values` the keys beside it; `quantity` is what the rows hold, such as length, and
+    `instead` its unit where neither the recipe nor a heading states one. None after a fault, which is noted at `path`.
     """
     from kin.law.programme import IntentError
     from kin.read.tables import Sheet

@@ -28,10 +28,10 @@ _SIDES = ("opening", "closing")
 class SideShape:
     """A side of a lobe, opening or closing, as a recipe gives it; lengths in mm, angles in rad.
 
-    `half` is the cam angle from foot to nose, `powers` are those of the polynomial. Instead of powers, `durations` are
-    pairs of a lift and the crank angle over which the lobe is above it; a crank angle is `crank` times the cam angle
-    from the nose. `ramp` is height, mm, and velocity, mm/rad. `field` is the path of the side's own keys below the
-    lobe's, empty for keys that both sides share.
+    `half` is the cam angle from foot to nose, `powers` are the powers of its polynomial. Instead of powers, `durations`
+    are pairs of a lift and the crank angle for which the lobe is above it; a crank angle is `crank` times the cam angle
+    from the crossing to the nose. `ramp` is height, mm, and velocity, mm/rad; None without. `field` is the path of the
+    side's own keys below the lobe's, such as .opening, empty for keys that both sides share.
     """
 
     half: float | None = None
@@ -45,10 +45,10 @@ class SideShape:
 def lobe_motion(
     lift: float, sides: tuple[SideShape, SideShape], total: float, *, nose: float, around: int | None, field: str
 ) -> Motion:
-    """Motion of a lobe of a lift, mm, over `total` rad; `nose` is the angle of its greatest lift, rad.
+    """Motion of a lobe of a lift, mm or rad, over `total` rad, with the sides `sides`, opening and closing.
 
-    `around` is 1 where the motion repeats each turn. Raises IntentError, with a path below `field`, where no such lobe
-    exists.
+    `nose` is the angle of its greatest lift, rad; `around` is 1 where the motion repeats each turn. Raises IntentError,
+    at `field` or a path below it, where no such lobe exists.
     """
     from kin.law.programme import IntentError
     from kin.law.sources.cam_card import sides_of_card
@@ -74,7 +74,7 @@ def lobe_motion(
 
 
 def _side_card(lift: float, side: SideShape, total: float, field: str) -> SideCard:
-    """A side for kin: by its powers, or by its cam card."""
+    """A side in kin's form: known by its powers, or to be found from its cam card; IntentError for faults of it."""
     from kin.law.sources.cam_card import Crossing, SideCard
     from kin.law.sources.lobe import Ramp, demand_ramp, side_of
 
@@ -89,7 +89,7 @@ def _side_card(lift: float, side: SideShape, total: float, field: str) -> SideCa
 
 
 def _mixture_words(members: tuple[tuple[tuple[int, ...], float], ...], side: LobeSide) -> str:
-    """The mixture of a side in words."""
+    """Words for a side found from its card: its polynomials' weights and powers, and its angle."""
     shares = " + ".join(f"{weight:.4g} x {'-'.join(map(str, powers))}" for powers, weight in members)
     return f"the card is met by {shares} over {math.degrees(side.half):.6g} degrees of the cam"
 
@@ -98,7 +98,7 @@ def _mixture_words(members: tuple[tuple[tuple[int, ...], float], ...], side: Lob
 
 
 def lobe_field(stroke: Kind, most: float) -> Field:
-    """Field of a lobe whose lifts are lengths or angles up to `most`."""
+    """Field of a lobe; `stroke` is the kind of its lifts, lengths or angles, up to `most`."""
     nose = Field(
         "nose",
         Kind.ANGLE,
@@ -162,7 +162,7 @@ def _durations_schema(table: FieldTable, _: Field) -> Schema:
 def _read_durations(
     table: FieldTable, reader: Reader, field: Field, node: Node, path: str
 ) -> tuple[tuple[float, float], ...] | None:
-    """Read lifts and the angles of the crank for which a lobe is above them."""
+    """Read lifts and the angles of the crank for which a lobe is above them; None after a fault."""
     row = Field("", Kind.TABLE, field.about, table=table)
     if isinstance(node, Mapping):
         rows = [reader.mapping(row, node, path)]
@@ -174,11 +174,11 @@ def _read_durations(
 
 
 def read_sides(values: Values, path: str, reader: Reader) -> tuple[SideShape, SideShape] | None:
-    """Read the two sides of a lobe; None where one is faulty, and the fault is noted."""
+    """The two sides of a lobe, opening and closing, from its values; after a fault, which is noted, None."""
     sides = []
     for name in _SIDES:
         own, place = values.get(name, {}), join(path, name) if name in values else path
-        # powers and durations stand in place of one another: a side's own take the place of either
+        # powers and durations exclude one another: a side's own replace the shared ones of either form
         shared = {key: values[key] for key in ("half", "powers", "duration", "ramp") if key in values}
         if "powers" in own or "duration" in own:
             shared = {

@@ -1,7 +1,8 @@
 """The motion of a recipe: segments, a formula, a table, points or a lobe; one grammar for every kind of cam.
 
-A kind of cam sets the angle over which its motion runs, and `around` of kin's `Motion`: how the end joins the start.
-Over a whole turn (1) the least displacement is 0, over a part of one S begins at 0.
+A kind of cam sets the angle over which its motion runs, and how it goes on beyond, `around`: 1 for a motion that
+repeats, -1 for one that goes on as S(total) - S(t - total), None for one that ends. With 1 the least displacement is 0,
+otherwise S begins at 0.
 """
 
 from __future__ import annotations
@@ -36,8 +37,8 @@ if TYPE_CHECKING:
 
 _PLACES = 9  # decimals of a degree in angles that are left
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law.programme)
-_ROUNDING = 1e-9  # of a stroke that is just as great as it may be
-_ZERO = 1e-11  # of the greatest displacement: a beginning below this is rounding
+_ROUNDING = 1e-9  # share by which rounding may bring the greatest stroke above its bound
+_ZERO = 1e-11  # of the greatest displacement: a displacement below this at the start is rounding
 MM_PER_INCH = 25.4
 MOST_POINTS = 1000
 MOST_REPEATS = 100
@@ -47,23 +48,25 @@ LEAST_READING = 1e-9  # of the stroke, where a recipe gives none: a table may sh
 class MotionSource(ABC):
     """A motion as a recipe gives it, lengths in mm, angles in rad; can be compared, hashed and pickled.
 
-    `scale` mm or rad are one of the recipe's units; `source` is the key of its source, behind its field's path.
+    `scale` is the recipe's unit of displacement in mm or rad; `source` ends the path of its field in errors, such as
+    .table.
     """
 
     scale: float
     source: ClassVar[str] = ""
 
     def motion(self, total: float, field: str, around: int | None) -> Motion:
-        """Make the motion over `total` rad, or with `around` 1 over an equal part of it that repeats.
+        """Make the motion over `total` rad; `around`, 1, -1 or None, is how it goes on beyond (see the module).
 
-        Raises kin's IntentError with the field of what does not fit. Its `joints` say how the parts join.
+        With repeats the motion runs over an equal part of `total`. Raises kin's IntentError, at a path below `field`,
+        for a motion that cannot be made, that does not begin at 0 where it must, or whose stroke is too great.
         """
         motion = self._made(total, field, around)
         self._demand_within(motion, f"{field}{self.source}")
         return motion.from_lowest() if around == 1 else motion
 
     def _demand_within(self, motion: Motion, field: str) -> None:
-        """Raise IntentError for a motion over more than any stroke may be."""
+        """Raise IntentError for a motion whose stroke exceeds MOST of the recipe's units."""
         from kin.law.programme import IntentError
         from kin.law.sources.peaks import extremes
 
@@ -79,21 +82,22 @@ class MotionSource(ABC):
             )
 
     def for_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> MotionSource:  # noqa: ARG002
-        """The motion with its follower, whose contour lies `within` so many others round the shaft, -1 for a ring's.
+        """The motion for a follower: itself, unless it is given by a contour, on which the follower runs.
 
-        `contact` is called only where the motion depends on it: a cam that is being sized has no place of its follower
-        yet.
+        The follower's contour lies within `within` others round the shaft, 0 for the outermost, -1 for a ring's.
+        `contact` makes the follower's contact; it is called only where the motion depends on it, as a cam that is being
+        sized has no place of its follower yet.
         """
         return self
 
     @property
     def covered(self) -> float | None:
-        """Angle that the segments fill, rad; None for a source that fills any angle."""
+        """Angle that the segments fill, rad, without repeats; None for a source that fills any angle."""
         return None
 
     @property
     def last(self) -> float | None:
-        """Last angle that the source gives, rad; None for one without an end."""
+        """Last angle that the source gives, rad; None for a source that fills any angle."""
         return self.covered
 
     @property
@@ -112,22 +116,22 @@ class MotionSource(ABC):
 
 @dataclass(frozen=True)
 class Open:
-    """Segments of which one takes the least angle that the limits allow, and a dwell the rest of the turn."""
+    """Segments with angles left open: one takes the least angle that the limits allow, a dwell the rest of the turn."""
 
     motion: Segments
 
     def index(self, word: str) -> int:
-        """Index of the segment that has `word` in place of its angle."""
+        """Index of the segment that has `word`, least or rest, in place of its angle."""
         return next(i for i, segment in enumerate(self.motion.segments) if segment.free == word)
 
     @property
     def remaining(self) -> float:
-        """Angle that the other segments leave for both, degrees."""
-        others = math.fsum(segment.over for segment in self.motion.segments)
-        return round(360.0 / self.motion.repeat - math.degrees(others), _PLACES)
+        """Angle that the other segments leave for the two open ones together, degrees."""
+        stated = math.fsum(segment.over for segment in self.motion.segments)
+        return round(360.0 / self.motion.repeat - math.degrees(stated), _PLACES)
 
     def with_least(self, least: float) -> tuple[Segments, float]:
-        """The motion with its least angle set, degrees, and the angle of the dwell, degrees."""
+        """The motion with its least angle set to `least`, degrees, and the angle of its dwell, degrees."""
         rest = round(self.remaining - least, _PLACES)
         angles = {"": 0.0, LEAST: math.radians(least), REST: math.radians(rest)}
         segments = (replace(s, over=s.over + angles[s.free], free="") for s in self.motion.segments)
@@ -136,10 +140,7 @@ class Open:
 
 @dataclass(frozen=True)
 class Segments(MotionSource):
-    """Motion programme of segments one after another, `repeat` times a turn.
-
-    `scale` mm or rad are one of the recipe's units.
-    """
+    """Motion programme of segments one after another, `repeat` times a turn."""
 
     segments: tuple[MotionSegment, ...]
     repeat: int = 1
@@ -189,7 +190,11 @@ class FormulaMotion(MotionSource):
 
 @dataclass(frozen=True)
 class TableMotion(MotionSource):
-    """Motion by rows of a table, each kept within a reading error; `scale` mm or rad are one of the recipe's units."""
+    """Motion by rows of a table, each kept within `reading`, mm or rad; `file` names the table in errors.
+
+    `rest` is how a rest of the table is read, None for the usual way; `suspects` whether rows that look like slips are
+    refused or kept.
+    """
 
     file: str
     rows: Rows
@@ -210,6 +215,7 @@ class TableMotion(MotionSource):
 
 @lru_cache(maxsize=8)
 def _kept(table: TableMotion, total: float, field: str, around: int | None) -> Motion:
+    """Motion that keeps the rows of a table; made once, as it takes long."""
     from kin.law.programme import IntentError
     from kin.law.sources.table import from_table
     from kin.law.sources.tabled import TableError
@@ -227,7 +233,10 @@ def _kept(table: TableMotion, total: float, field: str, around: int | None) -> M
 
 @dataclass(frozen=True)
 class ContourMotion(MotionSource):
-    """Motion of the follower in contact with a drawing's contour, within a reading error, mm or rad."""
+    """Motion of the follower in contact with a drawing's contour, within `reading`, mm or rad.
+
+    `contact` is None until the motion is made for a follower; the contour lies within `within` others.
+    """
 
     drawing: CamDrawing
     reading: float
@@ -237,10 +246,7 @@ class ContourMotion(MotionSource):
     source: ClassVar[str] = ".contour"
 
     def for_follower(self, contact: Callable[[], Contact[Guide, Touch]], within: int) -> ContourMotion:
-        """Copy of the motion with its follower's contact.
-
-        The contour lies `within` so many others round the shaft, -1 for a ring's.
-        """
+        """Copy of the motion with its follower's contact, on the contour within `within` others, -1 for a ring's."""
         return replace(self, contact=contact(), within=within)
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
@@ -255,7 +261,10 @@ class ContourMotion(MotionSource):
 
 @dataclass(frozen=True)
 class PointsMotion(MotionSource):
-    """Motion through points (angle, displacement), angles rising; neighbours of equal displacement enclose a dwell."""
+    """Motion through points (angle, displacement), rad and mm or rad, with rising angles.
+
+    Neighbours of equal displacement enclose a dwell.
+    """
 
     points: tuple[tuple[float, float], ...]
     scale: float
@@ -282,7 +291,7 @@ class PointsMotion(MotionSource):
     def _ends_of_dwells(
         self, total: float, around: int | None
     ) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
-        """Points without those inside a dwell, and the dwells (start, end), rad."""
+        """Points but for those inside a dwell, and the dwells (start, end), rad."""
         points = list(self.points)
         closed = around == 1 and points[-1][0] - points[0][0] > total - _ANGLE
         if closed and points[-1][1] == points[0][1]:
@@ -291,7 +300,7 @@ class PointsMotion(MotionSource):
         same = [points[i][1] == points[(i + 1) % n][1] and (i + 1 < n or around == 1) for i in range(n)]
         kept = [point for i, point in enumerate(points) if not (same[i] and same[i - 1])]
         later = [*kept[1:], (kept[0][0] + total, kept[0][1])][: len(kept) if around == 1 else -1]
-        dwells = [(a, b) for (a, s), (b, other) in zip(kept, later, strict=False) if s == other]
+        dwells = [(a, b) for (a, s), (b, s_next) in zip(kept, later, strict=False) if s == s_next]
         return kept, dwells
 
 
@@ -327,9 +336,10 @@ def _demand_zero(value: float, within: float, scale: float, field: str, where: s
 def motion_field(
     name: str, stroke: Kind, about: str, *, whole_turn: bool = False, longest: int = 180, required: bool = False
 ) -> Field:
-    """Make the field of a motion whose strokes are lengths or angles; one over a `whole_turn` may repeat itself.
+    """Make the field `name` of a motion; `stroke` is the kind of its displacements, lengths or angles.
 
-    `longest` degrees are those of a segment, where it is not over a whole turn.
+    A motion over a `whole_turn` may repeat itself and leave angles open. `longest` is the greatest angle of a segment,
+    degrees, of a motion that is not over a whole turn.
     """
     sources = _sources(stroke, whole_turn=whole_turn)
     form = OwnForm(
@@ -524,7 +534,7 @@ def _points(_: Field) -> Schema:
 
 
 def check_filled(motion: MotionSource, path: str, angle: float, remedy: str, reader: Reader, *, why: str) -> None:
-    """Note segments that do not fill their angle, rad, for the reason `why`."""
+    """Note segments that do not fill `angle`, rad; `remedy` names that angle, `why` says why no more fits."""
     if motion.covered is None or abs(motion.covered - angle) <= _ANGLE:
         return
     value = f"{math.degrees(motion.covered):.10g} degrees"
@@ -533,7 +543,7 @@ def check_filled(motion: MotionSource, path: str, angle: float, remedy: str, rea
 
 
 def check_whole_turn(motion: MotionSource, path: str, reader: Reader) -> None:
-    """Note segments that do not fill the turn or their part of it, or leave nothing for open angles."""
+    """Note segments that do not fill the turn, or an equal part of it if they repeat, or that leave no open angle."""
     repeat = motion.repeats
     if motion.open is not None and motion.open.remaining <= 0.0:
         remedy = f"let all the others cover less than {360 / repeat:.10g} degrees"

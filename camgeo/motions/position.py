@@ -28,7 +28,7 @@ class PositionLaw(Protocol):
 
 
 class _Turn(ABC):
-    """A position over one turn, from `rows`."""
+    """Positions of the follower over one turn."""
 
     @abstractmethod
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
@@ -60,13 +60,16 @@ class _Swing:
         return math.degrees(1.0)
 
     def convert(self, value: Array, mm: float) -> Array:  # noqa: ARG002
-        """Positions (n,) in degrees."""
+        """Positions (n,), rad, in degrees."""
         return np.degrees(value)
 
 
 @dataclass(frozen=True)
 class LiftPosition(_Turn):
-    """Lift along a line, by a law whose parameter is the shaft angle; `datum` is the law's value at lift 0, mm."""
+    """Lift along a line, by a law whose parameter is the shaft angle; `datum` is the law's value at lift 0, mm.
+
+    A subclass reports the same law as a swing, mm read as rad.
+    """
 
     law: PositionLaw
     datum: float = 0.0
@@ -78,21 +81,21 @@ class LiftPosition(_Turn):
         return "lift_in" if units == "inch" else "lift_mm"
 
     def factor(self, mm: float) -> float:
-        """Factor from `rows` to the lengths of tables and plots, in units of `mm` mm."""
+        """Factor from mm to the unit of tables and plots, of `mm` mm."""
         return 1.0 / mm
 
     def convert(self, value: Array, mm: float) -> Array:
-        """Positions (n,), mm, in units of `mm` mm, by division: a product with `factor` may end in another digit."""
+        """Positions (n,), mm, in a unit of `mm` mm, by division: a product with `factor` may end in another digit."""
         return value / mm
 
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
-        """Lift from its datum, mm, and its derivatives by the shaft angle, (order + 1, n), on a side of breaks."""
+        """Lift above the datum, mm, and derivatives by the shaft angle, (order + 1, n); `side` -1 before breaks."""
         rows = np.array(self.law.derivatives(shaft, order, side))
         rows[0] -= self.datum
         return rows
 
     def travel(self, shaft: Array, order: int) -> Array:
-        """Position from the zero of the contacts, not from the datum, mm or rad, with derivatives, (order + 1, n)."""
+        """The law's position, not less the datum, mm or rad, and derivatives at shaft angles (n,): (order + 1, n)."""
         return self.law.derivatives(shaft, order)
 
     def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
@@ -108,25 +111,25 @@ class LiftPosition(_Turn):
         return degrees(parameter)
 
     def stroke(self, parameter: Array) -> tuple[float, float]:
-        """Stroke over parameters (n,), mm, and 1, as it has no arm."""
+        """Stroke over parameters (n,), mm, and 1 in place of the length of an arm."""
         return float(np.ptp(self.law.derivatives(parameter, 0)[0])), 1.0
 
     def by_parameter(self, parameter: Array, order: int) -> Array:
-        """Lift, mm, from the zero of the contacts, and derivatives by the shaft angle at parameters, (order + 1, n).
+        """The law's position, not less the datum, mm, and derivatives by the shaft angle at parameters (n,) of the law.
 
-        The parameters are those of the law.
+        The shape is (order + 1, n).
         """
         return self.law.derivatives(parameter, order)
 
 
 @dataclass(frozen=True)
 class ArmPosition(_Swing, LiftPosition):
-    """Swing about a pivot, by a law whose parameter is the shaft angle, rad; `arm` is its length, mm."""
+    """Swing about a pivot, rad, by a law whose parameter is the shaft angle; `arm` is the arm's length, mm."""
 
     arm: float = 1.0
 
     def stroke(self, parameter: Array) -> tuple[float, float]:
-        """Swing in rad, and the arm in mm."""
+        """Swing over parameters (n,), rad, and the length of the arm, mm."""
         return super().stroke(parameter)[0], self.arm
 
 
@@ -142,11 +145,11 @@ class SwingPosition(_Swing, _Turn):
         return self.share * self.law.psi_of_shaft(shaft, order, side)
 
     def travel(self, shaft: Array, order: int) -> Array:
-        """Swing, rad, and its derivatives, (order + 1, n): its zero is that of the contacts."""
+        """Swing, rad, and its derivatives by the shaft angle, (order + 1, n), at shaft angles (n,)."""
         return self.rows(shaft, order)
 
     def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
-        """Parameters of the contour (n,) at contacts A and B, by the prefixes of their columns in tables, `a_`, `b_`.
+        """Parameters of the contour, rad (n,), at contacts A and B, by the prefixes of their columns, `a_` and `b_`.
 
         The law repeats itself with phi - psi + delta for phi and -psi for psi (W 1984, 4.9). Repeated mu times, mu odd,
         that puts A where B is, at phi - psi + alpha.
@@ -159,13 +162,13 @@ class SwingPosition(_Swing, _Turn):
         return degrees(float(self.law.at(parameter, 0)[0][0, 0]))
 
     def stroke(self, parameter: Array) -> tuple[float, float]:
-        """Swing in rad, and the arm in mm."""
+        """Swing over parameters (n,), rad, and the length of the arm, mm."""
         return float(np.ptp(self.law.at(parameter, 0)[1][0])) * self.share, self.law.arm
 
     def by_parameter(self, parameter: Array, order: int) -> Array:
-        """Swing, rad, and derivatives by the shaft angle, (order + 1, n), as quotients of series.
+        """Swing, rad, and derivatives by the shaft angle at parameters (n,) of the law, (order + 1, n).
 
-        They hold where phi' and psi' nearly meet too.
+        They are quotients of series, which also hold where phi' and psi' nearly meet.
         """
         from kin.numeric.elementary import Jet
 

@@ -24,14 +24,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SccaLaw:
-    """A member of the SCCA family: shares of sine and constant acceleration, and of constant velocity."""
+    """A member of the SCCA family, by the shares of its accelerating half that have sine or constant acceleration.
+
+    `velocity` is the share of the segment at constant velocity.
+    """
 
     sine: float = 0.0
     constant: float = 0.0
     velocity: float = 0.0
 
     def law(self, over: float, field: str) -> Law:  # noqa: ARG002 - its shares are of any angle
-        """The law; raises IntentError for shares out of bounds."""
+        """The law over the unit angle; raises IntentError, at a path below `field`, for shares out of bounds."""
         from kin.law.sources.laws import scca
 
         return scca(self.sine, self.constant, self.velocity, f"{field}.scca")
@@ -39,12 +42,12 @@ class SccaLaw:
 
 @dataclass(frozen=True)
 class UniformLaw:
-    """Constant velocity between two blends, their angles in rad."""
+    """Constant velocity between two blends, at the begin and the end, with angles in rad."""
 
     blend: tuple[float, float]
 
     def law(self, over: float, field: str) -> Law:
-        """The law over an angle, rad; raises IntentError for blends that are longer."""
+        """The law of a segment `over` rad long; raises IntentError, below `field`, for blends longer than that."""
         from kin.law.programme import IntentError
         from kin.law.sources.laws import blended
 
@@ -60,7 +63,7 @@ class UniformLaw:
 
 @dataclass(frozen=True)
 class PointsLaw:
-    """Points (u, s) from (0, 0) to (1, 1) for a spline to go through."""
+    """Points (u, s) of a spline, shares of the segment's angle and stroke, from (0, 0) to (1, 1)."""
 
     points: tuple[tuple[float, float], ...]
 
@@ -73,7 +76,7 @@ class PointsLaw:
 
 @dataclass(frozen=True)
 class TableLaw:
-    """Rows (u, s) of a table, each kept within a reading."""
+    """Rows (u, s) of a table, shares of the segment's angle and stroke, each kept within `reading`, a share of s."""
 
     file: str
     rows: Rows
@@ -96,7 +99,7 @@ def _law_of_rows(table: TableLaw, field: str) -> Law:
 
 
 OwnLaw: TypeAlias = SccaLaw | UniformLaw | PointsLaw | TableLaw
-_PLACES = 9  # decimals of a degree: what sums of angles are rounded by is cut off
+_PLACES = 9  # decimals of a degree: more are rounding of sums of angles
 MATCH = "match"  # the law that takes its neighbours' velocity and acceleration
 
 
@@ -104,11 +107,14 @@ MATCH = "match"  # the law that takes its neighbours' velocity and acceleration
 class MotionSegment:
     """One segment of a motion programme.
 
-    `over` in rad; `stroke` in mm for a plate, in rad for a follower that swings: of a rise, a return and a rise_fall
-    their height, of `to` the displacement at the end, 0 for a dwell. `law` is a name, the coefficients c0, c1, ... of
-    a polynomial in u, or shares. `formula` is a displacement in u, its values times `scale`. `at_end` holds v and a at
-    the end of a matched segment, per rad. `free` is the word that stands in place of its angle, which is 0 until it is
-    found: the least that the recipe's limits allow, or the rest of the turn.
+    over     its angle, rad; 0 while a word stands in its place
+    stroke   mm, or rad for a follower that swings: height of a rise, return or rise_fall, displacement at the end for
+             `to`, 0 for a dwell
+    law      a name, the coefficients c0, c1, ... of a polynomial in u, or a law of the recipe's own
+    split    share of the segment that accelerates; None for the law's own
+    at_end   velocity and acceleration at the end of a matched segment, per rad and rad^2; None for rest
+    formula  displacement in u from 0 to 1; its values times `scale` are mm or rad
+    free     the word in place of its angle: least for the least that the limits allow, rest for the rest of the turn
     """
 
     kind: Literal["rise", "return", "to", "rise_fall", "displacement", "dwell"]
@@ -124,7 +130,8 @@ class MotionSegment:
     def step(self, field: str = "motion") -> Step:
         """The segment with its law, as `kin.law.sources.programme` takes it.
 
-        Raises kin's IntentError where a split or an end does not go with the law, with its field.
+        Raises kin's IntentError, at a path below `field`, where a split or a state at the end does not go with the law,
+        and where the law cannot be made.
         """
         from kin.law.programme import IntentError
         from kin.law.sources.laws import split
@@ -162,12 +169,12 @@ class MotionSegment:
 
 
 LEAST: Literal["least"] = "least"  # in place of the angle of a segment: the least that the recipe's limits allow
-REST: Literal["rest"] = "rest"  # in place of that of a dwell: what the others leave
+REST: Literal["rest"] = "rest"  # in place of the angle of a dwell: what the other segments leave of the turn
 _ANGLE = Field("", Kind.ANGLE, "", at_least=0, at_most=360)
 
 
 def _angle_or(word: str, about: str, field: Field) -> Field:
-    """The field of an angle, made to take a word too."""
+    """The field of an angle, which takes `word` too; `about` says in texts what the word stands for."""
 
     def read(reader: Reader, field: Field, node: Node, path: str) -> float | str | None:
         if isinstance(node, Scalar) and node.text == word:
@@ -184,7 +191,7 @@ def _angle_or_schema(word: str, field: Field) -> Schema:
 
 
 def _read_blend(reader: Reader, field: Field, node: Node, path: str) -> tuple[float, float] | None:
-    """Read an angle, or two."""
+    """Read the angles of two blends, or one angle for both, rad; None after a fault."""
     if isinstance(node, Scalar):
         angle: float | None = reader.field(_ANGLE, node, path)
         return None if angle is None else (angle, angle)
@@ -213,7 +220,10 @@ LEAST_READING = 1e-9  # of a law whose table shows every digit of its computer
 def read_pairs(
     reader: Reader, field: Field, node: Node, path: str, *, parts: tuple[Field, Field], most: int, row: str
 ) -> tuple[tuple[float, float], ...] | None:
-    """Read a list of at most `most` pairs, such as `row`, whose numbers are of the fields `parts`."""
+    """Read a list of at most `most` pairs, whose numbers are of the fields `parts`; None where a pair is faulty.
+
+    `row` is the form of a pair in remedies.
+    """
     points = []
     for i, item in enumerate(reader.items(field, node, path, most)):
         below = join(path, i)
@@ -276,7 +286,10 @@ _LAW = FieldTable(
 
 
 def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple[float, ...] | OwnLaw | None:
-    """Read the name of a motion law, the coefficients of a polynomial, or a law of the recipe's own."""
+    """Read the name of a motion law, the coefficients of a polynomial, or a law of the recipe's own.
+
+    None after a fault.
+    """
     from kin.law.programme import IntentError, polynomial_law
     from kin.law.sources.laws import NAMES, scca
 
@@ -323,7 +336,7 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
 
 
 def _check_law(reader: Reader, node: Node, path: str, law: OwnLaw) -> OwnLaw | None:
-    """The law if it can be made over any angle; None of another one, whose fault is noted."""
+    """The law; where it cannot be made, note the fault and return None."""
     from kin.law.programme import IntentError
 
     try:
@@ -351,7 +364,10 @@ def _table_law(reader: Reader, node: Node, path: str, values: Values) -> OwnLaw 
 def read_segments(
     reader: Reader, field: Field, node: Node, path: str, stroke: Kind = Kind.LENGTH
 ) -> tuple[MotionSegment, ...] | None:
-    """Read the segments of a motion, or None where one is faulty; `field` has the table of a segment."""
+    """Read the segments of a motion; None where a segment is faulty.
+
+    `field` has the table of a segment, `stroke` is the kind of displacements, lengths or angles.
+    """
     faults = len(reader.errors)
     items = reader.items(field, node, path, MOST_SEGMENTS)
     segment = Field("", Kind.TABLE, "", table=field.table)
@@ -367,7 +383,7 @@ def read_segments(
 
 
 def _check_free(reader: Reader, values: list[Values], path: str) -> None:
-    """Note `least` and `rest` that do not stand once each."""
+    """Note `least` or `rest` that stands twice, or without the other."""
     least = [f"{path}[{i}].over" for i, value in enumerate(values) if value.get("over") == LEAST]
     rest = [f"{path}[{i}].dwell" for i, value in enumerate(values) if value.get("dwell") == REST]
     for first, *others in filter(None, (least, rest)):
@@ -396,9 +412,9 @@ LAW = OwnForm("a motion law", "a motion law", read_law, _law_schema)
 
 @cache
 def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> FieldTable:
-    """Table of a segment whose stroke is a length or an angle; it is `over` degrees long at most.
+    """Table of a segment at most `over` degrees long; `stroke` is the kind of its stroke, a length or an angle.
 
-    With `free` a word may leave its angle open.
+    With `free` a word may stand in place of its angle.
     """
     most = 180 if stroke is Kind.ANGLE else MOST
     strokes = [Field(key, stroke, f"stroke of the {key}", above=0, at_most=most) for key in ("rise", "return")]
