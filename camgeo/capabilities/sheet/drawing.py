@@ -1,4 +1,4 @@
-"""From a judged run to the shop drawing of each disc: what it says, its pages, its PDF and its DXF."""
+"""From a judged run to the shop drawing of each disc: its notes, its pages, its PDF and its DXF."""
 
 from __future__ import annotations
 
@@ -36,9 +36,11 @@ ARCS = FileRequest("dxf", "arcs", units="mm")
 
 
 def make_sheets(run: RunResults, request: FileRequest, path: Path) -> MadeFiles:
-    """Write the drawing of each disc as PDF at `path`, or beside it, and as DXF, which is judged as any drawing is.
+    """Write the drawing of each disc as PDF and as DXF; return the files, and the checks of the DXF, which is judged.
 
-    Nothing is drawn where no cam is made. Raises RecipeErrors for what cannot be drawn.
+    A single disc's PDF is at `path`; of several each has its number in the name. No files are made where no cam is
+    made. Raises RecipeErrors for characters that the font lacks, a text that does not fit into its cell, two tolerances
+    that differ, views that do not fit on the paper, and a tolerance that the contour cannot hold.
     """
     if run.job is None:
         return MadeFiles(())
@@ -81,7 +83,7 @@ def _make_sheet(run: RunResults, job: Job, request: FileRequest, path: Path, *, 
 
 
 def _tolerance(recipe: Recipe, sheet: Sheet, field: str) -> Tolerance:
-    """Give the contour's profile tolerance, which two sections may not state differently, and its datums."""
+    """The contour's profile tolerance and its datums; raises RecipeErrors where two sections state different widths."""
     stated, own = recipe.zone, sheet.profile
     if stated is not None and own is not None and not math.isclose(stated[1], own, rel_tol=1e-9):
         other, width = stated
@@ -97,7 +99,7 @@ def _tolerance(recipe: Recipe, sheet: Sheet, field: str) -> Tolerance:
 
 
 class Pages(NamedTuple):
-    """Pages of one disc: the annotated ones, and the last at 1 : 1, if there is one.
+    """Pages of one disc: those that the DXF repeats as annotation, and the last at 1 : 1, None where no paper holds it.
 
     `origin` is the place of the shaft on the first page, mm, and `scale` the scale of its views.
     """
@@ -117,6 +119,7 @@ def _pages(
     run: RunResults, job: Job, sheet: Sheet, drawn: DrawnDisc, *, tolerance: Tolerance, field: str, rank: int
 ) -> Pages:
     recipe, contours = run.recipe, job.design.contours
+    # contents before places: what the notes take decides how large the views may be
     sizes = disc_sizes(drawn, _base(job), tolerance)
     names = [(surface.name if len(contours) > 1 else "", contour) for surface, contour in contours]
     table = polar_table(names, sheet.step, ccw=drawn.ccw)
@@ -135,6 +138,7 @@ def _pages(
         first.text((left, low + LINE * k), note)
     sources = [(file.path.name, hashlib.sha256(file.path.read_bytes()).hexdigest()) for file in run.findings.files]
     pages = [first, *table_pages(table, sheet.paper), motion_page(job.design, run.findings, sheet.paper, sources)]
+    # title block and footers last, as they state the number of pages
     count = len(pages) + (0 if last is None else 1)
     facts = Facts(layout.word, _mass(run, rank), 1, count)
     try:
@@ -156,7 +160,10 @@ def _no_room(recipe: Recipe, sheet: Sheet, field: str, error: NoRoomError) -> Ex
 
 
 def _base(job: Job) -> tuple[str, float] | None:
-    """Name and radius of the circle that the contour is described from: the base circle, or its least distance."""
+    """Name and radius, mm, of the base circle, else of the circle of the contour's least distance from the shaft.
+
+    None where that distance is no more than the tolerance.
+    """
     from camgeo.curve.measures import nearest
 
     surface, contour = job.design.contours[0]

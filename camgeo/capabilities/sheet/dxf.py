@@ -28,7 +28,10 @@ PATTERNS = {"": "BYLAYER", "dashed": "DASHED", "chain": "CENTER"}
 
 
 def annotation(pages: Sequence[Page], origin: Point, scale: float) -> Callable[[Modelspace], Box]:
-    """Function that draws pages side by side at the size of the part, the first page's `origin` at the drawing's."""
+    """Function that draws pages side by side in a modelspace, and returns their bounds (x0, y0, x1, y1), mm.
+
+    Lengths of paper are divided by `scale`; `origin`, mm on the first page, comes to the origin of the drawing.
+    """
 
     def annotate(space: Modelspace) -> Box:
         _prepare(space, scale)
@@ -46,7 +49,7 @@ def annotation(pages: Sequence[Page], origin: Point, scale: float) -> Callable[[
 
 
 def _prepare(space: Modelspace, scale: float) -> None:
-    """Add layers, line types, the style of texts and that of dimensions, which measures in mm and has arrows."""
+    """Add layers, line types, the style of texts, and the style of dimensions, in mm with arrows."""
     document = space.doc
     document.linetypes.add("DASHED", [4.5 / scale, 3.0 / scale, -1.5 / scale], description="Dashed _ _ _")
     for layer, colour in COLOURS.items():
@@ -63,7 +66,7 @@ def _prepare(space: Modelspace, scale: float) -> None:
 
 
 class _Pen:
-    """Draws marks of a page, shifted by mm of paper and divided by the scale."""
+    """Draws marks of a page, shifted by (x, y), mm of paper, and divided by the scale."""
 
     def __init__(self, space: BaseLayout, x: float, y: float, scale: float) -> None:
         self._space, self._x, self._y, self._scale = space, x, y, scale

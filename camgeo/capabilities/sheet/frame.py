@@ -23,7 +23,7 @@ SIZES = {
 BINDING, EDGE = 20.0, 10.0  # mm: margin on the left, and on the other sides
 INNER = 5.5  # mm: between the frame and what stands beside it, clear of the marks of its middles
 BLOCK = 180.0  # mm: width of the title block
-ROW = 9.5  # mm: height of a row of it
+ROW = 9.5  # mm: height of a row of the title block
 CELLS = (
     (
         (90.0, "number", "Drawing number"),
@@ -50,7 +50,7 @@ class Area(NamedTuple):
 
 
 class LongTextError(CamgeoError, ValueError):
-    """A text that does not fit into its cell: the option's name, and how many characters would."""
+    """A text that does not fit into its cell: `option` is its option, `fits` the number of characters that would."""
 
     def __init__(self, option: str, fits: int) -> None:
         super().__init__(option)
@@ -58,7 +58,7 @@ class LongTextError(CamgeoError, ValueError):
 
 
 class Facts(NamedTuple):
-    """Entries of the title block that are not options: scale, mass, page number and number of pages."""
+    """Entries of the title block that are not options: scale and mass in words, page number and number of pages."""
 
     scale: str
     mass: str
@@ -67,7 +67,7 @@ class Facts(NamedTuple):
 
 
 def framed_page(name: str, paper: str) -> Page:
-    """An empty page with its frame and centring marks."""
+    """An empty page with its frame and centring marks; `paper` is a size of SIZES."""
     wide, high = SIZES[paper]
     page = Page(name, wide, high)
     page.box((BINDING, EDGE), wide - BINDING - EDGE, high - 2.0 * EDGE, BORDER, "FRAME")
@@ -80,7 +80,10 @@ def framed_page(name: str, paper: str) -> Page:
 
 
 def free_area(paper: str, *, block: bool, notes: float = 0.0) -> Area:
-    """Free area of a page above its title block and notes of a height, mm; the notes stand beside the block on A3."""
+    """Area of a page within its frame that stays free above the title block, or else a footer, and above the notes.
+
+    `notes` is their height, mm; on paper wider than A4 they stand beside the block.
+    """
     wide, high = SIZES[paper]
     beside = wide - BINDING - EDGE - BLOCK > 100.0
     low = EDGE + (ROWS * ROW if block else ROW)
@@ -89,11 +92,11 @@ def free_area(paper: str, *, block: bool, notes: float = 0.0) -> Area:
 
 
 def notes_at(paper: str) -> tuple[float, float, float]:
-    """Place of notes on a page: left edge, the lowest line's baseline, width, mm."""
+    """Place of the notes on a page, mm: their left edge, the baseline of their lowest line, their greatest width."""
     wide, _ = SIZES[paper]
     beside = wide - BINDING - EDGE - BLOCK > 100.0
-    room = wide - BINDING - EDGE - (BLOCK if beside else 0.0)
-    return BINDING + 4.0, EDGE + (3.0 if beside else ROWS * ROW + 3.0), room - 8.0
+    free = wide - BINDING - EDGE - (BLOCK if beside else 0.0)
+    return BINDING + 4.0, EDGE + (3.0 if beside else ROWS * ROW + 3.0), free - 8.0
 
 
 def title_block(page: Page, sheet: Sheet, facts: Facts) -> None:

@@ -17,7 +17,7 @@ SMALL, PLAIN, LARGE = 2.5, 3.5, 5.0  # mm: heights of ISO 3098, none below 2.5
 
 
 def new_pdf() -> FPDF:
-    """Give an empty PDF in mm with the font."""
+    """An empty PDF without pages, in mm, with the font; raises ModuleNotFoundError without fpdf2."""
     from fpdf import FPDF
 
     pdf = FPDF(unit="mm")
@@ -40,7 +40,7 @@ def _measuring() -> FPDF:
 
 @cache
 def width(text: str, height: float) -> float:
-    """Width of a text, mm."""
+    """Width, mm, of a text whose capitals are `height` mm high."""
     return float(_measuring().get_string_width(text)) * font_points(height) / 1000.0
 
 
@@ -51,7 +51,7 @@ def unknown(text: str) -> str:
 
 
 def wrap(text: str, wide: float) -> list[str]:
-    """Lines of a text that are no wider than this, mm."""
+    """Lines of a text in the height SMALL, no wider than `wide` mm, but for a longer word, which has its own line."""
     lines: list[str] = []
     line = ""
     for word in text.split():

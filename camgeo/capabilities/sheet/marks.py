@@ -28,7 +28,7 @@ LETTERS, BELOW = 1.0, 0.3  # of a text's height: what it reaches above and below
 
 @dataclass(frozen=True, eq=False)
 class LineMark:
-    """A line through points (n, 2); what is on the layer "" stands in a DXF already, as a contour."""
+    """A line through points (n, 2), mm; a DXF leaves out the layer "", whose lines it has already as outlines."""
 
     points: Array
     weight: float = THIN
@@ -40,7 +40,7 @@ class LineMark:
 
 @dataclass(frozen=True)
 class CircleMark:
-    """A circle; `weight` is the width of its line, mm, `pattern` that of its dashes, solid by default."""
+    """A circle, mm; `weight` is the width of its line, mm, `pattern` its pattern of dashes, solid by default."""
 
     centre: Point
     radius: float
@@ -76,8 +76,8 @@ class Text:
 class Dimension:
     """A dimension between two points of a view, along a direction (degrees), or across a circle (None).
 
-    `base` is a point of the dimension line; `value` (mm) is what it measures of the part. `lines` and `text` draw it,
-    but for a leader that stands beside it.
+    `base` is a point of the dimension line; `value` is the length on the part, mm. `lines` and `text` draw the
+    dimension; a leader is a mark of its own.
     """
 
     first: Point
@@ -102,11 +102,11 @@ class Page:
     marks: list[Mark] = field(default_factory=list)
 
     def line(self, *points: Point, weight: float = THIN, layer: Layer = "DIM", pattern: Pattern = "") -> None:
-        """Add an open line."""
+        """Add an open line through points, mm."""
         self.marks.append(LineMark(np.array(points), weight, layer, pattern))
 
     def box(self, corner: Point, wide: float, high: float, weight: float = THIN, layer: Layer = "DIM") -> None:
-        """Add a rectangle from its lower left corner."""
+        """Add a rectangle `wide` by `high` mm from its lower left corner; `weight` is the width of its line, mm."""
         x, y = corner
         corners = np.array([(x, y), (x + wide, y), (x + wide, y + high), (x, y + high)])
         self.marks.append(LineMark(corners, weight, layer, closed=True))
@@ -121,19 +121,19 @@ class Page:
         *,
         turned: bool = False,
     ) -> None:
-        """Add a text; nothing for an empty one."""
+        """Add a text with its baseline at a point, mm, capitals `height` mm high; nothing for an empty text."""
         if text:
             self.marks.append(Text(at, text, height, anchor, layer, turned))
 
     @property
     def texts(self) -> list[Text]:
-        """All texts, those of dimensions among them."""
+        """All texts of the page, texts of dimensions among them."""
         marks = (mark.text if isinstance(mark, Dimension) else mark for mark in self.marks)
         return [mark for mark in marks if isinstance(mark, Text)]
 
 
 def arrow(tip: Point, angle: float) -> LineMark:
-    """Arrow whose tip points in a direction, rad."""
+    """Filled arrowhead with its tip at a point, pointing in a direction, rad."""
     c, s = math.cos(angle), math.sin(angle)
     x, y = tip
     back = (x - ARROW * c, y - ARROW * s)
@@ -146,7 +146,8 @@ def across(
 ) -> Dimension:
     """Dimension between two points along x, its line at the height `base`; or `upright` along y, its line at x = base.
 
-    The text stands above the line, or where there is no room between the arrows beyond its end, or `before` its start.
+    `value` is the length on the part, mm. The text stands above the line; where it does not fit between the arrows, it
+    stands beyond the line's end, or `before` its start.
     """
     k = 1 if upright else 0
     low, high = sorted((first, second), key=lambda point: point[k])
@@ -156,6 +157,7 @@ def across(
     def at(along: float, off: float) -> Point:
         return (off, along) if upright else (along, off)
 
+    # k is the axis measured along; extension lines, arrows from inside or outside, then the dimension line
     lines = []
     for point in (low, high):
         sense = math.copysign(1.0, base - point[1 - k])
@@ -176,7 +178,7 @@ def across(
 
 
 def has_room(long: float) -> bool:
-    """Whether both arrows stand within a dimension line, mm; else they point at it from outside."""
+    """Whether both arrows fit within a dimension line `long` mm; else they point at it from outside."""
     return long >= 2.0 * ARROW + 1.0
 
 
@@ -194,15 +196,15 @@ def text_beyond(between: float, text: str) -> float:
 def round_size(centre: Point, radius: float, label: Text, value: float) -> Dimension:
     """Diameter of a circle, written at a label to which a leader of its own leads.
 
-    Its points lie level, so that a program which draws the dimension anew writes its text level too; one that finds no
-    room for it within a small circle moves it away from the view.
+    Its points lie level, so that a program which draws the dimension anew writes its text level too; within a circle
+    too small for the text, such a program moves it away from the view.
     """
     (x, y) = centre
     return Dimension((x + radius, y), (x - radius, y), (x - radius, y), value, label, ())
 
 
 def leader(tip: Point, start: Point) -> tuple[LineMark, ...]:
-    """Leader from the end of a text to the tip of its arrow."""
+    """Leader from the text at `start` to the arrow's `tip`: its line and its arrowhead."""
     return _line(start, tip), arrow(tip, math.atan2(tip[1] - start[1], tip[0] - start[0]))
 
 
@@ -211,6 +213,6 @@ def _line(*points: Point) -> LineMark:
 
 
 def shifted(points: Sequence[Point] | Array, scale: float, origin: Point) -> Array:
-    """Points of the part (n, 2), mm, as they lie on the paper."""
+    """Points of the part (n, 2), mm, on the paper: times the scale, the shaft at `origin`."""
     placed: Array = np.asarray(points) * scale + np.array(origin)
     return placed

@@ -1,4 +1,4 @@
-"""What a recipe says of a shop drawing: its keys, and the record that they become."""
+"""Options of a shop drawing in a recipe: their keys, and the record that they become."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ TEXTS: Mapping[str, tuple[str, str]] = {
 class Sheet:
     """The options of one drawing; `words` are the texts of the title block with their options.
 
-    `scale` is None for the largest that fits, `step` in rad, `profile` in mm.
+    `scale` is a key of SCALES, None for the largest that fits; `step`, rad, is between rows of the contour's table;
+    `profile` is the width of the tolerance zone, mm, None where the drawing states none.
     """
 
     words: tuple[tuple[str, str], ...]
@@ -104,7 +105,7 @@ OPTIONS = FieldTable(
 
 
 def check_sheet(file: Values, _: Values, reader: Reader) -> None:
-    """Add a fault for a step, degrees, that does not divide a turn."""
+    """Add a fault for a step that does not divide 360 degrees."""
     step = file.get("step")
     if step is not None:
         turns = 2.0 * math.pi / step

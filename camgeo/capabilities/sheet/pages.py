@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 LINE = 4.4  # mm between lines of text
 COLUMN = 6.0  # mm between columns of the table
-BETWEEN = 16  # places in each step at which interpolation is looked at
-BAR = 100.0  # mm
+BETWEEN = 16  # places in each step at which the error of interpolation is computed
+BAR = 100.0  # mm: length of the bar by which a print at 1 : 1 is checked
 
 
 class SheetTable(NamedTuple):
@@ -37,9 +37,10 @@ class SheetTable(NamedTuple):
 
 
 def polar_table(contours: Sequence[tuple[str, Curve]], step: float, *, ccw: bool) -> SheetTable:
-    """Table of polar radii of the contours, by name, at every step, rad; notes give the error of interpolation.
+    """Table of polar radii, mm, of the contours at every `step`, rad; notes give the error of interpolation.
 
-    Where a ray may cross a contour more than once, places X, Y stand instead. The angles run as the disc is drawn:
+    `contours` are pairs of a name and a curve. Where a ray may cross a contour more than once, the table has places
+    X, Y, mm, at even steps of the curve's parameter instead. The angles run as the disc is drawn:
     mirrored with `ccw`.
     """
     from camgeo.curve.measures import StarError, polar_radius
@@ -99,7 +100,7 @@ def _spline(rows: Array, between: int) -> Array:
 
 
 def table_pages(table: SheetTable, paper: str) -> list[Page]:
-    """Pages of the table, as many as it takes."""
+    """Pages of the table, as many as its rows need."""
     area = free_area(paper, block=False)
     cells = [[_cell(value, k) for k, value in enumerate(row)] for row in table.rows.tolist()]
     texts = [[head, *(row[k] for row in cells)] for k, head in enumerate(table.heads)]
@@ -147,7 +148,10 @@ def _draw_rows(
 
 
 def motion_page(design: Design, findings: Findings, paper: str, sources: Sequence[tuple[str, str]]) -> Page:
-    """The follower's motion over a turn above, the verdict and the files that it is of below."""
+    """Page with the follower's motion over a turn, and below it the verdict and the judged files.
+
+    `sources` are pairs of a file's name and its SHA-256.
+    """
     page, area = framed_page("Motion and verdict", paper), free_area(paper, block=False)
     lines = _verdict(findings)
     rows = len(lines) + 2 * len(sources) + 2
@@ -208,7 +212,7 @@ def _draw_motion(page: Page, design: Design, place: tuple[float, float, float, f
 
 
 def _round_step(span: float) -> float:
-    """Step of 1, 2 or 5 times a power of ten that divides a span into ten at most."""
+    """Step of 1, 2 or 5 times a power of ten that divides a span into at most ten parts."""
     power = 10.0 ** math.floor(math.log10(span / 10.0))
     return next(k * power for k in (1.0, 2.0, 5.0, 10.0) if span <= 10.0 * k * power * (1.0 + 1e-9))
 

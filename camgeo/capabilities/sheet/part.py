@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from camgeo.part.part import Part
     from kin.numeric.arrays import Array
 
-SAGITTA = 2e-3  # of an arc's radius and more: chords by which arcs are drawn, far below the width of a line
+SAGITTA = 2e-3  # of an arc's radius: greatest height of an arc over its chords, far below the width of a line
 MOST_CHORDS = 90  # of one arc
 
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """Closed outline: points (n, 2), mm, its layer, and whether it is cut right through; `surface` is a cam contour."""
+    """Closed outline: points (n, 2), mm, its DXF layer, whether it is cut through, and whether it is a cam contour."""
 
     points: Array
     layer: str
@@ -35,7 +35,7 @@ class Loop:
 
 @dataclass(frozen=True, eq=False)
 class DrawnDisc:
-    """Disc as it is drawn, in mm: loops, body, and part of the recipe; with `ccw` it is mirrored."""
+    """Disc as it is drawn, in mm: its loops, its body and the recipe's part; with `ccw` directions are mirrored."""
 
     loops: tuple[Loop, ...]
     body: Body
@@ -60,11 +60,11 @@ class DrawnDisc:
         return SheetView(self.part, openings, number, self.degrees, self.direction)
 
     def direction(self, at: float) -> float:
-        """Direction of a feature in the drawing, rad, from that in the recipe."""
+        """Direction of a feature in the drawing, rad, from its direction `at` in the recipe, rad."""
         return -at if self.ccw else at
 
     def degrees(self, at: float) -> str:
-        """Direction of a feature in the drawing as text with the sign °: degrees from 0 to less than 360."""
+        """Direction in the drawing of a feature at `at` in the recipe, rad, as text: 0 to below 360 with the sign °."""
         angle = math.degrees(self.direction(at)) % 360.0
         return f"{number(angle if angle < 359.99995 else 0.0)}°"
 
@@ -95,7 +95,7 @@ def chords(outline: ArcSpline) -> Array:
 
 
 def disc_loops(outlines: Sequence[LayerOutline], body: Body, contours: int) -> tuple[Loop, ...]:
-    """Loops of a disc's outlines, of which the first are its contours and those of its openings the last."""
+    """Loops of a disc's outlines: first `contours` contours, last its openings; raises TypeError for no arcs."""
     depths = [opening.depth for opening in body.openings]
     through = [True] * (len(outlines) - len(depths)) + [depth is None for depth in depths]
     loops = []
@@ -111,7 +111,7 @@ def disc_loops(outlines: Sequence[LayerOutline], body: Body, contours: int) -> t
 
 @dataclass(frozen=True)
 class SectionMetal:
-    """Metal in the section from y `low` to `high`; whether its ends lie on a contour."""
+    """Metal in the section from y `low` to `high`, mm, and whether these ends lie on a cam contour."""
 
     low: float
     high: float
@@ -120,7 +120,7 @@ class SectionMetal:
 
 
 def metal(loops: Sequence[Loop]) -> list[SectionMetal]:
-    """Stretches of the y axis, mm, within an odd number of loops, which are metal."""
+    """Stretches of the y axis that are metal, by rising y: those within an odd number of loops."""
     ends = []
     for loop in loops:
         x, y = loop.points.T
@@ -134,7 +134,7 @@ def metal(loops: Sequence[Loop]) -> list[SectionMetal]:
 
 
 def sections(drawn: DrawnDisc) -> list[list[tuple[float, float]]]:
-    """Outlines of the cut metal, as closed chains of points (z, y), z from the lower face of the disc.
+    """Outlines of the cut metal, as closed chains of points (z, y), mm, z from the lower face of the disc.
 
     A groove is as deep as its pocket. A chamfer is drawn as if the section met the contour at right angles.
     """
@@ -165,7 +165,8 @@ def _side(
 ) -> list[tuple[float, float]]:
     """Points (height, y), mm, of one face of a stretch in the section, by rising y: ground, raised metal, boss.
 
-    `heights` are those of the ground and of what is raised from it; `chamfer` is how far an edge lies behind the face.
+    `heights` are those of the ground and of the raised metal, `boss` is the height of the boss and its ends in y;
+    `chamfer` is how far an edge lies behind the face, with a sign along z.
     """
     ground, face = heights
     far, (low, high) = boss
@@ -191,7 +192,7 @@ def _side(
 
 
 def hatching(chains: Sequence[Sequence[tuple[float, float]]], pitch: float) -> list[Array]:
-    """Lines at 45 degrees within closed chains, each (2, 2), `pitch` apart."""
+    """Lines at 45 degrees within closed chains of points, mm, each line (2, 2), `pitch` mm apart."""
     lines = []
     root = math.sqrt(0.5)
     for chain in chains:

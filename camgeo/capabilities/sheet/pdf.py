@@ -25,7 +25,7 @@ AROUND = 180  # chords of a circle that is drawn in a pattern
 
 
 def write_pdf(path: Path, pages: Sequence[Page], title: str) -> None:
-    """Write pages as one PDF."""
+    """Write pages as one PDF with a title; raises ModuleNotFoundError without fpdf2, OSError where the disk refuses."""
     pdf = new_pdf()
     pdf.set_creation_date(EPOCH)
     pdf.set_title(title)
@@ -63,7 +63,7 @@ def _draw(pdf: FPDF, height: float, mark: Mark) -> None:
 
 
 def _pieces(line: LineMark) -> list[Array]:
-    """Give the dashes of a line; all of it where it has no pattern."""
+    """Dashes of a line, points (k, 2) each; the whole line where it has no pattern."""
     pattern = PATTERNS[line.pattern]
     if not pattern:
         return [line.points]

@@ -1,7 +1,7 @@
 """The first page: face, section through the shaft, bore, and every dimension of the part.
 
 Dimensions stand outside the views: diameters and features in a column on the left, lengths in lanes below and beside
-the section. What a text covers is known, so that no two lie on one another whatever the part.
+the section. The layout knows the size of every text, so that no two overlap whatever the part.
 """
 
 from __future__ import annotations
@@ -138,10 +138,10 @@ class Tolerance(NamedTuple):
 
 @dataclass(frozen=True)
 class Dimensions:
-    """Every dimension of a disc by where it stands.
+    """Every dimension of a disc by its place in the drawing.
 
-    `column` are callouts of the face; `under` lengths along the shaft; `right` diameters beside the section, smallest
-    first; `bore` that on its left; `tolerance` the contour's.
+    `column` are callouts of the face, `under` lengths along the shaft, shortest first, `right` diameters on the right
+    of the section, the boss before the disc, and `bore` the diameter on its left. `tolerance` is the contour's.
     """
 
     column: tuple[ColumnCallout, ...]
@@ -152,7 +152,10 @@ class Dimensions:
 
 
 def disc_sizes(drawn: DrawnDisc, base: tuple[str, float] | None, tolerance: Tolerance) -> Dimensions:
-    """Sort every size of a disc; `base` is the name and radius of a circle that the contour is described from."""
+    """Every dimension of a disc; `base` is the name and radius, mm, of the circle from which the contour is described.
+
+    Without a thickness there is no section, and its diameters are callouts of the face.
+    """
     part, body = drawn.part, drawn.body
     column: list[ColumnCallout] = []
     origin = (0.0, 0.0)
@@ -201,8 +204,9 @@ def disc_sizes(drawn: DrawnDisc, base: tuple[str, float] | None, tolerance: Tole
 class Layout(NamedTuple):
     """Places of the views at a scale: centre of the face, left end of the section, centre of the view of the bore.
 
-    `column` is the right end of the column, `area` the free area, mm on the paper. `sense` is the direction of view
-    along x: the section stands on the right, so it is seen from the left in the first angle.
+    `word` is the scale as a key of SCALES, `scale` its value, `column` the right end of the column, `area` the free
+    area, mm on the paper. `sense` is the direction of view along x, 1 or -1: the section stands on the right, so in the
+    first angle it is seen from the left (1).
     """
 
     word: str
@@ -216,9 +220,9 @@ class Layout(NamedTuple):
 
 
 def lay_out(drawn: DrawnDisc, sizes: Dimensions, area: Area, scale: str | None, sense: float) -> Layout:
-    """Place the views at a scale, or at the largest that fits; `sense` is the direction of view.
+    """Place the views at a scale, a key of SCALES, or for None at the largest that fits; `sense` is that of Layout.
 
-    Raises NoRoomError, which names the largest scale that fits, if there is one.
+    Raises NoRoomError where they do not fit; for a given scale it names the largest that fits, if there is one.
     """
     words = SCALES if scale is None else (scale,)
     for word in words:
@@ -231,7 +235,7 @@ def lay_out(drawn: DrawnDisc, sizes: Dimensions, area: Area, scale: str | None, 
 
 
 def _lay_out_at(drawn: DrawnDisc, sizes: Dimensions, area: Area, word: str, *, beside: bool) -> Layout | None:
-    """Place the views at a scale, the bore's own view beside the others or below; None where there is no room."""
+    """Place the views at a scale, the bore's own view beside the others or below; None where they do not fit."""
     k = SCALES[word]
     reach = k * drawn.reach
     column = max((callout.wide for callout in sizes.column), default=0.0) + (NARROW if sizes.column else 0.0)
@@ -267,7 +271,7 @@ class BoreView(NamedTuple):
 
 
 def _bore_view(drawn: DrawnDisc, k: float) -> BoreView:
-    """Give the size of the bore's own view at a scale; none for a round bore."""
+    """Size of the bore's own view at the scale k; 0 for a round bore, or none."""
     part = drawn.part
     if part.bore is None or part.round_bore:
         return BoreView(0.0, 0.0, 0.0)
@@ -328,6 +332,7 @@ def _draw_face(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) 
             at, half = (x + k * cx, y + k * cy), k * r + 1.5
             page.line((at[0] - half, at[1]), (at[0] + half, at[1]), layer="CENTRE")
             page.line((at[0], at[1] - half), (at[0], at[1] + half), layer="CENTRE")
+    # the mark of the angle 0
     page.line((x + reach + 3.0, y), (x + reach + 8.0, y), weight=THICK)
     page.text((x + reach + 9.0, y - 0.5 * SMALL), "0°")
     _draw_rotation(page, drawn, layout)
@@ -364,6 +369,7 @@ def _draw_column(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout
     k, (x, y) = layout.scale, layout.face
     rows = sorted(sizes.column, key=lambda row: -row.tip[1])
     heights = [y + k * row.tip[1] - 0.5 * SMALL - (SLANT if abs(k * row.tip[1]) < 2.0 else 0.0) for row in rows]
+    # downwards no callout covers its upper neighbour; upwards none leaves the free area
     for i in range(len(rows)):
         top = y + k * drawn.reach + ROUND - PITCH if i == 0 else heights[i - 1] - rows[i - 1].high
         heights[i] = min(heights[i], top)
@@ -473,7 +479,7 @@ def _draw_section(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layou
 
 
 def _behind(drawn: DrawnDisc, sense: float) -> list[tuple[Point, ...]]:
-    """Edges behind the cutting plane: rims of the bore, and what stands out further than the cut."""
+    """Edges behind the cutting plane, as chains of (z, y), mm: rims of the bore, and what reaches beyond the cut."""
     body = drawn.body
     edges: list[tuple[Point, ...]] = []
     thick = body.thickness or 0.0
@@ -499,6 +505,7 @@ def _draw_bore(page: Page, drawn: DrawnDisc, layout: Layout, tolerance: Toleranc
     at, words = _bore_label(drawn)
     turned = _turned(points, -drawn.direction(at))
     page.marks.append(LineMark(shifted(turned, k, layout.bore), THICK, "VIEW", closed=True))
+    # outline and centre lines, then the size of the keyway, the flat or the sides
     low, high = k * float(turned[:, 1].min()), k * float(turned[:, 1].max())
     left, right = k * float(turned[:, 0].min()), k * float(turned[:, 0].max())
     page.line((x + left - 3.0, y), (x + right + 3.0, y), layer="CENTRE", pattern="chain")
