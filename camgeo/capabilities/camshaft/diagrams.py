@@ -84,6 +84,7 @@ def bars(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
         parts.append(line("faint", x, TOP - 4.0, x, base))
         parts.append(text(x, base + 15.0, f"{degree}", size=11.0, anchor="middle"))
     parts.append(text(LEFT + 0.5 * span, base + 31.0, "shaft angle, degrees of the cam", anchor="middle"))
+    # each row: the name, the lift as an area, bars of the phases, and a line for the event
     angle = np.arange(0.0, 360.5, 0.5)
     for number, (lobe, lift) in enumerate(zip(lobes, lifts(lobes, np.radians(angle)), strict=True)):
         top = TOP + LOBE * number
@@ -233,6 +234,7 @@ def cam_wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], engine: Engin
         anchor = "middle" if abs(x - middle[0]) < 30.0 else "start" if x > middle[0] else "end"
         if degree % 30 == 0:
             parts.append(text(x, y + 4.0, f"{degree}", size=11.0, anchor=anchor))
+    # a ring for each lobe, with an arc where it is beyond the lift of events
     for rank, lobe in enumerate(lobes):
         radius, name = outer - step * (rank + 0.5), colour_of(lobe.lobe.valve)
         parts.append(f'<circle cx="{middle[0]:g}" cy="{middle[1]:g}" r="{radius:.2f}" {stroked("faint")}/>')

@@ -47,6 +47,7 @@ def shaft_drawing(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> str:
         place = f'x="{along(low):.2f}" y="{axis - scale * upper:.2f}" width="{scale * (high - low):.2f}"'
         return f'<rect {place} height="{scale * (upper - lower):.2f}" {look}/>'
 
+    # the view from the side: bars, lobes as wide as their contours, the bore, names above and an axis of z below
     parts += [
         box(bar.low, bar.high, -0.5 * bar.diameter, 0.5 * bar.diameter, edged("ink", 0.12)) for bar in recipe.bars
     ]

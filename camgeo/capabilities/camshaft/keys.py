@@ -122,7 +122,7 @@ class CamshaftRecipe(Order):
 
 
 def _rows(table: FieldTable, reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Rows of a list of mappings with the keys of one table; None where one of them is faulty."""
+    """Rows of a list of mappings with the keys of one table; None where a row is faulty."""
     row = Field("", Kind.TABLE, field.about, table=table)
     items = enumerate(reader.items(field, node, path, MOST_LOBES))
     rows = [reader.mapping(row, item, join(path, i)) for i, item in items]
@@ -321,6 +321,7 @@ def _check(values: Values, reader: Reader) -> None:
             remedy = "give camshaft.engine, or {svg: {as: bars}}"
             reader.fault_at(f"{file['path']}.svg.as", "needs the engine's data", f"'{file['as']}'", remedy)
         check_step(file, reader)
+    # the engine, then the lobes' cylinders, then the sizes of the shaft
     engine = camshaft.get("engine")
     if engine is not None:
         order, firing, path = engine["order"], engine.get("firing"), "camshaft.engine"
@@ -366,6 +367,7 @@ def _built(values: Values, document: Document) -> CamshaftRecipe:
     shaft, rotation = camshaft["shaft"], values.get("rotation", "cw")
     rows, bars = camshaft["lobes"], camshaft.get("journals", [])
     low, high = shaft.get("from", 0.0), shaft["to"]
+    # stated heights first: sums that differ from them by rounding are then replaced by them
     level = ShaftHeights([low, high, *(row["z"] for row in (*rows, *bars))])
     low, high = level(low), level(high)
     journals = [

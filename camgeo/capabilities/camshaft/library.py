@@ -53,7 +53,7 @@ class CamshaftDesign:
 
     @cached_property
     def checks(self) -> tuple[Check, ...]:
-        """The checks that need no file: those of each cam, and that each lobe stands out of the shaft."""
+        """The checks that need no file: the checks of each cam, and that each lobe stands out of the shaft."""
         return tuple(Check.of(self.recipe, check) for check in lobe_checks(self.recipe, self._placed))
 
     @property

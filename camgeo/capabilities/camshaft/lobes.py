@@ -89,7 +89,7 @@ class PlacedLobe:
     def event_lift(self, engine: Engine | None) -> float:
         """Lift of the lobe's follower, mm or rad, at which its events are stated.
 
-        It is the engine's lift, converted to the follower where it is that of a valve; without an engine, or for a
+        It is the engine's lift, converted to the follower where it is a valve's lift; without an engine, or for a
         follower that swings, the middle of the stroke.
         """
         if engine is None or self.swings:
@@ -195,7 +195,7 @@ def _tappet_lift(recipe: CamshaftRecipe, engine: Engine, lobe: Lobe, design: Des
 
 
 def valves(lobes: Sequence[PlacedLobe], engine: Engine, cylinder: int) -> Valves | None:
-    """Events of the valves of `cylinder`; None unless it has an intake and an exhaust lobe that each have an event."""
+    """Events of the valves of `cylinder`; None unless an intake and an exhaust lobe of it each have an event."""
     own = {lobe.lobe.valve: lobe.event(lobe.event_lift(engine)) for lobe in lobes if lobe.lobe.cylinder == cylinder}
     intake, exhaust = own.get("intake"), own.get("exhaust")
     if intake is None or exhaust is None:

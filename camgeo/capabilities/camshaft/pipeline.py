@@ -60,10 +60,11 @@ class _Job:
 def export(
     recipe: CamshaftRecipe, out: Path, *, only: tuple[str, ...] = (), progress: Callable[[str], None] | None = None
 ) -> Outcome:
-    """Write and judge a camshaft's files under `out`/<name>; those of a failed check go to `out`/<name>.rejected.
+    """Write and judge a camshaft's files under `out`/<name>; where a check fails, to `out`/<name>.rejected.
 
-    Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held, SurroundingsError where the file
-    system refuses or none of the files can be made.
+    `only` names the kinds of the files to be made, by default all; files of other kinds stay. `progress` is called with
+    the name of each stage. Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held,
+    SurroundingsError where the file system refuses or none of the files can be made.
     """
     from camgeo.output.output_folder import RunFolder
 
@@ -80,7 +81,7 @@ def export(
 
 
 def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
-    """Make and judge everything in a temporary folder that is gone afterwards.
+    """Make and judge all files in a temporary folder that is removed afterwards; `progress` gets each stage's name.
 
     Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held, SurroundingsError where the file
     system refuses or none of the files can be made.

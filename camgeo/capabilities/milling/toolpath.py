@@ -81,7 +81,7 @@ def circle(centre: tuple[float, float], radius: float, direction: float) -> ArcS
 
 
 def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> ClosedPath:
-    """A closed counter-clockwise path, run as `clockwise` says, with quarter turns of radius `lead`, mm, to and from it.
+    """A closed counter-clockwise path, run as `clockwise` says, with quarter turns of radius `lead`, mm, at its ends.
 
     Both touch the path in its first point, from outside it (`side` 1) or from inside (-1).
     """
