@@ -71,7 +71,8 @@ def write_gcode(
 ) -> None:
     """Write the passes of each feature, by name and in order, as a program in a unit of `mm` millimetres.
 
-    `remarks` become comments at the top. `count` is the number of decimals. Raises OSError where the disk refuses.
+    `features` are pairs of a name and its passes. `remarks` become comments at the top. `count` is the number of
+    decimals. Raises OSError where the disk refuses.
     """
     number = _Numbers(count, mm)
     lines = [f"({_comment(text)})" for text in remarks]
@@ -131,7 +132,7 @@ def _cut(start: Array, end: Array, bulge: float, place: tuple[str, str], count: 
 
 
 def plain(value: float) -> str:
-    """Write a number in nine figures without an exponent, which no controller reads."""
+    """Write a number with nine significant figures, without an exponent, which no controller reads."""
     return np.format_float_positional(value, precision=9, fractional=False, trim="-")
 
 

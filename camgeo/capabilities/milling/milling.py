@@ -97,6 +97,7 @@ def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     lost = [path is None or bool(path.lost) for _, path in reached]
     intent, pocket = intended(recipe, design), pocket_of(design)
     trimmed = [each.trimmed or less for each, less in zip(intent.surfaces, lost, strict=True)]
+    # the part as kin intends it, less the holes and openings that stay unmade
     holes, _ = milled_holes(recipe, design)
     names = {hole.name for hole in holes}
     boss = recipe.part.boss

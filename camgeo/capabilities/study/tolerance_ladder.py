@@ -97,6 +97,7 @@ def climb(
     with the form and tolerance of each rung before it begins. Iterating raises ValueError for an unknown form, and for
     a design without a contour.
     """
+    # each rung a power of ten lower, until a file is refused or a run takes too long
     for exponent in range(FIRST_EXPONENT, LAST_EXPONENT - 1, -1):
         tolerance = 10.0**exponent * recipe.mm
         if listener is not None:

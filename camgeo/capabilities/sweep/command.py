@@ -120,7 +120,7 @@ def _progress_listener(progress: Progress) -> Listener:
 
 
 def duration(seconds: float) -> str:
-    """Time in words, coarser the longer it is: 40 s, 12 min, 3 h 20 min."""
+    """Time of `seconds` s in words, coarser the longer it is: 40 s, 12 min, 3 h 20 min."""
     if seconds < 90.0:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)

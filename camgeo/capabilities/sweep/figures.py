@@ -70,8 +70,8 @@ class FigureTable(NamedTuple):
 class SweepScene:
     """All that decides the figures of a sweep's designs, as plain data for any worker; it is part of the key.
 
-    `recipe` has its sweep, but nothing on which no figure depends. `figures` are the names of those computed, by
-    estimates where `screened` is true. `variants` are the recipe's cams with each word that varies, whose tables are
+    `recipe` has its sweep, without parts on which no figure depends. `figures` are the names of the figures computed,
+    by estimates where `screened` is true. `variants` are the recipe's cams with each word that varies, whose tables are
     part of the key.
     """
 

@@ -166,7 +166,7 @@ def gather(
         table = np.stack([figures[name] for name in names], axis=1)
         last = first + len(table)
         values = plan.values(first, last)
-        # a design with a figure that is nan does not turn
+        # a design with a figure that is nan counts as one that does not turn
         turns: Mask = np.logical_not(np.isnan(table).any(axis=1))
         kept_here, listed = turns.copy(), turns.copy()
         for limit in ranking.limits:

@@ -243,7 +243,7 @@ def _minimum(goal: _Goal) -> Array:
 
 
 def _rounded(goal: _Goal, values: Array) -> Array:
-    """Values (axes,), those of ranges rounded to a millionth of the range or finer, within it."""
+    """Values (axes,), in ranges rounded to a millionth of the range or finer, within it; others stay."""
     rounded = values.copy()
     for i, low, span in zip(goal.free, goal.low, goal.span, strict=True):
         digits = _DIGITS - math.floor(math.log10(span))

@@ -187,7 +187,7 @@ GUIDED: dict[tuple[str, bool], Callable[[Sizes, Side, Array], Contours]] = {
 class ScreenedCams:
     """Sampled cams of m designs at n places each, from which figures are estimated.
 
-    `side` is 1 where the metal lies inside the contour, -1 outside, as of a ring.
+    `side` is 1 where the metal lies inside the contour, -1 outside, as in a ring.
     """
 
     recipe: Recipe
@@ -352,7 +352,7 @@ function, with each law of the catalogue, at 360 angles.
 
 @cache
 def estimates() -> dict[str, FigureEstimate]:
-    """Estimates by the names of their figures: the core's, then those of the capabilities."""
+    """Estimates by the names of their figures: the core's first, then the capabilities'."""
     capabilities = registry.in_order(registry.names_with_record())
     return _CORE | {
         name: FigureEstimate(*estimate) for each in capabilities for name, estimate in each.estimates().items()

@@ -155,6 +155,7 @@ def best_designs(
     If the sweep refines, designs that lie apart are polished; of polished ones that lie near to each other the best is
     kept. Raises EngineError where a process is killed.
     """
+    # rows with exact figures; polishing starts from rows that lie apart, as near ones lead to one place
     rows = selection.rows if selection.certificate is None else selection.certificate.designs
     places = list(range(rows))
     if task.sweep.refine:
@@ -226,7 +227,7 @@ def _by_path(task: SweepTask, row: Any) -> dict[str, float]:  # noqa: ANN401 - a
 
 
 def _are_same(task: SweepTask, design: Best, other: Best) -> bool:
-    """Whether two designs lie so near to each other that they count as one."""
+    """Whether two designs lie so near to each other in every value that they count as one."""
     return all(
         abs(design.values[axis.path] - other.values[axis.path]) <= _SAME_DISTANCE * axis.range
         for axis in task.plan.axes

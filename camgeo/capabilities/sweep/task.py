@@ -97,7 +97,7 @@ class SweepTask:
 
     @property
     def screened(self) -> bool:
-        """Whether figures are estimates, but for those of the best designs."""
+        """Whether figures are estimates, but for the exact figures of the best designs."""
         return not self.unscreened
 
     @cached_property

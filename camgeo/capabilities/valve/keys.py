@@ -87,6 +87,7 @@ def _rows(origin: Origin, reader: Reader) -> list[tuple[float, float]]:
         raise Complaint(error.message if error.line is None else f"line {error.line}: {error.message}") from None
     if table.columns > len(_COLUMNS):
         raise Complaint(f"line {table.numbers[0]}: {table.columns} columns, and 2 are expected")
+    # lifts in the unit of the column's heading, else in the recipe's
     unit = unit_of(table.heading[0]) if len(table.heading) == table.columns else None
     if unit is not None and unit not in UNITS["length"]:
         raise Complaint(f"the column {table.heading[0]!r} is in {unit}; a length is meant here", _REMEDY)

@@ -38,7 +38,7 @@ class Valve:
         return np.array([ratio[0] * lift, ratio[1] * lift + ratio[0], ratio[2] * lift + 2.0 * ratio[1]])
 
     def rows(self, tappet: Array) -> Array:
-        """Lift of the valve, mm, velocity and acceleration (3, n), from those of the tappet (3, n), by one variable.
+        """Lift of the valve, mm, velocity and acceleration (3, n), by the tappet's (3, n), by the same variable.
 
         All are 0 where the valve is on its seat.
         """
