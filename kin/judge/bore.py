@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 
 
 def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float, *, closed: bool = True) -> Check | None:
-    """Check that there is one hole, round and about the shaft, in number, place and diameter; None if none is due.
+    """Check that one hole of diameter `bore`, mm, is there, round and about the shaft; None if no check is due.
 
-    Of a part that is not `closed` the widest hole round the shaft is held to the bore, and no other one is due.
+    That is without a bore and without holes. Of a part that is not `closed` only the first hole round the shaft counts,
+    and only against a bore.
     """
     if not closed:
         holes = [] if bore is None else [hole for hole in holes if goes_round(hole)][:1]
@@ -37,7 +38,10 @@ def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float, *
 
 
 def round_check(name: str, contour: Contour, diameter: float, tolerance: float) -> Check:
-    """Check that a contour is a circle of that diameter, mm, about the shaft."""
+    """Check that a contour is a circle of a `diameter`, mm, about the shaft, within `tolerance`, mm.
+
+    Raises UnsettledError where rounding hides the extremes of its distance.
+    """
     least, most = _distance_range(contour)
     across, box = 2.0 * float(np.sqrt(abs(contour.area) / np.pi)), contour.box
     worst = max(most - 0.5 * diameter, 0.5 * diameter - least, 0.5 * abs(across - diameter))
@@ -47,17 +51,17 @@ def round_check(name: str, contour: Contour, diameter: float, tolerance: float) 
 
 
 def _distance_range(contour: Contour) -> tuple[float, float]:
-    """Least and greatest distance of a contour from the origin."""
+    """Least and greatest distance, mm, of a contour from the origin."""
     arcs, _ = contour.as_arcs()
     pieces, _ = arcs.cut(np.ceil(np.maximum(np.abs(arcs.curvature) * arcs.length / 0.1, 1.0)).astype(np.intp))
     fine = resolution(pieces.start)
 
     def distance(s: Array, piece: Indices) -> Array:
-        here = pieces.take(piece)
-        x, tangent = here.points(s), here.tangents(s)
+        arcs_here = pieces.take(piece)
+        x, tangent = arcs_here.points(s), arcs_here.tangents(s)
         r = np.maximum(np.hypot(x[:, 0], x[:, 1]), fine)
         slope = dot(x, tangent) / r
-        return np.stack([r, slope, (1.0 + here.curvature * dot(x, left(tangent)) - slope**2) / r])
+        return np.stack([r, slope, (1.0 + arcs_here.curvature * dot(x, left(tangent)) - slope**2) / r])
 
     every = np.arange(len(pieces))
     low, high = np.zeros(len(pieces)), pieces.length

@@ -1,9 +1,9 @@
 """The verdict on a camshaft: a solid of round stretches and lobes, each lobe judged in its own section, at its angle.
 
-Every stretch of the shaft between two meant faces is looked at in the section midway: all others are the same, as no
-wall leans and no face lies between. A lobe's section is turned back by the angle at which the lobe is meant to stand
-and judged as a disc's contour is; so a lobe at another angle is one whose follower moves otherwise. By how much it is
-turned is told by `phase`, where its faces are by `position`.
+Every stretch of the shaft between two intended faces is judged in the section midway: all others are the same, as no
+wall leans and no face lies between. A lobe's section is turned back by the lobe's intended angle and judged as a disc's
+contour is; so a lobe at another angle moves its follower otherwise. The check `phase` gives its turn, `position` the
+places of its faces.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from kin.read.formats import AnySolid
     from kin.read.nesting import ClosedContour
 
-COARSE = 720  # shaft angles at which a lobe's phase is first looked for
+COARSE = 720  # shaft angles at which the search for a lobe's phase begins
 STEPS = 20  # of Newton's method
 MOST_NAMED = 5  # faults named in a message
 NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})
@@ -107,9 +107,8 @@ class _Sections(NamedTuple):
 def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: float | None = None) -> Verdict:
     """Judge an STL, 3MF or STEP of a camshaft, its lobes at `angles` equal steps of the shaft.
 
-    Checks of a lobe carry its name. `units`, mm, is the unit of a file that states none.
-
-    Raises OSError as the file system does, ValueError for another suffix.
+    Checks of a lobe carry its name. `units`, mm, is the unit of a file that states none. A file that cannot be read
+    gets a verdict that says why. Raises OSError where the disk refuses, ValueError for another suffix.
     """
     kind = kind_of(path)
     stretches = [(part, 0.5 * (low + high)) for low, high, part in intent.stretches]
@@ -149,14 +148,14 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
 
 
 def outside_shaft(least: float, diameter: float) -> Check:
-    """Check that a lobe's contour, at least so far from the axis, mm, stays outside the shaft of a diameter, mm."""
+    """Check that a lobe's contour, `least` mm from the axis at least, stays outside the shaft of a `diameter`, mm."""
     radius = 0.5 * diameter
     remedy = "" if least > radius else "a larger base radius, or a thinner shaft"
     return Check("shaft", least > radius, least, radius, "mm", sense="at_least", detail=remedy)
 
 
 def _worst(checks: Sequence[Check]) -> Check:
-    """One of several checks alike: one that fails, or that with the greatest figure."""
+    """The worst of several checks of one kind: one that fails before others, then the greatest figure."""
     return max(checks, key=lambda check: (not check.ok, np.inf if check.value is None else check.value))
 
 
@@ -170,8 +169,8 @@ def _lobe(outline: ClosedContour, lobe: LobeIntent, phi: Array, uneven: float) -
 def _phase(chain: ClosedContour, lobe: LobeIntent) -> Check:
     """Check the angle by which a lobe is turned against the intended one, in degrees of the shaft.
 
-    It is that by which the intended motion fits the measured one best, by least squares; its limit is the permitted
-    motion error over the greatest velocity.
+    By this angle the intended motion fits the measured one best, by least squares; the limit is the permitted motion
+    error over the greatest velocity.
     """
     gauge, limits = lobe.surface.gauge, lobe.limits
     angle = np.arange(COARSE) * TURN / COARSE
@@ -195,8 +194,9 @@ def _rows(gauge: Follower, angle: Array) -> Array:
 
 
 def _best_turn(gauge: Follower, angle: Array, measured: Array) -> float:
-    """Angle d, rad, by which intended s(angle - d) is nearest to what was measured: from all shifts, then closely."""
+    """Angle d, rad, by which the intended s(angle - d) fits the measured positions best, by least squares."""
     intended = _rows(gauge, angle)[0]
+    # the best of all shifts by a whole number of steps, by their correlation; then Gauss and Newton's method
     spectrum = np.fft.rfft(measured - measured.mean()) * np.conj(np.fft.rfft(intended - intended.mean()))
     shift = int(np.argmax(np.fft.irfft(spectrum, len(angle))))
     turned = (shift if shift <= len(angle) // 2 else shift - len(angle)) * TURN / len(angle)
@@ -212,8 +212,8 @@ def _best_turn(gauge: Follower, angle: Array, measured: Array) -> float:
 def _position(solid: AnySolid, intent: CamshaftIntent, lobe: LobeIntent) -> Check:
     """Check that a lobe has its faces where they are meant to be.
 
-    Where it meets another lobe or a journal and the solid has no face between the middles of the two, both have one
-    section, which is judged as that of either: equal bodies side by side have no face to look for.
+    Where it meets another lobe or a journal and the solid has no face between the middles of the two, equal bodies lie
+    side by side: their common section is judged for either, and no face is due.
     """
     faces = np.array(solid.faces)
     if not faces.size:
@@ -236,7 +236,7 @@ def _position(solid: AnySolid, intent: CamshaftIntent, lobe: LobeIntent) -> Chec
 
 
 def _ends(solid: AnySolid, intent: CamshaftIntent) -> Check:
-    """Check both ends of the shaft, and that sections differ nowhere but at the faces that are meant."""
+    """Check both ends of the shaft, and that sections differ nowhere but at the intended faces."""
     shaft, heights = intent.bars[0], np.array([z for low, high, _ in intent.stretches for z in (low, high)])
     off = max(abs(solid.z_min - shaft.low), abs(solid.z_max - shaft.high))
     stray = [z for z in solid.faces if float(np.abs(heights - z).min()) > intent.tolerance + SAME]

@@ -16,11 +16,11 @@ ROUNDING = 1e-12  # of the judge itself, as a share of the extent; a value this 
 
 @dataclass(frozen=True)
 class Check:
-    """A figure held against its limit.
+    """A figure compared with its limit.
 
     `value` is None where there was nothing to measure (a file that cannot be read); such a check does not hold, and
     `detail` says why. `at_deg` is the shaft angle of the worst place, in [0, 360), None where there is no such place.
-    `surface` is the name of the surface that it is of, empty where the cam has one or it is of no surface.
+    `surface` is the name of the surface concerned, empty where the cam has one surface or none is concerned.
     """
 
     name: str
@@ -52,7 +52,7 @@ def at_most(
 ) -> Check:
     """Check that `value` does not exceed `limit`; `angle` is a shaft angle in radians. A value that is nan fails.
 
-    `slack` is the rounding of the measurement itself, by which it may exceed.
+    `slack` is the rounding of the measurement, by which `value` may exceed the limit.
     """
     measured = None if math.isnan(value) else float(value)
     at_deg = None if angle is None or not math.isfinite(angle) else degrees(angle)

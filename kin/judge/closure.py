@@ -1,8 +1,8 @@
-"""What is left to a follower between two surfaces, over the whole turn and from both contours as they lie in files.
+"""Play of a follower between two surfaces, over the whole turn and from both contours as they lie in files.
 
 One surface pushes the follower out, the other stops it: the flanks of a groove, the discs of a conjugate pair. The
-gauges of both are meant to stand at one position, so what is left between them is meant to be nothing; the follower
-itself has its clearance besides. Both positions are smooth between breaks, and so is their difference.
+gauges of both should stand at one position, so their intended play is 0; the follower itself has its clearance besides.
+Both positions are smooth between breaks, and so is their difference.
 """
 
 from __future__ import annotations
@@ -37,8 +37,9 @@ def judge_closures(
 ) -> tuple[tuple[ClosureVerdict, ...], list[Check]]:
     """Judge the play between pairs of surfaces, of one file or of several, in mm and as if not mirrored.
 
-    A closure one of whose surfaces is not among these is left out. `uneven`, mm, is how far a solid's other sections
-    may be off either contour; what that can do is counted into the play.
+    Each verdict and its checks stand in the order of `closures`; a closure without both surfaces is left out, and one
+    whose follower finds no contact has a failed check alone. `uneven`, mm, bounds the distance of a solid's other
+    sections from either contour; its effect is counted into the play.
     """
     by_name = {surface.name: (surface, contour) for surface, contour in surfaces}
     verdicts, checks = [], []
@@ -59,6 +60,7 @@ def judge_closures(
 def _judge_closure(
     closure: ClosureIntent, pair: tuple[Surface, Surface], limits: Limits, uneven: float
 ) -> tuple[ClosureVerdict, list[Check]]:
+    """Verdict on one closure, and its checks; the follower's own play is reported beside that of the gauges."""
     gauges = tuple(surface.gauge for surface, _ in pair)
     finer = [fine(contour, limits.tolerance) for _, contour in pair]
     rests = [_rests(gauge, side.contour) for gauge, side in zip(gauges, finer, strict=True)]
@@ -99,13 +101,13 @@ def left_over(first: Surface, last: Surface, shaft: Array) -> Array:
 
 
 def _rests(follower: Follower, contour: Contour) -> Excitation:
-    """Position of the follower, metres or radians, as it rests on a surface."""
+    """Position of the follower, m or rad, over the shaft angle as it rests on a surface."""
     (rest,) = follower.resting(contour)
     return rest
 
 
 def _play(pushed: Excitation, stopped: Excitation, gauge: Follower, size: float) -> Play:
-    """How far one drive is beyond the other over the turn, mm or degrees: least and greatest."""
+    """Least and greatest of `stopped` less `pushed` over the turn, as a play in mm or degrees."""
     ends = extremes_between(pushed, stopped, gauge.si * size if gauge.unit == "mm" else 1.0)
     scale = float(np.degrees(1.0)) if gauge.unit == "deg" else 1.0 / gauge.si
     least, most = (scale * ends.least, degrees(ends.least_at)), (scale * ends.greatest, degrees(ends.greatest_at))

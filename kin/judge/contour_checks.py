@@ -1,4 +1,4 @@
-"""The checks on the contour of a surface, in mm and no longer mirrored: its form, and what its gauge does on it."""
+"""The checks on the contour of a surface, in mm and no longer mirrored: its form, and the motion of its gauge on it."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
     from kin.read.nesting import ClosedContour
 
 
-PLACED = np.linspace(0.0, TURN, 720, endpoint=False)  # parameters at which a contour that is wrong is looked for
+PLACED = np.linspace(0.0, TURN, 720, endpoint=False)  # parameters at which an exact contour is taken to be placed
 
 
 class Fine(NamedTuple):
     """A contour of lines and arcs that stands for one with splines.
 
-    `spline`, mm, is the distance within which arcs stand for splines, 0 without any; `slack`, mm, is how far arcs and
-    rounding may put a length off.
+    `spline`, mm, is the distance within which arcs stand for splines, 0 without any; `slack`, mm, bounds the error of a
+    length by arcs and rounding.
     """
 
     contour: Contour
@@ -52,12 +52,13 @@ def judge_contour(
     standing: float = 0.0,
     linkage: LinkageIntent | None = None,
 ) -> tuple[SurfaceVerdict, list[Check]]:
-    """Judge the chain of a surface at shaft angles phi (n,): checks from contour and motion to linkage-error and dwell.
+    """Judge the chain of a surface at shaft angles phi (n,), rad: checks on contour, motion, play, linkage and dwell.
 
-    With a linkage phi are relative angles for the plain frame's checks, and shaft angles for the mechanism's.
-    `uneven` is how far a solid's other sections may be off this one, mm; what that can do is counted into everything.
-    `standing` is how far metal may stand outside it, mm, where a cutter does not reach.
+    With a linkage phi are relative angles for the plain frame's checks, and shaft angles for the mechanism's. `uneven`,
+    mm, bounds the distance of a solid's other sections from this one; its effect is counted into all figures.
+    `standing`, mm, is the metal that may stand outside the contour where a cutter does not reach.
     """
+    # the motion of the gauge, and the play of the follower where that is another one
     contour, spline, slack = fine(chain.contour, limits.tolerance)
     judged, play, checks, gauge = None, None, [], surface.gauge
     try:
@@ -70,6 +71,7 @@ def judge_contour(
         checks = [failed("motion", str(error), unit=gauge.unit)]
     verdict = SurfaceVerdict(surface.name, chain.contour, judged and judged.motion, play, pieces=chain.pieces)
     envelope = gauge.envelope
+    # the deviation: of convex contours from the support functions alone
     if judged and judged.reach and contour.is_convex and envelope.regular:
         strayed = convex_deviation(judged.reach)
     else:
@@ -91,7 +93,7 @@ def judge_contour(
 
 
 def _placed(check: Check, contour: Contour, envelope: Envelope, tolerance: float) -> Check:
-    """A check on a contour that fails, with the place at which the exact one would fit it."""
+    """The check, if it fails with the place added at which the exact contour would fit the file's."""
     if check.ok or not envelope.regular:
         return check
     from kin.contour.placement import placement  # what is right does without
@@ -101,7 +103,7 @@ def _placed(check: Check, contour: Contour, envelope: Envelope, tolerance: float
 
 
 def fine(contour: Contour, tolerance: float) -> Fine:
-    """Contour with its splines replaced by arcs, and how far these may be from the splines, mm.
+    """Contour for whose splines arcs stand, and the distance of these from the splines, mm.
 
     The arcs stay within a small share of `tolerance`, mm, or finer. A contour without splines comes back unchanged.
     """
@@ -114,7 +116,7 @@ def fine(contour: Contour, tolerance: float) -> Fine:
 
 
 def _less_sure(judged: Judged, follower: Follower, uneven: float) -> Judged:
-    """Count in what a contour that is off by `uneven`, mm, can do to the motion and the play."""
+    """Motion and play with the effect of a contour that is off by `uneven`, mm, counted in."""
     if not uneven:
         return judged
     play, closure = judged.play, follower.closure
@@ -126,7 +128,7 @@ def _less_sure(judged: Judged, follower: Follower, uneven: float) -> Judged:
 def _contour_check(
     deviation: Deviation, surface: SurfaceIntent, tolerance: float, slack: float, standing: float
 ) -> Check:
-    """Check both sides of a contour against the tolerance; on the cutter's, as much more may stand as it may leave."""
+    """Check both sides of a contour against the tolerance; outside the metal may exceed it by `standing`, mm."""
     worst, parameter = deviation.worst
     if standing:
         worst = max(worst - standing, deviation.inside if surface.side > 0 else deviation.outside)
@@ -171,7 +173,8 @@ def _motion_checks(
 def beside_interference(check: Check, play: Play, own: Play) -> Check:
     """Rewrite a check on a gauge's play in terms of its follower, which runs with an interference.
 
-    It fails where the limit permits as much as the whole interference: such a limit says nothing.
+    `play` is the gauge's, `own` the follower's. The check fails where the limit permits as much as the whole
+    interference: such a limit limits nothing.
     """
     least, most = length_words(-own.most), f"{length_words(-own.least)} {UNIT}"
     if own.unit != "mm":
@@ -210,7 +213,7 @@ def play_checks(
 
 
 def _found(motion: MotionError) -> str:
-    """Tell how the greatest motion error was found, where that leaves a remainder."""
+    """Words on how the greatest motion error was found, where a remainder is left."""
     if motion.extremes == "sampled":
         return f"sampled; {motion.remainder:.3g} {motion.unit} more is an estimate of what lies between"
     return f"true within {amount_words(motion.remainder, motion.unit, '.2g')}" if motion.remainder else ""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 MASTER = "master_deg"
 """Heading of the first column, by which a table for a drive is told from others."""
 SLAVES = {"slave_mm": 1.0, "slave_in": 25.4, "slave_deg": math.radians(1.0)}
-RATES = ("velocity", "acceleration")  # by degree of the master, and by its square
+RATES = ("velocity", "acceleration")  # columns per degree of the master, and per its square
 JOINS: dict[Join, str] = {
     "line": "joined by straight lines",
     "quintic": "joined by polynomials of degree 5",
@@ -35,7 +35,7 @@ JOINS: dict[Join, str] = {
 """How rows are joined, as the head of a table has it."""
 STATED = re.compile(r"\bwithin (\S+) (?:mm|in|deg) of the motion")
 LEAST_ROWS, MOST_ROWS = 3, 400_000
-FULL = 1e-9  # degrees within which a table goes round
+FULL = 1e-9  # degrees, within which a table begins at 0 and ends at 360
 SHORT = 1e-5  # share by which the error in the head may be short: it has six digits
 DIGITS = 1e-11  # of a position, as a table has it
 SHARE = 1e-12  # of the stroke, to which its lowest place is found
@@ -50,18 +50,18 @@ class Table(NamedTuple):
 
 
 def is_drive(path: Path) -> bool:
-    """Whether a table is one for a drive, by its first lines; raises OSError as the file system does."""
+    """Whether a table is one for a drive, by its first lines; raises OSError where the disk refuses."""
     with path.open("rb") as file:
         text = file.read(1 << 16).decode("utf-8-sig", "replace")
     return MASTER in _heading(text) or is_curve_points(path)
 
 
 def drive_checks(path: Path, follower: Follower, limits: Limits, mm: float = 1.0) -> list[Check]:
-    """Check the motion that a table makes of a drive, lowest at 0, against a follower's intended one.
+    """Check the motion by a drive's table, lowest at 0, against a follower's intended one.
 
-    The greatest error, mm or degrees, is at most that of the limits, or what their tolerance is at the follower. `mm`
-    are the unit of a slave whose table states none, under a follower on a stem. A file that is no such table has a
-    check that says why. Raises OSError as the file system does.
+    The greatest error, mm or degrees, may reach the limit of motion or, without one, the error that the tolerance makes
+    at a pressure angle of 0. `mm` is the unit, in mm, of a slave whose table states none, of a follower on a stem. A
+    file that is no such table has one failed check that says why. Raises OSError where the disk refuses.
     """
     try:
         table = read_table(path, SLAVES["slave_deg"] if follower.unit == "deg" else mm)
@@ -83,7 +83,7 @@ def drive_checks(path: Path, follower: Follower, limits: Limits, mm: float = 1.0
 
 
 def _off(rows: JoinedRows, follower: Follower) -> tuple[float, float]:
-    """Greatest distance of joined rows from a follower's motion above its lowest place, mm or rad, and where, rad."""
+    """Greatest distance, mm or rad, of joined rows from a follower's motion above its lowest place, and angle, rad."""
     breaks = follower.motion.breaks.tolist()
     followed = cells(lambda t: follower.intended(t)[None], between(0.0, TURN, breaks), share=SHARE)
     lowest, _ = pieces(followed).least()
@@ -91,9 +91,9 @@ def _off(rows: JoinedRows, follower: Follower) -> tuple[float, float]:
 
 
 def read_table(path: Path, unit: float = 1.0) -> Table:
-    """Read a table for a drive, whose slave is in `unit`, mm or rad, if it states none.
+    """Read a table for a drive; its slave's unit is `unit`, mm or rad, if the table states none.
 
-    Raises ReadError for a file that is too large or no such table, OSError as the file system does.
+    Raises ReadError for a file that is too large or no such table, OSError where the disk refuses.
     """
     if is_curve_points(path):
         points = read_curve_points(path)
@@ -149,6 +149,6 @@ def _is_number(text: str) -> bool:
 
 
 def _heading(text: str) -> list[str]:
-    """Names of the columns: the first line that is no remark."""
+    """Names of the columns, from the first line that is no remark."""
     line = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
     return [cell.strip().strip('"').lower() for cell in line.split(",")]

@@ -1,4 +1,4 @@
-"""What a grinder's table leaves of a lobe: the envelope of its wheel over the straight joins of the rows.
+"""The contour of a lobe that a grinder's table leaves: the envelope of its wheel over the straight joins of the rows.
 
 Between two rows the distance X of the wheel's centre is linear in the angle C of the work. A circular arc through both
 rows and the middle of such a join stands for it. In polar coordinates the two agree at three angles, so they differ by
@@ -42,9 +42,9 @@ STATED = 1e-9  # share by which a length in the head may differ: it has twelve d
 SHORT = 1e-5  # share by which the error in the head may be short: it has six
 SHOWN = 80  # characters of a header in a message
 FULL = 1e-9  # degrees within which a table closes
-FINE = 1e-3  # of the tolerance: what pieces of the metal are left out by
+FINE = 1e-3  # of the tolerance: shorter pieces of the metal are left out
 LEAST_ROWS, MOST_ROWS = 8, 400_000
-COARSE = 0.9  # of a join's radius: its centre lies nearer the shaft than that
+COARSE = 0.9  # of a join's radius, the greatest distance of its centre from the shaft
 
 
 @dataclass(frozen=True)
@@ -66,8 +66,8 @@ class Ground(NamedTuple):
 
     chain    the contour
     units    of the table's lengths, mm
-    off      by how much the contour may be off, mm
-    faults   what the head lacks, or states otherwise than is meant
+    off      greatest error of the contour, mm
+    faults   words for each length that the head lacks, or states otherwise than intended
     error    greatest distance from the exact contour that the head states, mm; None where it states none
     centres  of the wheel (n, 2), mm, row by row
     normals  unit vectors (n, 2) by the column of normals; None where there is none
@@ -110,7 +110,8 @@ def ground(path: Path, grinding: Grinding, tolerance: float) -> Ground:
 def normals_check(table: Ground, envelope: Envelope, tolerance: float, *, mirrored: bool) -> Check | None:
     """Check the column of normals: how far the places of contact that it gives lie from the exact ones, mm.
 
-    The wheel touches an exact contour where its centre has its foot. None where there is no such column.
+    The wheel touches an exact contour where its centre has its foot. None without such a column. Raises UnsettledError
+    where a foot is not found.
     """
     if table.normals is None:
         return None
@@ -123,14 +124,17 @@ def normals_check(table: Ground, envelope: Envelope, tolerance: float, *, mirror
 
 
 def stated_check(measured: float, stated: float, tolerance: float) -> Check:
-    """Check the error that a table states against the measured one, mm, which is as fine as a tolerance asks for."""
+    """Check that the `measured` error, mm, is no greater than the error that a table states, mm.
+
+    Rounding of the stated digits, and pieces left out within a share of `tolerance`, mm, are allowed for.
+    """
     return at_most("stated-error", measured, stated, "mm", slack=SHORT * stated + FINE * tolerance)
 
 
 class _Table(NamedTuple):
     """Rows without the closing one: angles and normals, rad, and distances of the centre, mm, (n,) each.
 
-    `word` is that of the column of lengths, `head` the lines behind a #.
+    `word` is x or lift, from the name of the column of lengths; `head` has the lines behind a #.
     """
 
     word: str
@@ -191,7 +195,7 @@ def _unit(angles: Array) -> Array:
 
 
 def _head_faults(table: _Table, grinding: Grinding) -> tuple[str, ...]:
-    """What the head lacks of wheel, or roller and its centre at lift 0, and what it states otherwise than is meant."""
+    """Words for each of wheel, or roller and its centre at lift 0, that the head lacks or states otherwise."""
     if table.word == "x":
         wanted = [(WHEEL, "wheel", 2.0 * table.radius, "wheel {} across")]
     else:
@@ -215,7 +219,7 @@ def _head_faults(table: _Table, grinding: Grinding) -> tuple[str, ...]:
 
 
 def _lengths(head: str, pattern: re.Pattern[str]) -> list[float]:
-    """All lengths that a head states in some words, mm; nan where there is no number."""
+    """All lengths, mm, that a head states in the words of a pattern; nan where there is no number."""
     lengths = []
     for number, unit in pattern.findall(head):
         try:
@@ -226,7 +230,10 @@ def _lengths(head: str, pattern: re.Pattern[str]) -> list[float]:
 
 
 def _joins(angles: Array, distance: Array, path: Path) -> tuple[Arcs, float]:
-    """An arc for each join of two rows, and by how much any is off at most, mm."""
+    """An arc for each join of two rows, and the greatest distance of one from its join, mm.
+
+    Raises ReadError where the wheel moves too fast for the step.
+    """
     step = np.diff(angles, append=angles[0] + 2.0 * np.pi)
     following = np.roll(distance, -1)
     start, end = distance * np.exp(1j * angles), following * np.exp(1j * (angles + step))

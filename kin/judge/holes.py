@@ -1,4 +1,4 @@
-"""Openings that are meant to be in a part, each found once at its place: matched with what a file holds, and measured.
+"""The intended openings of a part, each once at its place: matched with the openings of a file, and measured.
 
 Distances between two closed chains of lines and arcs are taken at points so close that nothing between them is farther
 off by more than `FINE` of the tolerance. Ends and middles of all pieces are among them, and are enough where both
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
     from kin.numeric.arrays import Array
 
-FINE = 1e-2
+FINE = 1e-2  # of the tolerance, to which distances are found
 MOST_PARTS = 20_000  # of one piece
-ROUNDING = 1e-12
+ROUNDING = 1e-12  # mm
 MOST_NAMED = 5  # faults named in a message
 
 
 @dataclass(frozen=True)
 class Hole:
-    """A closed outline that is meant to be, counter-clockwise, mm: points and bulges as in a DXF polyline.
+    """An intended closed outline, counter-clockwise, mm: points and bulges as in a DXF polyline.
 
-    name    to tell it by
+    name    in messages
     kind    the check that reports it: bore, holes or mark
     depth   below the upper face of the disc, mm; None through everything
     """
@@ -72,7 +72,7 @@ class Tally:
     faults: list[str] = field(default_factory=list)
 
     def measured(self, off: float, detail: str) -> None:
-        """Note a deviation, mm, and its words if it is the greatest so far."""
+        """Keep a deviation `off`, mm, and the words for its place if it is the greatest so far."""
         if off >= self.worst:
             self.worst, self.detail = off, detail
 
@@ -98,11 +98,11 @@ def tally(
     settled: Sequence[Hole] = (),
     closed: bool = True,
 ) -> None:
-    """Match the openings that were found with those that are meant, and take in how far each is off.
+    """Match the openings of a file with the intended holes, and take their deviations into `tallies`.
 
-    Each kind that is meant gets its tally. An opening that none is meant for goes to the kind of the one of `settled`
-    that it looks like, else to `holes`, or to `bore` where nothing else is meant; of a part that is not `closed` it is
-    passed over.
+    Each intended kind gets its tally; `where` is added to messages. An opening beyond the intended ones counts as a
+    fault of the kind of the hole in `settled` that it resembles, else of `holes`, or of `bore` where no other kind is
+    intended; of a part that is not `closed` it is passed over. Deviations are found to a share of `tolerance`, mm.
     """
     pairs, left_over = _matched(openings, intended)
     for hole, contour in pairs:
@@ -131,10 +131,10 @@ def tally(
 def _matched(
     openings: Sequence[Contour], intended: Sequence[Hole]
 ) -> tuple[list[tuple[Hole, Contour | None]], list[Contour]]:
-    """Each opening that is meant with the one found there, None if there is none; and those found besides.
+    """Each intended hole with the opening at its place, None if none is there; and the openings left over.
 
-    Two belong together if the middles of their boxes lie within half the size of the one that is meant. Of
-    several, the pair with the least sum of distance and difference in size, mm, comes first.
+    The two match if the middles of their boxes lie within half the size of the intended one. Of several pairs the one
+    with the least sum of distance and difference in size, mm, comes first.
     """
     size = [_size(hole.contour) for hole in intended]
     place = [_middle(hole.contour) for hole in intended]
@@ -175,7 +175,7 @@ def apart(contour: Contour, other: Contour, fine: float) -> float:
 
 
 def _piece_by_piece(first: Arcs, second: Arcs) -> float:
-    """Bound of how far two chains lie apart, mm, by their k-th pieces; infinite if their numbers of pieces differ."""
+    """Bound of the distance of two chains, mm, from their k-th pieces; infinite if their numbers of pieces differ."""
     if len(first) != len(second):
         return math.inf
     turn = np.hypot(*(first.tangent - second.tangent).T) + 0.5 * first.length * np.abs(
@@ -186,10 +186,10 @@ def _piece_by_piece(first: Arcs, second: Arcs) -> float:
 
 
 def _farthest(chain: Arcs, other: Arcs, bend: float, fine: float) -> float:
-    """Greatest distance of a chain's points from another chain.
+    """Greatest distance, mm, of a chain's points from another chain, to within `fine`, mm.
 
-    Along a piece the distance bends by no more than the curvatures of both, so it exceeds its values at the ends of a
-    part of length h by h^2/8 of that at most.
+    Along a piece the distance bends by no more than the curvatures of both, `bend`, 1/mm: over a part of length h it
+    exceeds its values at the ends by h^2/8 of that at most.
     """
     step = np.sqrt(4.0 * fine / max(bend, 1e-12))
     parts = np.clip(2.0 * np.ceil(0.5 * chain.length / step), 2, MOST_PARTS).astype(np.intp)
