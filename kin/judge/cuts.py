@@ -1,9 +1,9 @@
-"""A milling program taken apart by what it leaves: cuts, what they mill together, and the edges of that.
+"""A milling program divided into cuts, the features that they mill together, and the edges of these.
 
-A cut is what the cutter does between coming down and going up again: an arc of entry, a closed path, an arc of exit.
-The deepest path of each contour decides what it is; the one that holds all others is milled from outside, the others
-are holes. Of stock that comes with its outline all are holes. A pocket between two surfaces is what the paths round the
-shaft leave that lie side by side: the innermost makes one of its edges, the outermost the other.
+A cut is the moves of the cutter between coming down and going up again: an arc of entry, a closed path, an arc of exit.
+The deepest path of each contour makes its edge; the path that holds all others is milled from outside, the others make
+holes. Of stock that comes with its outline all make holes. The paths round the shaft that lie side by side clear a
+pocket between two surfaces: the innermost makes one of its edges, the outermost the other.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     Key = frozenset[tuple[object, ...]]
 
-FINE = 0.05  # of the tolerance: what joints of the path may be snapped by
+FINE = 0.05  # of the tolerance, within which joints of the path may be snapped together
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,10 @@ class Feature(NamedTuple):
 
 
 def cuts_of(program: Program) -> Iterator[Cut]:
-    """Cuts of a program: the moves at depth between plunge and retract, one `Cut` each time the cutter is down."""
+    """Cuts of a program: the moves at depth between plunge and retract, one `Cut` each time the cutter is down.
+
+    Raises ReadError for a cut along a slope, a plunge without a cut, and a path that does not close.
+    """
     down: list[ToolMove] = []
     plunge: ToolMove | None = None
     for move in (*program.moves, None):
@@ -117,7 +120,7 @@ def _unread(program: Program, move: ToolMove, what: str) -> ReadError:
 
 
 def _cut(program: Program, down: list[ToolMove]) -> Cut:
-    """Take a path apart where it comes back to a place it has been at."""
+    """Divide a path into entry, its longest closed part and exit; raises ReadError where no part closes."""
     places: dict[tuple[float, float], int] = {}
     best = (0, 0)
     for i, move in enumerate(down):
@@ -132,7 +135,10 @@ def _cut(program: Program, down: list[ToolMove]) -> Cut:
 
 
 def features_of(program: Program, cuts: list[Cut], milling: Milling, tolerance: float) -> Iterator[Feature]:
-    """Features that the cuts mill, each with its cuts in order. Raises ReadError for a path that leaves nothing."""
+    """Features that the cuts mill, each with its cuts in order; a pocket comes first.
+
+    Joints of paths may be snapped within a share of `tolerance`, mm. Raises ReadError for a path that leaves no edge.
+    """
 
     def edge(cut: Cut, side: Side) -> CutEdge:
         inward = side if cut.area > 0.0 else -side
@@ -155,7 +161,7 @@ def features_of(program: Program, cuts: list[Cut], milling: Milling, tolerance: 
 
 
 def _side_by_side(cuts: list[Cut], radius: float) -> tuple[list[Cut], list[Cut]]:
-    """Cuts round the shaft from the outermost inward as far as what the cutter sweeps hangs together; all others."""
+    """Cuts round the shaft from the outermost inward, as far as the swept areas overlap; and all other cuts."""
     paths = {cut.key: cut for cut in cuts}
     round_shaft = [cut for cut in paths.values() if rounds(cut.path, np.zeros(2))]
     falling = sorted(round_shaft, key=lambda cut: -abs(cut.area))
@@ -179,16 +185,16 @@ def _about_one_contour(cuts: list[Cut], radius: float) -> list[list[Cut]]:
     outlines: list[tuple[Arcs, list[Cut]]] = []
     for cut in reversed(cuts):
         place = np.array([cut.loop[0].start[:2]])
-        mine = next((group for chain, group in outlines if float(nearest(chain, place)[1][0]) < radius), None)
-        if mine is None:
+        alike = next((group for chain, group in outlines if float(nearest(chain, place)[1][0]) < radius), None)
+        if alike is None:
             outlines.append((cut.path, [cut]))
         else:
-            mine.insert(0, cut)
+            alike.insert(0, cut)
     return [group for _, group in reversed(outlines)]
 
 
 def rounds(loop: Arcs, middle: Array) -> int:
-    """Winding number of a closed path about a point, by the starts of its pieces; counter-clockwise positive."""
+    """Winding number of a closed path about a point (2,), from the starts of its pieces; counter-clockwise above 0."""
     away = loop.start - middle
     after = np.roll(away, -1, axis=0)
     return round(float(np.arctan2(cross(away, after), dot(away, after)).sum()) / (2.0 * np.pi))

@@ -1,4 +1,4 @@
-"""What a part is meant to be, and what is permitted of it: all that the judge is told beside the file itself."""
+"""Intended parts and permitted errors: all that the judge takes beside the file itself."""
 
 from __future__ import annotations
 
@@ -20,13 +20,12 @@ if TYPE_CHECKING:
 class SurfaceIntent:
     """A surface of a disc that a follower runs on.
 
-    gauge     the follower that judges it, with its motion law, in mm and radians
-    name      by which checks and closures tell it; empty where there is no other
-    layer     of a drawing on which it stands; where there is no such layer it is told by how chains lie in one another
-    z         height of the section of a solid in which it is looked for, mm; None for that of the plain disc
-    side      on which the metal lies: 1 within the contour, -1 round it
-    trimmed   an undercut is cut off: what motion is lost is reported, and judged only against limits that are given
-    follower  that runs on it, where the gauge is larger by a clearance, or has room for an interference; None for the
+    gauge     the follower that judges it, with its motion law, in mm and radians name      name in checks and closures;
+    empty where there is no other surface layer     layer of a drawing on which it lies; without such a layer the
+    nesting of the chains decides z         height of the section of a solid in which it lies, mm; None for the section
+    of the plain disc side      side of the contour on which the metal lies: 1 inside, -1 outside trimmed   an undercut
+    is cut off: the motion lost is reported, and judged only against limits that are given follower  follower that runs
+    on it, where the gauge is larger by a clearance, or has room for an interference; None for the
               gauge itself
     """
 
@@ -41,9 +40,9 @@ class SurfaceIntent:
 
 @dataclass(frozen=True)
 class ClosureIntent:
-    """A follower between two surfaces, by name: the one that pushes it out and the one that stops it.
+    """A follower between two surfaces, by name: the surface that pushes it out and the surface that stops it.
 
-    `name` is that of the check. The play of the gauges is meant to be 0.
+    `name` is the name of the check. The intended play of the gauges is 0.
     """
 
     pushes: str
@@ -68,8 +67,8 @@ class LinkageIntent:
     """The mechanism that the yoke's frame drives as a coupler.
 
     swing   law over the shaft angle that its frame has to follow; None where the exact cam's own lift moves the frame
-    dwell   of its output, which is found in each file and, if it must last, judged
-    overlap by which the metal is to overlap each face of the frame, mm
+    dwell   dwell of its output, which is reported of each file and, if it must last, judged
+    overlap intended interference at each face of the frame, mm
     """
 
     mechanism: Mechanism
@@ -86,10 +85,10 @@ class Milling:
     thickness     of the stock, which is cut through
     depth_of_cut  that one pass may have at most
     climb         a right-handed cutter meets the metal climbing
-    standing      how far metal may stand outside the contour where the cutter does not reach
+    standing      metal that may stand outside the contour where the cutter does not reach
     hub           radius and height of the metal about the shaft that stands on the stock; None without
     outline       the outline is milled; of round stock, as of a ring, it is not
-    pocket        depth of what lies between two surfaces; None where contours are cut through
+    pocket        depth of the pocket between two surfaces; None where contours are cut through
     """
 
     radius: float
@@ -106,20 +105,20 @@ class Milling:
 class PartIntent:
     """Intended disc in a file.
 
-    surfaces    those that followers run on, in any order; two of them differ in name
+    surfaces    surfaces that followers run on, in any order; two of them differ in name
     mirrored    the file is drawn mirrored about the x axis (the shaft turns counter-clockwise)
     mm          mm in one drawing unit of a DXF or SVG file or a program (solids are always in mm)
     bore        diameter, mm; None for no hole at all
     thickness   of a solid, mm, z from 0; None where only contours are judged
-    closed      whether it has no opening besides; where False any others in a file are passed over
+    closed      whether it has no further opening; where False any others in a file are passed over
     outline     diameter of its round outline, mm, such as a ring's; None where the outermost surface is the outline
     holes       all openings, the bore among them, of a part that has more than a round bore; `bore` is None then
     layers      of its solid, from below, and radial holes through layers with an outline of their own
     milling     how a program mills it
-    grinding    how a grinder's table is meant
-    linkage     that it drives; None for a plain follower
+    grinding    meaning of a grinder's tables
+    linkage     mechanism that it drives; None for a plain follower
     closures    followers between two of its surfaces
-    name        by which checks tell it from other discs on its shaft; empty where there is no other
+    name        name among the discs on its shaft, for checks; empty where there is no other
     """
 
     surfaces: tuple[SurfaceIntent, ...]
@@ -150,7 +149,7 @@ class ShaftIntent:
 
     parts     the discs, the lowest first; alone in a file each stands on z = 0
     levels    height of the lower face of each in a file that holds all of them, mm
-    closures  what is left between surfaces of two of them
+    closures  followers between surfaces of two of them
     """
 
     parts: tuple[PartIntent, ...]
@@ -162,9 +161,9 @@ class ShaftIntent:
 class Limits:
     """Permitted errors: `tolerance` of the contour, mm; greatest motion error, and greatest play or interference.
 
-    Motion and play are in mm or degrees as the follower has them, `output`, the greatest error of a mechanism's output,
-    as the mechanism has it; None is the most that a contour within the tolerance can cause. Ends in drawings within
-    `gap`, mm, are joined by lines, which is counted into contour and motion; None for the readers' own.
+    Motion and play are in mm or degrees, by the follower; `output`, the greatest error of a mechanism's output,
+    likewise by the mechanism. None stands for the most that a contour within the tolerance can cause. Ends in drawings
+    within `gap`, mm, are joined by lines, which is counted into contour and motion; None for the readers' own gap.
     """
 
     tolerance: float

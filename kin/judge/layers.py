@@ -1,4 +1,4 @@
-"""A solid in layers: between two heights every section is meant to be the same, or to shrink evenly along a chamfer.
+"""A solid in layers: between two heights every section should be the same, or shrink evenly along a chamfer.
 
 A layer's outline is the cam's contour, moved inside by `inset`, or an outline of its own such as a hub. A cross hole
 runs along a radius through layers with an outline of their own.
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from kin.read.formats import AnySolid
 
 GAUSS = 48  # nodes for each smooth part of a cross hole
-AT_CHAMFER = (0.25, 0.75)  # of a layer that shrinks: where it is looked at
-ACROSS = (0.1, 0.5, -0.5)  # of a cross hole's radius
+AT_CHAMFER = (0.25, 0.75)  # of the height of a layer that shrinks: its sections judged
+ACROSS = (0.1, 0.5, -0.5)  # of a cross hole's radius from its axis: sections judged through it
 SAME = 1e-9  # mm: heights this close are one
 MOST_NAMED = 3  # places where walls lean, in a message
 
@@ -65,10 +65,10 @@ class CrossHole:
 
 
 class Lean(NamedTuple):
-    """Walls that are meant to lean, and the check that reports them.
+    """Walls that should lean, and the check that reports them.
 
-    They lean evenly from `low` to `high`, mm, by `inward` mm a mm of height; or anyhow between these heights and within
-    `reach`, mm, from the axis.
+    They lean evenly from `low` to `high`, mm, inward by `inward` mm per mm of height; or, where `reach` is given, in
+    any way between these heights and within `reach`, mm, from the axis.
     """
 
     kind: str
@@ -78,11 +78,12 @@ class Lean(NamedTuple):
     inward: float = 0.0
 
     def means(self, rows: Array, slack: float) -> Mask:
-        """Mask (k,) of the walls (k, 4) of a solid that this lean is meant to have, within `slack`, mm.
+        """Mask (k,) of the walls of a solid that belong to this lean, within `slack`, mm.
 
-        A wall that leans over the whole height need only have its ends there: the sections between check it. A wall
-        over a part of the height must lie within it and lean inward at the meant slope, or reach no farther than
-        `reach` if set.
+        Of each wall `rows` (k, 4) has its lowest and highest z, its reach from the axis, mm, and its inward slope. A
+        wall that leans over the whole height need only have its ends there: the sections between check it. A wall over
+        a part of the height must lie within it and lean inward at the intended slope, or reach no farther than `reach`
+        if set.
         """
         low, high, reach, inward = rows.T
         inside: Mask = (low >= self.low - slack) & (high <= self.high + slack)
@@ -119,7 +120,7 @@ def _height(layer: Layer) -> float:
 
 
 def faces(layers: Sequence[Layer]) -> list[tuple[str, float]]:
-    """Heights of the horizontal faces, each with the check that reports it: thickness, hub or mark."""
+    """Pairs of the check that reports a horizontal face (thickness, hub or mark) and the face's height, mm, rising."""
     rising = sorted(layers, key=lambda layer: layer.low)
     levels = []
     for below, above in zip([None, *rising], [*rising, None], strict=True):
@@ -137,7 +138,7 @@ def faces(layers: Sequence[Layer]) -> list[tuple[str, float]]:
 
 
 def leans(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[Lean]:
-    """Heights at which walls are meant to lean: those of cross holes and of chamfers."""
+    """Leans of the walls of cross holes, then of chamfers from below; chamfers that meet count as one."""
     rows = []
     for hole in cross_holes:
         outline = next(
@@ -154,10 +155,10 @@ def leans(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[Lea
 
 
 def settled(solid: AnySolid, leaning: Sequence[Lean], tolerance: float) -> AnySolid:
-    """Give the solid with faces level that only the rounding of its numbers keeps from being level.
+    """The solid with those faces made level that only the rounding of its numbers keeps from being level.
 
-    Corners of such a face differ in height by no more than that rounding in all; by how much is noted in `slivers`.
-    Walls that are meant to lean stay as they are.
+    Corners of such a face differ in height by no more than that rounding in all; the difference is kept in `slivers`.
+    Walls of the leans in `leaning`, within `tolerance`, mm, stay as they are.
     """
     rows = solid.leaning
     level = rows[:, 1] - rows[:, 0] <= solid.rounding
@@ -193,18 +194,18 @@ def settled(solid: AnySolid, leaning: Sequence[Lean], tolerance: float) -> AnySo
 def between_sections(
     solid: AnySolid, levels: Sequence[float], leaning: Sequence[Lean], tolerance: float
 ) -> list[tuple[str, str]]:
-    """Pairs (name of the check, fault in words) of what makes a solid differ between the sections at `levels`, mm.
+    """Pairs (name of the check, fault in words) for all that makes a solid differ between the sections at `levels`, mm.
 
-    All sections between two heights are the same if there is no face between them, and no wall leans. Where one face is
-    meant two that are nearer to each other than the tolerance would have a fin or a gap between them. What leans evenly
-    from one height to another is known by two sections between them.
+    All sections between two heights are the same if no face lies between them and no wall leans. Two faces nearer to
+    each other than the tolerance, where one is intended, would have a fin or a gap between them. Walls that lean evenly
+    are known by two sections between their heights.
     """
     places, faces = np.array(levels), np.array(solid.faces)
     faults, slack = [], tolerance + SAME
     for z in levels:
-        here = faces[(np.abs(faces[:, None] - places).min(axis=1) == np.abs(faces - z)) & (np.abs(faces - z) <= slack)]
-        if here.size and float(np.ptp(here)) > SAME:
-            both = " and ".join(length_words(z, ".9g") for z in (here.min(), here.max()))
+        pair = faces[(np.abs(faces[:, None] - places).min(axis=1) == np.abs(faces - z)) & (np.abs(faces - z) <= slack)]
+        if pair.size and float(np.ptp(pair)) > SAME:
+            both = " and ".join(length_words(z, ".9g") for z in (pair.min(), pair.max()))
             fault = f"faces at z = {both} {UNIT}, where one is expected"
             faults.append(("thickness", fault))
     rows = solid.leaning
@@ -220,7 +221,7 @@ def between_sections(
 
 
 def _together(rows: Array, low: float, high: float, slack: float) -> tuple[float, float]:
-    """Between which heights walls lean one above the other, of those that do so between two heights."""
+    """Heights between which walls lean one above the other, from the walls between two heights on."""
     while True:
         touching = rows[(rows[:, 0] <= high + slack) & (rows[:, 1] >= low - slack)]
         bottom, top = float(touching[:, 0].min(initial=low)), float(touching[:, 1].max(initial=high))
@@ -250,7 +251,11 @@ def volume(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], area: floa
 
 
 def wall_area(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], perimeter: float) -> float:
-    """Area, mm^2, of all walls and of the horizontal faces' rims: at least the volume gained by 1 mm more all over."""
+    """Area, mm^2, of the walls of layers, holes and cross holes, without horizontal faces.
+
+    Chamfers count at 45 degrees; `perimeter`, mm, is the cam's contour's. The tolerance times this area limits the
+    error of the volume.
+    """
     total = 0.0
     for layer in layers:
         length = perimeter if layer.outline is None else layer.outline.contour.length
@@ -264,7 +269,7 @@ def wall_area(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], perimet
 
 
 def slotted(outline: Hole, hole: Hole, angle: float, half: float) -> Contour:
-    """The section of a ring between two outlines, cut open by a slot of half width `half` along a radius.
+    """The section of a ring between two outlines, slotted in direction `angle`, rad, to a half width `half`, mm.
 
     Raises ValueError where the slot's sides do not meet both outlines.
     """
@@ -312,7 +317,7 @@ def _part(
 
 
 def _along(points: Array, bulges: Array, k: int, place: Array) -> float:
-    """How far along piece k a point of it lies, as a share of its sweep or length."""
+    """Place of a point on piece k, as a share of the piece's sweep or length."""
     start, end, bulge = points[k], points[(k + 1) % len(points)], float(bulges[k])
     chord, part = end - start, place - start
     if bulge == 0.0:
@@ -324,7 +329,7 @@ def _along(points: Array, bulges: Array, k: int, place: Array) -> float:
 
 
 def rightmost_crossing(outline: tuple[Array, Array], y: Array) -> tuple[Array, Indices]:
-    """Greatest x at which an outline meets lines of given y (k,), and the piece that does; -inf where none does."""
+    """Greatest x, mm (k,), at which an outline meets lines of given y (k,), mm, -inf without any, and its piece."""
     points, bulges = outline
     best, which = np.full(len(y), -np.inf), np.zeros(len(y), dtype=np.intp)
     for k, bulge in enumerate(bulges.tolist()):
@@ -357,7 +362,7 @@ def _on_arc(start: Array, end: Array, bulge: float, y: Array) -> list[Array]:
 
 
 def _cross_hole_volume(cross: CrossHole, outline: Hole, hole: Hole) -> float:
-    """Volume that a cross hole takes from between a hole and an outline.
+    """Volume, mm^3, that a cross hole takes from between a hole and an outline.
 
     The integral of the height of the bore times the way from hole to outline over its width, y = r sin a, by Gauss's
     rule between the corners of the hole.

@@ -1,4 +1,4 @@
-"""Limits: what a user gives, or what the tolerance implies, as far as that says anything."""
+"""Limits: given by the user, or implied by the tolerance where that limits anything."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NO_LIMIT = "no limit follows from the tolerance here; give verify.motion_error"
 
 
 def stroke_of(follower: Follower) -> float:
-    """Stroke, mm, or swing, degrees, of the intended motion, as found on a grid of shaft angles that has its breaks."""
+    """Stroke, mm, or swing, degrees, of the intended motion, from a grid of shaft angles that has its breaks."""
     stroke = float(np.ptp(follower.intended(grid(follower.motion.breaks))))
     return float(np.degrees(stroke)) if follower.unit == "deg" else stroke
 
@@ -53,9 +53,10 @@ def unlimited(check: Check) -> Check:
 def limit_of(
     implied: Callable[[float], float], limit: float | None, tolerance: float, slack: float
 ) -> tuple[float, float]:
-    """Return the limit, given or implied by the tolerance, and by how much the judge's own rounding may exceed it.
+    """The limit, given or implied by the tolerance, and the excess that the judge's own rounding may cause.
 
-    Where rounding grows beyond a small share of a limit that is given, the limit holds and not the rounding.
+    `implied(tolerance)` is the error, mm or degrees, that a contour within a tolerance, mm, can cause; `slack`, mm, is
+    the rounding of the contour. The excess over a given limit is at most a small share of that limit.
     """
     by_tolerance = implied(tolerance)
     room = implied(tolerance + slack) - by_tolerance

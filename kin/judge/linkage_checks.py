@@ -1,4 +1,4 @@
-"""The checks on a mechanism that a cam drives: how far its output is off, and how long it dwells."""
+"""The checks on a mechanism that a cam drives: the error of its output, and the length of its dwells."""
 
 from __future__ import annotations
 
@@ -32,7 +32,12 @@ def judge_linkage(
     slack: float,
     uneven: float,
 ) -> tuple[LinkageVerdict | None, list[Check]]:
-    """Judge how a contour drives the mechanism: checks linkage-error and, if the dwell must last, dwell."""
+    """Judge how a contour drives the mechanism: checks linkage-error and, if the dwell must last, dwell.
+
+    `phi` (n,), rad, are shaft angles. `slack`, mm, is the rounding of the contour; `uneven`, mm, bounds the distance of
+    a solid's other sections from it. A contour that does not drive the mechanism gives None and failed checks; of a
+    `trimmed` one the output is judged against a given limit alone.
+    """
     mechanism, dwell = linkage.mechanism, linkage.dwell
     at_least = None if dwell is None or dwell.at_least is None else float(np.degrees(dwell.at_least))
     try:
@@ -114,7 +119,7 @@ def _output_check(linkage: LinkageVerdict, limits: Limits, slack: float) -> Chec
 def _dwell_check(shortest: DwellFound, unit: str, at_least: float) -> Check:
     """Check that `shortest`, a dwell, lasts `at_least` degrees.
 
-    It is the longest dwell in that way the frame may rest in which this is shortest. `unit` is that of its band.
+    It is the longest dwell in the way of resting in which dwells are shortest. `unit` is the unit of its band.
     """
     ok, over = shortest.length_deg >= at_least - DWELL_ROUNDING, shortest.over
     at = shortest.start_deg if over == "shaft" else None

@@ -1,6 +1,6 @@
-"""What a milling program leaves of the stock: its closed paths moved by the cutter's radius; what goes wrong on it.
+"""Contours that a milling program leaves of the stock, its closed paths moved by the cutter's radius, and its faults.
 
-z is 0 at the top of the stock and falls into it. How a program is taken apart is told in `kin.judge.cuts`.
+z is 0 at the top of the stock and falls into it. `kin.judge.cuts` divides a program into cuts.
 """
 
 from __future__ import annotations
@@ -36,10 +36,7 @@ _CUTTER = re.compile(r"^cutter: diameter ([0-9.]+)")
 
 @dataclass(frozen=True, eq=False)
 class Milled(Nest):
-    """Contours that a milling program leaves, mm, by falling area, a milled outline first.
-
-    And `checks` of the program.
-    """
+    """Contours that a milling program leaves, mm, by falling area, a milled outline first; `checks` of the program."""
 
     checks: tuple[Check, ...]
 
@@ -47,7 +44,7 @@ class Milled(Nest):
 def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
     """Contours that a milling program leaves, by simulating it, and checks of the program itself.
 
-    Raises ReadError where no closed contour comes of it.
+    Joints of paths may be off by a share of `tolerance`, mm. Raises ReadError where no closed contour is left.
     """
     cuts = list(cuts_of(program))
     if not cuts:
@@ -70,12 +67,12 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
 
 
 def _is_outline(edge: CutEdge, milling: Milling) -> bool:
-    """Whether an edge is that of the part itself."""
+    """Whether an edge is the outline of the part."""
     return milling.outline and edge.side > 0
 
 
 def _cutter_check(program: Program, milling: Milling) -> Check:
-    """Check the cutter that the program names on top, if it does."""
+    """Check the diameter of the cutter that the program names at its head, if it names one."""
     named = [float(tool[1]) for text in program.comments if (tool := _CUTTER.match(text))]
     if not named:
         return Check("cutter", True, None, None, "mm", detail="the program names no cutter")
@@ -103,7 +100,7 @@ def _rapid_check(program: Program, milling: Milling) -> Check:
 
 
 def _hub_check(program: Program, milling: Milling) -> Check | None:
-    """Tell feed moves into a hub that stands on the stock; None where there are none."""
+    """A failed check for feed moves into a hub that stands on the stock; None without such moves."""
     bad = [move for move in _into_hub(program, milling) if not move.rapid]
     return failed("gouge", f"line {bad[0].line} cuts into the hub", unit="mm") if bad else None
 
@@ -118,7 +115,7 @@ def _into_hub(program: Program, milling: Milling) -> list[ToolMove]:
 
 
 def _from_shaft(move: ToolMove) -> float:
-    """Least distance of a move from the shaft in the plane."""
+    """Least distance, mm, of a move from the shaft in the plane."""
     if not across(move) and move.centre is None:
         return float(np.hypot(*move.start[:2]))
     return float(nearest(arcs_of([move]), np.zeros((1, 2)))[1][0])
@@ -130,9 +127,9 @@ def _count_check(name: str, faults: list[str]) -> Check:
 
 
 def _depth_check(features: list[Feature], milling: Milling, tolerance: float) -> Check:
-    """Check that each contour is as deep as it must be, and no pass goes deeper than it may below those before.
+    """Check that each contour has its depth, and that no pass goes too far below the passes before it.
 
-    Only a path along this one all round, no farther off than the cutter's radius, makes way for it.
+    Only an earlier path that runs along a pass all round, within the cutter's radius, clears the way for it.
     """
     worst, detail = 0.0, ""
     for cuts, depth, _ in features:
@@ -162,10 +159,10 @@ def _depth_check(features: list[Feature], milling: Milling, tolerance: float) ->
 
 
 def _floor_check(features: list[Feature], radius: float, tolerance: float) -> Check:
-    """Check that nothing stands on the floor between two paths side by side: what one leaves the other reaches.
+    """Check that no metal stands on the floor of a pocket between two paths side by side.
 
-    What the path without leaves begins one radius within it. Places there are looked at: they lie within the other
-    path, or no farther without than its radius; between two of them by no more than these lie apart.
+    The outer path clears down to one radius inside it. Places on that edge must lie inside the inner path or within the
+    radius outside it; between two neighbouring places the edge strays by no more than their distance.
     """
     worst, detail = 0.0, ""
     for feature in (feature for feature in features if len(feature.edges) > 1):
@@ -184,7 +181,7 @@ def _floor_check(features: list[Feature], radius: float, tolerance: float) -> Ch
 
 
 def _follows(loop: Arcs, last: Arcs, radius: float) -> bool:
-    """Whether a closed path runs along another, and as often round the middle of it."""
+    """Whether a closed path runs along another within a radius, and as many times round its middle."""
     points = np.concatenate([loop.start, loop.points(0.5 * loop.length)])
     near = nearest(last, points)[1].max() <= radius
     middle = last.start.mean(axis=0)
@@ -192,9 +189,9 @@ def _follows(loop: Arcs, last: Arcs, radius: float) -> bool:
 
 
 def _direction_check(features: list[Feature], milling: Milling) -> Check:
-    """Check on which side the cutter meets the metal: to climb it goes clockwise round metal, not so within it.
+    """Check the sense of the paths: to climb, the cutter goes clockwise round metal and counter-clockwise inside it.
 
-    In a pocket the paths along its edges count; of one that makes both, the metal within.
+    In a pocket the paths along its edges count; a path that makes both edges counts for the metal inside.
     """
     bad, directions = [], set[int]()
     for cuts, _, edges in features:

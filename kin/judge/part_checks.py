@@ -38,15 +38,16 @@ def drawn_checks(
 
 
 def levels_of(part: PartIntent) -> list[float]:
-    """Heights at which a solid is looked at, the plain disc's first."""
+    """Heights z, mm, of the sections of a solid that are judged, the plain disc's first."""
     return [z for z, _ in heights(part.layers, part.cross_holes)]
 
 
 def solid_checks(solid: AnySolid, sections: Sequence[SortedChains], part: PartIntent, tolerance: float) -> list[Check]:
     """Check the openings, faces and sections of a solid, in mm and no longer mirrored.
 
-    The plain disc's surfaces are judged elsewhere; here its sections need only be the same all along,
-    but for what the rounding of the file's own numbers makes of them, which is counted.
+    `sections` are those at the heights of `levels_of(part)`, in their order. The plain disc's surfaces are judged
+    elsewhere; here its sections need only be the same all along, but for rounding of the file's own numbers, which is
+    counted. Raises UnsettledError where the deviation of a section is not found.
     """
     layers, cross_holes = part.layers, part.cross_holes
     kinds = ["thickness", *(layer.outline.kind for layer in layers if layer.outline is not None)]
@@ -67,7 +68,7 @@ def _told(tallies: Tallies, tolerance: float) -> list[Check]:
 
 
 def _faces(tallies: Tallies, solid: AnySolid, layers: Sequence[Layer], tolerance: float) -> None:
-    """Hold the horizontal faces against those that are meant."""
+    """Compare the horizontal faces with the intended ones."""
     expected = faces(layers)
     levels = np.array(solid.faces)
     for kind, z in expected:
@@ -93,7 +94,7 @@ def _faces(tallies: Tallies, solid: AnySolid, layers: Sequence[Layer], tolerance
 def _section(
     tallies: Tallies, level: tuple[float, Layer], section: SortedChains, part: PartIntent, tolerance: float
 ) -> None:
-    """Hold one section against what is meant at its level."""
+    """Compare one section with the intended one at its level."""
     z, layer = level
     where = f" at z = {length_words(z)} {UNIT}"
     if layer.outline is None:

@@ -1,4 +1,4 @@
-"""A printable body judged from its triangles: closed, its heights, and every level of it against the slabs meant."""
+"""A printable body judged from its triangles: closed, its heights, and its sections against the intended slabs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["judge_body"]
 
 ROUNDING = 1e-9  # mm
-INSIDE = 1.5  # times the tolerance: a section is looked at so far within two levels, which may be off by one themselves
+INSIDE = 1.5  # times the tolerance, inside two levels, which may be off by it themselves: heights of judged sections
 
 
 def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: float, path: Path) -> list[Check]:
@@ -34,11 +34,11 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
     `tolerance` is in mm.
 
     watertight  every edge has two triangles, facing outward, none without area
-    thickness   it reaches from the lowest slab's lower face to the highest one's upper face, to `tolerance`
+    thickness   the body reaches from the lowest slab's lower face to the highest one's upper face, to `tolerance`
     outline     just within any two levels farther apart than twice the tolerance the corners of its section, and
-                the middles of its edges, lie within it of the edge of the union of the slabs there, and the slabs'
-                corners within it of the section's; where there is only one slab, the section's area differs from that
-                slab's by no more than the tolerance times the length of the slab's edges
+                the middles of its edges, lie within `tolerance` of the edge of the union of the slabs there, and the
+                slabs' corners within it of the section's; of a single slab the section's area differs from the slab's
+                by no more than the tolerance times the length of the slab's edges
     """
     mesh = welded(corners)
     faults = [*mesh.edge_faults, mesh.degenerate, mesh.duplicate, int(mesh.volume <= 0.0)]
@@ -56,17 +56,17 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
 
 
 def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, path: Path) -> Check:
-    """Hold sections between any two levels against the slabs that pass there, of which there is one at least."""
+    """Compare sections between any two levels with the slabs that pass there, of which there is one at least."""
     levels = distinct(np.array([level for slab in slabs for level in (slab.low, slab.high)]))
     worst, where = 0.0, ""
     for below, above in zip(levels[:-1].tolist(), levels[1:].tolist(), strict=True):
         if above - below <= 2.0 * tolerance:
             continue
-        there = [slab for slab in slabs if slab.low <= below and slab.high >= above]
+        passing = [slab for slab in slabs if slab.low <= below and slab.high >= above]
         room = min(INSIDE * tolerance, 0.5 * (above - below))
         for height in (below + room, above - room):
             try:
-                off = _off(mesh, height, there, path)
+                off = _off(mesh, height, passing, path)
             except ReadError as error:
                 detail = f"{name}: {error.message}"
                 return Check("outline", ok=False, value=None, limit=tolerance, unit="mm", detail=detail)
@@ -78,7 +78,7 @@ def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, pat
 def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
     """Greatest distance, mm, of the section at a height from the union of the slabs there.
 
-    It is inf where the one or the other is empty.
+    It is inf where the section or the union is empty.
     """
     _, outline = section(mesh, height)
     loops = [outline.points[ring] for ring in rings(outline, path)]

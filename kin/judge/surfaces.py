@@ -1,7 +1,7 @@
-"""Where the surfaces of a part are among the closed chains of a drawing, a section or a program.
+"""The surfaces of a part found among the closed chains of a drawing, a section or a program.
 
-What goes round the shaft lies one in another: a round outline, the surfaces, the bore. The outermost of all chains is
-the outline, whether or not it goes round.
+Chains that go round the shaft lie one in another: a round outline, the surfaces, the bore. The outermost of all chains
+is the outline, whether or not it goes round.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from kin.judge.intent import PartIntent, SurfaceIntent
     from kin.read.nesting import ClosedContour
 
-SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's size is looked at
+SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's size is taken
 
 
 class SortedChains(NamedTuple):
-    """Chains of a part told apart: one for each surface, the holes besides, and the checks of a round outline."""
+    """Sorted chains of a part: one for each surface, in order, the other chains as holes, checks of a round outline."""
 
     surfaces: tuple[ClosedContour, ...]
     holes: tuple[Contour, ...]
@@ -46,11 +46,11 @@ def sort_chains(
     *,
     z: float | None = None,
 ) -> SortedChains:
-    """Tell apart the chains of a part, in mm, as if not mirrored; `outline` is None where it is not in the file.
+    """Sort the chains of a part, in mm, as if not mirrored; `outline` is None where it is not in the file.
 
-    `z` is the height of the section in which they lie, None for that of the plain disc.
-    A surface is what stands on its layer; where none of the surfaces has a chain there, they are those that go round
-    the shaft, by falling area. Raises ReadError where one is missing, or its layer has several closed contours.
+    `z`, mm, is the height of their section, None for the plain disc's. A surface is the chain on its layer; where no
+    surface has a chain on a layer of its own, the surfaces are the chains that go round the shaft, in the order of
+    `others`, outermost first. Raises ReadError where a surface is missing, or its layer has several closed contours.
     """
     checks: tuple[Check, ...] = ()
     if outline is not None and part.outline is None:
@@ -74,7 +74,7 @@ def sort_chains(
 
 
 def outermost_first(surfaces: Sequence[SurfaceIntent]) -> list[SurfaceIntent]:
-    """Order surfaces, which lie one in another, by how far their exact contours reach."""
+    """Surfaces, which lie one in another, by the falling reach of their exact contours from the shaft."""
 
     def reach(surface: SurfaceIntent) -> float:
         return float(np.hypot(*surface.gauge.envelope.points(SIZED).T).max())
@@ -85,7 +85,8 @@ def outermost_first(surfaces: Sequence[SurfaceIntent]) -> list[SurfaceIntent]:
 def deepest(part: PartIntent) -> int:
     """Greatest number of other chains that a closed chain of a part may lie inside.
 
-    Holes lie in metal, and nothing lies in the air. Where openings are passed over, so is what is drawn in them.
+    Holes lie in metal, and nothing lies in an opening. Where openings are passed over, there is no limit but
+    MOST_CONTOURS.
     """
     if not part.closed:
         return MOST_CONTOURS

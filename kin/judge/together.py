@@ -1,4 +1,4 @@
-"""The discs of a shaft judged from several files: each by its own intent, then what is left between their surfaces."""
+"""The discs of a shaft judged from several files: each by its own intent, then the play between their surfaces."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class DiscFile(NamedTuple):
-    """A file with one disc of a shaft, by its place among them, or with all of them (None); and the unit given, mm."""
+    """A file with the disc of a shaft of index `disc`, or with all of them (None); `units`, mm, is the unit given."""
 
     path: Path
     disc: int | None
@@ -28,7 +28,7 @@ class DiscFile(NamedTuple):
 
 
 class DiscsRead(NamedTuple):
-    """Surfaces that were read from a file: its name, and the greatest difference of its sections, mm."""
+    """Surfaces that were read from a file; `file` is its name, `uneven` the greatest difference of its sections, mm."""
 
     file: str
     surfaces: Sequence[SurfaceVerdict]
@@ -38,9 +38,9 @@ class DiscsRead(NamedTuple):
 def verify_set(files: Sequence[DiscFile], shaft: ShaftIntent, angles: int, limits: Limits) -> list[Verdict]:
     """Judge files that go together, at least one; closures between discs stand in the verdict on the last file.
 
-    A closure whose surfaces are not all there, as a disc is not given or cannot be read, is left out. Raises
-    OSError as the file system does, UnitsError where a file states another unit than is given, and ValueError for
-    another suffix or no angles.
+    `angles` are equal steps of the shaft. A closure is left out if one of its discs is not given or cannot be read.
+    Raises OSError where the disk refuses, UnitsError where a file states another unit than the one given, and
+    ValueError for another suffix or no angles.
     """
     verdicts = []
     for path, disc, units in files:

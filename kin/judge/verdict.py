@@ -1,4 +1,4 @@
-"""What is found of a file: checks, and of each surface what the judge measured and the contour that it read."""
+"""Results for a file: checks, and for each surface the figures measured and the contour read."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SurfaceVerdict:
-    """Results for one surface of a part; all is None where nothing could be read.
+    """Results for one surface of a part; all but the name is None where nothing could be read.
 
     name            as the intent has it
     contour         as read, in mm and as if not mirrored
@@ -51,7 +51,7 @@ UNREAD = SurfaceVerdict()
 class ClosureVerdict:
     """Play of a follower between the surface named `pushes`, which drives it out, and `stops`, which holds it back.
 
-    `gauges` is that of the gauges, which is meant to be 0, and `play` that of the follower itself.
+    `gauges` is the play of the gauges, intended to be 0, `play` the follower's own; mm or degrees.
     """
 
     pushes: str
@@ -110,14 +110,16 @@ class OfSurfaces:
 class Verdict(OfSurfaces):
     """Results for a file.
 
-    kind      of the file: drawing, solid or program
-    checks    units, closed, contour, motion, bore, ... ; or the one that says why the file cannot be read
+    kind      name of the file's format: dxf, svg, step, gcode, csv, ...
+    checks    units, closed, contour, motion, bore, ... ; or a single one that says why the file cannot be read
     surfaces  results for each surface, in the intent's order; none where the file cannot be read
     closures  play between pairs of surfaces
-    units     mm in a unit of the file as it was read: as the file states, or else as it was given or meant
+    units     mm in a unit of the file as it was read: stated by the file, or else given or intended; None where no
+              contour was read
     bodies    of each disc in the file every closed contour of the drawing, section or program that holds its first
               surface, outermost first
-    uneven    by how much a solid's other sections differ from its surfaces, mm, where only rounding is behind it
+    uneven    bound of the contours' own error, mm: a solid's other sections that differ by rounding, a drawing's gaps
+              that were joined, the arcs for a grinder's table
     """
 
     kind: str

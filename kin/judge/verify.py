@@ -1,6 +1,6 @@
-"""The verdict on a file: whether it is the part that was asked for, and its followers move as intended.
+"""The verdict on a file: whether it is the intended part, and its followers move as intended.
 
-The file is taken as it lies on disk. Nothing of the way it was made is known here: the exact contour comes from the
+The file is taken as it lies on disk. The way it was made is not known here: the exact contour comes from the
 intended motion alone (`kin.follower.envelope`), the motion from contact with the file's own contour
 (`kin.follower.follower`).
 """
@@ -61,9 +61,9 @@ class UnitsError(CamgeoError, ValueError):
 def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: float | None = None) -> Verdict:
     """Judge a drawing, solid, program, a machine's table or a list of points, at `angles` equal steps of the shaft.
 
-    What a file states as its unit counts; `units`, mm, is that of one that states none. A file from which no contour
-    can be read gets a verdict that says why. Raises OSError as the file system does, UnitsError where the file states
-    another unit than `units`, and ValueError for another suffix or no angles.
+    The unit that a file states counts; `units`, mm, is the unit of a file that states none. A file from which no
+    contour can be read gets a verdict that says why. Raises OSError where the disk refuses, UnitsError where the file
+    states another unit than `units`, and ValueError for another suffix or no angles.
     """
     kind = format_of(path)
     if kind.contents == "table":
@@ -79,7 +79,11 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
 
 
 def verify_points(path: Path, part: PartIntent, angles: int, limits: Limits, mm: float) -> Verdict:
-    """Judge a list of points of a part's one surface, `mm` to a unit, by the spline that CAD systems put through it."""
+    """Judge a list of points of a part's one surface, `mm` to a unit, by the spline that CAD systems put through it.
+
+    `angles` are equal steps of the shaft. A list that cannot be read, or of a part with several surfaces, gets a
+    verdict that says why. Raises OSError where the disk refuses, ValueError for no angles.
+    """
 
     def read() -> list[tuple[PartIntent, _Read]]:
         from kin.read.point_list import spline_of_points
@@ -96,7 +100,7 @@ def verify_points(path: Path, part: PartIntent, angles: int, limits: Limits, mm:
 def verify_together(path: Path, shaft: ShaftIntent, angles: int, limits: Limits) -> Verdict:
     """Judge a 3MF or STEP that holds all discs of a shaft, each in its place, at `angles` equal steps of the shaft.
 
-    A file from which they cannot be read gets a verdict that says why. Raises OSError as the file system does,
+    A file from which they cannot be read gets a verdict that says why. Raises OSError where the disk refuses,
     ValueError for another suffix or no angles.
     """
     return _verdict(path, lambda: _of_solids(path, shaft, limits), angles, limits)
@@ -109,9 +113,9 @@ def _verdict(
     limits: Limits,
     kind: Format | None = None,
 ) -> Verdict:
-    """Judge the surfaces of every part that is read from a file, and what is left between those of one part.
+    """Judge the surfaces of every part that is read from a file, and the play between surfaces of one part.
 
-    The file is of the `kind`, or of that which its suffix says.
+    The file's format is `kind`, or follows from its suffix.
     """
     kind = kind or format_of(path)
     if angles < 1:
@@ -156,10 +160,10 @@ def _verdict(
 
 
 class _Read(NamedTuple):
-    """The checks on what a file holds, its surfaces and all chains in mm as if not mirrored, mm in its unit.
+    """Checks on the contents of a file, its surfaces and all chains in mm as if not mirrored, and mm in its unit.
 
-    `uneven`: by how much a solid's other sections differ from these, mm, where only rounding is behind it; of a drawing
-    the widest gap that was joined.
+    `uneven`: difference of a solid's other sections from these, mm, by rounding alone; of a drawing the widest gap that
+    was joined, of a table the error of its arcs.
     `stated_error`: greatest distance from the exact contour, mm, as the file itself states it.
     """
 
@@ -243,7 +247,7 @@ def _opening_checks(
 
 
 def _units_check(stated: float | None, units: float | None, part: PartIntent, parts: SortedChains) -> Check:
-    """Check the unit of a drawing or a program: what it states counts, unless its size tells that it is misstated."""
+    """Check the unit of a drawing or a program: the stated unit counts, unless the size shows that it is wrong."""
     unit = part.mm
     if stated is None and units is None:
         why = f"the drawing states no unit and is judged in that of the recipe, {unit:.9g} mm"
@@ -264,7 +268,7 @@ def _units_check(stated: float | None, units: float | None, part: PartIntent, pa
 
 
 def _size(part: PartIntent, parts: SortedChains) -> float:
-    """Size of the first surface as a share of the exact one's."""
+    """Size of the first surface over that of the exact one."""
     exact = part.surfaces[0].gauge.envelope.points(SIZED)
     return float(np.abs(parts.surfaces[0].contour.vertices).max() / np.abs(exact).max())
 
@@ -295,7 +299,7 @@ def _fault_words(fault: Fault, scale: float) -> str:
 
 
 def _crossing_places(parts: SortedChains, joined: float = 0.0) -> list[str]:
-    """Where surfaces cross themselves, but for where a line that joins two ends turns back on what it joins."""
+    """Words for the places where surfaces cross themselves, without those beside a line that joins two ends."""
     places = []
     for chain in parts.surfaces:
         points, contour = crossings(chain.contour).point, chain.contour
@@ -353,7 +357,7 @@ def _joined(detail: str, more: str) -> str:
 
 
 def _sought(part: PartIntent) -> Sought:
-    """What is sought of a part's solid: the sections of its layers, the plain disc's first, and of its surfaces."""
+    """Sections sought of a part's solid: at its layers, the plain disc's first, and at its surfaces."""
     levels: list[float] = []
     if part.layers:
         from kin.judge.part_checks import levels_of
@@ -394,7 +398,7 @@ def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, u
 
 
 def _uneven(solid: AnySolid, part: PartIntent, contours: Sequence[Contour]) -> float:
-    """By how much a part's contours differ from section to section, mm: not by what rounding does to hub and bore."""
+    """Difference of a part's contours from section to section, mm, without the effect of rounding on hub and bore."""
     layers = [layer for layer in part.layers if layer.outline is None]
     if not solid.uneven or not layers or any(surface.z is not None for surface in part.surfaces):
         return solid.uneven
@@ -405,7 +409,7 @@ def _uneven(solid: AnySolid, part: PartIntent, contours: Sequence[Contour]) -> f
 
 
 def _found(solid: AnySolid, part: PartIntent, tolerance: float, path: Path) -> SortedChains:
-    """Tell apart the section of the plain disc, and those in which a surface is looked for by its height."""
+    """Sort the chains of the plain disc's section, and of the sections at the heights of surfaces."""
     by_height = {}
     for z in dict.fromkeys(surface.z for surface in part.surfaces):
         chains = solid.chains if z is None else solid.section(z).chains
@@ -417,7 +421,7 @@ def _found(solid: AnySolid, part: PartIntent, tolerance: float, path: Path) -> S
 
 
 def _layered(solid: AnySolid, part: PartIntent, limits: Limits, path: Path) -> list[SortedChains]:
-    """Tell apart the sections of a solid in layers; of a layer with an outline of its own that is the outline."""
+    """Sort the chains of a solid's sections in layers; the outline is the surface of a layer with one of its own."""
     from kin.judge.layers import heights
 
     parts = []
@@ -431,14 +435,14 @@ def _layered(solid: AnySolid, part: PartIntent, limits: Limits, path: Path) -> l
 
 
 def _watertight_check(solid: AnySolid, parts: SortedChains) -> Check:
-    """Check that each edge has two faces that run along it either way, facing outward, and no surface a crossing."""
+    """Check that each edge has two faces, one either way, that they face outward, and no surface crosses itself."""
     return _count_check("watertight", [*solid.faults, *_crossing_places(parts)])
 
 
 def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Check:
     """Check that the part reaches from z = 0 to its thickness, with walls that stand upright all the way.
 
-    Walls that only the rounding of the file's own numbers makes lean do stand upright; what they differ by is counted.
+    Walls that lean by the rounding of the file's own numbers alone count as upright; the difference is counted in.
     """
     off = max(abs(solid.z_min), abs(solid.z_max - thickness))
     detail = f"z from {span_words(solid.z_min, solid.z_max)}, 0 to {length_words(thickness, '.9g')} {UNIT} is expected"

@@ -35,7 +35,10 @@ def exact_area(contours: Sequence[Contour], part: PartIntent) -> tuple[float, fl
 def volume_check(
     measured: float, height: float, contours: Sequence[Contour], part: PartIntent, tolerance: float
 ) -> Check:
-    """Check a solid's volume against the area times its height, within the tolerance times the area of the walls."""
+    """Check a solid's volume, mm^3, against the exact area times its `height`, mm.
+
+    The limit is the tolerance, mm, times the area of the walls.
+    """
     area, perimeter, source = exact_area(contours, part)
     bore = part.bore or 0.0
     expected = (area - 0.25 * np.pi * bore**2) * height
