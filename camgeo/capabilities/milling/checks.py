@@ -26,8 +26,7 @@ def _pocketed(scene: CheckFacts, file: FileRequest) -> bool:
 def other_entry(check: Entry, _report: Entry, recipe: Recipe) -> str:
     """Remedy in words: another place where the cutter comes to the path.
 
-    It is empty for a check without a value, as where the cutter runs into a hub, and for a recipe without
-    `manufacture`.
+    Empty for a check without a value, as where the cutter runs into a hub, or a recipe without `manufacture`.
     """
     if check["value"] is None or recipe.manufacture is None:
         return ""

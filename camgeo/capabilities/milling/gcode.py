@@ -1,7 +1,7 @@
 """Programs for milling machines: plain RS-274 with arcs by their centres, nothing a controller may read in two ways.
 
-Absolute places, feeds by the minute, no cutter compensation, no cycles, no variables. Coordinates
-have as many decimals as `places` gives; centres are computed from the ends as they are written.
+Absolute places, feeds by the minute, no cutter compensation, no cycles, no variables. Coordinates have as many
+decimals as `places` gives; centres are computed from the ends as they are written.
 """
 
 from __future__ import annotations

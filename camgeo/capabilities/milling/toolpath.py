@@ -74,7 +74,7 @@ def bend_at_begin(path: ArcSpline) -> float:
 
 
 def circle(centre: tuple[float, float], radius: float, direction: float) -> ArcSpline:
-    """A counter-clockwise circle, mm, of a radius in mm, in four arcs, begun in a direction, rad."""
+    """A counter-clockwise circle, centre and radius in mm, in four arcs, begun in a direction, rad."""
     angle = direction + 0.5 * math.pi * np.arange(4)
     points = np.array(centre) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
     return ArcSpline(points, np.full(4, QUARTER), EXACT)
@@ -128,7 +128,7 @@ def side_by_side(near: float, far: float, radius: float, allowance: float) -> li
 
 
 def depths(thickness: float, depth_of_cut: float) -> list[float]:
-    """Heights z of equal passes, mm, from the first, below 0, down to minus the thickness, for a depth of cut in mm."""
+    """Heights z of equal passes, mm, from the first down to minus the thickness, at most `depth_of_cut` mm apart."""
     count = max(math.ceil(thickness / depth_of_cut * (1.0 - 1e-12)), 1)
     return [-thickness * (k + 1) / count for k in range(count)]
 

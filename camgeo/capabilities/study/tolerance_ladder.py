@@ -2,8 +2,7 @@
 
 Each rung writes a file into a private folder and judges it there, as an export does, then repeats the work to time it
 warm: the exact curve and its bounds are made once, as stages of the design. A ladder ends where the form cannot hold
-the tolerance, with the reason and what can be held, or at a run (fit, write and judge) that takes longer than
-allowed.
+the tolerance, with the reason and what can be held, or at a run (fit, write and judge) that is too long.
 """
 
 from __future__ import annotations

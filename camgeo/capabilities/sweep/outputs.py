@@ -146,7 +146,7 @@ def curve_of(recipe: Recipe, label: str) -> tuple[OutputCurve, str]:
 def with_polished(designs: Selection, best: Sequence[Best], ranking: Ranking) -> tuple[Selection, Marks]:
     """The designs kept and the polished ones, best first, at most MOST_ROWS; and marks (n,) of the designs by name.
 
-    The mark `polished` is of a polished design; its index is that of its start, whose own row stays. The mark
+    The mark `polished` is of a polished design; its index is the index of its start, whose own row stays. The mark
     `certified`, there only where figures are estimates, is of a design with exact figures; such designs come first.
     """
     new = [design for design in best if design.polished]

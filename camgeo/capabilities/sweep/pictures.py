@@ -84,7 +84,7 @@ def draw_map(
 def draw_best(title: str, curves: Sequence[OutputCurve], label: str, *, notes: str = "") -> dict[str, bytes]:
     """Picture of the best designs' output over a turn, as bytes: {"png": ..., "svg": ...}.
 
-    The first curve is boldest, its dwell shaded. `label` is that of the output's axis; `notes` stand below the title.
+    The first curve is boldest, its dwell shaded. `label` names the output's axis; `notes` stand below the title.
     Raises ModuleNotFoundError without matplotlib.
     """
     with _blank() as (figure, axes):

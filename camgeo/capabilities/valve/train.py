@@ -64,7 +64,11 @@ class Valve:
 
 
 def valve_of(recipe: Recipe, design: Design) -> Valve | None:
-    """The valve of a recipe, None without one; raises RecipeErrors for a table that ends too soon or turns back."""
+    """The valve of a recipe, None without one.
+
+    Raises RecipeErrors for a table of ratios that ends below the tappet's greatest lift, or by which the valve falls
+    while the tappet rises.
+    """
     valve = recipe.of(Valve)
     if valve is None or len(valve.ratios) == 1:
         return valve
