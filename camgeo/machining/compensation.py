@@ -1,4 +1,4 @@
-"""A part made different from the nominal one: edges moved for a kerf or a clearance, scaled for shrinkage, altered.
+"""A part that differs from the nominal one: edges moved for kerf or clearance, scaled for shrinkage, or altered.
 
 The follower is changed, not the contour: a flat face stands farther out, a roller on the same pitch curve is smaller,
 faces of a pair stand beside their pivot's lines. The contour follows by the same formulas and proofs; openings are
@@ -33,14 +33,14 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design, Disc
     from kin.judge.check import Check
 
-FINE = 1e-9  # mm: pieces of an opening's parallel no longer than this are left out
+FINE = 1e-9  # mm: pieces of an opening's parallel no longer than this are rounding, and left out
 
 
 @dataclass(frozen=True)
 class CompensatedPart:
-    """Recipe and design of the part in a file, and the checks of its contour that fail.
+    """Recipe and design of a compensated part, and the checks of its contour that fail.
 
-    The design has no linkage: the part drives one only after cutting or shrinking.
+    The design has no linkage: only the part as cut or shrunk drives one.
     """
 
     recipe: Recipe
@@ -49,11 +49,12 @@ class CompensatedPart:
 
 
 def compensate(recipe: Recipe, design: Design, compensation: Compensation, field: str) -> CompensatedPart:
-    """Change a part by a compensation; its contour is None where a check fails.
+    """Change a part by a compensation; a surface's contour is None where its check of undercut fails.
 
-    Raises RecipeErrors at `field`, that of the file, where a roller or an opening would be nothing, CurveError where
-    the contour cannot be proved.
+    Raises RecipeErrors at `field`, the path of the file, where a roller or an opening would be nothing or an alteration
+    is refused, CurveError where undercut can be neither proved nor excluded.
     """
+    # the exact cam with its follower changed, then the openings, then what capabilities alter
     growth, scale = compensation.out, compensation.scale
     try:
         exact = design.exact if growth == 0.0 and scale == 1.0 else design.exact.grow(growth, scale)
@@ -78,6 +79,7 @@ def compensate(recipe: Recipe, design: Design, compensation: Compensation, field
         raise recipe.error(field, str(error)) from error
     name = f"{recipe.name}, {compensation.words(recipe.mm)}"
     different = replace(recipe, name=name, cam=exact.cam, part=part)
+    # checks of undercut are made anew unless the family has none
     if exact.never_undercut:
         has_contour = bool(design.contours)
         surfaces = [SurfaceDesign(surface, surface.curve if has_contour else None, ()) for surface in exact.surfaces]
@@ -121,7 +123,7 @@ def _body(body: Body, part: Part, growth: float, scale: float) -> Body:
 
 
 def _opening(opening: Opening, growth: float, scale: float) -> Opening:
-    """An opening made smaller by `growth` all round, and scaled."""
+    """An opening made smaller by `growth`, mm, all round, then scaled about the shaft."""
     depth = None if opening.depth is None else scale * opening.depth
     if opening.circle is not None:
         (x, y), radius = opening.circle

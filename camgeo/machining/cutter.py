@@ -1,9 +1,9 @@
 """The path of a round cutter's centre about a contour, and the metal that it does not reach (docs/manufacture.md).
 
 The path is the contour's parallel on the side without metal, exact in the moving frame: outside a disc, inside the
-opening of a ring. Whether the cutter reaches everything is the question whether a roller of its radius undercuts, with
-the contour for its pitch curve (of a disc run through the other way): the same proofs decide it, of the bends of hollow
-stretches and of the gaps between far-apart ones.
+opening of a ring. The cutter reaches all metal if a roller of its radius does not undercut with the contour for its
+pitch curve, which for a disc is run through the other way. The same proofs decide: by the curvature of hollow
+stretches, and by the width of necks between stretches that lie far apart along the contour.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CutterPath:
-    """The path of a cutter's centre, counter-clockwise; `radius` of the cutter, mm.
+    """The path of a cutter's centre, counter-clockwise; `radius` is the cutter's, mm.
 
-    `curve` is the contour's parallel, in runs that meet where metal is not reached. With `corners` the runs are those
-    of a trimmed contour instead, about whose corners the cutter swings. `lost` are the stretches not reached, by the
-    contour's own parameters.
+    `curve` is the contour's parallel, in runs that meet where metal is not reached. With `corners` it has the runs of a
+    trimmed contour instead, about whose corners the cutter swings. `lost` are the stretches that are not reached, by
+    the parameters of the contour.
     """
 
     curve: Curve
@@ -45,9 +45,13 @@ class CutterPath:
     lost: tuple[Undercut, ...] = ()
 
     def arcs(self, tolerance: float, fit_curve: Fit = fit_arcs) -> ArcSpline:
-        """Arcs within `tolerance` mm of the path, made of each curve by `fit_curve`; CurveError where it fits none."""
+        """Arcs within `tolerance`, mm, of the path; `fit_curve` fits a curve within a tolerance.
+
+        Raises CurveError where it fits none, as where part of the path shrinks to a point.
+        """
         if not self.corners:
             return fit_curve(self.curve, tolerance)
+        # each run is fitted by itself; an arc about each corner leads from its end to the next one's begin
         fits = [fit_curve(Curve(self.curve.shape, (self._in_two(run),)), tolerance) for run in self.curve.runs]
         run_ends = np.array([run.high for run in self.curve.runs])
         leave = self.curve.sample(run_ends, -1)
@@ -62,7 +66,7 @@ class CutterPath:
         return ArcSpline(np.concatenate(points), np.concatenate(turns), bound)
 
     def _in_two(self, run: SmoothRun) -> SmoothRun:
-        """The run; one that is a circular arc is broken in the middle, as a chain has two arcs at least."""
+        """The run; a circular arc is broken in its middle, as a chain has at least two arcs."""
         if run.breaks or self.curve.radius((run.low, run.high)) is None:
             return run
         return replace(run, breaks=(0.5 * (run.low + run.high),))
@@ -71,12 +75,13 @@ class CutterPath:
 def cutter_path(contour: Curve, radius: float) -> CutterPath:
     """Path of the centre of a cutter of `radius`, mm, about a contour, with the stretches that it does not reach.
 
-    Raises UndercutError where no single path is left of it, CurveError where what is reached cannot be proved.
+    Raises UndercutError where the path is nowhere on the contour's parallel or falls into pieces, and for a trimmed
+    contour with hollows whose roller is smaller than the cutter; CurveError where it cannot be proved what is reached.
     """
     ring = in_ring(contour)
     inward = radius if ring else -radius
     beside = Parallel(contour.shape, inward)
-    if isinstance(contour.shape, Parallel):  # one parallel in place of two: nothing is added up and taken off again
+    if isinstance(contour.shape, Parallel):  # one parallel in place of two, without rounding of their distances
         beside = Parallel(contour.shape.base, contour.shape.distance + inward)
     if is_sharp(contour):  # about a corner the parallel is an arc
         return CutterPath(Curve.whole(beside), radius)
@@ -106,10 +111,10 @@ def cutter_path(contour: Curve, radius: float) -> CutterPath:
 
 
 def no_hollow(contour: Curve) -> bool:
-    """Whether metal is proved to have no hollow: true of a disc whose contour nowhere turns right, never of a ring."""
+    """Whether the metal is proved to have no hollow: where a disc's contour nowhere turns right; never for a ring."""
     return not in_ring(contour) and bool((contour.cells.rows[2] >= 0.0).all())
 
 
 def roller_radius(contour: Curve) -> float:
-    """Radius of the roller whose contour this is, mm; 0 for the contour of a flat face."""
+    """Radius of the roller that runs on the contour, mm; 0 for the contour of a flat face."""
     return abs(contour.shape.distance) if isinstance(contour.shape, Parallel) else 0.0

@@ -1,11 +1,12 @@
 """The grinder's table: how far the wheel's centre stands from the shaft over the angle of the work, X over C.
 
-With g = c.T and h = c.N of the wheel's path c, the contour's parallel at the wheel's radius, X = |c| and
+The wheel's path c is the contour's parallel at the wheel's radius, with tangent T, normal N, speed sigma and turn
+omega of the tangent, both per parameter. With g = c.T and h = c.N, X = |c| and
 
     dX/dC = X g/h,   d2X/dC2 = X g^2/h^2 + X^3/h^2 (1 - k X^2/h),   k = omega/sigma.
 
-Joined by straight lines over steps H the table is off by up to H^2/8 of the greatest second derivative; where every
-place of the wheel is within that of the exact one, so is the metal that it leaves.
+Joined by straight lines over steps H, rad, the table is off by up to H^2/8 of the greatest second derivative; where
+every place of the wheel is within that distance of the exact one, so is the metal that it leaves.
 """
 
 from __future__ import annotations
@@ -36,13 +37,13 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
 
-ROLLER = "roller"  # option of the table of a roller's lift, which one of a wheel's places does not have
+ROLLER = "roller"  # option of a table of a roller's lift; a table of a wheel's places does not have it
 CELLS = 16_384  # intervals of the turn over which the second derivative is bounded
-SHARE = 0.99  # of the tolerance that straight joins may take, the rest being for the table's digits
-TICKS = 10_000  # of a degree: steps are whole ones, so that angles have four decimals
-BELOW = 0.95  # of the largest wheel, with which rows need not be too close
-NOTHING = 1e-13  # of a direction or of the size: rounding about 0
-DIGITS = 5e-12  # of a length as a table has it
+SHARE = 0.99  # of the tolerance that straight joins may take; the table's digits take some too
+TICKS = 10_000  # parts of a degree, in whole numbers of which steps are, so that angles have four decimals
+BELOW = 0.95  # of the largest wheel that reaches: with a larger one rows would have to be very close
+NOTHING = 1e-13  # of a direction's component or of the size: less is rounding about 0
+DIGITS = 5e-12  # relative error of a length as the table writes it
 
 
 class GrindingTable(NamedTuple):
@@ -57,8 +58,10 @@ class GrindingTable(NamedTuple):
 def grinding_table(recipe: Recipe, design: Design, request: FileRequest, tolerance: float, field: str) -> GrindingTable:
     """Table of a request within a tolerance, mm; `field` is the path of the request, for errors.
 
-    Raises RecipeErrors for a wheel or roller that the contour does not let in, a step that is too wide for the
-    tolerance, and a tolerance that takes too fine a step.
+    Columns are the direction of the wheel's centre, degrees, its distance from the shaft in the recipe's unit, and the
+    direction of the metal's normal, degrees; of a roller the direction and its lift. Raises RecipeErrors for a missing
+    wheel, a wheel or roller that the contour does not let in, a trimmed contour, a path that a ray from the shaft
+    crosses twice, a step that is too wide for the tolerance, and a tolerance that takes too fine a step.
     """
     wheel = _Wheel.of(recipe, request, field)
     path = _path(recipe, design, wheel)
@@ -98,7 +101,10 @@ def grinding_table(recipe: Recipe, design: Design, request: FileRequest, toleran
 
 
 def grinding_intent(recipe: Recipe, design: Design) -> Grinding:
-    """Wheel, and roller with its least distance, mm, by which kin judges grinding tables of a recipe."""
+    """Radius of the wheel, and of a tabled roller with its least distance from the shaft, mm, for kin's judgement.
+
+    Raises RecipeErrors for a roller that the contour does not let in, and for a trimmed contour.
+    """
     request = next((request for request in recipe.export.files if request.form.ground and ROLLER in request.own), None)
     if request is None or not design.contours:
         return Grinding(recipe.wheel)
@@ -160,7 +166,7 @@ def _path(recipe: Recipe, design: Design, wheel: _Wheel) -> Curve:
 
 
 class _Wheel(NamedTuple):
-    """A wheel, or a roller whose lift is tabled: its radius, mm, and the recipe's field of it."""
+    """A wheel, or a roller whose lift is tabled: its radius, mm, and the path of its field in the recipe."""
 
     radius: float
     field: str

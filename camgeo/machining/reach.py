@@ -23,20 +23,21 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
-ALIKE = 1e-9  # share by which hollows of a regular cam differ through rounding: the first of them is reported
+ALIKE = 1e-9  # share by which rounding lets equal hollows of a regular cam differ: the first of them is reported
 
 
 def cutter_paths(recipe: Recipe, design: Design, further: float = 0.0) -> tuple[CutterPath, ...]:
-    """Path of the cutter's centre along each surface, `further` mm off the metal.
+    """Path of the cutter's centre along each surface, with `further` mm of metal left.
 
-    Raises UndercutError where no single path is left, CurveError where what is reached cannot be proved.
+    Raises UndercutError where no single path is left, CurveError where it cannot be proved what is reached, ValueError
+    without a contour or milling.
     """
     contours, manufacture = milled_contours(recipe, design)
     return tuple(cutter_path(contour, manufacture.radius + further) for _, contour in contours)
 
 
 def milled_contours(recipe: Recipe, design: Design) -> tuple[tuple[tuple[Surface, Curve], ...], Manufacture]:
-    """Surfaces that the cutter goes along, each with its contour, and the milling; ValueError if either lacks."""
+    """Surfaces that the cutter goes along, each with its contour, and the milling; ValueError if either is missing."""
     if not design.contours or recipe.manufacture is None:
         raise ValueError(f"{recipe.name}: there is nothing to mill")
     return design.contours, recipe.manufacture
@@ -56,7 +57,10 @@ def path_arcs(recipe: Recipe, path: CutterPath, tolerance: float, fit_curve: Fit
 
 
 def reach_checks(recipe: Recipe, design: Design) -> list[tuple[Check, CutterPath | None]]:
-    """Check of each surface on the depth of metal that the cutter leaves, mm; with its path, if there is one."""
+    """Check of each surface on the depth of metal that the cutter leaves, mm, and the path, None where there is none.
+
+    Raises ValueError without a contour or milling, CurveError where it cannot be proved what is reached.
+    """
     contours, manufacture = milled_contours(recipe, design)
     checks = []
     for surface, contour in contours:

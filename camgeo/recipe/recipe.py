@@ -78,7 +78,7 @@ class ChosenAngles:
     """Angles of a motion chosen for `over: least` and `dwell: rest`.
 
     `kind` is the key, such as rise, of the segment with the least angle. `bound` are names of the checks that fail at
-    the next shorter angle, `again` are longer angles, degrees, that were tried and fail too.
+    the next shorter angle, or why it gives no cam; `again` are longer angles, degrees, that were tried and fail too.
     """
 
     kind: str

@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
-ZOOMS, ZOOM = 5, 32  # about the worst of these: so often, into so many parts
-SAME = 1e-12  # of the greatest value: others within it are equal to it
+ZOOMS, ZOOM = 5, 32  # refinements about the worst sample, and parts into which each divides the interval
+SAME = 1e-12  # of the greatest value: samples within this share of it count as equal
 
 
 def motion_checks(exact: ExactCam) -> list[Check]:
-    """Checks of the intended motion that the follower names, in that order: one for each surface, or one of the law."""
+    """Checks of the intended motion that the follower names, in its order: one for each surface, or one of the law."""
     proofs, checks = exact.proofs, []
     for name in exact.follower.checks:
         if name in proofs:
@@ -91,7 +91,10 @@ def _face_width(exact: ExactCam, surface: Surface) -> Check:
 
 
 def needed_width(surface: Surface) -> tuple[float, float]:
-    """Least width of a centred face that the contact does not leave, mm, and the shaft angle in degrees."""
+    """Least width of a face, centred on the stem's axis, that the contact does not leave, mm, and its angle, degrees.
+
+    Raises TypeError for a surface that no flat face touches.
+    """
     proved = surface.extremes("contact")
     if proved is None:
         raise TypeError("no contact travels along a face")
@@ -118,7 +121,10 @@ def wheel_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surfa
 
 
 def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
-    """Least radius of the hollows of the metal, mm, infinite without one, and its parameter."""
+    """Least radius of the metal's hollows, mm, infinite without a hollow, and the contour's parameter there.
+
+    `side` is 1 for metal inside the contour, -1 for metal outside.
+    """
     from camgeo.curve.backwards import least_hollow
     from camgeo.curve.curvature import least_radius
 
@@ -126,9 +132,10 @@ def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
 
 
 def greatest(function: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:
-    """Greatest value of each of k continuous functions of period 2 pi, with its place: sampled at t (n,), then refined.
+    """Greatest value of each of k continuous functions of period 2 pi, with its argument: sampled, then refined.
 
-    `function` gives the values (k, n). Of places that are equal but for rounding the first.
+    `function` gives values (k, n) at arguments (n,); `t` (n,) are the samples. Of samples that are equal but for
+    rounding the first counts.
     """
     around = np.concatenate([t[-1:] - 2.0 * math.pi, t, t[:1] + 2.0 * math.pi])
     best, ranges = [], []

@@ -38,15 +38,15 @@ if TYPE_CHECKING:
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
 
-SMALL = 0.01  # of a cam's size: undercut no deeper may be worth cutting off
-LOOKS, GOLDEN = 4096, 0.5 * (math.sqrt(5.0) - 1.0)  # places at which a contour's direction is looked at, their step
-FIRST = 256  # of them that are looked at first: where so many stretches run backwards, some of these do
+SMALL = 0.01  # of a cam's size: undercut no deeper than this may be worth cutting off
+LOOKS, GOLDEN = 4096, 0.5 * (math.sqrt(5.0) - 1.0)  # places at which a contour's direction is sampled; step in periods
+FIRST = 256  # of these places are sampled first: where very many stretches run backwards, some of these do
 TOO_MANY = "at least {} stretches of the contour run backwards; give the motion fewer or lower waves"
 
 
 @dataclass(frozen=True)
 class SurfaceDesign:
-    """A surface of a cam, the contour to be made of it, and its checks of curvature and undercut.
+    """A surface of a cam, the contour to be made, and the surface's checks of curvature and undercut.
 
     `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
     """
@@ -57,7 +57,7 @@ class SurfaceDesign:
 
     @property
     def trimmed(self) -> bool:
-        """Whether undercut is cut off the contour: corners that it has by design lose no motion."""
+        """Whether undercut is cut off the contour; sharp corners of the recipe's own do not count."""
         return self.contour is not None and self.contour is not self.surface.curve
 
     @property
@@ -68,9 +68,9 @@ class SurfaceDesign:
 
 @dataclass(frozen=True)
 class Disc:
-    """A body on the shaft: its surfaces, and what the part has besides them; None where it is not made.
+    """A disc on the shaft: its surfaces, and the body of its part, None where no part is made.
 
-    `z` is the height of its lower face above that of the first one, mm.
+    `z` is the height of its lower face above the lower face of the first disc, mm.
     """
 
     surfaces: tuple[SurfaceDesign, ...]
@@ -130,13 +130,13 @@ class Design:
 
     @property
     def only_surface(self) -> SurfaceDesign:
-        """The surface of a cam that has one; raises ValueError for a cam of several."""
+        """The surface of a cam with one surface; raises ValueError for a cam with several."""
         (surface,) = self.surfaces
         return surface
 
     @property
     def trimmed(self) -> bool:
-        """Whether motion is lost with undercut that is cut off."""
+        """Whether undercut is cut off any surface, and motion lost with it."""
         return any(surface.trimmed for surface in self.surfaces)
 
     @property
@@ -151,7 +151,11 @@ class Design:
 
 
 def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
-    """Motion, curve and exact checks of a recipe; raises RecipeErrors where there is no such motion or curve."""
+    """Design of a recipe: exact cam, discs, linkage, and all checks that need no file; `clock` times its stages.
+
+    Raises RecipeErrors where there is no such motion or curve, undercut or an edge of the part cannot be proved, and
+    for a linkage that cannot be made.
+    """
     from kin.law.programme import IntentError
 
     clock = clock or Clock()
@@ -217,7 +221,7 @@ def sketched(recipe: Recipe) -> Design:
 
 
 def discs_of(surfaces: Sequence[SurfaceDesign], part: Part, gap: float) -> tuple[Disc, ...]:
-    """The discs that surfaces are on, in their order from below, as yet without their bodies."""
+    """The discs of surfaces, from the lowest up, without bodies; `gap`, mm, is between two neighbouring discs."""
     ranks, pitch = sorted({made.surface.disc for made in surfaces}), (part.thickness or 0.0) + gap
     return tuple(
         Disc(tuple(made for made in surfaces if made.surface.disc == rank), None, rank * pitch) for rank in ranks
@@ -231,7 +235,11 @@ def _plate(exact: ExactCam) -> Lift:
 
 
 def sound(recipe: Recipe, exact: ExactCam, surface: Surface) -> SurfaceDesign:
-    """A surface with its checks of curvature and undercut, and its contour: None where undercut refuses it."""
+    """A surface with its checks of curvature and undercut, and its contour, None where undercut forbids to make it.
+
+    Raises CurveError where undercut can be neither proved nor excluded, IntentError for a guide or a face that cannot
+    follow the motion.
+    """
     checks, contour = _checked(recipe, surface, exact.motion.shaft_deg)
     return SurfaceDesign(surface, contour, tuple(replace(check, surface=surface.name) for check in checks))
 
@@ -271,7 +279,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
         contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
     if not surface.curve.closed:
         bent = _sharp(surface, shaft_deg)
-    # of a trimmed contour the radius that was asked for is reported, and held against nothing
+    # the radius of the contour before it is trimmed is reported, without a limit
     cut_off = bool(undercut and contour)
     checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
@@ -296,7 +304,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
 
 
 def _seen_backward(curve: Curve) -> Array:
-    """Parameters (n,), of LOOKS, at which a contour begins to run backwards: so many stretches there are at least."""
+    """Parameters (n,) of sampled places at which a contour begins to run backwards, one for each stretch seen."""
     t = curve.shape.period * np.mod(np.arange(LOOKS, dtype=np.float64) * GOLDEN, 1.0)  # in step with no number of waves
     if not (curve.sample(t[:FIRST]).speed < 0.0).any():
         return t[:0]
@@ -317,7 +325,7 @@ def _can_be_trimmed(curve: Curve) -> bool:
 
 
 def _sharp(surface: Surface, shaft_deg: Callable[[float], float]) -> Check:
-    """The check of curvature of a contour whose corners are asked for: reported, and held against nothing."""
+    """The check of curvature of a contour with corners by its recipe: radius 0, without a limit."""
     runs = surface.curve.runs
     detail = f"{len(runs)} sharp corners, as the recipe asks"
     return Check(CURVATURE.name, True, 0.0, None, "mm", shaft_deg(runs[0].high), "at_least", detail=detail)
@@ -340,14 +348,14 @@ def _bent_most(surface: Surface) -> Least:
 
 
 def _extent(surface: Surface, shaft_deg: Callable[[float], float], cut: Undercut) -> str:
-    """Say from where to where contact is lost, in shaft angles."""
+    """Words for the shaft angles from which to which contact is lost."""
     if cut.end - cut.start >= surface.curve.shape.period:
         return "all round"
     return f"from {shaft_deg(cut.start):.6g} to {shaft_deg(cut.end):.6g} deg"
 
 
 def _unproved(recipe: Recipe, error: CurveError, exact: ExactCam) -> str:
-    """Say what could not be proved of a curve, and what would do."""
+    """Words for what could not be proved of a curve, and for a radius that would be proved."""
     from camgeo.curve.undercut.bottleneck import OpenNeckError
 
     if not isinstance(error, OpenNeckError):

@@ -17,20 +17,20 @@ if TYPE_CHECKING:
 
 
 class Foreseen(NamedTuple):
-    """Check that a run will make: its name, and the file it concerns, None for the exact curve and the motion."""
+    """A check that a run will make: its name, and the name of its file, None for the exact curve and the motion."""
 
     name: str
     file: str | None = None
 
     def __str__(self) -> str:
-        """Write it as in a test's name."""
+        """Name of the check, with its file in brackets."""
         return self.name if self.file is None else f"{self.name}[{self.file}]"
 
 
 def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
-    """Tell the checks of a recipe, those of each file last.
+    """All checks that a run of a recipe will make; the checks of each file come last.
 
-    Raises kin's IntentError where the recipe's motion does not exist.
+    Raises kin's IntentError where the recipe's motion cannot be made.
     """
     scene = CheckFacts(recipe, _follower(recipe))
     every = declarations(recipe)
@@ -41,7 +41,7 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
         names = recipe.filenames(request)
         for file in names:
             made = (check for check in in_turn if check.of_file is not None and check.of_file(scene, request))
-            # what is left between discs is told of the last file
+            # checks between two discs stand on the last file
             expected += [Foreseen(check.name, file) for check in made if file == names[-1] or not check.between]
     return tuple(expected)
 

@@ -65,9 +65,9 @@ def _intended(recipe: Recipe, design: Design, disc: Disc) -> PartIntent:
 
 
 def closures_between(design: Design) -> tuple[ClosureIntent, ...]:
-    """Pair of surfaces that hold the follower between them: the first pushes it out, the second stops it.
+    """The pair of surfaces that hold the follower between them: the first pushes it out, the second stops it.
 
-    Empty for a cam of one surface.
+    Empty for a cam of one surface, and where no check of the follower's closes them.
     """
     from kin.judge.intent import ClosureIntent
 
@@ -81,7 +81,7 @@ def closures_between(design: Design) -> tuple[ClosureIntent, ...]:
 def permitted(recipe: Recipe, tolerance: float, gap: float | None = None) -> Limits:
     """Limits by which kin judges: tolerance, mm, and the recipe's limits of motion and output, mm or degrees.
 
-    Ends in drawings within `gap`, mm, are joined; None for the readers' own.
+    Ends in drawings within `gap`, mm, are joined; None stands for the reader's own gap.
     """
     from kin.judge.intent import Limits
 

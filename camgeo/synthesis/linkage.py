@@ -33,17 +33,17 @@ if TYPE_CHECKING:
     from kin.numeric.longest_window import Window
 
 Over: TypeAlias = Literal["shaft", "relative"]
-LOOKS = 360  # relative angles at which a changed linkage is looked at first
+LOOKS = 360  # relative angles at which a changed linkage is sampled first
 OVER: tuple[Over, ...] = ("shaft", "relative")
 DEGREES = 180.0 / math.pi
-CHANGES = (1.05, 0.95, 1.1, 0.9, 1.2, 0.8, 1.5, 0.65, 2.0, 0.5, 3.0)  # of a link, tried where a linkage does not turn
+CHANGES = (1.05, 0.95, 1.1, 0.9, 1.2, 0.8, 1.5, 0.65, 2.0, 0.5, 3.0)  # factors of a link, for a linkage that binds
 
 
 def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
-    """Mechanism of a recipe that has a linkage; `breadth`, mm, is that of the cam.
+    """Mechanism of a recipe that has a linkage, for the cam's `lift` and `breadth`, mm.
 
     Raises RecipeErrors where the shaft does not lie within the cam, or a dyad's output would not swing, ValueError for
-    a recipe without a linkage.
+    a recipe without a linkage, RoughError for a motion that changes too abruptly.
     """
     from kin.law.programme import IntentError
     from kin.linkage.mechanism import Mechanism, OutsideError
@@ -62,7 +62,7 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
 
 
 def _outside(recipe: Recipe, error: OutsideError) -> RecipeErrors:
-    """Point at what places the shaft: the base radius of a cam that has one, which moves every face outwards alike."""
+    """RecipeErrors for a shaft outside the cam, at the field that places it: base radius, shaft, or the cam."""
     if "cam.base_radius" in recipe.marks:
         more = upward(error.depth / recipe.mm)
         return recipe.error("cam.base_radius", error.message, None, f"give one larger by more than {more}")
@@ -75,10 +75,10 @@ def _outside(recipe: Recipe, error: OutsideError) -> RecipeErrors:
 
 
 def mobility_checks(mechanism: Mechanism, turning: str = "") -> list[Check]:
-    """Checks that every loop closes all round (AS after eq. 18), and that the shaft never has to turn back.
+    """Checks that every loop closes all round (AS after eq. 18), margin in mm, and that the shaft never turns back.
 
-    Where the mechanism does not make a full turn there is no shaft angle: the places then stand in the detail alone,
-    with `turning`, what would let it turn.
+    A mechanism that does not turn right round has no shaft angle: the relative angles then stand in the detail only,
+    with `turning`, words for a change that would let it turn.
     """
     mobility = mechanism.mobility()
     loop = "the linkage" if mobility.loop == 0 else f"dyad {mobility.loop}"
@@ -133,7 +133,7 @@ def _spans(spans: Sequence[tuple[float, float]]) -> str:
 
 
 def _dwell_check(dwell: DwellLimits, longest: Window) -> list[Check]:
-    """Check that the intended output dwells for as long as the recipe wants; none if it wants no certain length."""
+    """Check that the longest dwell of the intended output has the recipe's least length; empty without one."""
     if dwell.at_least is None:
         return []
     length, wanted = math.degrees(longest.length), math.degrees(dwell.at_least)
@@ -148,9 +148,10 @@ def _dwell_check(dwell: DwellLimits, longest: Window) -> list[Check]:
 
 @dataclass(frozen=True)
 class DesignedLinkage:
-    """The linkage of a recipe: mechanism, checks, and dwells over the shaft and the relative angle, if asked for.
+    """The linkage of a recipe: its mechanism, checks, dwells, and the figures of its motion.
 
-    `figures` are those of its motion, None where it does not turn.
+    `dwells` has the dwells over the shaft and over the relative angle, the longest first; it is empty where the recipe
+    has no dwell, and for a linkage that does not turn right round. `figures` is None for such a linkage.
     """
 
     mechanism: Mechanism
@@ -165,7 +166,7 @@ class DesignedLinkage:
 
 
 def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> DesignedLinkage:
-    """Mechanism of a recipe that has a linkage, with its checks; `breadth` (mm) is that of the cam, None if it varies.
+    """Mechanism of a recipe that has a linkage, with its checks; `breadth`, mm, is the cam's, None where it varies.
 
     Raises RecipeErrors where no square frame holds the cam, or the shaft does not lie within it, where a dyad's output
     would not swing, the band of a dwell is too narrow for rounding errors, or the motion changes too abruptly to be
@@ -213,12 +214,12 @@ def _driven(recipe: Recipe, mechanism: Mechanism) -> DesignedLinkage:
 
 
 def motion_table(recipe: Recipe, mechanism: Mechanism) -> tuple[tuple[str, ...], Array]:
-    """Column names and rows (angles + 1, k) over equal steps of the shaft, for a mechanism that turns.
+    """Names of k columns and rows (angles + 1, k) over equal steps of the shaft, for a mechanism that turns.
 
-    Shaft, relative and frame angle and the output, each output's velocity and acceleration by radian of shaft,
-    those of the frame, and the output's by radian of the relative angle, which AS plot; places of the joints, D
-    first, with the pivot B on +x. Angles in degrees, lengths in the recipe's unit. At a break the derivatives are
-    those that follow, at the end of the turn those that precede.
+    Columns are the angles of shaft, relative motion and frame; position, velocity and acceleration of each output, the
+    last one first; velocity and acceleration of the frame; the last output's by the relative angle, which AS plot; and
+    joints in the fixed axes, D first. Derivatives are by radian of the shaft. Angles are in degrees, lengths in the
+    recipe's unit. At a break derivatives are the limits from above, at the end of the turn from below.
     """
     count = recipe.verify.angles
     shaft = np.linspace(0.0, TURN, count + 1)

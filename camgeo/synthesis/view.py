@@ -1,7 +1,7 @@
-"""A design as whoever draws it asks: its follower's contacts by guide and touch, and what moves over the shaft angle.
+"""A view of a design for drawing it: its follower's contacts by guide and touch, and its motion over the shaft angle.
 
-A table from arrangement to what draws it is made of entries. Types are checked: a drawer for an arm takes the views of
-arms alone.
+Tables from arrangements to the functions that draw them are made of entries. Types are checked: a drawer for an arm
+takes only views of arms.
 """
 
 from __future__ import annotations
@@ -66,11 +66,11 @@ class View(Generic[G_co, T_co]):
         return self.contacts[0].datum
 
     def travel(self, shaft: Array, order: int = 0) -> Array:
-        """Position of the follower from the zero of its contacts, mm or rad, and derivatives, (order + 1, n)."""
+        """Position from the zero of the contacts, mm or rad, and derivatives at shaft angles (n,): (order + 1, n)."""
         return self.design.motion.travel(shaft, order)
 
     def pressure(self, shaft: Array) -> Array:
-        """Pressure angle, rad (n,), above 0 where the cam drives a rise."""
+        """Pressure angle of contact 1 at shaft angles (n,), rad, above 0 where the cam drives a rise."""
         return self.surface(self.contacts[0]).pressure(shaft)
 
     def surface(self, contact: Contact[G_co, T_co]) -> Surface:
@@ -78,9 +78,9 @@ class View(Generic[G_co, T_co]):
         return next(surface for surface in self.design.exact.surfaces if surface.name == contact.surface)
 
     def place(self, shaft: Array) -> Array:
-        """Place of contact on a flat face, mm along it (n,), from the axis of its stem or the pivot of its arm.
+        """Place of contact 1 on a flat face at shaft angles (n,), rad: mm along the face, from stem axis or pivot.
 
-        Raises TypeError where no flat face is touched.
+        Raises TypeError where no flat face touches the cam.
         """
         place = self.surface(self.contacts[0]).place
         if place is None:
@@ -88,7 +88,7 @@ class View(Generic[G_co, T_co]):
         return place(shaft)
 
     def contact_points_fixed(self, shaft: Array) -> list[Array]:
-        """Point of contact of each contact in the fixed frame, mm, as complex numbers (n,)."""
+        """Points of each contact in the fixed frame at shaft angles (n,), rad: mm, as complex numbers (n,)."""
         places = []
         parameters = self.design.motion.parameters(shaft, shaft).values()
         for contact, t in zip(self.contacts, parameters, strict=False):  # opposite contacts on a line have one
@@ -117,7 +117,7 @@ class View(Generic[G_co, T_co]):
 
 
 def view_of(recipe: Recipe, design: Design) -> View[Guide, Touch]:
-    """View a design whatever its follower is."""
+    """View of a design with a follower of any guide and touch."""
     return View(recipe, design, design.follower.contacts)
 
 
@@ -127,7 +127,10 @@ Drawer: TypeAlias = "Callable[Concatenate[View[Guide, Touch], P], R]"
 def entry(
     guide: type[G], touch: type[T], by: Callable[Concatenate[View[G, T], P], R], contacts: int = 1, discs: int = 1
 ) -> tuple[Arrangement, Drawer[P, R]]:
-    """Make the entry of a table: an arrangement, and what draws views of it."""
+    """Entry of a table: the arrangement of guide, touch, number of contacts and discs, and a function of its views.
+
+    `by` draws views of that guide and touch; the function raises TypeError for another view.
+    """
 
     def draw(view: View[Guide, Touch], /, *args: P.args, **kwargs: P.kwargs) -> R:
         return by(view.of(guide, touch), *args, **kwargs)
