@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kin.judge.layers import Layer
     from kin.numeric.arrays import Array
 
-KG = 1e-9  # kg/mm^3 of 1 kg/m^3
+KG = 1e-9  # m^3 in a mm^3: from kg/m^3 to kg/mm^3
 NODES, WEIGHTS = gauss(3)
 
 
@@ -31,8 +31,9 @@ NODES, WEIGHTS = gauss(3)
 class Balance:
     """Mass of a disc, kg; centre of mass (3,), mm, as the part is drawn; moment of inertia about the shaft, kg mm^2.
 
-    `unbalance` is mass times distance of that centre from the shaft, kg mm. `error` is the greatest relative error of
-    the integrals. `without` names features that are left out, `surface` the disc where there are several.
+    `unbalance` is the mass times the distance of its centre from the shaft, kg mm. `error` is the greatest error of the
+    integrals, as a share of the disc's volume and size. `without` names features that are left out; `surface` is the
+    name of the disc, empty for a cam of one disc.
     """
 
     mass: float
@@ -50,13 +51,16 @@ class Balance:
 
     @property
     def direction(self) -> float:
-        """Polar angle of the centre of mass, degrees, from 0 to less than 360."""
+        """Polar angle of the centre of mass as the part is drawn, degrees, from 0 to less than 360."""
         angle = math.degrees(math.atan2(self.centre[1], self.centre[0])) % 360.0
         return angle if angle < 360.0 else 0.0
 
 
 def balances_of(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
-    """Mass properties of each disc at `part.density`; empty without a density or where no disc is a single body."""
+    """Mass properties of each disc at `part.density`; discs without a part or of several bodies are left out.
+
+    Empty without a density.
+    """
     density = recipe.part.density
     if density is None:
         return ()
@@ -91,7 +95,10 @@ def _balance(disc: Disc, body: Body, density: float, mirror: float) -> Balance:
 
 
 def _section(disc: Disc, body: Body, layer: Layer, inset: float) -> tuple[Array, Array]:
-    """Area, moments of x, y and r^2 of a layer's section (4,), its outline `inset` inside; and their errors (4,)."""
+    """Area and integrals of x, y and r^2 over a layer's section (4,), and their errors (4,).
+
+    The outline is `inset` mm inside the contour.
+    """
     holes = [moments_of_chain(hole.contour.as_arcs()[0]) for hole in layer.holes]
     if layer.outline is not None:
         outlines = [(1.0, moments_of_chain(layer.outline.contour.as_arcs()[0]))]

@@ -31,7 +31,7 @@ class ContactPoints(NamedTuple):
     def as_drawn(self, angle: float, rotation: str) -> ContactPoints:
         """Copy of the points, cam turned counter-clockwise by `angle`, rad, then mirrored about the x axis for `ccw`.
 
-        `rotation` is that of the shaft, `cw` or `ccw`.
+        `rotation` is the sense in which the shaft turns, `cw` or `ccw`.
         """
         places, normals = self.places, self.normals
         if angle:
@@ -43,7 +43,10 @@ class ContactPoints(NamedTuple):
 
 
 def contact_points(design: Design, shaft: Array, contours: Sequence[tuple[Surface, Curve]]) -> Iterator[ContactPoints]:
-    """Yield the contact points of each contact on each contour at shaft angles (n,), rad, without trimmed places."""
+    """Yield the contact points at shaft angles (n,), rad: for each contact, on each of the `contours`.
+
+    Places that were trimmed off are left out.
+    """
     relative = shaft if design.driven is None else design.driven.mechanism.relative(shaft)
     for parameter in design.motion.parameters(shaft, relative).values():
         for surface, contour in contours:

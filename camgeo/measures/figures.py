@@ -54,10 +54,11 @@ def design_figures(
     names: Iterable[str],
     speeds: Mapping[str, float] | None = None,
 ) -> dict[str, Measured]:
-    """Measure the named figures of the exact cam, its motion and mechanism.
+    """Measure the named figures of the exact cam, its motion and mechanism, by name in the order of `names`.
 
-    `checks` are all checks of the run; a figure that only a check has is left out where there is none. `speeds` has
-    the speed, turns a minute, of each figure whose limit states one.
+    `checks` are all checks of the run; a figure that a check measures is left out without that check. `speeds` has
+    the speed, turns a minute, of each figure whose limit states one. Names of other figures are passed over. Raises
+    RecipeErrors where a capability cannot measure its figures.
     """
     wanted = [name for name in names if FIGURES[name].of == "design"]
     measured: dict[str, Measured] = {}
@@ -85,14 +86,14 @@ def design_figures(
 
 
 def _nearness(check: Check) -> float:
-    """A number that rises as the value of a check nears its limit; infinite without a value."""
+    """A number that is greater the nearer the value of a check is to its limit; infinite without a value."""
     if check.value is None:
         return math.inf
     return -check.value if check.sense == "at_least" else check.value
 
 
 def figure_of_check(check: Check) -> Measured:
-    """The figure whose value a check holds against its limit."""
+    """The figure that a check compares with its limit; without a value it has the check's detail as reason."""
     detail = "" if check.value is not None else check.detail
     return Measured(check.value, check.unit, check.at_deg, detail, check.surface)
 
@@ -101,7 +102,7 @@ def figure_of_check(check: Check) -> Measured:
 
 
 def _radius(_: Recipe, design: Design) -> Measured:
-    """Least radius of the contour: that of the pitch curve less the roller's."""
+    """Least radius of the contour: the pitch curve's radius less the roller's."""
 
     def metal(surface: SurfaceDesign) -> Measured:
         value = None if surface.bent.value is None else surface.bent.value - surface.surface.radius
@@ -111,7 +112,7 @@ def _radius(_: Recipe, design: Design) -> Measured:
 
 
 def _pitch_radius(_: Recipe, design: Design) -> Measured:
-    """Least radius of the pitch curve where the cam may undercut; in a ring that of its hollows."""
+    """Least radius of the pitch curve where the cam may undercut; in a ring the least radius of its hollows."""
     return _least(figure_of_check(surface.bent) for surface in design.surfaces)
 
 
@@ -136,7 +137,7 @@ def _size(_: Recipe, design: Design) -> Measured:
 
 
 def _pivot_clearance(recipe: Recipe, design: Design) -> Measured:
-    """Distance of the contour from the circle on which the pivot goes round the cam; in a ring that lies inside."""
+    """Distance of the contour from the circle on which the pivot goes round the cam, inside the opening of a ring."""
     from camgeo.curve.measures import farthest, nearest
 
     pivot = design.follower.pivot
@@ -181,7 +182,7 @@ def _face_width(_: Recipe, design: Design) -> Measured:
 
 
 def _preload_force(rank: int, _: Recipe, design: Design) -> Measured:
-    """Least (0) or greatest (1) force of a preload, N; N m of a follower that swings."""
+    """Least (`rank` 0) or greatest (1) force of a preload, N; N m for a follower that swings."""
     from camgeo.measures.forces import preload_force
     from kin.numeric.monotone import RoughError
 
@@ -197,7 +198,7 @@ def _preload_force(rank: int, _: Recipe, design: Design) -> Measured:
 
 
 def _mass_property(value: Callable[[Balance], float], unit: str, recipe: Recipe, design: Design) -> Measured:
-    """Greatest of a mass property over the discs."""
+    """Greatest value of a mass property over the discs."""
     from camgeo.measures.balance import balances_of
 
     balances = balances_of(recipe, design)
@@ -244,9 +245,10 @@ _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
 
 
 def motion_figures(design: Design, order: int) -> dict[str, Measured]:
-    """Stroke or swing of the follower, and absolute peaks of its derivatives by the shaft angle up to order 0 to 3.
+    """Stroke or swing of the follower, and greatest magnitudes of its derivatives by the shaft angle up to `order`.
 
-    In mm or degrees and radians of the shaft; without values where the motion is too rough to be followed.
+    `order` is 0 to 3. Figures are in mm or degrees, per radian of the shaft; they have no value where the motion is too
+    abrupt to be resolved.
     """
     from kin.numeric.monotone import RoughError, between, cells, pieces
 

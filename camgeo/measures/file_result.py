@@ -1,4 +1,4 @@
-"""What is known of a file once it is written and judged."""
+"""The result of a file that was written and judged."""
 
 from __future__ import annotations
 
@@ -18,12 +18,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FileResult(OfSurfaces):
-    """A written file: its request, what was proved of it and what the judge measured, in mm and degrees.
+    """A written file: its request, what was proved of its contour, and what the judge measured, in mm and degrees.
 
-    `body` names the body that the file shows. `units` is the length of the file's unit, mm; None where its numbers have
-    no unit or nothing was read. `surfaces`, `closures` and `bodies` (every closed contour as read) come from its
-    verdict and are empty for a file that is not judged as the cam. `disc` counts the disc that the file holds from 0,
-    None for all; `uneven` comes from the verdict too.
+    tolerance, pieces, bound  of the fit: mm, number of pieces, proved bound; None where there is none
+    body      name of the body that the file shows
+    units     length of the file's unit, mm; None where its numbers have no unit or nothing was read
+    surfaces, closures, bodies, uneven  of the judge's verdict, `bodies` with every closed contour as read; empty, or 0,
+              for a file that is not judged as the cam
+    disc      number of the disc that the file holds, from 0; None for all discs
     """
 
     path: Path
@@ -45,7 +47,7 @@ class FileResult(OfSurfaces):
     ) -> FileResult:
         """Result of a judged file of the cam from its verdict; `fit` is number of pieces and proved bound of the fit.
 
-        Without `fit` the pieces are those read, and there is no bound.
+        `tolerance` is the file's, mm. Without `fit` the number of pieces is as read, and there is no bound.
         """
         pieces, bound = (verdict.pieces, None) if fit is None else fit
         read = verdict.surfaces, verdict.closures, verdict.bodies

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
     from kin.numeric.monotone import MonotonePieces
 
-SHARE = 1e-12  # of the greatest value, to which a force is followed over the turn
-PER_MM = 1e-3  # N/mm in N/m, and N m in N mm
+SHARE = 1e-12  # of the greatest value, within which a force is approximated over the turn
+PER_MM = 1e-3  # from N/m to N/mm, and from N mm to N m
 
 
 class ExtremeAtAngle(NamedTuple):
@@ -39,9 +39,9 @@ class ExtremeAtAngle(NamedTuple):
 
 
 class Turn(ABC):
-    """A mechanism over the turn, by a parameter that rises with the shaft angle from 0 to a whole turn.
+    """A mechanism over the turn, by a parameter, rad, that rises with the shaft angle from 0 to a whole turn.
 
-    `corners` are shaft angles, rad, at which functions of the parameter are not smooth, besides those of the motion.
+    `corners` are shaft angles, rad, at which forces are not smooth though the motion is.
     """
 
     corners: tuple[float, ...]
@@ -63,14 +63,14 @@ class Turn(ABC):
     @property
     @abstractmethod
     def places(self) -> Array:
-        """Parameters, rising over a whole turn, between which the motion is smooth."""
+        """Parameters (k,), rising from 0 to a whole turn, between which the motion is smooth."""
 
     def shaft(self, t: Array) -> Array:
-        """Shaft angles (n,), rad, at parameters (n,): the same, unless overridden."""
+        """Shaft angles (n,), rad, at parameters t (n,), rad; equal to them unless overridden."""
         return t
 
     def parameter(self, phi: Array) -> Array:
-        """Parameters (n,) at shaft angles (n,), rad."""
+        """Parameters (n,), rad, at shaft angles phi (n,), rad; equal to them unless overridden."""
         return phi
 
     @property
@@ -79,7 +79,10 @@ class Turn(ABC):
         return "N m" if self.swings else "N"
 
     def pieces(self, values: Callable[[Array], Array]) -> list[MonotonePieces]:
-        """Monotone pieces of r functions of the parameter, values(t (n,)) -> (r, n); raises RoughError if they leap."""
+        """Monotone pieces of r functions of the parameter; `values` maps t (n,) to (r, n).
+
+        Raises RoughError where a function changes too abruptly.
+        """
         from kin.numeric.monotone import between, cells, pieces
 
         corners = self.parameter(np.array(self.corners)) if self.corners else ()
@@ -87,11 +90,14 @@ class Turn(ABC):
         return [pieces(functions, row) for row in range(len(functions.coefficients))]
 
     def degrees(self, t: float) -> float:
-        """Shaft angle in degrees, from 0 to less than 360, at a parameter."""
+        """Shaft angle, degrees from 0 to less than 360, at a parameter t, rad."""
         return degrees(float(self.shaft(np.array([t]))[0]))
 
     def extremes(self, values: Callable[[Array], Array]) -> list[tuple[ExtremeAtAngle, ExtremeAtAngle]]:
-        """Least and greatest value over the turn of r functions of the parameter, values(t (n,)) -> (r, n); proved."""
+        """Least and greatest value over the turn of r functions of the parameter; `values` maps t (n,) to (r, n).
+
+        Raises RoughError where a function changes too abruptly.
+        """
 
         def placed(extreme: tuple[float, float]) -> ExtremeAtAngle:
             return ExtremeAtAngle(extreme[0], self.degrees(extreme[1]))
@@ -113,7 +119,7 @@ class FollowerTurn(Turn):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Name of each contact in reports: its surface, or its touch, with a letter where there are several."""
+        """Name of each contact in reports: its surface's, or its touch's with a letter where there are two."""
         contacts = self.design.follower.contacts
         letters = "AB" if len(contacts) > 1 else ("",)
         return tuple(
@@ -122,18 +128,18 @@ class FollowerTurn(Turn):
         )
 
     def rows(self, t: Array) -> Array:
-        """Position and two derivatives by the shaft angle (3, n), mm or rad."""
+        """Position from the zero of the contacts and two derivatives by the shaft angle (3, n), mm or rad."""
         return self.design.motion.travel(t, 2)
 
     def lines(self, rows: Array) -> tuple[ContactLine, ...]:
-        """Line of each contact at positions of the follower, `rows` (3, n)."""
+        """Line of each contact's force for the motion `rows` (3, n), position and two derivatives, mm or rad."""
         from kin.follower.contact_lines import contact_line
 
         return tuple(contact_line(contact, rows) for contact in self.design.follower.contacts)
 
     @cached_property
     def places(self) -> Array:
-        """Shaft angles, rising from 0 to a whole turn, between which the motion is smooth."""
+        """Shaft angles (k,), rad, rising from 0 to a whole turn, between which the motion is smooth."""
         from kin.numeric.monotone import between
 
         shaft_deg = self.design.motion.shaft_deg
@@ -146,9 +152,10 @@ class FollowerTurn(Turn):
 
 
 def elastic_contacts(turn: FollowerTurn, preload: Preload, rows: Array) -> Elastic:
-    """Forces of both contacts under preload at positions `rows` (3, n), N and mm, or N mm and rad.
+    """Preload and stiffness of both contacts along the travel (n,): N and N/mm, or N mm and N mm/rad.
 
-    Raises ValueError without a stiffness.
+    `rows` (3, n) are position and two derivatives, mm or rad. Raises ValueError for a preload without stiffness, and
+    for a follower without two contacts.
     """
     from kin.dynamics.contact_forces import preloaded
 
@@ -160,7 +167,10 @@ def elastic_contacts(turn: FollowerTurn, preload: Preload, rows: Array) -> Elast
 
 
 def preload_force(design: Design, preload: Preload) -> tuple[ExtremeAtAngle, ExtremeAtAngle]:
-    """Least and greatest force of the preload along the travel over the turn, N, or N m about a pivot."""
+    """Least and greatest force of the preload along the travel over the turn, N, or N m about a pivot.
+
+    Raises ValueError for a preload without stiffness, RoughError for too abrupt a motion.
+    """
     turn = FollowerTurn(design)
     scale = PER_MM if turn.swings else 1.0
     ((least, greatest),) = turn.extremes(lambda t: scale * elastic_contacts(turn, preload, turn.rows(t)).preload[None])
@@ -168,9 +178,10 @@ def preload_force(design: Design, preload: Preload) -> tuple[ExtremeAtAngle, Ext
 
 
 def preload_section(recipe: Recipe, design: Design) -> dict[str, object] | None:
-    """Section of the report on the preload: its force, and the load along the travel at which a contact is lost.
+    """Section of the report on the preload: its force, and the load along the travel at which each contact is lost.
 
-    None without a preload; without a stiffness the section has the interference alone.
+    None without a preload; without a stiffness the section has only the interference. Raises RoughError for too abrupt
+    a motion.
     """
     preload = design.exact.preload
     if preload is None:

@@ -49,12 +49,12 @@ class _Search:
     errors: dict[int, RecipeErrors] = field(default_factory=dict)
 
     def recipe_at(self, steps: int) -> Recipe:
-        """The recipe with an angle."""
+        """The recipe with the open angle set to `steps` steps, and the dwell to the rest."""
         motion, _ = self.segments.with_least(steps / STEPS)
         return replace(self.recipe, cam=self.recipe.cam.with_motion(motion))
 
     def holds(self, steps: int) -> bool:
-        """Whether every check of a design holds at an angle."""
+        """Whether there is a design at an angle, in steps, and all its checks hold."""
         if steps not in self.failing and steps not in self.errors:
             try:
                 self.failing[steps] = tuple(check for check in _checks(self.recipe_at(steps)) if not check.ok)
@@ -63,7 +63,7 @@ class _Search:
         return steps not in self.errors and not self.failing[steps]
 
     def reasons(self, steps: int) -> tuple[str, ...]:
-        """Names of the checks that fail at an angle tried before, or why it gives no cam."""
+        """Names of the checks that fail at an angle, in steps, or why it gives no cam; empty for an untried angle."""
         if steps in self.errors:
             return tuple(error.problem for error in self.errors[steps].errors)
         return tuple(dict.fromkeys(check.name for check in self.failing.get(steps, ())))
@@ -72,8 +72,9 @@ class _Search:
 def with_least_angle(recipe: Recipe) -> Recipe:
     """The recipe with the least angle that its limits allow; the recipe itself where no angle is open.
 
-    Raises RecipeErrors where no angle holds, and for a limit of files, as none is written here.
+    Raises RecipeErrors where no tried angle holds, and for a limit of files, as no file is written here.
     """
+    # a ladder of angles, RATIO apart, then bisection between the least that holds and the one below it
     angles = recipe.cam.open
     if angles is None:
         return recipe
@@ -108,7 +109,7 @@ def with_least_angle(recipe: Recipe) -> Recipe:
 
 
 def _refusal(search: _Search, longest: int, path: str) -> RecipeErrors:
-    """Error for a ladder on which no angle holds: what fails at the longest."""
+    """Error where no tried angle holds: the first check that fails at the longest angle."""
     if longest in search.errors:
         return search.errors[longest]
     check, angle = search.failing[longest][0], f"{longest / STEPS:.10g} degrees"
@@ -124,7 +125,7 @@ def _refusal(search: _Search, longest: int, path: str) -> RecipeErrors:
 
 
 def _checks(recipe: Recipe) -> Sequence[Check]:
-    """Checks of a design that need no file; where a limit of its motion fails, those limits alone.
+    """Checks of a design that need no file; where a limit of its motion fails, only the checks of such limits.
 
     Raises RecipeErrors where there is no such motion or curve.
     """

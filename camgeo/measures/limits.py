@@ -31,10 +31,11 @@ def limit_checks(
     files: Sequence[FileResult],
     runs: Mapping[str, Mapping[str | None, Measured]] | None = None,
 ) -> list[Check]:
-    """Checks of every figure that the recipe limits, one for each bound.
+    """Checks of every figure that the recipe limits, one for each bound, and of figures of files one for each file.
 
-    `checks` are all checks of the run, `runs` figures by run (`Results`). A figure without a value fails with its
-    reason.
+    `checks` are all checks of the run; `runs` has figures of runs by name, each by the file that drives it, None for
+    the intended motion. A figure without a value fails with its reason; a figure that was not measured has no check.
+    Raises KeyError for a figure of files whose check is not declared.
     """
     scene = CheckFacts(recipe, design.follower)
     speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}
@@ -69,7 +70,10 @@ def limit_checks(
 def _bound_checks(
     recipe: Recipe, limit: Limit, measured: Measured, file: str | None = None, tolerance: float | None = None
 ) -> list[Check]:
-    """Checks of a figure against each bound given; `tolerance` is the file's. A failed one has its remedy as detail."""
+    """Checks of a figure against each given bound; a failed check has its remedy as detail.
+
+    `file` is the name of the file, None for the design, and `tolerance` the file's, mm.
+    """
     checks = []
     bounds: tuple[tuple[Sense, float | None], ...] = (("at_least", limit.at_least), ("at_most", limit.at_most))
     for sense, bound in bounds:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 CRANK = 2.0  # turns of the crank for one of the cam
 NODES, WEIGHTS = gauss(12)
-SHARE = 1e-12  # of the greatest lift, to which it is followed
+SHARE = 1e-12  # of the greatest lift, within which the lift is approximated
 ROUNDING = 1e-12  # rad, of a place at the turn's end
 _TWO = 2  # places, both ends of a turn or of a rest
 PARTS = 8  # of each stretch between breaks and crossings, over which the area is integrated
@@ -62,7 +62,10 @@ class EventError(CamgeoError, ValueError):
 
 @lru_cache(maxsize=16)
 def event_of(exact: ExactCam, lift: float) -> LobeEvent:
-    """Crossings of a lift, mm from the lowest. Raises EventError unless there is one upwards and one downwards."""
+    """Crossings of a `lift`, mm above the lowest position.
+
+    Raises EventError unless the lobe crosses it once upwards and once downwards, and for too abrupt a motion.
+    """
     pieces = lift_pieces(exact)
     datum, _ = pieces.least()
     crossings = _crossings(pieces, datum + lift)
@@ -75,7 +78,7 @@ def event_of(exact: ExactCam, lift: float) -> LobeEvent:
 
 
 def _off_rest(event: LobeEvent, exact: ExactCam) -> LobeEvent:
-    """The event at lift 0, its ends moved to the breaks where the lowest rest ends: near them the lift is rounding."""
+    """The event at lift 0, with its ends moved to the ends of the lowest dwell, near which the lift is rounding."""
     breaks = np.concatenate([exact.breaks + turns * TURN for turns in (0.0, 1.0, 2.0)])
     rest = breaks[(breaks >= event.closing - ROUNDING) & (breaks <= event.opening + TURN + ROUNDING)]
     if len(rest) < _TWO or np.ptp(rest) <= ROUNDING:
@@ -84,7 +87,7 @@ def _off_rest(event: LobeEvent, exact: ExactCam) -> LobeEvent:
 
 
 def _crossings(pieces: MonotonePieces, level: float) -> Array:
-    """Places at which a level is crossed, ascending: 0 and the whole turn are one, and a rest on the level is none."""
+    """Places at which a level is crossed, rad, ascending: 0 and the whole turn are one place, a dwell on it is none."""
     places = pieces.crossings(level)
     if len(places) < _TWO or places[0] > 0.0 or places[-1] < TURN:
         return places
@@ -96,7 +99,7 @@ def _crossings(pieces: MonotonePieces, level: float) -> Array:
 
 @lru_cache(maxsize=16)
 def lift_pieces(exact: ExactCam) -> MonotonePieces:
-    """The follower's position over a turn, mm or rad, in monotone pieces; raises EventError if it is too rough."""
+    """The follower's position over a turn, mm or rad, in monotone pieces; EventError for too abrupt a motion."""
     position, turn = exact.motion, between(0.0, TURN, exact.breaks.tolist())
     try:
         return pieces(cells(lambda t: position.by_parameter(t, 0), turn, share=SHARE))
@@ -113,7 +116,7 @@ def _centre(event: LobeEvent, _: ExactCam) -> Measured:
 
 
 def _ramp_velocity(event: LobeEvent, exact: ExactCam) -> Measured:
-    """The greater speed of both crossings, mm a cam degree; at a break that of the side nearer to rest."""
+    """The greater speed of both crossings, mm a cam degree; at a break the speed on the side of the dwell."""
     opening, closing = np.array([event.opening % TURN]), np.array([event.closing % TURN])
     rates = exact.motion.rows(opening, 1, -1)[1], exact.motion.rows(closing, 1, 1)[1]
     rate, parameter = max((abs(float(rates[0][0])), event.opening), (abs(float(rates[1][0])), event.closing))
@@ -121,7 +124,7 @@ def _ramp_velocity(event: LobeEvent, exact: ExactCam) -> Measured:
 
 
 def _area(event: LobeEvent, exact: ExactCam) -> Measured:
-    """Area between the lift and the stated one from crossing to crossing, mm times cam degrees."""
+    """Area between the lobe and the event's lift from crossing to crossing, mm times cam degrees."""
     breaks = [parameter + turns * TURN for parameter in exact.breaks.tolist() for turns in (0.0, 1.0)]
     places = between(event.opening, event.closing, sorted(breaks))
     return Measured(math.degrees(_integral(exact, places, event.lift)), "mm deg")
@@ -147,7 +150,10 @@ _UNITS = {DURATION: "deg", LOBE_CENTRE: "deg", RAMP_VELOCITY: "mm/deg", LIFT_ARE
 
 
 def lobe_figure(name: str, exact: ExactCam, lift: float) -> Measured:
-    """Figure of a lobe at a lift, mm from the lowest; without a value where that is not crossed just twice."""
+    """Figure of a lobe at a `lift`, mm above the lowest position; without a value where that is not crossed just twice.
+
+    Raises KeyError for a name of no figure of lobes.
+    """
     if name == LIFT_AREA and lift == 0.0:
         turn = between(0.0, TURN, exact.breaks.tolist())
         return Measured(math.degrees(_integral(exact, turn, 0.0)), _UNITS[name])
@@ -159,7 +165,7 @@ def lobe_figure(name: str, exact: ExactCam, lift: float) -> Measured:
 
 
 def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measured:
-    """Figure of the lobe, or of a capability that adds to lobes, at a lift, mm."""
+    """Figure of the lobe, or of the body that a capability has it move, at a lift, mm."""
     owner = FIGURES.owner(name)
     if owner:
         return registry.capability(owner).measure_at(recipe, design, name, lift)
@@ -167,6 +173,6 @@ def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measure
 
 
 def moved_by(recipe: Recipe, design: Design) -> MovedBody | None:
-    """Motion of the body that the follower moves besides itself, such as a valve; None without one."""
+    """Motion of a body that the follower moves, such as a valve; None where the recipe has none."""
     motions = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
     return next((moved for moved in motions if moved is not None), None)

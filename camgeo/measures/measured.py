@@ -8,9 +8,9 @@ ABRUPT = "the motion changes too abruptly to be resolved"
 
 
 class Measured(NamedTuple):
-    """Value of a figure, None for the reason in `detail`; `at_deg` is the shaft angle of its place.
+    """Value of a figure in its unit, None for the reason in `detail`; `at_deg` is its shaft angle, None without one.
 
-    `surface` names the surface of the value where the cam has several; empty where it has one.
+    `surface` names the surface or contact that has the value where there are several, else it is empty.
     """
 
     value: float | None

@@ -37,10 +37,10 @@ RETURN_RULE = 45.0  # degrees, where a spring holds the follower
 SHARE = 0.1  # of the stroke: an error as great as that is no small one
 LOOSE = 0.01  # of the stroke, or of the rollers' radius: a limit as great as that says little
 THICKEST, THINNEST = 2.0, 0.01  # of the cam's greatest radius
-LASTS = 0.95  # of an intended dwell: so much of it the file's lasts at least
-STILL = 1e-9  # of the cam's size: a motion that is none
-LOOKS = 1440  # places of a turn at which the stroke is looked at
-NEAR = 0.05  # of the swing: the error of a series that follows a wanted law
+LASTS = 0.95  # of an intended dwell: the least share that a file's dwell lasts without a remark
+STILL = 1e-9  # of the cam's size: a stroke below this is no motion
+LOOKS = 1440  # places of a turn at which the stroke is sampled
+NEAR = 0.05  # of the swing: the greatest error of a series that follows a wanted law without a remark
 CLEAR = 0.05  # of the cam's size
 SHAFT = 0.02  # of the cam's size: the least radius of a shaft that drives it
 HALF = 0.5  # of the least convex radius of the pitch curve: the greatest roller by rule of thumb
@@ -81,7 +81,10 @@ RemarkName = Literal[
 
 @dataclass(frozen=True)
 class RuleRemark:
-    """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
+    """A remark: a figure's `value` beside the usual `rule`, both in `unit`, and a `sentence` in the recipe's unit.
+
+    `value` and `rule` are None for a remark without figures; `at_deg` is the shaft angle, degrees, if there is one.
+    """
 
     name: str
     value: float | None
@@ -94,7 +97,10 @@ class RuleRemark:
 def remarks_of(
     recipe: Recipe, design: Design, checks: Sequence[Check] = (), files: Sequence[FileResult] = ()
 ) -> tuple[RuleRemark, ...]:
-    """All remarks on a recipe, its design, and the checks of its files, in the order of the report."""
+    """All remarks on a recipe, its design and its files, in the order of the report.
+
+    `checks` are all checks of the run. Remarks on files are left out where `files` is empty.
+    """
     remarks: dict[str, Sequence[RuleRemark | None]] = {
         "sizing": [_sizing(recipe, design), _least_angle(recipe)],
         "pressure-angle": [_pressure(recipe, design)],
@@ -121,13 +127,13 @@ def remarks_of(
 
 
 def _sizing(recipe: Recipe, design: Design) -> RuleRemark | None:
-    """The size that `sizing` gave, and what bounds it."""
+    """The size that `sizing` chose, and the limit that bounds it; None without sizing."""
     sentence = recipe.cam.advice.chosen_size(design.exact, recipe.mm)
     return RuleRemark("sizing", None, None, "", sentence) if sentence else None
 
 
 def _least_angle(recipe: Recipe) -> RuleRemark | None:
-    """The least angle that all limits allow, and what fails below it."""
+    """The least angle that all limits allow, and the checks that fail below it; None where no angle was open."""
     choice = recipe.settled
     if choice is None:
         return None
@@ -184,7 +190,7 @@ def _pressure(recipe: Recipe, design: Design) -> RuleRemark | None:
 
 
 def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
-    """The objection to a cam of another size for the same motion; empty where there is none."""
+    """Words for what speaks against a cam of another size for the same motion; empty where nothing does."""
     from camgeo.curve.curve import CurveError
     from camgeo.curve.measures import farthest, nearest
     from camgeo.synthesis.design import sound
@@ -311,7 +317,7 @@ def _openings(recipe: Recipe, files: Sequence[FileResult]) -> RuleRemark | None:
 
 
 def _motion(recipe: Recipe, design: Design) -> list[RuleRemark | None]:
-    """A follower that stands still, and errors permitted that are a good part of its stroke."""
+    """Remarks on a follower that stands still, and on permitted errors that are a good part of its stroke."""
     stroke, arm = _stroke(design)
     length = stroke * arm
     if length <= STILL * size_of(design):
@@ -327,7 +333,7 @@ def _motion(recipe: Recipe, design: Design) -> list[RuleRemark | None]:
 
 
 def _law_error(recipe: Recipe, design: Design) -> RuleRemark | None:
-    """A swing that is far from the one wanted, where the recipe does not limit it."""
+    """A swing that is far from the wanted law, where the recipe does not limit its error."""
     check = next((check for check in design.checks if check.name == LAW.name), None)
     if check is None or check.value is None or any(limit.figure == LAW.name for limit in recipe.limits):
         return None
@@ -340,7 +346,7 @@ def _law_error(recipe: Recipe, design: Design) -> RuleRemark | None:
 
 
 def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> RuleRemark | None:
-    """A limit that the tolerance of a file implies, and that is no small part of the stroke or of the rollers."""
+    """A limit of motion error implied by a file's tolerance that is a good part of the stroke or of the rollers."""
     from kin.judge.limits import direct_play, is_loose, stroke_of
 
     if recipe.verify.motion_error is not None or not files:
@@ -388,7 +394,7 @@ def _table(design: Design) -> list[RuleRemark]:
 
 
 def _acceleration(recipe: Recipe, joints: tuple[DerivativeJump, ...]) -> RuleRemark | None:
-    """The greatest jump of acceleration, which strikes the follower; jumps of jerk are in the report alone."""
+    """The greatest jump of acceleration, which makes an impact; jumps of jerk have no remark."""
     jumps = [(abs(b - a), joint) for joint in joints for k, a, b in joint.jumps if k == 2]
     if not jumps:
         return None
@@ -493,7 +499,7 @@ def _is_whole(value: float) -> bool:
 
 
 def _thickness(recipe: Recipe, design: Design) -> RuleRemark | None:
-    """A disc that is a bar or a foil: a slip of the unit, mostly."""
+    """A disc as thick as a bar or as thin as a foil, mostly through a wrong unit."""
     thickness, size = recipe.part.thickness, size_of(design)
     if thickness is None or not size or THINNEST * size <= thickness <= THICKEST * size:
         return None

@@ -16,9 +16,9 @@ _POUNDS = {"N": ("lbf", LBF), "N m": ("lbf in", MOMENTS["Nm"] / MOMENTS["lbf*in"
 
 
 def pounds(units: str, unit: str) -> tuple[str, float] | None:
-    """Imperial unit of a force, moment or pressure in a recipe in inches, and its number that makes one `unit`.
+    """Imperial unit of a force, moment or pressure in a recipe in inches, and the factor from `unit` to it.
 
-    None for other units, and for recipes in mm.
+    `units` are the recipe's. None for other units, and for recipes in mm.
     """
     return _POUNDS.get(unit) if units == "inch" else None
 
@@ -28,16 +28,16 @@ def in_pounds(units: str, value: float, unit: str) -> tuple[float, str]: ...
 @overload
 def in_pounds(units: str, value: float | None, unit: str) -> tuple[float | None, str]: ...
 def in_pounds(units: str, value: float | None, unit: str) -> tuple[float | None, str]:
-    """Value and unit of a force, a moment or a pressure in pounds where a recipe's `units` are inches.
+    """Value and unit of a force, a moment or a pressure, in pounds where a recipe's `units` are inches.
 
-    Other figures, and those of recipes in mm, are returned as they are.
+    Other figures, and figures of recipes in mm, come back unchanged, as does None.
     """
     imperial = pounds(units, unit)
     return (value, unit) if imperial is None else (None if value is None else value * imperial[1], imperial[0])
 
 
 def in_units(recipe: Order, value: float | None, unit: str) -> tuple[float | None, str]:
-    """Value and unit of a figure in mm, mm^2, mm^3 or mm by radian in the recipe's unit; other units are kept."""
+    """Value and unit of a figure, in the recipe's unit where its unit begins with mm, mm^2 or mm^3; else unchanged."""
     name = UNIT_NAMES[recipe.units]
     power = {"mm": 1, "mm^2": 2, "mm^3": 3}.get(unit.replace("/", " ").partition(" ")[0])
     if power is None:
