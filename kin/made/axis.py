@@ -1,9 +1,9 @@
-"""The axis about which a shaft's cams stand, against that of their points: how far it leans, and what is a cam's own.
+"""The axis about which a shaft's cams stand, against that of their points: shift, lean, each cam's eccentricity.
 
 A cam at a height z is shifted by a + b z where the axis is shifted and leans, and by its own eccentricity besides. The
-line is that of least squares over the shifts, each weighed by its covariance; a cam that stands off the line of the
-others by far more than is uncertain is left out of it, so that its eccentricity does not pass for a lean. What is left
-of the others widens the line's covariance where it is more than theirs.
+line is that of least squares over the shifts, weighted by their covariances. A cam that stands off the line of the
+others by far more than the uncertainty is left out, so that its eccentricity does not pass for a lean. Where the
+residuals of the others are greater than their covariances say, they widen that of the line.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 LEAST_CAMS = 3  # at different heights: two have a line through them whatever they are
 APART = 0.01  # mm: heights that are closer are one
-STANDS_OFF = 4.0  # standard deviations
-UNKNOWNS = 4
+STANDS_OFF = 4.0  # standard deviations from the line of the others: a cam beyond is left out
+UNKNOWNS = 4  # two of the shift, two of the lean
 
 
 class CamShift(NamedTuple):
@@ -39,9 +39,9 @@ class Axis:
 
     middle                 height, mm, at which the shift is stated
     shift, lean (2,)       mm, and mm by mm of height
-    covariance (4, 4)      of shift and lean
+    covariance (4, 4)      of x and y of the shift, mm, then of the lean
     own (m, 2)             eccentricity of each cam about the axis, mm
-    own_deviations (m,)    its standard deviation, in the direction in which it is the greatest, mm
+    own_deviations (m,)    its standard deviation in the most uncertain direction, mm
     length                 range of the heights of the cams, mm
     """
 
@@ -55,7 +55,7 @@ class Axis:
 
     @property
     def lean_deviation(self) -> float:
-        """Standard deviation of the lean, along its own direction, mm by mm of height."""
+        """Standard deviation of the lean in its own direction, mm by mm of height; along x where it is 0."""
         size = float(np.hypot(*self.lean))
         direction = self.lean / size if size else np.array([1.0, 0.0])
         return float(np.sqrt(direction @ self.covariance[2:, 2:] @ direction))
@@ -67,7 +67,7 @@ class Axis:
 
 
 def heights_of(cams: Sequence[CamShift]) -> int:
-    """Number of different heights at which cams stand."""
+    """Number of different heights at which cams stand, in steps of 0.01 mm."""
     return len({round(cam.height / APART) for cam in cams})
 
 
@@ -81,11 +81,13 @@ def axis_of(cams: Sequence[CamShift]) -> Axis | None:
         return None
     height = np.array([cam.height for cam in cams])
     middle = float(0.5 * (height.min() + height.max()))
+    # shift of each cam = row @ (shift, lean)
     rows = [np.hstack([np.eye(2), (z - middle) * np.eye(2)]) for z in height.tolist()]
     chosen = np.ones(len(cams), dtype=bool)
     while True:
         line, covariance = _line(cams, rows, chosen)
         own = np.stack([cam.shift - row @ line for cam, row in zip(cams, rows, strict=True)])
+        # each chosen cam against the line of the others, in standard deviations (Mahalanobis)
         off = np.zeros(len(cams))
         for k in np.flatnonzero(chosen).tolist():
             without = chosen.copy()
@@ -103,7 +105,7 @@ def axis_of(cams: Sequence[CamShift]) -> Axis | None:
 
 
 def _line(cams: Sequence[CamShift], rows: Sequence[Array], chosen: Mask) -> tuple[Array, Array]:
-    """Shift and lean (4,) of the line through chosen cams, and their covariance (4, 4), widened by what is left."""
+    """Shift and lean (4,) of the line through chosen cams, and their covariance (4, 4), widened by the residuals."""
     kept = np.flatnonzero(chosen).tolist()
     weights = {k: np.linalg.inv(cams[k].covariance) for k in kept}
     inverse = np.linalg.inv(np.sum([rows[k].T @ weights[k] @ rows[k] for k in kept], axis=0))
@@ -114,4 +116,5 @@ def _line(cams: Sequence[CamShift], rows: Sequence[Array], chosen: Mask) -> tupl
 
 
 def _greatest(covariance: Array) -> float:
+    """Standard deviation in the direction in which a covariance is the greatest."""
     return float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))

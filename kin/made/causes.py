@@ -1,9 +1,9 @@
-"""Causes of deviations, fitted together: what is turned, shifted, round, regular or local, each with its uncertainty.
+"""Causes of deviations, fitted together: turn, shift, size, waves and local faults, each with its uncertainty.
 
 Turned and shifted metal adds `Deviations.columns`, a size that is off a constant, a vibrating machine a wave. What is
 left after them is itself a form, not noise: its scatter, with as many independent values as the smooth curve has spans,
-gives the covariance, which is wide rather than narrow. A cause is named above its expanded uncertainty (k = 2) alone;
-causes whose estimates hang together are named as one sum.
+gives the covariance, which is wide rather than narrow. A cause is named only above its expanded uncertainty (k = 2);
+causes whose estimates are correlated are named as one sum.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 ALIKE = 0.95  # correlation of two estimates, from which on they are one sum
-LOOKS = 1440
-SHARE = 0.25  # of the variance that is left: a wave that explains less is none
-STANDS_OUT = 4.0  # standard deviations of the curve: what is local
+LOOKS = 1440  # places of the turn at which curves are evaluated
+SHARE = 0.25  # of the remaining variance: a wave that explains less is not named
+STANDS_OUT = 4.0  # standard deviations of the curve: a wave or a local fault is higher
 
 
 class Cause(NamedTuple):
-    """A cause: its words, value and expanded uncertainty, mm or rad, and the greatest deviation that it makes, mm.
+    """A cause: its names, value and expanded uncertainty, mm or rad, and the greatest deviation that it makes, mm.
 
-    `at` is the parameter of a local one, `waves` the number a turn of a regular one; else None. A sum of causes has
-    several names, and as value the greatest deviation that they make together.
+    `at` is the parameter, rad, of a local fault, `waves` the number of waves a turn of a regular cause; else None. A
+    sum of causes has several names, and its value is the greatest deviation that they make together.
     """
 
     names: tuple[str, ...]
@@ -49,7 +49,7 @@ def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth], turned: f
     """Certain causes of the deviations of one part's surfaces, by falling effect.
 
     A cause is certain if its size is larger than its uncertainty. `curves` are the smooth curves through the
-    deviations. `turned` is the angle, rad, by which the metal is turned and that was taken out of the deviations.
+    deviations. `turned` is the known turn of the metal, rad, that was taken out of the deviations; it is added again.
     """
     names = ["turned", "shifted along x", "shifted along y", "size"]
     free, chosen, x, covariance, left = _explained(deviations, curves)
@@ -75,16 +75,22 @@ def causes(deviations: Sequence[Deviations], curves: Sequence[Smooth], turned: f
 
 
 def shift_of(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> tuple[Array, Array]:
-    """Shift (2,) of one part's metal, mm, beside a turn and a size, and its covariance (2, 2), mm^2."""
+    """Shift (2,) of one part's metal, mm, and its covariance (2, 2), mm^2, by a fit with turn and size.
+
+    `curves` are the smooth curves through the deviations, one for each surface.
+    """
     free, _, x, covariance, _ = _explained(deviations, curves)
     first = free.index(1)
     return x[first : first + 2], covariance[first : first + 2, first : first + 2]
 
 
 class _Explained(NamedTuple):
-    """Least squares of turn (0), shifts (1, 2) and size (3) over n points, of the k that are independent.
+    """Fit of turn, shifts and size to n points by least squares, with the k of them that are independent.
 
-    columns (n, k), x (k,) their values, covariance (k, k) and the residual `left` (n,), mm and rad.
+    free           which these are: 0 the turn, 1 and 2 the shifts along x and y, 3 the size
+    columns (n, k) deviations by each, mm per rad or mm per mm
+    x, covariance  values (k,), rad and mm, and their covariance (k, k)
+    left (n,)      residual, mm
     """
 
     free: list[int]
@@ -95,6 +101,7 @@ class _Explained(NamedTuple):
 
 
 def _explained(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> _Explained:
+    """Fit turn, shifts and size; the turn is left out where it cannot be told from a shift."""
     columns = np.concatenate(
         [np.column_stack([deviation.columns("gxy"), np.ones(len(deviation.e))]) for deviation in deviations]
     )
@@ -129,7 +136,8 @@ def _split(rows: Array, deviations: Sequence[Deviations]) -> list[Array]:
 
 
 def _regular_and_local(deviations: Deviations, curve: Smooth, rest: Array) -> list[Cause]:
-    """A wave in what is left on a surface, and the place where the rest stands out the most."""
+    """The strongest wave in the residual `rest` (n,), mm, on a surface, and a local fault, where they stand out."""
+    # amplitudes of all waves from two a turn on: turn, shift and size explain those below
     smooth = fit(deviations.parameter, rest, curve.spans).curve
     t = equal_steps(LOOKS)
     form = smooth.rows(t)[0]
@@ -139,7 +147,8 @@ def _regular_and_local(deviations: Deviations, curve: Smooth, rest: Array) -> li
     k = int(np.argmax(np.abs(waves[2:])) + 2)
     height = float(np.abs(waves[k]))
     error = curve.sigma * curve.widened * float(np.sqrt(2.0 / len(deviations.e)))
-    stands_out = height > STANDS_OUT * error and 2 * k <= curve.spans  # the highest of many waves of noise is no wave
+    # the highest of many waves of noise is not named, nor a wave that the spans do not resolve
+    stands_out = height > STANDS_OUT * error and 2 * k <= curve.spans
     if stands_out and 0.5 * height**2 > SHARE * float(np.var(form)):
         named.append(Cause(("waves",), height, COVERAGE * error, height, waves=k))
         form = form - np.real(waves[k] * np.exp(1j * k * t))

@@ -1,8 +1,8 @@
-"""What judges a part that is meant to lie off the exact contour: metal corrected for what a machine does to it.
+"""Followers that judge files of a corrected contour: metal that should lie off the exact contour by a smooth curve.
 
-The contour is that metal, and the motion that it is meant to give is contact on it. Both are found beside the exact
-follower: what a contact feels of a file is taken less what it would feel of the metal beyond the exact contour. So the
-motion that is left is held against the recipe's, and play against none, as of a part that is not corrected.
+The intended contour is that of the metal. A contact's position on a file counts less the effect of the metal's
+deviation from the exact contour on it. So the remaining motion is compared to the recipe's, and the remaining play to
+none, as for a part that is not corrected.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ LIMIT_ANGLES = 720  # shaft angles at which the effect of a tolerance is found
 
 
 class _Beyond(NamedTuple):
-    """What a contact that rests on a contour does beyond what it does on corrected metal, in SI, as an excitation."""
+    """Drive of a contact that rests on a contour, less the correction's effect, in SI (m, rad), as an excitation."""
 
     drive: Excitation
     follower: Corrected
@@ -63,7 +63,7 @@ class _Beyond(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Meant:
-    """The intended motion as an excitation, in SI."""
+    """The intended motion as an excitation, in SI (m, rad)."""
 
     follower: Follower
 
@@ -74,7 +74,7 @@ class _Meant:
 
     @property
     def smooth(self) -> bool:
-        """Whether velocity is one at all breaks: it is, of laws that cams are made of."""
+        """Whether velocity is continuous: it is for all laws of cams."""
         return True
 
     def rows(self, phi: Array) -> Array:
@@ -85,10 +85,10 @@ class _Meant:
 
 @dataclass(frozen=True, eq=False)
 class Corrected(Follower):
-    """A follower on metal that is meant to lie by a smooth `curve` beyond the exact contour of a gauge.
+    """A follower on metal that should lie by a smooth `curve`, mm, above the exact contour of a gauge.
 
-    `exact` is the follower itself, whose contacts these are: the gauge, or one that has a clearance to it. `contour` is
-    that of the metal, over the parameter of the exact one.
+    `exact` is the follower, on the exact contour: the gauge, or one with a clearance to it. `contour` is the contour of
+    the metal, over the parameter of the exact one.
     """
 
     exact: Follower
@@ -98,7 +98,7 @@ class Corrected(Follower):
 
     @staticmethod
     def of(gauge: Follower, side: Side, curve: Smooth) -> Corrected:
-        """A gauge on metal on one side of its contour, which lies by `curve`, mm, beyond that."""
+        """A gauge on metal that lies by `curve`, mm, above its contour; `side` is 1 for metal inside it, -1 outside."""
         contour = gauge.envelope.displaced(curve.times(side))
 
         def skin(parameter: Array, height: float) -> tuple[Array, Array]:
@@ -107,10 +107,10 @@ class Corrected(Follower):
         return Corrected(gauge.contacts, gauge, Metal(gauge, skin, places_of(curve.spans), gauge), curve, contour)
 
     def within_reach(self) -> tuple[float, float]:
-        """Greatest share of the curve, to first order, by which the contour turns back nowhere, and where it would.
+        """Greatest multiple of the curve, to first order, at which the contour nowhere turns back, and where it would.
 
-        Where it turns back, no contact reaches it. The place is a shaft angle, rad, seen at the `places` of the metal;
-        the share is infinite where any would do.
+        Where a contour turns back, no contact reaches it. The place is a shaft angle, rad, among the `places` of the
+        metal; the multiple is infinite where the contour never turns back.
         """
         places = self.metal.places
         exact, speed = (curve.frames(places).speed for curve in (self.metal.follower.envelope, self.contour))
@@ -120,7 +120,7 @@ class Corrected(Follower):
         return float(shares[worst]), float(self.shaft_angle(places[worst : worst + 1])[0])
 
     def run_by(self, follower: Follower) -> Corrected:
-        """Give the same corrected metal with another follower of the same motion on it."""
+        """The same metal under another follower of the same motion."""
         return replace(self, contacts=follower.contacts, exact=follower)
 
     @property
@@ -130,10 +130,7 @@ class Corrected(Follower):
 
     @property
     def motion(self) -> IntendedMotion:
-        """Intended motion of the recipe.
-
-        The effect of the metal's correction is subtracted before a motion is compared to it.
-        """
+        """Intended motion of the recipe, with which motions less the effect of the correction are compared."""
         return self.exact.motion
 
     @property
@@ -143,7 +140,7 @@ class Corrected(Follower):
 
     @property
     def closure(self) -> Closure | None:
-        """Play beyond that on the metal, by which a contour within the tolerance moves both contacts at most."""
+        """Greatest play beyond that on the metal, by a tolerance of the contour; None for one contact."""
         closure = self.exact.closure
         if closure is None:
             return None
@@ -151,7 +148,7 @@ class Corrected(Follower):
 
     @property
     def lever(self) -> float:
-        """Distance of the contact from the arm's pivot, about, mm; infinite on a line of travel."""
+        """Approximate distance of the contact from the arm's pivot, mm; infinite on a line of travel."""
         return self.exact.lever
 
     def shaft_angle(self, parameter: Array) -> Array:
@@ -159,11 +156,11 @@ class Corrected(Follower):
         return self.exact.shaft_angle(parameter)
 
     def drives(self, contour: Contour) -> Sequence[Excitation]:
-        """Own position of each contact resting on a contour, m or rad, less the effect of the metal's correction."""
+        """Drive of each contact that rests on a contour, its own position, m or rad, less the correction's effect."""
         return [_Beyond(drive, self, k) for k, drive in enumerate(self.exact.drives(contour))]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """Pressure angle, rad, and radius of curvature, mm, (n,) each, of the follower without the correction."""
+        """Pressure angle, rad, and radius of curvature, mm, (n,) each, on a contour at shaft angles phi (n,), rad."""
         return self.exact.pressed(contour, phi)
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:
@@ -174,19 +171,21 @@ class Corrected(Follower):
         return self.exact.touching(points, normals)
 
     def added(self, shaft: Array) -> Array:
-        """Effect of the correction on each contact's position, and two derivatives by the shaft angle: (c, 3, n).
+        """Effect of the correction on the position of each of c contacts, and two derivatives by rad: (c, 3, n).
 
-        It is in mm or rad, at shaft angles (n,), rad. Derivatives come from five places of the stretch between two
-        breaks, since velocity or acceleration jumps there.
+        It is in mm or rad, at shaft angles (n,), rad. Derivatives come from a quartic through five places of the
+        stretch between two breaks, since velocity or acceleration jumps at breaks.
         """
         ends = np.unique(np.concatenate([self.motion.breaks, self.metal_breaks, [0.0]]))
         ends = ends[np.diff(ends, prepend=-np.inf) > CLOSE]
         at = np.mod(shaft, TURN)
         index = np.searchsorted(ends, at, side="right") - 1
         low, high = ends[index], np.append(ends[1:], TURN)[index]
+        # five places about each angle, moved so that all lie within its stretch
         step = np.minimum(step_of(self.curve), (high - low) / 4.0)
         first = np.clip(at - 2.0 * step, low, high - 4.0 * step)
         errors = self._errors(first + step * np.arange(5.0)[:, None])
+        # first and second derivative of the quartic at the angle, x in steps from the first place
         x = (at - first) / step
         power = x[None] ** np.arange(5.0)[:, None]
         zero = np.zeros_like(x)
@@ -197,7 +196,7 @@ class Corrected(Follower):
         return np.stack([self._errors(at[None])[:, 0], rates[0] / step, rates[1] / step**2], axis=1)
 
     def _errors(self, shaft: Array) -> Array:
-        """Deviation of each contact's position from the intended, mm or rad, at shaft angles (m, n): (c, m, n)."""
+        """Each contact's position on the metal less the intended, mm or rad, at shaft angles (m, n), rad: (c, m, n)."""
         positions, _ = self.metal.positions(shaft.ravel())
         errors = positions - self.metal.follower.intended(shaft.ravel())
         each: Array = errors.reshape(-1, *shaft.shape)
@@ -205,17 +204,17 @@ class Corrected(Follower):
 
     @cached_property
     def metal_breaks(self) -> Array:
-        """Shaft angles, rad (m,), at which a contact comes upon, or leaves, a break of the contour."""
+        """Shaft angles (m,), rad, at which a contact reaches or leaves a break of the contour."""
         corners = self.metal.corners
         touches = [self.metal.gauge.touching(corners.points, side) for side in (corners.before, corners.after)]
         breaks: Array = np.mod(np.concatenate([angle for touch in touches for angle, _ in touch]), TURN)
         return breaks
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
-        """Motion error and play of a contour in excess of those on the corrected metal; no play with one contact.
+        """Motion error and play of a contour beyond those on the corrected metal; no play with one contact.
 
-        The rms and the increments of the error are from the shaft angles phi (n,), rad. Raises ContactError where the
-        follower finds no contact.
+        The root mean square and the increments of the error are over shaft angles phi (n,), rad. Raises ContactError
+        where the follower finds no contact.
         """
         rests, law = self.resting(contour), _Meant(self.exact)
         size = self.si * float(np.abs(contour.vertices).max()) if self.unit == "mm" else 1.0
@@ -233,11 +232,11 @@ class Corrected(Follower):
         return Judged(motion, Play(*least, *most, self.unit))
 
     def motion_limit(self, tolerance: float) -> float:
-        """Greatest motion error, mm or degrees, of a contour within `tolerance` of the metal."""
+        """Greatest motion error, mm or degrees, of a contour within `tolerance`, mm, of the metal."""
         return max(self._limits(tolerance))
 
     def _limits(self, tolerance: float) -> list[float]:
-        """How far each contact moves at most, mm or degrees, as all metal is raised or lowered by a tolerance."""
+        """Greatest change of each contact's position, mm or degrees, by metal that is raised or lowered all round."""
         shaft = equal_steps(LIMIT_ANGLES)
         here, _ = self.metal.positions(shaft)
         moved = [self.metal.raised(height).positions(shaft)[0] - here for height in (tolerance, -tolerance)]

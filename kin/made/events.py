@@ -1,6 +1,6 @@
-"""Events of a made motion: where it passes a lift, how long it is above it, how high and fast it goes.
+"""Events of a made motion: where it passes a lift, how long it is above it, its greatest lift and velocity.
 
-Lifts are counted from where the follower rests at its lowest on the metal as it was made, as an indicator or the lash
+Lifts are counted from the follower's mean lowest position on the metal as it was made, since an indicator or the lash
 is set there. An error E of the motion moves a crossing by -E/S', so that every event is, about where it is, a weighted
 sum of errors: its uncertainty is that of the sum, whose parts go together (`Errors.influence`).
 """
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 STEPS = 40  # of Newton's method
-STILL = 1e-12  # rad
-FAR = 0.5  # rad: a crossing that is farther from the nominal one is another
-RESTS = 1e-9  # of the stroke: so near to the lowest position the follower rests
+STILL = 1e-12  # rad: the search ends at a smaller step
+FAR = 0.5  # rad: a crossing farther from the intended one is not the same
+RESTS = 1e-9  # of the stroke: within this of its lowest position the follower rests
 NEIGHBOURS = np.arange(-1, 3)  # places of the errors between which they are interpolated
 
 
 class Estimate(NamedTuple):
-    """A figure of the made motion and of the intended one, and what adds to the former."""
+    """A figure of the made and of the intended motion, mm or rad, and the influence of errors on it."""
 
     made: float
     intended: float
@@ -45,7 +45,7 @@ class Above(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MadeMotion:
-    """An intended motion, mm or rad over the shaft angle, and the errors of the made one, which are at equal steps."""
+    """An intended motion, mm or rad over the shaft angle, and the errors of the made motion, at equal steps."""
 
     motion: IntendedMotion
     errors: Errors
@@ -74,15 +74,14 @@ class MadeMotion:
         return weights, rate
 
     def _intended(self, angle: float) -> tuple[float, float]:
-        """Intended position and velocity at a shaft angle."""
+        """Intended position, mm or rad, and velocity by rad of the shaft, at a shaft angle, rad."""
         position, velocity, *_ = self.motion.derivatives(np.array([np.mod(angle, TURN)]), 1)[:, 0].tolist()
         return position, velocity
 
     def above(self, opening: float, closing: float) -> Above | None:
         """Opening, closing, duration and centre of the made motion above a lift; None where it does not pass that lift.
 
-        The lift is that of the intended motion at the shaft angles `opening` and `closing`, rad; `closing` is the
-        greater.
+        The intended motion has this lift at the shaft angles `opening` and `closing`, rad, `closing` the greater.
         """
         places, sums = [], []
         for angle in (opening, closing):
@@ -101,7 +100,10 @@ class MadeMotion:
         )
 
     def _crossing(self, nominal: float) -> tuple[float, Array] | None:
-        """Where the made motion is as high as the intended one is at a shaft angle, and weights of errors in it."""
+        """Shaft angle, rad, of the made motion at the lift that the intended one has at `nominal`, and weights (n,).
+
+        The weights are those of the errors in the angle. None where no crossing is found near.
+        """
         level, _ = self._intended(nominal)
         angle = nominal
         for _ in range(STEPS):

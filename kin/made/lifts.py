@@ -1,8 +1,8 @@
 """Lifts that an indicator shows over the shaft angle, as points of the metal that it touches.
 
-The probe runs on the follower's own guide. Its reading less what the exact cam would give it, and less a constant that
-is set on the bench, is to first order what a deviation at the place of contact adds: e times the gain. Size and a
-constant offset are so unseen.
+The probe runs on the follower's own guide. Its reading less its position on the exact cam, and less a constant that is
+set on the bench, is to first order the effect of the deviation e at the place of contact: e times the gain. So lifts
+show neither the size nor a constant offset.
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ if TYPE_CHECKING:
 
 COARSE_TURNS = 720  # angles at which the zero of the shaft angle is looked for
 GAINS = 7200  # angles between which gains are interpolated
-FEW = 2000  # readings that do for that
-STEPS = 12
-STILL = 1e-12  # rad
+FEW = 2000  # readings that suffice for that
+STEPS = 12  # of Gauss and Newton
+STILL = 1e-12  # rad: the search ends at a smaller step
 BETWEEN = 0.75  # of a turn: angles over less may be halved by mistake, over more than a turn by as much the crank's
 ODD = 0.1  # of UNLIKE: from which on readings may run in the other sense, or at degrees of another shaft
-ALIKE = 0.1  # of what they are off by: to which a turn has to bring readings down
+ALIKE = 0.1  # share of their distance that may be left after a turn that explains it
 
 
 class Readings(NamedTuple):
     """Lifts (n,), mm or rad, at shaft angles (n,), rad.
 
-    They are of a follower with one contact, on metal on a side of its contour; `touch` is that of the probe, None for
-    the follower's own. `halved` says that a heading has the angles in crank degrees.
+    The follower has one contact; `side` is 1 for metal inside its contour, -1 outside. `touch` is that of the probe,
+    None for the follower's own. `halved` says that the angles were crank degrees by their heading, and are halved.
     """
 
     follower: Follower
@@ -62,7 +62,7 @@ class Readings(NamedTuple):
     def exact(self) -> Exact:
         """Function that gives the probe's position, mm or rad, and the parameter touched, (n,) each, on the exact cam.
 
-        It takes shaft angles (n,), rad, and by how much the metal is raised, mm.
+        It takes shaft angles (n,), rad, and a height, mm, by which the metal is raised all round.
         """
         probe = probe_of(self.follower, self.side, self.touch)
 
@@ -81,12 +81,12 @@ class Readings(NamedTuple):
         return float(np.ptp(self.exact(equal_steps(COARSE_TURNS))[0]))
 
     def few(self) -> Readings:
-        """Evenly chosen readings, at most FEW."""
+        """At most FEW of the readings, evenly chosen."""
         chosen = np.linspace(0, len(self.lift) - 1, min(FEW, len(self.lift))).astype(np.intp)
         return self._replace(shaft=self.shaft[chosen], lift=self.lift[chosen])
 
     def off(self, late: float = 0.0) -> Array:
-        """Readings (n,) less those of the exact cam that is late by an angle, rad, and less their mean; mm or rad."""
+        """Readings (n,) less the lifts of the exact cam `late` by an angle, rad, and less their mean; mm or rad."""
         off = self.lift - self.exact(self.shaft - late)[0]
         centred: Array = off - off.mean()
         return centred
@@ -100,7 +100,11 @@ class Exact(Protocol):
 
 
 class Lifts(NamedTuple):
-    """Lifts as points of metal as it stands, unless aligned; by how much they are late, rad; and their constant."""
+    """Lifts as points of the metal.
+
+    `points` stand as measured, or with the lateness taken out. `late` is the lateness, rad, and `zero` the constant in
+    the lifts, mm or rad.
+    """
 
     points: SurfacePoints
     late: float
@@ -108,7 +112,7 @@ class Lifts(NamedTuple):
 
 
 def probe_of(follower: Follower, side: Side, touch: Touch | None) -> Follower:
-    """Follower with another touch on its guide; the follower itself for None."""
+    """Follower with another touch on its guide, still, on metal inside (1) or outside (-1); itself for None."""
     if touch is None:
         return follower
     (contact,) = follower.contacts
@@ -124,8 +128,10 @@ def points_of_lifts(readings: Readings, *, aligned: bool = False, alone: bool = 
     off; its message says what they look like. `alone` says that the cam may be turned on its shaft by any angle.
     """
     follower, side, shaft, lift, touch, _ = readings
-    late = lateness([readings if aligned else readings.few()])  # else it is put back, so that near it will do
+    # without `aligned` it is put back, so that an approximation is enough
+    late = lateness([readings if aligned else readings.few()])
     _demand_alike(readings, late if aligned or alone else 0.0, aligned=aligned)
+    # deviation of the metal: what the lifts are off, over the gain (probe's position by mm of metal)
     exact = readings.exact
     expected, places = exact(shaft - late)
     zero = float((lift - expected).mean())
@@ -156,7 +162,7 @@ def _demand_on_face(probe: Follower, points: Array, shaft: Array) -> None:
 
 
 def lateness(readings: Sequence[Readings]) -> float:
-    """Angle, rad, by which all readings are late, from -pi to pi, by least squares; each one's zero of lift is free."""
+    """Angle, rad, from -pi to pi, by which all readings are late, by least squares; each zero of lifts is free."""
     every = equal_steps(COARSE_TURNS)
     few = [cam.few() for cam in readings]
     tables = [cam.exact(every)[0] for cam in few]
@@ -178,9 +184,9 @@ def lateness(readings: Sequence[Readings]) -> float:
 def _least_squares_lateness(
     readings: Sequence[Readings], late: float, variances: Sequence[float], slopes: Sequence[Array]
 ) -> float:
-    """The lateness of least squares near one, rad: Gauss and Newton. Each cam counts by its share of its variance.
+    """Lateness, rad, of least squares near `late`, by Gauss and Newton; residuals count in shares of a cam's variance.
 
-    `slopes` are those of its lift over equal steps: steps need no more of them.
+    `slopes` are derivatives of the exact lifts at equal steps, near enough for the steps of the search.
     """
     every = equal_steps(COARSE_TURNS)
     for _ in range(STEPS):
@@ -210,7 +216,7 @@ def rows_of_lifts(readings: Sequence[Readings], zeros: Sequence[float]) -> tuple
 
 
 def of_other_shaft(readings: Sequence[Readings]) -> _Factor | None:
-    """Factor that turns crank angles into cam angles, or back, if only then the readings fit their cams; else None."""
+    """Mistake of crank angles for cam angles, or of cam angles for crank angles, if only so readings fit; else None."""
     few = [cam.few() for cam in readings]
     longest = max(few, key=lambda cam: float(np.ptp(cam.shaft)))
     for other in _factors(longest):
@@ -220,13 +226,13 @@ def of_other_shaft(readings: Sequence[Readings]) -> _Factor | None:
 
 
 def _fit(readings: Sequence[Readings], factor: float) -> bool:
-    """Whether readings are those of their cams with angles multiplied, however each is turned."""
+    """Whether readings fit their cams when the angles are multiplied by a factor, each turned by its lateness."""
     each = [cam._replace(shaft=factor * cam.shaft) for cam in readings]
     return all(float(np.std(cam.off(lateness([cam])))) <= UNLIKE * cam.stroke for cam in each)
 
 
 def _demand_alike(readings: Readings, late: float, *, aligned: bool) -> None:
-    """Raise UnlikePointsError for readings that are far off the cam that is late by an angle, rad."""
+    """Raise UnlikePointsError for readings that are far off the exact cam turned `late` by an angle, rad."""
     few, stroke = readings.few(), readings.stroke
     far = float(np.std(few.off(late)))
     if far <= ODD * UNLIKE * stroke:
@@ -264,7 +270,7 @@ class _Factor(NamedTuple):
 
 
 class _Look(NamedTuple):
-    """A likeness of readings: how far off they are under it, mm or rad, its words, and whether it is a turn alone."""
+    """An explanation of readings: how far off they are by it, mm or rad, its words, and whether it is a turn alone."""
 
     left: float
     words: str
@@ -272,7 +278,7 @@ class _Look(NamedTuple):
 
 
 def _factors(readings: Readings) -> list[_Factor]:
-    """Mistakes that angles and lifts may hold: none first, degrees of another shaft last."""
+    """Mistakes that angles and lifts may hold: first no mistake, last angles of another shaft."""
     span = float(np.ptp(readings.shaft))
     factors = [_Factor(1.0, [], []), _Factor(1.0, ["to fall as the follower rises"], ["turn their sign round"], -1.0)]
     if abs(math.degrees(span) / TURN - 1.0) < 1.0 - BETWEEN:
@@ -285,7 +291,7 @@ def _factors(readings: Readings) -> list[_Factor]:
 
 
 def _turned_looks(readings: Readings, other: _Factor, *, aligned: bool) -> Iterator[_Look]:
-    """Readings with their angles multiplied and turned in either sense."""
+    """Explanations by a mistake with a turn, for angles in the sense of the motion and in the other sense."""
     for sense in (1.0, -1.0):
         other_readings = readings._replace(shaft=sense * other.factor * readings.shaft, lift=other.lift * readings.lift)
         late = lateness([other_readings])

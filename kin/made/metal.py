@@ -2,8 +2,8 @@
 
 Every point of the metal and its normal would put a contact at one shaft angle in one position (`Follower.touching`).
 Over the parameter these pairs are a curve; where the metal is hollow beyond what the contact reaches into, it folds.
-The contact rests where no metal is in its way: of all places with the same shaft angle on the one that puts it the
-farthest out. So contacts that leap over a dent are found as they are, which no formula of first order tells.
+The contact rests where no metal is in its way: of all places with the same shaft angle, on the place that puts it the
+farthest out. So contacts that leap over a dent are found, which no formula of first order gives.
 
 Where the exact contour's radius of curvature jumps, a deviation that is smooth over the parameter leaves a corner, on
 which the contact turns: there the pair runs over all normals between those of both sides.
@@ -33,17 +33,17 @@ if TYPE_CHECKING:
     Skin = Callable[[Array, float], tuple[Array, Array]]
     # of parameters (n,), with so much more metal all round, mm: points, mm, and outward normals of the contour (n, 2)
 
-COARSE = 4096  # places of the turn between which contact is looked for, at least
-PER_SPAN = 12  # of them in a span of the smoothed deviation
+COARSE = 4096  # least number of places of the turn between which contact is looked for
+PER_SPAN = 12  # such places in a span of the smoothed deviation
 STEPS = 12  # of the search within two places: to rounding
-SETTLED = 1e-14  # rad
+SETTLED = 1e-14  # rad: the search ends within this of the shaft angle
 ROUNDING = 1e-12  # rad, by which neighbouring places overlap
-BEFORE = 1e-12  # rad before a break of the exact contour, where its other side is looked at
+BEFORE = 1e-12  # rad before a break of the exact contour, where its left side is evaluated
 NO_BREAKS = np.zeros(0)
 
 
 class Corners(NamedTuple):
-    """Points of the metal at breaks of the exact contour (m, 2), mm, and outward normals before and after, (m, 2)."""
+    """Points (m, 2), mm, of the metal at breaks (m,) of the exact contour, outward normals before and after."""
 
     parameters: Array
     points: Array
@@ -52,9 +52,10 @@ class Corners(NamedTuple):
 
 
 class _Pieces(NamedTuple):
-    """Stretches of metal between two places (n,), and the shaft angle of a contact at the first, and to the second.
+    """Stretches of metal between places `low` and `high` (n,), parameters in rad.
 
-    `corner` is the index of the corner that a piece is, else -1; `low` and `high` are then shares of its turn.
+    `angle` is the shaft angle of a contact at `low`, rad, `step` the angle from there to that at `high`. `corner` is
+    the index of the corner that a piece is, else -1; places of a corner run from 0 to 1, shares of the normal's turn.
     """
 
     low: Array
@@ -65,7 +66,7 @@ class _Pieces(NamedTuple):
 
 
 def places_of(finest: int) -> Array:
-    """Places (m,) of the turn, close enough for what has `finest` spans or waves in it."""
+    """Parameters (m,) over the turn, close enough for a curve of `finest` spans or waves a turn."""
     return grid(NO_BREAKS, max(COARSE, PER_SPAN * finest))
 
 
@@ -88,7 +89,7 @@ class Metal:
     def of(
         follower: Follower, side: Side, deviation: Deviation, finest: int = 0, gauge: Follower | None = None
     ) -> Metal:
-        """Metal whose surface lies off the exact contour along its normal, above 0 for too much, inside it or outside.
+        """Metal whose surface lies off the exact contour along its normal, by a deviation above 0 for too much metal.
 
         `side` is 1 for metal inside the contour, -1 outside. `deviation` of parameters (n,) is the distance, mm, and
         its derivative, (2, n). `finest` is the number of its shortest waves or spans in a turn. `gauge` runs on the
@@ -106,24 +107,25 @@ class Metal:
         return Metal(follower, skin, places_of(finest), gauge or follower)
 
     def raised(self, height: float) -> Metal:
-        """Give the metal with `height`, mm, more of it all round along the normals."""
+        """The metal grown by `height`, mm, all round along the normals."""
         return replace(self, height=self.height + height)
 
     def surface(self, parameter: Array) -> tuple[Array, Array]:
-        """Points (n, 2), mm, and normals (n, 2) outward of the contour."""
+        """Points (n, 2), mm, of the metal at parameters (n,), and normals (n, 2) outward of the contour."""
         return self.skin(parameter, self.height)
 
     def positions(self, shaft: Array) -> tuple[Array, Array]:
         """Position of the follower with each contact resting on the metal at shaft angles (n,), and where it rests.
 
-        Positions are mm or radians, (c, n); so are the parameters. ContactError where a contact finds no metal.
+        Positions, mm or rad, and the parameters of the places are (c, n) for c contacts. Raises ContactError where a
+        contact finds no metal.
         """
         rest = [self._resting(i, shaft) for i in range(len(self.gauge.contacts))]
         return np.stack([position for position, _ in rest]), np.stack([place for _, place in rest])
 
     @cached_property
     def corners(self) -> Corners:
-        """Corners that it has where the exact contour's radius of curvature may jump; of no angle where it does not."""
+        """Corners at the breaks of the exact contour; both normals are equal where its curvature does not jump."""
         breaks = np.mod(self.follower.envelope.breaks, TURN)
         points, after = self.surface(breaks)
         return Corners(breaks, points, self.surface(breaks - BEFORE)[1], after)
@@ -164,7 +166,9 @@ class Metal:
         return _Pieces(share, high, corner, angle, np.mod(np.roll(angle, -1) - angle + np.pi, TURN) - np.pi)
 
     def _resting(self, contact: int, shaft: Array) -> tuple[Array, Array]:
+        """Positions (n,) of a contact that rests on the metal, and the parameters (n,) of its places."""
         outwards = self.gauge.contacts[contact].sense  # own positions grow outwards
+        # of all pieces over each shaft angle, the place at that angle
         pieces = self._pieces(contact)
         query, piece = _pairs(np.mod(shaft, TURN), pieces.angle, pieces.step)
         corner = pieces.corner[piece]
@@ -173,6 +177,7 @@ class Metal:
         place = self._place(contact, shaft[query], corner, ends, (-off, pieces.step[piece] - off))
         _, position = self._within(place, corner, contact)
         place[corner >= 0] = self.corners.parameters[corner[corner >= 0]]
+        # the place that puts the contact the farthest out
         best = np.full(len(shaft), -np.inf)
         np.maximum.at(best, query, outwards * position)
         if not np.isfinite(best).all():
@@ -185,9 +190,9 @@ class Metal:
     def _place(
         self, contact: int, shaft: Array, corner: Indices, ends: tuple[Array, Array], excess: tuple[Array, Array]
     ) -> Array:
-        """Places between two ends (n,) at which the contact stands at shaft angles (n,): Illinois' rule.
+        """Places (n,) between two `ends` at which the contact stands at shaft angles (n,): Illinois' rule.
 
-        `excess` is that of the shaft angles at the ends over those.
+        `excess` has the shaft angles at the ends less the wanted ones, rad.
         """
         (a, b), (excess_a, excess_b) = ends, excess
         place = a
@@ -205,7 +210,7 @@ class Metal:
 
 
 def _pairs(shaft: Array, angle: Array, step: Array) -> tuple[Indices, Indices]:
-    """Which shaft angles (n,), in [0, 2 pi), lie between which ends: pairs of an index of either."""
+    """Indices of the shaft angles (n,), in [0, 2 pi), and of the pieces over which they lie, pair by pair."""
     order = np.argsort(shaft, kind="stable")
     ring = np.concatenate([shaft[order], shaft[order] + TURN])
     low = np.mod(np.minimum(angle, angle + step) - ROUNDING, TURN)

@@ -1,4 +1,4 @@
-"""The motion that a made part will make, by contact on its metal, against what is meant; with its uncertainty.
+"""The motion that a made part will make, by contact on its metal, against the intended one, with its uncertainty.
 
 Velocity and acceleration errors are derivatives by the shaft angle of the error itself, by five-point differences:
 their step is a share of the smoothing's span, so that nothing of that is lost, and far above rounding.
@@ -29,21 +29,21 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 STEP_SHARE, MOST_STEP = 0.05, 2e-3  # of a span, and rad: the step of the differences
-OFFSETS = (-2.0, -1.0, 0.0, 1.0, 2.0)
+OFFSETS = (-2.0, -1.0, 0.0, 1.0, 2.0)  # steps; weights of the first and second derivative follow
 FIRST = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
 SECOND = np.array([-1.0, 16.0, -30.0, 16.0, -1.0]) / 12.0
 BESIDE = 3.0  # steps about a break of the motion, where differences mix both sides
 STEPS = 24  # of Gauss and Newton's method
 STILL = 1e-13  # rad
-UNEXPLAINED = 0.25  # of the square of an error: less than that is left by what it comes from
-RAISED = 1e-4  # mm: metal raised by as much tells how the motion depends on it
+UNEXPLAINED = 0.25  # share of the square of an error: a cause that explains it leaves less
+RAISED = 1e-4  # mm by which metal is raised for the gain of the motion
 COVERAGE = 2.0  # standard deviations: about 95 % (GUM)
 
 
 class Felt(NamedTuple):
     """A contact with the metal at n shaft angles: the motion's error is `gain` (n,) times the deviation of `curve`.
 
-    That is the deviation at `places` (n,), where the metal's outward normals are `normals` (n, 2).
+    The deviation is at `places` (n,), parameters in rad; `normals` (n, 2) are the metal's outward normals there.
     """
 
     curve: Smooth
@@ -56,8 +56,8 @@ class Influence(NamedTuple):
     """Uncertainties of a weighted sum of a motion's errors, in its unit.
 
     sd            standard deviation by the noise of the points
-    worst         what a mm of metal adds, of either sign at every place, where it adds the most
-    shifted (2,)  what a mm of shift of the metal adds, along x and y
+    worst         what a mm of metal adds, with its sign the worst at every place
+    shifted (2,)  what a mm of shift of the metal adds, along x and along y
     """
 
     sd: float
@@ -72,9 +72,9 @@ class Errors:
     shaft (n,)       shaft angles, rad
     rows (3, n)      error, its velocity and its acceleration, which is nan about breaks of the motion, where it jumps
     sds (3, n)       standard deviations by the noise of the points
-    gain (n,)        what a mm more of metal adds to the position
+    gain (n,)        change of the position per mm more of metal
     intended (3, n)  the intended position, velocity and acceleration
-    felt             what each contact feels of the metal
+    felt             contacts with the metal, of which the error is the sum
     """
 
     shaft: Array
@@ -97,19 +97,19 @@ class Errors:
 
     @property
     def phase(self) -> tuple[float, Array]:
-        """Turn of the metal, rad ccw as drawn, that explains most of the error, and what remains without it (n,)."""
+        """Turn of the metal, rad ccw as drawn, that explains most of the error, and the remaining error (n,)."""
         turn, remaining = self._least_squares_turn(0.0)
-        rest = float(remaining @ remaining)
-        if rest > UNEXPLAINED * float(self.remaining @ self.remaining):  # a turn of many degrees
+        square = float(remaining @ remaining)
+        if square > UNEXPLAINED * float(self.remaining @ self.remaining):  # a turn of many degrees
             made = np.fft.rfft(self.intended[0] + self.rows[0])
             likeness = np.fft.irfft(made * np.conj(np.fft.rfft(self.intended[0])), len(self.shaft))
             other = self._least_squares_turn(math.remainder(int(np.argmax(likeness)) * TURN / len(self.shaft), TURN))
-            if float(other[1] @ other[1]) < UNEXPLAINED * rest:
+            if float(other[1] @ other[1]) < UNEXPLAINED * square:
                 return other
         return turn, remaining
 
     def _least_squares_turn(self, turn: float) -> tuple[float, Array]:
-        """The turn of least squares near one, rad, and what remains without it (n,): Gauss and Newton."""
+        """Turn of least squares near `turn`, rad, and the remaining error (n,) less its mean: Gauss and Newton."""
         made = self.intended[0] + self.rows[0]
         for _ in range(STEPS):
             position, velocity = self._intended(self.shaft - turn)
@@ -123,7 +123,7 @@ class Errors:
         return turn, remaining - remaining.mean()
 
     def _intended(self, shaft: Array) -> tuple[Array, Array]:
-        """Intended position and velocity at shaft angles (n,): Hermite's cubics between those known, at equal steps."""
+        """Intended position and velocity at shaft angles (n,), by Hermite's cubics between the known angles."""
         step = TURN / len(self.shaft)
         place = np.mod((shaft - self.shaft[0]) / step, len(self.shaft))
         first = np.minimum(place.astype(np.intp), len(self.shaft) - 1)
@@ -134,21 +134,21 @@ class Errors:
 
     @property
     def phase_weights(self) -> Array:
-        """Weights (n,) of the errors in the turn of least squares, beside a constant offset: 0 without any motion."""
+        """Weights (n,) of the errors in the turn of least squares, rad per mm or rad; all 0 without motion."""
         column = self.intended[1].mean() - self.intended[1]
         square = float(column @ column)
         weights: Array = column / square if square > 0.0 else np.zeros_like(column)
         return weights
 
     def influence(self, weights: Array) -> Influence:
-        """Give the uncertainties of the sum of the errors with these weights (n,)."""
+        """Uncertainties of the sum of the errors times weights (n,)."""
         each = [(felt, weights * felt.gain) for felt in self.felt]
         sd = math.sqrt(sum(felt.curve.deviation_of_sum(felt.places, share) ** 2 for felt, share in each))
         shifted: Array = np.sum([share @ felt.normals for felt, share in each], axis=0)
         return Influence(sd, float(sum(np.abs(share).sum() for _, share in each)), shifted)
 
     def uncertainty(self, systematic: Array | float = 0.0) -> Array:
-        """Expanded uncertainty of the error (n,), k = 2; `systematic` is that of the metal, k = 2, mm, (n,) or one."""
+        """Expanded uncertainty (k = 2) of the error (n,); `systematic` is one of the metal common to all, mm."""
         expanded: Array = np.hypot(COVERAGE * self.sds[0], np.abs(self.gain) * systematic)
         return expanded
 
@@ -162,7 +162,10 @@ class Errors:
 
 @dataclass(frozen=True, eq=False)
 class MadePlay:
-    """Play of a follower between opposite contacts, mm or rad, at shaft angles (n,); below 0 they interfere."""
+    """Play `gap` (n,) of a follower between opposite contacts at shaft angles (n,), rad, and its standard deviations.
+
+    It is in mm or rad, below 0 where the contacts interfere.
+    """
 
     shaft: Array
     gap: Array
@@ -170,7 +173,7 @@ class MadePlay:
 
 
 def metal_of(follower: Follower, side: Side, curve: Smooth) -> Metal:
-    """Metal whose surface lies off the exact contour by a smoothed deviation, mm."""
+    """Metal off the exact contour by a smoothed deviation, mm; `side` is 1 for metal inside the contour, -1 outside."""
     return Metal.of(follower, side, lambda t: curve.rows(t, 1), curve.spans)
 
 
@@ -192,14 +195,15 @@ def positions_about(metal: Metal, shaft: Array, step: float) -> tuple[Array, Arr
 
 
 def derivatives_of(errors: Array, step: float) -> Array:
-    """Value and two derivatives (c, 3, n) at the third of five equally spaced values (c, 5, n)."""
+    """Value and two derivatives (c, 3, n) at the third of five values (c, 5, n) that are a `step`, rad, apart."""
     return np.stack([errors[:, 2], FIRST @ errors / step, SECOND @ errors / step**2], axis=1)
 
 
 def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array, turned_by: float = 0.0) -> list[Errors]:
-    """Motion errors of a follower, one for each contact, on metal turned by `turned_by`, rad, counter-clockwise.
+    """Motion errors at shaft angles (n,), rad, by each contact, on metal turned by `turned_by`, rad, counter-clockwise.
 
-    Raises ContactError where a contact finds no metal.
+    `side` is 1 for metal inside the contour, -1 outside; the metal lies off it by `curve`, mm. Raises ContactError
+    where a contact finds no metal.
     """
     step, metal, angle = step_of(curve), metal_of(follower, side, curve), shaft - turned_by
     errors, places = positions_about(metal, angle, step)
@@ -221,7 +225,7 @@ def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array, 
 
 
 def _beside(shaft: Array, breaks: Array, width: float) -> NDArray[np.bool_]:
-    """Whether shaft angles (n,) lie within a width of a break."""
+    """Whether shaft angles (n,) lie within a `width`, rad, of a break."""
     if not len(breaks):
         return np.zeros(len(shaft), dtype=bool)
     ring = np.sort(np.mod(breaks, TURN))
@@ -233,7 +237,7 @@ def _beside(shaft: Array, breaks: Array, width: float) -> NDArray[np.bool_]:
 
 
 def between(pushing: Errors, stopping: Errors) -> tuple[Errors, MadePlay]:
-    """Motion midway between two opposite contacts, and the play that they leave; the first bounds it from below."""
+    """Motion midway between two opposite contacts, and their play; `pushing` bounds the position from below."""
     rows = 0.5 * (pushing.rows + stopping.rows)
     sds = 0.5 * np.hypot(pushing.sds, stopping.sds)
     gap = stopping.rows[0] - pushing.rows[0]
@@ -244,7 +248,7 @@ def between(pushing: Errors, stopping: Errors) -> tuple[Errors, MadePlay]:
 
 
 def paired(follower: Follower, errors: Sequence[Errors]) -> tuple[Errors, MadePlay | None]:
-    """Motion of a follower on one surface, and its play where two contacts hold it from both sides."""
+    """Motion errors of a follower on one surface, from those by each contact, and its play; None for one contact."""
     if len(errors) == 1:
         return errors[0], None
     first, second = errors if follower.contacts[0].sense > 0 else (errors[1], errors[0])
@@ -257,7 +261,7 @@ class OutputErrors:
 
     shaft (n,)     shaft angle, rad
     centred (n,)   mm or rad
-    worst (n,)     of greatest size
+    worst (n,)     of greatest size among the ways in which the frame may rest, mm or rad
     sds (n,)       standard deviation of the centred one
     """
 
@@ -272,7 +276,7 @@ def output_errors(
 ) -> OutputErrors:
     """Errors of a linkage's output, rad or mm, with its square frame on the metal, at relative angles (n,).
 
-    `overlap`, mm, is the interference that is meant at each face. Raises FrameError where the frame binds.
+    `overlap`, mm, is the intended interference at each face. Raises FrameError where the frame binds.
     """
     metal = metal_of(follower, 1, curve)
     ring = np.stack([metal.positions(relative + k * QUARTER)[0][0] - overlap for k in range(4)])
@@ -298,7 +302,8 @@ def output_errors(
 def least_fault(sigma: float, squares: float, places: int) -> float:
     """Least height, mm, of a fault that is found in 95 % of parts, where noise alone gives one in 5 %.
 
-    `squares` is the sum of squares of its shape, peak 1, over the points; `places` how many such shapes are looked at.
+    `sigma` is the standard deviation of the noise, mm. `squares` is the sum of squares over the points of the fault's
+    shape with peak 1, `places` the number of places at which such a fault is looked for.
     """
     from statistics import NormalDist
 

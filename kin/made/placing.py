@@ -1,4 +1,4 @@
-"""Where points lie on the metal they were measured on: turned about the shaft, shifted, or as they stand.
+"""Placings of measured points: the turn and the shift by which metal fits its contour, minimax or by least squares.
 
 Deviations e of metal turned by kap counter-clockwise and shifted by v are, to first order, kap g + v.N + form, with
 N the metal's outward normal and g = N.(iP). The default of ISO 1101 and ISO 5459 is the placing of least max|e - A x|
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 ILL = 0.05  # least singular value of columns of unit size, over sqrt n: below, unknowns cannot be told apart
-MOST_EXCHANGES = 2000
+MOST_EXCHANGES = 2000  # a guard against endless search
 PATIENCE = 60  # exchanges without gain, after which the first eligible point enters (Bland's rule ends every cycle)
-CERTIFIED = 1e-12  # of the greatest deviation: by so much minimax and its lower bound may differ
+CERTIFIED = 1e-12  # share of the greatest deviation by which minimax and its lower bound may differ
 
 
 @dataclass(frozen=True, eq=False)
 class Minimax:
     """The placing of least greatest deviation.
 
-    x (k,)              unknowns
+    x (k,)              unknowns, rad and mm as the columns of A are
     value               greatest |e - A x|, mm
-    touching (m,)       points that reach it and hold it there
+    touching (m,)       indices of the points that hold it there, rising
     multipliers (m,)    their weights, at least 0 and 1 in sum
     certificate         lower bound by these weights, mm: as great as `value`
     """
@@ -46,7 +46,7 @@ class Minimax:
 def minimax(columns: Array, e: Array) -> Minimax:
     """Least greatest |e - A x| over x, of columns A (n, k), k at most 3, and deviations e (n,).
 
-    Raises UnsettledError where the multipliers do not certify it, which only rounding could bring about.
+    Raises UnsettledError where the multipliers do not certify it, or the search does not end, by rounding alone.
     """
     count, k = columns.shape
     scale = np.maximum(np.abs(columns).max(axis=0, initial=0.0), np.finfo(float).tiny)
@@ -67,6 +67,7 @@ def minimax(columns: Array, e: Array) -> Minimax:
             return unit
         return np.append(s * a[index], 1.0)
 
+    # exchanges of the simplex method: the point of greatest excess enters, the one whose weight comes to 0 leaves
     best, stalled = -np.inf, 0
     for _ in range(MOST_EXCHANGES):
         matrix = np.column_stack([column(i, s) for i, s in zip(basis, sign, strict=True)])
@@ -91,6 +92,7 @@ def minimax(columns: Array, e: Array) -> Minimax:
         basis[leave], sign[leave] = enter, s
     else:
         raise UnsettledError(f"the minimax placing was not found in {MOST_EXCHANGES} exchanges")
+    # the result in mm, certified by the weights of the points in the basis
     held = [j for j in range(k + 1) if basis[j] < count]
     points = np.array([basis[j] for j in held], dtype=np.intp)
     multipliers = np.maximum(weights[held], 0.0)
@@ -104,12 +106,12 @@ def minimax(columns: Array, e: Array) -> Minimax:
 
 
 def least_squares(columns: Array, e: Array) -> Array:
-    """Unknowns x (k,) at which the sum of (e - A x)^2 is least."""
+    """Unknowns x (k,) at which the sum of (e - A x)^2 is least, by columns A (n, k) and deviations e (n,)."""
     return np.asarray(np.linalg.lstsq(columns, e, rcond=None)[0], dtype=np.float64)
 
 
 def interval(column: Array, e: Array, value: float) -> tuple[float, float]:
-    """Least and greatest x of the interval in which all |e - x column| <= `value`, mm.
+    """Least and greatest x of the interval in which all |e - x column| (n,) <= `value`, mm; x in rad for a turn.
 
     Where there is no such x, the least comes out above the greatest.
     """
@@ -120,5 +122,5 @@ def interval(column: Array, e: Array, value: float) -> tuple[float, float]:
 
 
 def conditions(columns: Array) -> Array:
-    """Singular values (k,) of columns (n, k) over sqrt n."""
+    """Singular values (k,) of columns (n, k) over sqrt n, falling."""
     return np.asarray(np.linalg.svd(columns, compute_uv=False) / np.sqrt(len(columns)), dtype=np.float64)

@@ -1,10 +1,10 @@
 """The motion that the metal of points gives a follower, of which nothing is known but its contacts.
 
-Each contact runs on its own surface, against a follower that is meant to hardly move. Where two hold the follower the
-motion is the one midway, and what they leave is play. What a cam's symmetry says of the rest of the turn is used:
-two opposite contacts of a frame, S(phi + pi) = S(0) + S(pi) - S(phi) (Shu and Wu 2012); two rollers or faces on one
-arm, psi changes its sign as phi - psi/2 grows by pi/lambda (Wunderlich 1984, 4.9), and faces swing psi/2. So all round
-the turn tells of the part of it by which a recipe gives the motion, and what keeps from that symmetry is form.
+Each contact runs on its own surface, as an error of a follower that hardly moves. Where two hold the follower the
+motion is midway between both, and their distance is play. The symmetry of a kind of cam over the turn is used: two
+opposite contacts of a frame, S(phi + pi) = S(0) + S(pi) - S(phi) (Shu and Wu 2012); two rollers or faces on one arm,
+psi changes its sign as phi - psi/2 grows by pi/lambda (Wunderlich 1984, 4.9), and faces swing psi/2. So the whole turn
+shows the part of it by which a recipe gives the motion, and what is off that symmetry is form.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ if TYPE_CHECKING:
 
 STEPS = 1440  # shaft angles of a turn
 SECANT_STEPS = 20
-ROUNDING = 1e-11  # mm or rad of a position
+ROUNDING = 1e-11  # mm or rad of a position, at which the secant search ends
 BESIDE = 0.1  # of a section, by which it is looked at beyond its ends
 FINER = 8  # times STEPS, at which rows are interpolated
 
 
 class SurfaceRun(NamedTuple):
-    """A follower that hardly moves, the side of its contour on which the metal lies, and points of that (n, 2), mm.
+    """A follower `gauge` that hardly moves, and measured points (n, 2), mm, of a surface on which it runs.
 
-    `directions` are normals as measured (n, 2), None without.
+    `side` is 1 for metal inside its contour, -1 outside. `directions` are measured normals (n, 2), None without.
     """
 
     gauge: Follower
@@ -51,17 +51,17 @@ class SurfaceRun(NamedTuple):
 class PointMotion:
     """The motion that the metal of points gives a follower; mm or rad, angles rad.
 
-    gauge         the follower on the first surface, meant to hardly move, on a circle
-    side          of its contour on which the metal lies
-    turn (n,)     where it stands, from its zero, over equal shaft angles of a turn
-    position (k,) the same over equal shaft angles of the span by which a recipe gives it
-    span          of that, from angle 0 on
-    last          position at its end
-    spans         of the smoothed points in it
+    gauge         the follower on the first surface, on a circle: it hardly moves
+    side          1 for metal inside its contour, -1 outside
+    turn (n,)     position from its zero at equal shaft angles of a turn
+    position (k,) the same at equal shaft angles of `span`; of sections their mean
+    span          part of the turn, from angle 0 on, by which a recipe gives the motion
+    last          position at the end of the span
+    spans         number of spans of the smoothed curve in it
     sd            standard deviation of the position, greatest over the turn
-    outliers      points that were left out
-    play          least, mean and greatest play that two contacts leave beyond the recipe's; None of one
-    uneven        how far it is off the symmetry by which the rest of the turn follows, at most; 0 without any
+    outliers      number of points that were left out
+    play          least, mean and greatest play of two contacts beyond the recipe's; None for one contact
+    uneven        greatest distance from the symmetry by which the rest of the turn follows; 0 without any
     zero_ends     whether a part of a turn begins and ends at 0
     """
 
@@ -100,7 +100,7 @@ class PointMotion:
         return tuple(k for k in (first, 3 * first) if k <= max(most, first))
 
     def lifted_circle(self, level: float) -> float:
-        """Radius, mm, of the circle on which the follower stands at `level`, mm or rad, less the gauge's circle's."""
+        """Radius, mm, of the circle on which it stands at `level`, mm or rad, less that of the gauge's circle."""
 
         def stands(height: float) -> float:
             metal = Metal.of(self.gauge, self.side, lambda t: np.stack([np.full_like(t, height), np.zeros_like(t)]))
@@ -123,13 +123,14 @@ def measured_motion(
     opposed: bool = False,
     lag: float = 0.5,
 ) -> PointMotion:
-    """Let a follower run on the metal of each of its surfaces, and give its motion over a span from angle 0.
+    """Motion of a follower on the metal of each of its surfaces, over a `span`, rad, from angle 0.
 
-    `opposed` contacts are as far apart as the points say, so that play is what their distance varies by. Where
-    `span` is a section of the turn, the swing of each section is the negative of that before, over the shaft angle less
-    `lag` times the swing; the mean of all is given, and as `uneven` the greatest distance of a section from that mean.
+    Of `opposed` contacts the mean distance is not known beforehand, so that play is its variation alone. Where `span`
+    is a section of the turn, the swing of each section is the negative of that before, over the shaft angle less `lag`
+    times the swing; the motion is the mean of all, `uneven` the greatest distance of a section from it.
 
-    Raises ContactError where a contact finds no metal, GapError for a gap of more than two spans.
+    Raises ContactError where a contact finds no metal, GapError for a gap of more than two spans, UnsettledError where
+    the foot of a point is not found.
     """
     shaft = equal_steps(STEPS)
     curves, outliers = [], 0

@@ -57,10 +57,10 @@ class UnlikePointsError(CamgeoError, ValueError):
 class Deviations:
     """Deviations of n points on one surface.
 
-    parameter (n,)   of their feet
-    e (n,)           mm, above 0 where metal is too much
+    parameter (n,)   of their feet on the contour, rad
+    e (n,)           deviations, mm, above 0 where there is too much metal
     normals (n, 2)   of the contour at the feet, out of the metal
-    moment (n,)      mm: what a turn of the metal by a radian, counter-clockwise, adds to e
+    moment (n,)      change of e by a turn of the metal counter-clockwise, mm/rad
     """
 
     parameter: Array
@@ -82,13 +82,13 @@ class Placing:
     shift: tuple[float, float] = (0.0, 0.0)
 
     def back(self, points: Array, directions: Array | None = None) -> tuple[Array, Array | None]:
-        """Points (n, 2), and directions, as if the metal were neither turned nor shifted."""
+        """Points (n, 2), mm, and directions (n, 2) or None, as if the metal were neither turned nor shifted."""
         c, s = math.cos(self.turn), math.sin(self.turn)
         rotation = np.array([[c, -s], [s, c]])
         return (points - self.shift) @ rotation, None if directions is None else directions @ rotation
 
     def on(self, step: Array, free: str) -> Placing:
-        """The placing after a step of the unknowns `free`, which are counted in the frame that it leads to."""
+        """The placing after a `step` (k,) of the unknowns `free`, in the axes of the metal as placed so far."""
         by = dict(zip(free, step.tolist(), strict=True))
         x, y = by.get("x", 0.0), by.get("y", 0.0)
         c, s = math.cos(self.turn), math.sin(self.turn)
@@ -100,8 +100,8 @@ class Placing:
 class SurfacePoints:
     """Points measured on a surface, in the axes of the drawing as if not mirrored, mm.
 
-    follower         whose exact contour they are held against
-    side             of that contour on which the metal lies
+    follower         the follower whose exact contour is that of the surface
+    side             1 for metal inside that contour, -1 outside
     places (n, 2)    points, or centres of a probe's ball
     ball             radius of the ball whose centres the places are; 0 for points of the metal
     directions       normals out of the metal as measured (n, 2), None without
@@ -120,7 +120,7 @@ class SurfacePoints:
 
     @cached_property
     def deviations(self) -> Deviations:
-        """Deviations of the points as they are placed. UnsettledError where a foot is not found."""
+        """Deviations of the points less the placing; raises UnsettledError where a foot is not found."""
         parts = [self._deviations(slice(i, i + AT_ONCE)) for i in range(0, len(self), AT_ONCE)]
         rows = zip(*((part.parameter, part.e, part.normals, part.moment) for part in parts), strict=True)
         return Deviations(*(np.concatenate(row) for row in rows))
@@ -137,16 +137,16 @@ class SurfacePoints:
         return Deviations(feet.parameter, e, normals, cross(touched, normals))
 
     def placed(self, placing: Placing) -> SurfacePoints:
-        """Give the points with `placing` in place of the placing that was taken out before."""
+        """The points with another placing of the metal to take out, instead of the former one."""
         return replace(self, placing=placing)
 
     def part(self, chosen: Array) -> SurfacePoints:
-        """Points chosen by index or mask."""
+        """Those of the points that indices or a mask (n,) choose."""
         directions = None if self.directions is None else self.directions[chosen]
         return replace(self, places=self.places[chosen], directions=directions)
 
     def thinned(self, most: int) -> SurfacePoints:
-        """At most so many of the points, evenly chosen."""
+        """At most `most` of the points, evenly chosen."""
         return self.part(np.linspace(0, len(self) - 1, min(most, len(self))).astype(np.intp))
 
 
@@ -184,7 +184,7 @@ class Profile:
 def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:
     """Profile deviation of the surfaces of one part, which is placed as a whole.
 
-    Raises UnsettledError where the placing does not come to rest.
+    Raises UnsettledError where the placing does not converge, or the foot of a point is not found.
     """
     wanted = FREE[datum]
     standing = _stacked(surfaces, surfaces[0].placing)
@@ -194,6 +194,7 @@ def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:
     least = settled(surfaces, free)
     rough = _stacked(surfaces, least)
     best, placing, turns = least, None, None
+    # minimax to first order, then feet anew; of an interval of equal turns the one nearest to least squares
     for _ in range(STEPS):
         columns, e = _columns(rough, free), np.concatenate([deviation.e for deviation in rough])
         placing = minimax(columns, e)
@@ -212,7 +213,7 @@ def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:
 
 
 def settled(surfaces: Sequence[SurfacePoints], free: str) -> Placing:
-    """Placing by least squares over the unknowns `free`, with feet taken anew until it is still."""
+    """Placing by least squares over the unknowns `free`, with feet taken anew until it rests, at most STEPS times."""
     placing = surfaces[0].placing
     for _ in range(STEPS):
         now = _stacked(surfaces, placing)
@@ -243,7 +244,7 @@ def told_apart(deviations: Sequence[Deviations], wanted: str) -> str:
 def turned_at(surfaces: Sequence[SurfacePoints], free: str = "g") -> Placing:
     """Placing of points whose zero of the angle is arbitrary: a least-squares fit from the best of many turns.
 
-    `free` names the unknowns of the fit: g, x, y.
+    `free` names the unknowns of the fit: g, x, y. Raises UnsettledError where the foot of a point is not found.
     """
     few = [surface.thinned(FEW) for surface in surfaces]
     turns = np.arange(COARSE_TURNS) * (TURN / COARSE_TURNS)
@@ -253,7 +254,7 @@ def turned_at(surfaces: Sequence[SurfacePoints], free: str = "g") -> Placing:
 
 
 def demand_round(surfaces: Sequence[SurfacePoints]) -> None:
-    """Raise UnlikePointsError for points that do not go round the shaft."""
+    """Raise UnlikePointsError for points that leave more than 150 degrees round the shaft without any."""
     for surface in surfaces:
         angle = np.sort(np.arctan2(surface.places[:, 1], surface.places[:, 0]))
         gaps = np.diff(angle, append=angle[:1] + TURN)
@@ -267,7 +268,7 @@ def demand_round(surfaces: Sequence[SurfacePoints]) -> None:
 def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool, shiftable: bool = True) -> None:
     """Raise UnlikePointsError for points that lie far from the contours, saying what they look like.
 
-    `aligned` says that they are turned already, `shiftable` that they may be shifted.
+    `aligned` is whether they are turned back already, `shiftable` whether `--align best-fit` may shift them.
     """
     far, size = _off(surfaces, surfaces[0].placing), _size(surfaces)
     if far <= FAR * size:
@@ -279,6 +280,7 @@ def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool, shiftable:
         ball = f"{abs(middle):.4g} mm too {'large' if middle > 0.0 else 'small'} all round"
         remedy = "leave `--probe-radius` out, or give its own" if surfaces[0].ball else "`--probe-radius` of the ball?"
         raise UnlikePointsError(f"{how_far}: they look {ball}: {remedy}")
+    # other units and mirror images, each placed the best
     few = [surface.thinned(MANY) for surface in surfaces]
     radius = float(np.mean([np.hypot(*surface.places.T).mean() for surface in few]))
     looks: list[tuple[float, str]] = []

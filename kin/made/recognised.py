@@ -4,7 +4,7 @@ The follower runs on the smoothed metal (`kin.made.point_motion`). Dwells are st
 between them, and between turning points, are strokes. Boundaries and levels are fitted together by least squares: first
 each stroke alone, by every law of the catalogue, then all at once by the best ones. What is left is form rather than
 noise, with as many independent values as it changes its sign: its scatter gives the uncertainties. Long waves of the
-metal's form are in part taken for motion, which no scatter tells: `Hidden` says how much of them.
+metal's form are in part taken for motion, which no scatter shows: `Hidden` has how much of them.
 """
 
 from __future__ import annotations
@@ -29,18 +29,20 @@ if TYPE_CHECKING:
     from kin.made.point_motion import PointMotion
     from kin.numeric.arrays import Array, Indices
 
-MOST_WAVES = 4  # a turn, of forms that are held against the motion: shorter ones stand out of it
+MOST_WAVES = 4  # a turn, of forms that may be taken for motion: shorter waves stand out of it
 ROUNDS = 25  # of Gauss and Newton
 SETTLED = 1e-9  # of a turn, and of the stroke: a step that changes nothing
 DIFFERENCE = 1e-6  # rad, and of the stroke: of numerical derivatives
-NEARLY = 1.5  # times the least residual: a law that fits no worse may be the one
-LEAST_STROKE = 4.0  # readings: less is no stroke
+NEARLY = 1.5  # times the least residual: laws that fit no worse are named too
+LEAST_STROKE = 4.0  # readings: the least height of a stroke at a turning point
 
 
 class Stroke(NamedTuple):
-    """A stroke between boundaries `first` and `last` and between their levels, as indices; its law.
+    """A stroke by a `law` between two boundaries and two levels of a programme.
 
-    `others` are laws that fit nearly as well, `residual` the root mean square of measured less law, mm or rad.
+    `first` and `last` are indices of its boundaries, `low` and `high` those of its first and last level: a fall has the
+    lower level last. `others` are laws that fit nearly as well, `residual` the root mean square of measured less law,
+    mm or rad.
     """
 
     first: int
@@ -92,15 +94,16 @@ class Programme:
         return float(np.abs(self.residual).max())
 
     def written(self, motion: PointMotion, boundaries: Array, levels: Array) -> Programme:
-        """Give the programme with its strokes between other boundaries and levels, and the residual of `motion`."""
+        """The programme with other boundaries (m,), rad, and levels (k,), and its residual from `motion`."""
         residual = motion.position - _model(motion.shaft, boundaries, levels, self.strokes)
         return replace(self, boundaries=boundaries, levels=levels, residual=residual)
 
 
 def recognised(motion: PointMotion, reading: float, unit: Unit) -> Programme | None:
-    """Programme of dwells and strokes that a measured motion follows; None for a motion that dwells all round.
+    """Programme of dwells and strokes that a measured motion follows; None for a motion without strokes.
 
-    A dwell is a run of points that stay within `reading`, the least that the instrument resolves, mm or rad.
+    A dwell is a stretch of at least 10 degrees that stays within `reading`, mm or rad; `unit` is that of the follower's
+    motion.
     """
     places = _places(motion, reading, unit)
     if len(places) < 2:  # a turn of one level
@@ -182,7 +185,7 @@ def _turns(
 
 
 def _law_of(name: str, u: Array, *, falls: bool) -> Array:
-    """Displacement of a law at shares of its stroke (n,); a fall runs it backwards."""
+    """Displacement (n,), from 0 to 1, of a law at shares u (n,) of its stroke; a fall runs it backwards."""
     law: Law = named(name)
     share = np.clip(u, 0.0, 1.0)
     moved: Array = law.derivatives(1.0 - share if falls else share, 0)[0]
@@ -190,7 +193,7 @@ def _law_of(name: str, u: Array, *, falls: bool) -> Array:
 
 
 def _model(shaft: Array, boundaries: Array, levels: Array, strokes: Sequence[Stroke]) -> Array:
-    """Position at shaft angles (n,)."""
+    """Position (n,), mm or rad, of a programme at shaft angles (n,), rad."""
     position = np.empty_like(shaft)
     for k, stroke in enumerate(strokes):
         following = strokes[(k + 1) % len(strokes)]
@@ -210,7 +213,7 @@ def _model(shaft: Array, boundaries: Array, levels: Array, strokes: Sequence[Str
 def _by_law(
     motion: PointMotion, stroke: Stroke, boundaries: Array, levels: Array, places: Sequence[tuple[float, float, float]]
 ) -> Stroke:
-    """A stroke with the law that fits it best, each tried with ends of its own where dwells are beside it."""
+    """The stroke with the law of least residual; each law is fitted with free levels, and free ends beside dwells."""
     before, after = places[stroke.low], places[stroke.high]
     begin, end = boundaries[stroke.first], boundaries[stroke.last]
     length = np.mod(end - begin, TURN) or TURN
@@ -231,6 +234,7 @@ def _by_law(
             left: Array = position - columns @ level
             return left
 
+        # Gauss and Newton over the free ends; levels follow linearly
         ends = np.array([0.0, length])
         here = off(ends)
         for _ in range(ROUNDS):
@@ -296,6 +300,7 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
         values, here = values + share * change * scale, new
         if float(np.abs(change).max()) < SETTLED:
             break
+    # uncertainty from the residual, by its number of independent values
     columns = slopes(values)
     independent = int(np.count_nonzero(np.sign(here) != np.sign(np.roll(here, 1))))  # waves count by their half waves
     beyond = max(min(independent, motion.spans) - len(free), 1)
@@ -307,7 +312,7 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
 
 
 def _hidden(motion: PointMotion, columns: Array, free: Indices, scale: Array, boundaries: int) -> Hidden:
-    """Give the form that is hidden the most by the unknowns, whose columns (n, f) these are."""
+    """The form of few waves a turn that is hidden the most by f unknowns, whose columns are (n, f)."""
     base, _ = np.linalg.qr(columns)
     most: Hidden | None = None
     for waves in motion.alike(MOST_WAVES):

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
     from kin.numeric.arrays import Array
 
-STANDS_OUT = 2.0  # expanded uncertainties: a harmonic below is noise
+STANDS_OUT = 2.0  # a harmonic below so many expanded uncertainties is noise
 
 
 class SupportSeries(NamedTuple):
-    """Support function mean + sum of cos[k] cos(k t) + sin[k] sin(k t), mm.
+    """Support function mean + sum of cos[k] cos(k t) + sin[k] sin(k t), mm, t the angle of the normal, rad.
 
     `unsure` is the expanded uncertainty (k = 2) of each coefficient by the noise of the points, mm.
     """
@@ -29,7 +29,7 @@ class SupportSeries(NamedTuple):
     unsure: float
 
     def left(self, p: Array) -> float:
-        """Greatest deviation, mm, from the values p (n,) at equal steps of a turn."""
+        """Greatest deviation, mm, from the values p (n,), mm, at equal steps of a turn."""
         t = 2.0 * math.pi / len(p) * np.arange(len(p))
         total = np.full(len(p), self.mean)
         for coefficients, wave in ((self.cos, np.cos), (self.sin, np.sin)):
@@ -41,7 +41,8 @@ class SupportSeries(NamedTuple):
 def support_series(p: Array, sd: float, spans: int) -> SupportSeries:
     """Harmonics of a support function p (n,), mm, at equal steps of a turn, that stand out of its uncertainty.
 
-    `sd` is the standard deviation of p, mm, a spline of `spans` spans: that of a coefficient is sd sqrt(2/spans).
+    `sd` is the standard deviation, mm, of p, which is a spline of `spans` spans; a coefficient has sd sqrt(2/spans).
+    Harmonics from half the spans on are left out, since the spline does not resolve them.
     """
     waves = 2.0 * np.fft.rfft(p) / len(p)
     unsure = COVERAGE * sd * math.sqrt(2.0 / spans)

@@ -2,8 +2,8 @@
 
 All cams are looked at together, so that a shaft turned as one, mirrored, or with cams that stand for one another is
 known from a cam that alone is turned. Rows are radii over the polar angle, or lifts over the shaft angle, and are
-correlated. A contour that turns back about the shaft has several radii at one angle, of which any is taken: these are
-looks, and nothing rests on them.
+correlated. A contour that turns back about the shaft has several radii at one angle, of which any is taken: the rows
+serve for explanations alone.
 """
 
 from __future__ import annotations
@@ -23,15 +23,17 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices, Mask
 
 LOOKS = 1440  # angles of a row
-SMALL = math.radians(0.05)  # a turn that is not named
-ODD = 0.5  # of what lies far off: from which on a cam may stand off the others
+SMALL = math.radians(0.05)  # turns up to this are not named
+ODD = 0.5  # share of "far" from which on a cam may stand off the others
 NEAR = 1.2  # ratio of sizes within which rows may be of these cams
 
 
 class OutlierWords(NamedTuple):
-    """Words for rows that lie far off: the share of their size from which on they do, the problem, and remedies.
+    """Words for rows that lie far off: the problem, and remedies.
 
-    `turned_over` is the remedy of a shaft that is counted from its other end, None where rows do not show that.
+    `far` is the share of their size from which on they are far off, `unit` that of the distance in the problem, empty
+    for a share. `turned_over` is the remedy of a shaft that is counted from its other end, None where rows do not show
+    that.
     """
 
     far: float
@@ -61,11 +63,11 @@ OF_LIFTS = OutlierWords(
 
 
 class LobeRows(NamedTuple):
-    """Rows over LOOKS equal angles, mm or rad: of what was measured of each cam (m, k), and of every cam (n, k).
+    """Rows over k = LOOKS equal angles, mm or rad: `measured` (m, k) of m measured cams, `nominal` (n, k) of all n.
 
-    `owner` (m,) is which cam each is of, `names` those of the cams, `sizes` (n,) of their rows and `measured_sizes`
-    (m,) of those measured, mm or rad, `other_end` (n,) which cam stands at the place of each where the shaft is counted
-    from its other end.
+    `owner` (m,) has the index of the cam of each measured row, `names` the names of the cams. `sizes` (n,) are those of
+    the nominal rows and `measured_sizes` (m,) those of the measured ones, mm or rad. `other_end` (n,) has the cam that
+    stands at the place of each where the shaft is counted from its other end.
     """
 
     measured: Array
@@ -91,24 +93,22 @@ class LobeRows(NamedTuple):
 
 
 def row(angle: Array, value: Array) -> Array:
-    """Values (n,) at angles (n,), rad, in any order, over equal steps of the angle (k,)."""
+    """Values (n,) at angles (n,), rad, in any order, interpolated at LOOKS equal steps of a turn (k,)."""
     order = np.argsort(np.mod(angle, TURN), kind="stable")
     interpolated: Array = np.interp(equal_steps(LOOKS), np.mod(angle, TURN)[order], value[order], period=TURN)
     return interpolated
 
 
 def radii(places: Array) -> Array:
-    """Radii (k,) of places (n, 2) in any order over equal steps of the polar angle, mm."""
+    """Radii (k,), mm, of places (n, 2) in any order, at LOOKS equal steps of the polar angle."""
     return row(np.arctan2(places[:, 1], places[:, 0]), np.hypot(*places.T))
 
 
 def lone_turns(rows: LobeRows, *, aligned: bool) -> dict[int, float]:
-    """Turns, rad, of cams that are turned on their own against the shaft, by their index.
+    """Turns, rad, of cams that are turned on their own against the shaft, by the index of the measured row.
 
-    Of those that a turn explains.
-
-    `aligned` says that the shaft as a whole is turned back already. Raises UnlikePointsError for rows that look like
-    those of a shaft that is turned, mirrored, in another unit, or has cams for one another.
+    Only cams whose distance a turn explains are among them. `aligned` is whether the shaft as a whole is turned back
+    already. Raises UnlikePointsError for rows that look turned as one, mirrored, in another unit, or interchanged.
     """
     nominal = rows.nominal[rows.owner]
     off = rows.off(rows.measured, nominal)
@@ -124,15 +124,12 @@ def lone_turns(rows: LobeRows, *, aligned: bool) -> dict[int, float]:
 
 
 def standing_together(rows: LobeRows) -> Mask:
-    """Mask (m,) of the cams that stand in the same turn of the shaft, if these are more than half of them.
-
-    Else of all.
-    """
+    """Mask (m,) of the measured cams that agree on one turn of the shaft, if they are more than half; else of all."""
     return _together(rows, rows.measured, rows.nominal[rows.owner])[1]
 
 
 def _together(rows: LobeRows, measured: Array, nominal: Array) -> tuple[float, Mask]:
-    """Turn of the shaft, rad, in which most cams stand, and which those are (m,): all where none has most of them."""
+    """Turn of the shaft, rad, on which more than half of the cams agree, and their mask (m,); else that of all."""
     count = len(measured)
     turns = [_turn(measured / rows.sizes[rows.owner, None], nominal / rows.sizes[rows.owner, None])]
     turns += [_turn(measured[[rank]], nominal[[rank]]) for rank in range(count)]
@@ -146,7 +143,7 @@ def _together(rows: LobeRows, measured: Array, nominal: Array) -> tuple[float, M
 
 
 def _demand_shaft(rows: LobeRows, nominal: Array, off: Array, *, aligned: bool) -> None:
-    """Raise UnlikePointsError for rows that lie far off as those of another shaft do."""
+    """Raise UnlikePointsError for rows far off that another unit, turn, sense or order of the cams explains."""
     far = _mean(off * rows.sizes[rows.owner]) if rows.words.unit else _mean(off)
     problem = rows.words.problem.format(far)
     ratio = float(np.median(rows.sizes[rows.owner] / rows.measured_sizes))
@@ -161,14 +158,14 @@ def _demand_shaft(rows: LobeRows, nominal: Array, off: Array, *, aligned: bool) 
 
 
 class _Look(NamedTuple):
-    """A likeness of points: how far off they are under it, on average, and its words."""
+    """An explanation of rows: how far off they are by it on average, as a share of their size, and its words."""
 
     left: float
     words: str
 
 
 def _shaft_looks(rows: LobeRows, nominal: Array, *, aligned: bool) -> Iterator[_Look]:
-    """The shaft as one turned, mirrored, or measured from its other end, by the cams that stand together."""
+    """Explanations by a shaft that is turned as one, mirrored, or measured from its other end."""
     words = rows.words
     candidates = [(False, nominal, "", ""), (True, nominal, words.mirrored, words.mirrored_remedy)]
     if words.turned_over is not None:
@@ -188,7 +185,7 @@ def _shaft_looks(rows: LobeRows, nominal: Array, *, aligned: bool) -> Iterator[_
 
 
 def _swap_looks(rows: LobeRows, off: Array) -> Iterator[_Look]:
-    """Cams that stand for one another."""
+    """Explanation by cams that are interchanged."""
     each = np.stack(
         [rows.off(rows.measured, np.broadcast_to(nominal, rows.measured.shape)) for nominal in rows.nominal], axis=1
     )
@@ -200,6 +197,7 @@ def _swap_looks(rows: LobeRows, off: Array) -> Iterator[_Look]:
 
 
 def _mean(off: Array) -> float:
+    """Root mean square of values (n,)."""
     return float(np.sqrt(np.mean(off**2)))
 
 
@@ -209,6 +207,7 @@ def _turn(measured: Array, nominal: Array) -> float:
     spectrum = (np.fft.rfft(measured) * np.conj(np.fft.rfft(nominal))).sum(axis=0)
     spectrum[0] = 0.0
     likeness = np.fft.irfft(spectrum, count)
+    # vertex of the parabola through the greatest correlation and its neighbours
     best = int(np.argmax(likeness))
     low, here, high = likeness[best - 1], likeness[best], likeness[(best + 1) % count]
     bend = low - 2.0 * here + high

@@ -1,9 +1,9 @@
 """Smooth periodic curves through noisy points: quintic splines by least squares, their spans, noise and covariance.
 
-On N equal spans of a turn the curve is sum c_j B(u - j), B the quintic B-spline, u = N t/(2 pi): twice differentiable
-four times over, local, and linear in its coefficients c. These solve banded normal equations. The number of spans is
-that of the least generalised cross-validation n RSS/(n - N)^2 (Craven and Wahba 1979): the trace of the projection on a
-spline space is its dimension N. The covariance is that of the points as they lie, sigma^2 (B^T B)^-1.
+On N equal spans of a turn the curve is sum c_j B(u - j), B the quintic B-spline, u = N t/(2 pi): four times
+continuously differentiable, local, and linear in its coefficients c. These solve banded normal equations. The number of
+spans is that of the least generalised cross-validation n RSS/(n - N)^2 (Craven and Wahba 1979): the trace of the
+projection on a spline space is its dimension N. The covariance is that of the points as they lie, sigma^2 (B^T B)^-1.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 DEGREE = 5
 WIDTH = DEGREE + 1
-LEAST_SPANS = 12
+LEAST_SPANS = 12  # twice the width of a spline
 MOST_SPANS = 1440  # a quarter of a degree: what a probe's ball lets through; keeps the normal equations small
 POINTS_A_SPAN = 5  # at least, on average
 WIDEST_GAP = 2.0  # spans without a point, above which the curve between is invented
 BLOCK = 40  # coefficients that are eliminated at once, more than the band is wide
-GROSS = 3.0  # times what makes an outlier of the curve
+GROSS = 3.0  # times OUTLIER: outliers that are left out before there is a curve
 LADDER = 1.35  # ratio of the numbers of spans that are tried
 FINER = 1.09  # ratio of those beside the best
 OUTLIER = 4.5 * 1.4826  # median absolute deviations: 4.5 standard deviations of normal noise
@@ -47,7 +47,7 @@ class GapError(CamgeoError, ValueError):
 
 
 def _basis() -> Array:
-    """Coefficients (6, 6) by powers of the place in a span, [0, 1): row m of the m-th spline that is not 0 there."""
+    """Coefficients (6, 6) by powers of the place in a span, [0, 1); row m has the m-th of the six splines there."""
     rows = [np.array([1.0])]
     for d in range(1, WIDTH):
         before, rows = rows, []
@@ -92,7 +92,7 @@ class Smooth:
         return pieces
 
     def times(self, factor: float) -> Smooth:
-        """The curve with its values times a factor."""
+        """The curve with values and standard deviations times a factor."""
         return replace(self, coefficients=factor * self.coefficients, sigma=abs(factor) * self.sigma)
 
     @staticmethod
@@ -122,7 +122,7 @@ class Smooth:
         return deviations
 
     def deviation_of_sum(self, t: Array, weights: Array) -> float:
-        """Standard deviation of the sum of values at parameters t (n,), each with its weight (n,), mm."""
+        """Standard deviation of the sum of the curve's values at t (n,), rad, each times its weight (n,)."""
         place, span = _place(t, self.spans)
         index = (span + np.arange(WIDTH)[:, None]) % self.spans
         row = np.bincount(index.ravel(), (weights * _values(place, 0, self.spans)).ravel(), self.spans)
@@ -136,7 +136,7 @@ class SmoothFit:
     curve             the curve
     residuals (n,)    of all points, mm
     outliers (n,)     whether a point is left out
-    correlation       of residuals beside one another
+    correlation       lag-1 correlation of the residuals, from -1 to 1
     """
 
     curve: Smooth
@@ -148,9 +148,9 @@ class SmoothFit:
 def fit(t: Array, e: Array, spans: int | None = None) -> SmoothFit:
     """Fit a smooth curve to values e (n,), mm, at parameters t (n,), rad; outliers are left out.
 
-    `spans` is the number of spans, chosen by cross-validation between 12 and n/5 where None. Raises GapError where a
-    gap is above two of the widest spans, or of those that are given, and ValueError for more than MOST_SPANS spans, for
-    fewer than 12, or for more than a fifth of the points.
+    `spans` is the number of spans, by default chosen by cross-validation. It is from 12 to n/5, and at most MOST_SPANS;
+    12 are always permitted. Raises GapError where a gap is above two of 12 spans, or of the given number, and
+    ValueError for a given number out of that range.
     """
     order = np.argsort(np.mod(t, TURN), kind="stable")
     angle, value = np.mod(t, TURN)[order], e[order]
@@ -163,6 +163,7 @@ def fit(t: Array, e: Array, spans: int | None = None) -> SmoothFit:
         if (left_in == kept).all():
             break
         kept = left_in
+    # noise by the residuals' degrees of freedom; residuals of an autoregressive process widen it by (1 + r)/(1 - r)
     count = int(kept.sum())
     left = residuals[kept]
     white = float(left @ left)
@@ -186,9 +187,10 @@ def _gross(value: Array) -> NDArray[np.bool_]:
 
 
 def _standing_out(residuals: Array, kept: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Points that stand out alone, those kept until now if each is the worst of its neighbours: there the curve swings.
+    """Points (n,) that stand out alone or in pairs; of those kept until now only the worst among its neighbours.
 
-    A point that was left out and does not stand out any more comes back.
+    The others may stand out because it bends the curve. A point that was left out and does not stand out any more comes
+    back.
     """
     middle = np.median(residuals[kept])
     size = np.abs(residuals - middle)
@@ -207,19 +209,20 @@ def _standing_out(residuals: Array, kept: NDArray[np.bool_]) -> NDArray[np.bool_
 
 
 class _Points:
-    """Points in order of their parameters (n,), and what the normal equations need of them."""
+    """Points in order of their parameters (n,), and the normal equations of splines through them."""
 
     def __init__(self, angle: Array, value: Array, count: int) -> None:
-        """Take the points that are kept of `count`."""
+        """Take the kept ones of `count` points, and find their widest gap, rad."""
         self.angle, self.value, self.count = angle, value, count
         gaps = np.diff(angle, append=angle[:1] + TURN)
         self.widest = int(np.argmax(gaps))
         self.gap = float(gaps[self.widest])
 
     def chosen(self, spans: int | None) -> int:
-        """Number of spans: that given, or that of the least cross-validation.
+        """Number of spans: the given one, else that of the least cross-validation.
 
-        Raises ValueError for a given number that is too small, or too large for the points.
+        Raises ValueError for a given number that is too small, or too large for the points, GapError for a gap above
+        two spans.
         """
         most = min(max(self.count // POINTS_A_SPAN, LEAST_SPANS), MOST_SPANS)
         if spans is not None:
@@ -307,14 +310,14 @@ def _banded(matrix: Array, right: Array) -> Array:
 
 
 def _place(t: Array, spans: int) -> tuple[Array, Indices]:
-    """Place within its span, [0, 1), and the span, of each parameter (n,)."""
+    """Place of each parameter (n,) within its span, [0, 1), and the index of the span."""
     u = np.mod(t, TURN) * (spans / TURN)
     span = np.minimum(u.astype(np.intp), spans - 1)
     return u - span, span
 
 
 def _values(place: Array, order: int, spans: int) -> Array:
-    """Derivative of that order by the parameter of the six splines at places in a span (6, n)."""
+    """Derivative of an order by the parameter, (6, n), of the six splines that are not 0 at places (n,) in a span."""
     rows = BASIS
     for _ in range(order):
         rows = rows[:, 1:] * np.arange(1, rows.shape[1])
