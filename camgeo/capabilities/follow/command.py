@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Give the command its options."""
+    """Add the arguments of `camgeo follow` to its parser."""
     parser.add_argument("file", type=name_of, metavar="FILE", help="a drawing or a solid")
     parser.add_argument("--roller", type=_length, metavar="R", help="radius of the roller, mm; 0 for a knife edge")
     parser.add_argument("--shoe", type=_length, metavar="R", help="radius of a curved shoe, mm, in place of a roller")
@@ -70,7 +70,11 @@ def _lengths(text: str) -> tuple[float, ...]:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Follow one contour; return the exit status: 0 done, 2 a wrong call or file, 3 the surroundings fail."""
+    """Follow one contour, print its figures and write the files of the call; returns the exit status 0.
+
+    Raises CallError for a wrong call or file, RecipeErrors where the motion makes no recipe, SurroundingsError where a
+    file cannot be written.
+    """
     from camgeo.capabilities.follow.library import follow, judged_by_recipe
     from camgeo.cli.new_file import demand_new, write_new
 
@@ -92,6 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
         rotation=arguments.rotation,
         reading=arguments.reading,
     )
+    # files are written together, when all texts are made
     texts: dict[str, str] = {}
     if arguments.table is not None:
         texts[arguments.table] = followed.table()
@@ -142,7 +147,7 @@ def document(followed: Followed) -> dict[str, Any]:
 
 
 def _least(followed: Followed, values: Array) -> dict[str, float] | None:
-    """Least of values (n,) over the turn as an absolute value, with its shaft angle; None where it is not finite."""
+    """Magnitude of the least of values (n,) over the turn, and its shaft angle; None where it is not finite."""
     place = int(values.argmin())
     if not math.isfinite(values[place]):
         return None

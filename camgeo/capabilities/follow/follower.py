@@ -33,7 +33,7 @@ class FollowerDescription:
 
     @property
     def flat(self) -> bool:
-        """Whether it has a flat face."""
+        """Whether the touch is a flat face."""
         return isinstance(self.touch, Flat)
 
     @property
@@ -51,12 +51,12 @@ class FollowerDescription:
 
     @property
     def side(self) -> Side:
-        """Side of the contour on which the metal lies: inside (1), or outside (-1) of a ring's opening."""
+        """Side of the contour on which the metal lies: 1 inside, or -1 outside a ring's opening."""
         return -1 if self.track == "internal" else 1
 
     @property
     def motion_to_mm(self) -> float:
-        """Factor from the motion's unit to mm at the touch: the arm's length, or its pivot's distance; 1 on a stem."""
+        """Factor from the motion's unit to mm at the touch: 1 on a stem, else the arm's length or pivot distance."""
         return 1.0 if self.arm is None else self.arm.length or self.arm.pivot
 
     @property
@@ -68,7 +68,7 @@ class FollowerDescription:
 
     @property
     def words(self) -> str:
-        """The follower in a line of text."""
+        """The follower in words, for one line of text."""
         radius = f" of radius {self.touch.radius:.6g} mm" if self.touch.radius else ""
         touch = f"{self.touch.word}{radius}"
         if self.yoke:
@@ -122,12 +122,19 @@ def describe_follower(
     yoke: bool,
     track: Track,
 ) -> FollowerDescription:
-    """Follower of a call's arguments, lengths in mm; raises CallError with all arguments that do not go together."""
+    """Follower of a call's arguments, lengths in mm.
+
+    `roller` and `shoe` are radii, a roller of 0 a knife edge; `flat` is a face, of a `width` or None. `offset` is that
+    of the line of travel. `arm` is empty on a stem, else the distance of its pivot, and with a round touch its length;
+    `leading` is whether it leads. `yoke` is whether a second contact stands opposite. Raises CallError for values that
+    are no such lengths, and for arguments that do not go together.
+    """
     touches = (roller is not None) + (shoe is not None) + flat
     if touches != 1:
         raise CallError(
             "a follower has a roller, of radius 0 for a knife edge, or a shoe, or is flat: give one of them"
         )
+    # faults of single values, then of arguments together
     lengths = {"roller": roller, "shoe": shoe, "width": width, "offset": offset} | {
         f"arm[{i}]": value for i, value in enumerate(arm)
     }

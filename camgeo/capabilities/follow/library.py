@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from kin.follower.measured import MeasuredMotion
     from kin.numeric.arrays import Array
 
-READING = 0.01  # mm: by default, how flat a dwell is and how near a recipe's motion is to the rows
-STEPS = 720
+READING = 0.01  # mm: default tolerance of dwells about their level, and of a recipe's motion about the rows
+STEPS = 720  # of a turn by default
 LEAST_STEPS, MOST_STEPS = 36, 100_000
-LENGTHS = 2  # numbers of a place
+LENGTHS = 2  # coordinates of a place
 OPENINGS = "verify: {openings: ignore}  # those of the file are not made: name in part what is wanted of them"
 
 
@@ -51,12 +51,13 @@ class Rest:
 class Followed:
     """The motion that a contour gives a follower, over n equal steps of the shaft; lengths in mm, angles in radians.
 
-    `unit` is that of the motion: mm on a line of travel, rad on an arm. `position` (n,) is the distance of the touch
-    along the line of travel from its point nearest to the shaft, or the angle at the pivot between the line to the
-    shaft and the arm; `velocity` and `acceleration` (n,) are by radian of the shaft. `pressure_angle` (n,) is above 0
-    where the cam drives a rise, `radius` (n,) the contour's radius of curvature there, negative in a hollow, 0 at a
-    corner. `bore` is the diameter of a round hole about the shaft, `blank` that of a round outline of a ring or of a
-    groove's blank; None without one.
+    `at` is the place of the shaft in the file; `units` is mm in the unit that the call gave, or None; `reading` is the
+    tolerance of dwells and of a recipe, mm. `unit` is that of the motion: mm on a line of travel, rad on an arm.
+    `position` (n,) is the distance of the touch along the line of travel from its point nearest to the shaft, or the
+    angle at the pivot between the line to the shaft and the arm; `velocity` and `acceleration` (n,) are by radian of
+    the shaft. `pressure_angle` (n,) is above 0 where the cam drives a rise, `radius` (n,) the contour's radius of
+    curvature at the contact, negative in a hollow, 0 at a corner. `bore` is the diameter of a round hole about the
+    shaft, `blank` that of a round outline of a ring or of a groove's blank; None without one.
     """
 
     path: Path
@@ -70,12 +71,12 @@ class Followed:
 
     @property
     def unit(self) -> Literal["mm", "rad"]:
-        """Unit of the motion."""
+        """Unit of the motion: mm on a line of travel, rad on an arm."""
         return "mm" if self._motion.unit == "mm" else "rad"
 
     @property
     def bore(self) -> float | None:
-        """Diameter of a round hole about the shaft; None without one."""
+        """Diameter of a round hole about the shaft, mm; None without one."""
         return self._outline.bore
 
     @property
@@ -159,16 +160,16 @@ class Followed:
 
     @property
     def rests(self) -> tuple[Rest, ...]:
-        """Dwells: stretches of at least 10 degrees in which the position keeps to its level within the reading."""
+        """Dwells, in order: stretches of at least 10 degrees in which the position keeps within the reading."""
         return tuple(Rest(*dwell) for dwell in self._motion.dwells(self._reading))
 
     @property
     def _reading(self) -> float:
-        """Accuracy of the reading in the motion's unit: mm, or on an arm the angle that moves the touch by it, rad."""
+        """The reading in the motion's unit: mm, or on an arm the angle that moves the touch by it, rad."""
         return self.reading if self.unit == "mm" else self.reading / self.follower.motion_to_mm
 
     def table(self) -> str:
-        """The motion over the turn as CSV: a header, then a row a step; lengths in mm, angles in degrees."""
+        """Motion over the turn as CSV text: a header, then a row for each step; lengths in mm, angles in degrees."""
         arm = self.unit == "rad"
         scale, unit = (math.degrees(1.0), "deg") if arm else (1.0, "mm")
         finite = np.where(np.isfinite(self.radius), self.radius, np.nan)
@@ -189,10 +190,10 @@ class Followed:
         return "\n".join([",".join(columns), *lines, ""])
 
     def lifts(self) -> str:
-        """Motion as a CSV table of lifts that a recipe reads: shaft angle in degrees, lift in mm or degrees.
+        """Motion as CSV text of lifts that a recipe reads: shaft angle in degrees, lift in mm or degrees.
 
-        The table of a yoke covers half a turn, from its position at 0; a deviation of the breadth from its mean is
-        shared by both faces.
+        Lifts count from the least position. The table of a yoke covers half a turn, and its lifts count from the
+        position at 0; a deviation of the breadth from its mean is shared by both faces.
         """
         scale = 1.0 if self.unit == "mm" else math.degrees(1.0)
         theta, lift = self.theta, scale * (self.position - self._motion.least[0])
@@ -206,10 +207,10 @@ class Followed:
     def recipe(self, table: str) -> str:
         """Text of a recipe of a cam with this motion, whose lifts are in the file `table`.
 
-        Its motion is within the reading of the rows, and its contour within twice that of the file's, which is its
-        tolerance, so that the file passes when it is judged by the recipe. It has no opening but a round bore, and
-        passes over others when files are judged by it. Raises CallError for a yoke whose breadth varies by more than
-        two readings, or with an odd number of steps, and for a ring without a round outline.
+        Its motion is within the reading of the rows. Its tolerance is twice the reading, so that the file passes when
+        it is judged by the recipe. It has no opening but a round bore, and passes over others when files are judged by
+        it. Raises CallError for a `table` that is no printable name, for a yoke whose breadth varies by more than two
+        readings or whose steps are odd in number, and for a ring without a round outline.
         """
         demand_type("table", table, str, "a str")
         if not table.isprintable() or not table:
@@ -235,7 +236,7 @@ class Followed:
         return "\n".join(lines)
 
     def _disc_keys(self) -> dict[str, str]:
-        """Keys of a cam of kind disc, without its motion."""
+        """Keys of a cam of kind disc, without its motion; raises CallError for a ring without a round outline."""
         keys = {"kind": "disc", "base_radius": f"{self.base_radius:.9g}", "follower": self.follower.keys}
         if self.follower.track == "internal":
             if self.blank is None:
@@ -250,7 +251,7 @@ class Followed:
         return keys
 
     def _yoke_keys(self) -> dict[str, str]:
-        """Keys of a cam for a yoke, without its motion."""
+        """Keys of a cam for a yoke, without its motion; raises CallError for a breadth that varies, or odd steps."""
         narrow, wide = self.breadth or (0.0, 0.0)
         if wide - narrow > 2.0 * self.reading:
             raise CallError(
@@ -299,12 +300,14 @@ def follow(
     on an `arm`: the distance of its pivot from the shaft, and with a round touch the length. The arm trails, or is
     `leading`. A `yoke` has a second contact opposite. By its `track` a roller runs in the opening of a ring
     ("internal") or in a "groove", where its motion is that on the inner flank. The shaft is `at` a place of the file
-    and turns by `rotation`; the follower is along x at shaft angle 0. `units` is that of a file that
-    states none. A dwell is within `reading` of its level.
+    and turns by `rotation`; the follower is along x at shaft angle 0. `units` is the unit of a file that states none. A
+    dwell is within `reading` of its level. The motion is given at `steps` equal steps of a turn, from 36 to 100,000.
 
-    Raises CallError for what cannot be read or does not go together, where the follower does not meet the contour, and
-    where the contact leaves a face of that width.
+    Raises CallError for a file that cannot be read or has no such contour, for arguments that are wrong or do not go
+    together, where the follower does not meet the contour or its contact leaves a face of `width`, and for a roller
+    that no groove holds; SurroundingsError for a package that is missing.
     """
+    # arguments are checked first
     path = path_of("file", file)
     for name, value in (("flat", flat), ("leading", leading), ("yoke", yoke)):
         demand_type(name, value, bool, "a bool")
@@ -331,6 +334,7 @@ def follow(
         raise CallError(f"a reading is a length above 0, not {short_repr(reading)}")
     if not LEAST_STEPS <= count <= MOST_STEPS:
         raise CallError(f"a turn is looked at in {LEAST_STEPS} to {MOST_STEPS} steps, not {short_repr(steps)}")
+    # the contour, and the follower by contact on it
     unit = None if units is None else UNIT_MM[units]
     outline = read_outline(path, unit, (place[0], place[1]), track, mirrored=rotation == "ccw")
     try:
@@ -356,7 +360,7 @@ def _require_on_face(name: str, motion: MeasuredMotion, width: float | None) -> 
 
 
 def _require_groove(name: str, motion: MeasuredMotion, follower: FollowerDescription) -> None:
-    """Raise CallError where a roller has more play between two flanks, or overlaps them by more, than its diameter."""
+    """Raise CallError where a roller's play between two flanks, or its overlap with them, exceeds its diameter."""
     if follower.track != "groove" or motion.apart is None:
         return
     low, high = (follower.motion_to_mm * value for value in motion.apart)

@@ -30,10 +30,10 @@ class Outline:
     """The contours on which a follower runs, and round contours beside them.
 
     contour  the metal's contour, the opening of a ring, or the inner flank of a groove
-    outer    outer flank of a groove; None of any other track
+    outer    outer flank of a groove; None for other tracks
     bore     diameter of a round hole about the shaft, mm; None without one
     blank    diameter of a round outline of a ring or of a groove's blank, mm; None without one
-    openings how many other closed contours there are: bores of other shapes, holes, and what is drawn in them
+    openings number of other closed contours: bores of other shapes, holes, and contours drawn within them
     """
 
     contour: Contour
@@ -44,11 +44,12 @@ class Outline:
 
 
 def read_outline(path: Path, units: float | None, at: tuple[float, float], track: Track, *, mirrored: bool) -> Outline:
-    """Outline in a file about the shaft, which is `at` a place of the file, mm.
+    """Outline in a file, about the shaft, which stands at the place `at` of the file, mm.
 
-    `units`, mm, is that of a file that states none. A follower runs on the outermost closed contour round the shaft
-    that is no circle about it, in a ring on the innermost one, in a groove between the two outermost. Raises CallError
-    for a file that has none, or cannot be read.
+    `units` is mm in the unit of a file that states none; `mirrored` is whether to mirror the contours, as for a shaft
+    that turns counter-clockwise. A follower runs on the outermost closed contour round the shaft that is no circle
+    about it, in a ring on the innermost one, in a groove between the two outermost. Raises CallError for a file without
+    such contours, and for one that cannot be read.
     """
     name = escaped(str(path))
     kinds = [suffix for suffix, kind in suffixes().items() if FORMATS[kind].contents in {"drawing", "solid"}]
@@ -65,6 +66,7 @@ def read_outline(path: Path, units: float | None, at: tuple[float, float], track
     except ReadError as error:
         remedy = "; of a groove give track groove" if error.reason == "island" and track != "groove" else ""
         raise CallError(f"{name}: {error.message}{remedy}") from error
+    # contours round the shaft, the outermost first, and which of them the follower runs on
     shifted = [chain.contour.moved(-at[0], -at[1]) for chain in chains]
     contours = tracks(shifted)
     where = f"the shaft at {at[0]:.9g}, {at[1]:.9g} mm"
@@ -77,19 +79,20 @@ def read_outline(path: Path, units: float | None, at: tuple[float, float], track
     if track == "external" and contour is not shifted[0]:
         remedy = "of a ring's opening give track internal, of a groove track groove"
         raise CallError(f"{name}: what goes round {where} lies within another contour: {remedy}")
+    # of the other contours, the outermost one within may be a round bore, the outermost one beyond a round blank
     others = [other for other in shifted if other is not contour and other is not outer]
     around = sorted((other for other in others if goes_round(other)), key=lambda other: -abs(other.area))
     within = [circle_about(other) for other in around if abs(other.area) < abs(contour.area)]
     beyond = [circle_about(other) for other in around if abs(other.area) > abs(contour.area)]
     bore, blank = (circles[0] if circles else None for circles in (within, beyond))
-    rest = len(others) - sum(circle is not None for circle in (bore, blank))
+    openings = len(others) - sum(circle is not None for circle in (bore, blank))
     if mirrored:
         contour, outer = contour.mirrored(), None if outer is None else outer.mirrored()
-    return Outline(contour, outer, bore, blank, rest)
+    return Outline(contour, outer, bore, blank, openings)
 
 
 def _read_drawing(path: Path, units: float | None, track: Track) -> Sequence[ClosedContour]:
-    """Closed chains of a drawing, mm; raises CallError without a unit, or with two."""
+    """Closed contours of a drawing, mm; raises CallError where no unit is stated, or both file and call state one."""
     drawing = read_drawing(path, deepest=DEEPEST[track])
     if drawing.units_mm is None:
         if units is None:
@@ -100,7 +103,7 @@ def _read_drawing(path: Path, units: float | None, track: Track) -> Sequence[Clo
 
 
 def _read_section(path: Path, units: float | None, track: Track) -> Sequence[ClosedContour]:
-    """Chains of a solid's section: that of the plain disc, or of a groove the one below the top face."""
+    """Closed contours of a solid's section, mm: of the plain disc, or of a groove between its two uppermost faces."""
     if format_of(path).units:
         _require_same_unit(path, units, None)
     solid = read_solid(path, (), units, DEEPEST[track])
@@ -111,13 +114,13 @@ def _read_section(path: Path, units: float | None, track: Track) -> Sequence[Clo
 
 
 def _require_same_unit(path: Path, units: float | None, stated: float | None) -> None:
-    """Raise CallError where a file states its unit, and the call another one."""
+    """Raise CallError where a call gives a unit other than the `stated` one of the file, or any where that is None."""
     if units is not None and units != stated:
         raise CallError(f"{escaped(str(path))}: the file states its unit itself: leave units out")
 
 
 def _remedy(chains: Sequence[ClosedContour]) -> str:
-    """Remedy: the middles of round holes as places of the shaft."""
+    """Remedy in words: the middles of round holes as places of the shaft."""
     boxes = [(chain.contour, chain.contour.box) for chain in chains[1:]]
     middles = [(hole, 0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)) for hole, box in boxes]
     places = [f"{x:.6g},{y:.6g}" for hole, x, y in middles if circle_about(hole, x, y) is not None]
