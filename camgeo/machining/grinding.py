@@ -70,6 +70,7 @@ def grinding_table(recipe: Recipe, design: Design, request: FileRequest, toleran
     except CurveError as failure:
         ((_, contour),) = design.contours
         raise _refusal(recipe, wheel, str(failure), 2.0 * hollow_radius(1, contour)[0]) from failure
+    # number of rows by the proved second derivative, then the wheel's place at each angle of the work
     count = _count(recipe, request, bend, (tolerance - DIGITS * far, tolerance), field)
     error = _join_error(360.0 / count, bend) + DIGITS * far
     angle = 2.0 * math.pi * np.arange(count) / count
@@ -78,6 +79,7 @@ def grinding_table(recipe: Recipe, design: Design, request: FileRequest, toleran
         frames = path.sample(polar_parameters(path, mirror * angle))
     except StarError as failure:
         raise recipe.error(field, str(failure), None, "leave the table out") from failure
+    # columns in the recipe's unit; what is 0 but for rounding is written as 0
     distance = np.hypot(frames.point[:, 0], frames.point[:, 1])
     degrees, unit = 360.0 * np.arange(count + 1) / count, UNIT_NAMES[recipe.units]
     length = _exact_length(2.0 * wheel.radius, recipe)

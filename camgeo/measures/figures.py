@@ -274,7 +274,10 @@ def motion_figures(design: Design, order: int) -> dict[str, Measured]:
 
 
 def _linkage_figures(driven: DesignedLinkage, names: Iterable[str]) -> dict[str, Measured]:
-    """Figures of a linkage: its margin, and its motion where its shaft turns."""
+    """Figures of a linkage: its margin and least shaft rate, and figures of its motion where it turns right round.
+
+    Otherwise figures of `names` that a linkage has come without a value.
+    """
     mobility, unit = driven.mechanism.mobility(), driven.mechanism.unit
     scale = math.degrees(1.0) if unit == "deg" else 1.0
     measured = {
@@ -311,7 +314,10 @@ def _linkage_figures(driven: DesignedLinkage, names: Iterable[str]) -> dict[str,
 
 
 def file_figure(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
-    """Measure a figure of a file that has a contour; `checks` are all checks of the run."""
+    """Measure a figure of a file that has a contour; `checks` are all checks of the run.
+
+    The figure has no value, with the reason, where the file could not be judged or has no such figure.
+    """
     unread, surfaces = "the file could not be judged", file.surfaces or (UNREAD,)
     if name == figures.CONTOUR_ERROR:
         return _greatest(
@@ -345,7 +351,7 @@ def _play(play: Play) -> Measured:
 
 
 def _motion_error(surface: SurfaceVerdict, *, dwell: bool) -> Measured:
-    """Greatest error of the motion on a surface of a file, or how far its dwells are from flat."""
+    """Greatest error of the motion on a surface of a file, or with `dwell` the greatest range over its dwells."""
     motion = surface.motion
     if motion is None:
         return Measured(None, "", detail="the file could not be judged", surface=surface.name)

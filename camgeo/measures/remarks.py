@@ -164,6 +164,7 @@ def _pressure(recipe: Recipe, design: Design) -> RuleRemark | None:
     if steepest is None or steepest.value is None or steepest.value <= rule or not steepest.ok:
         return None
     slopes = [slope for surface in design.exact.surfaces if (slope := surface.extremes("slope")) is not None]
+    # rise and return have rules of their own where a spring holds the follower
     falling, value, at_deg, where = rule, steepest.value, steepest.at_deg, ""
     if slopes and not design.follower.closure:
         falling = RETURN_RULE
@@ -288,8 +289,8 @@ def _pivot(recipe: Recipe, design: Design) -> RuleRemark | None:
 
 def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> RuleRemark | None:
     """A roller that files within a coarse tolerance leave no play in its groove, though the recipe gives it some."""
-    first, *others = design.follower.contacts
-    clearance = max((other.touch.radius - first.touch.radius for other in others), default=0.0)
+    first, *further = design.follower.contacts
+    clearance = max((contact.touch.radius - first.touch.radius for contact in further), default=0.0)
     closures = [(closure, file) for file in files for closure in file.closures]
     if not (clearance > 0.0 and closures and design.follower.arrangement.contacts == 1):
         return None
@@ -355,6 +356,7 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
     follower, loose = design.exact.gauge, []
     closure = follower.closure
     word = "swing" if follower.unit == "deg" else "stroke"
+    # limits of play are compared with the roller's radius, limits of motion with the stroke
     for check in checks:
         tolerance = tolerances.get(check.file or "")
         if not tolerance or check.limit is None:
@@ -411,11 +413,12 @@ def _acceleration(recipe: Recipe, joints: tuple[DerivativeJump, ...]) -> RuleRem
 
 
 def _share(recipe: Recipe, name: RemarkName, subject: tuple[str, float], length: float) -> RuleRemark | None:
-    (what, value), rule = subject, SHARE * length
+    """Remark `name` on an error, its words and mm, that is a good part of the stroke `length`, mm; else None."""
+    (label, value), rule = subject, SHARE * length
     if value <= rule:
         return None
     sentence = (
-        f"{what}, {_length(recipe, value)}, is {value / length:.3g} times the stroke of {_length(recipe, length)}"
+        f"{label}, {_length(recipe, value)}, is {value / length:.3g} times the stroke of {_length(recipe, length)}"
     )
     return RuleRemark(name, value, rule, "mm", sentence)
 

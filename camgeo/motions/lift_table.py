@@ -164,6 +164,7 @@ def read_rows(
         place = f"{path.rpartition('.')[0]}.scale"
         reader.fault_at(place, "times 0 no motion is left", "0", "give another number, or leave it out")
         return None
+    # how the text is read; the file is read now, so that the recipe needs it no more
     origin, mark = values["table"], reader.marks[path]
     sheet = Sheet(
         quantity,

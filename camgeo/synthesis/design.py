@@ -182,6 +182,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         for capability in registry.in_order(recipe.uses):
             checks += capability.exact(recipe, exact, contours)
         checks += wheel_checks(recipe, exact, contours)
+    # the linkage, and the part with its walls
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage

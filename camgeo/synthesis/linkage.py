@@ -188,8 +188,8 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> DesignedLinkage
     except RoughError as error:
         at = math.degrees(error.at % TURN)
         problem = f"the motion changes too abruptly to be resolved, near a relative angle of {at:.6g} degrees"
-        other = "the motion a larger stroke" if "cam.base_radius" in recipe.marks else "p fewer waves"
-        remedy = f"keep its loops farther from binding, or give {other}"
+        smoother = "the motion a larger stroke" if "cam.base_radius" in recipe.marks else "p fewer waves"
+        remedy = f"keep its loops farther from binding, or give {smoother}"
         raise recipe.error("linkage", problem, None, remedy) from error
 
 
@@ -226,6 +226,7 @@ def motion_table(recipe: Recipe, mechanism: Mechanism) -> tuple[tuple[str, ...],
     theta = mechanism.relative(shaft)
     parts = [mechanism.at(theta[:-1], 2), mechanism.at(theta[-1:], 2, -1)]
 
+    # angles and the frame, then outputs, their derivatives by the relative angle, and joints
     length = "in" if recipe.units == "inch" else "mm"
     frame = DEGREES * np.concatenate([part.over_shaft(part.frame) for part in parts], axis=1)
     columns = {"shaft_deg": np.linspace(0.0, 360.0, count + 1), "relative_deg": theta * DEGREES, "frame_deg": frame[0]}

@@ -36,7 +36,7 @@ def forces(report: dict[str, Any]) -> str:
     for name, entry in ranges:
         for word, key in (("least", "min"), ("greatest", "max")):
             rows.append((f"{word} {name}", entry[key], entry["unit"], entry[f"{key}_at_deg"]))
-    # contacts: width, pressure, mean force of rollers, speeds at which they are lost
+    # contacts: width, pressure, mean forces of rollers, speeds that lift contacts off
     if (width := section.get("width")) is not None:
         rows.append((f"width of the contacts: {width['bound_by']}", width["value"], width["unit"], None))
     rows += [
