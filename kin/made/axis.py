@@ -111,7 +111,7 @@ def _line(cams: Sequence[CamShift], rows: Sequence[Array], chosen: Mask) -> tupl
     inverse = np.linalg.inv(np.sum([rows[k].T @ weights[k] @ rows[k] for k in kept], axis=0))
     line = inverse @ np.sum([rows[k].T @ weights[k] @ cams[k].shift for k in kept], axis=0)
     left = [(cams[k].shift - rows[k] @ line, weights[k]) for k in kept]
-    square = sum(float(rest @ weight @ rest) for rest, weight in left)
+    square = sum(float(residual @ weight @ residual) for residual, weight in left)
     return line, max(square / max(2 * len(kept) - UNKNOWNS, 1), 1.0) * inverse
 
 

@@ -226,9 +226,9 @@ def of_other_shaft(readings: Sequence[Readings]) -> _Factor | None:
 
 
 def _fit(readings: Sequence[Readings], factor: float) -> bool:
-    """Whether readings fit their cams when the angles are multiplied by a factor, each turned by its lateness."""
-    each = [cam._replace(shaft=factor * cam.shaft) for cam in readings]
-    return all(float(np.std(cam.off(lateness([cam])))) <= UNLIKE * cam.stroke for cam in each)
+    """Whether readings fit their cams when the angles are multiplied by a factor and each is turned by its lateness."""
+    scaled = [cam._replace(shaft=factor * cam.shaft) for cam in readings]
+    return all(float(np.std(cam.off(lateness([cam])))) <= UNLIKE * cam.stroke for cam in scaled)
 
 
 def _demand_alike(readings: Readings, late: float, *, aligned: bool) -> None:

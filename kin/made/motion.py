@@ -142,10 +142,10 @@ class Errors:
 
     def influence(self, weights: Array) -> Influence:
         """Uncertainties of the sum of the errors times weights (n,)."""
-        each = [(felt, weights * felt.gain) for felt in self.felt]
-        sd = math.sqrt(sum(felt.curve.deviation_of_sum(felt.places, share) ** 2 for felt, share in each))
-        shifted: Array = np.sum([share @ felt.normals for felt, share in each], axis=0)
-        return Influence(sd, float(sum(np.abs(share).sum() for _, share in each)), shifted)
+        shares = [(felt, weights * felt.gain) for felt in self.felt]
+        sd = math.sqrt(sum(felt.curve.deviation_of_sum(felt.places, share) ** 2 for felt, share in shares))
+        shifted: Array = np.sum([share @ felt.normals for felt, share in shares], axis=0)
+        return Influence(sd, float(sum(np.abs(share).sum() for _, share in shares)), shifted)
 
     def uncertainty(self, systematic: Array | float = 0.0) -> Array:
         """Expanded uncertainty (k = 2) of the error (n,); `systematic` is one of the metal common to all, mm."""

@@ -70,8 +70,8 @@ class Deviations:
 
     def columns(self, free: str) -> Array:
         """Derivatives (n, k) of the deviations by turn (g, mm/rad) and shifts (x, y, mm/mm), a column a letter."""
-        each = {"g": self.moment, "x": self.normals[:, 0], "y": self.normals[:, 1]}
-        return np.column_stack([each[name] for name in free]) if free else np.empty((len(self.e), 0))
+        by_unknown = {"g": self.moment, "x": self.normals[:, 0], "y": self.normals[:, 1]}
+        return np.column_stack([by_unknown[name] for name in free]) if free else np.empty((len(self.e), 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -342,7 +342,7 @@ def _off(surfaces: Sequence[SurfacePoints], placing: Placing) -> float:
 def _size(surfaces: Sequence[SurfacePoints]) -> float:
     """Mean radius of the exact contours, mm."""
     points = [surface.follower.envelope.points(np.linspace(0.0, TURN, 64)) for surface in surfaces]
-    return float(np.mean([np.hypot(each[:, 0], each[:, 1]).mean() for each in points]))
+    return float(np.mean([np.hypot(contour[:, 0], contour[:, 1]).mean() for contour in points]))
 
 
 def _stacked(surfaces: Sequence[SurfacePoints], placing: Placing) -> tuple[Deviations, ...]:
