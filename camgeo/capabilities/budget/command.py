@@ -21,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Work out one budget and print it; the exit status: 0 kept, 1 not kept, 3 where the recipe cannot be read.
+    """Work out one budget and print it; the exit status: 0 kept, 1 not kept, 3 where the disk refuses.
 
     Raises RecipeErrors for a wrong recipe, CallError for files that do not hold the cam's contours.
     """

@@ -209,8 +209,9 @@ class Followed:
 
         Its motion is within the reading of the rows. Its tolerance is twice the reading, so that the file passes when
         it is judged by the recipe. It has no opening but a round bore, and passes over others when files are judged by
-        it. Raises CallError for a `table` that is no printable name, for a yoke whose breadth varies by more than two
-        readings or whose steps are odd in number, and for a ring without a round outline.
+        it. Raises TypeError for a `table` that is no str, CallError for one that is no printable name, for a yoke whose
+        breadth varies by more than two readings or whose steps are odd in number, and for a ring without a round
+        outline.
         """
         demand_type("table", table, str, "a str")
         if not table.isprintable() or not table:
@@ -305,7 +306,7 @@ def follow(
 
     Raises CallError for a file that cannot be read or has no such contour, for arguments that are wrong or do not go
     together, where the follower does not meet the contour or its contact leaves a face of `width`, and for a roller
-    that no groove holds; SurroundingsError for a package that is missing.
+    that no groove holds; SurroundingsError for a package that is missing, TypeError for an argument of a wrong type.
     """
     # arguments are checked first
     path = path_of("file", file)
@@ -372,7 +373,7 @@ def _require_groove(name: str, motion: MeasuredMotion, follower: FollowerDescrip
 
 
 def _numbers(name: str, values: object) -> tuple[float, ...]:
-    """Numbers of an argument; raises CallError for anything but a tuple of numbers."""
+    """Numbers of an argument; raises TypeError for anything but a tuple of numbers."""
     demand_type(name, values, tuple, "a tuple of numbers")
     return tuple(number_of(name, value) for value in values) if isinstance(values, tuple) else ()
 
