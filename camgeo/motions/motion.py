@@ -192,8 +192,8 @@ class FormulaMotion(MotionSource):
 class TableMotion(MotionSource):
     """Motion by rows of a table, each kept within `reading`, mm or rad; `file` names the table in errors.
 
-    `rest` is how a rest of the table is read, None for the usual way; `suspects` whether rows that look like slips are
-    refused or kept.
+    `rest` is what fills the turn beyond the rows: a dwell, the rows again (cycle) or backwards (mirror); None for a
+    dwell if the ends agree. `suspects` is whether rows that look like slips are refused or kept.
     """
 
     file: str
