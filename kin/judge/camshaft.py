@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 COARSE = 720  # shaft angles at which the search for a lobe's phase begins
 STEPS = 20  # of Newton's method
 MOST_NAMED = 5  # faults named in a message
-NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})
+NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range", "height"})
 
 
 @dataclass(frozen=True)
@@ -117,9 +117,6 @@ def verify_camshaft(path: Path, intent: CamshaftIntent, angles: int, units: floa
     except ReadError as error:
         unread = "readable" if error.reason in NOT_READ else "watertight"
         return Verdict(kind, (about(failed(unread, error.message), path.name),))
-    if len(solid.sections) < len(stretches):
-        text = "the solid has no section where the camshaft has a lobe or a journal"
-        return Verdict(kind, (about(failed("readable", text), path.name),))
     solid = settled(solid, (), intent.tolerance)
     sections = _Sections(solid, intent.mirrored)
     phi = TURN / angles * np.arange(angles, dtype=np.float64)

@@ -43,7 +43,7 @@ SIZE_SHARE = (
     0.05  # a drawing that comes out by another unit's factor too large or small, within this, misstates its own
 )
 NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
-NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})  # of solids
+NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range", "height"})  # of solids
 MOST_NAMED = 5  # faults named in a message
 WIDE = 1.5  # of a gap within which ends are joined, which is measured along x and along y: how long a line may be
 OTHERS = (
@@ -368,10 +368,7 @@ def _sought(part: PartIntent) -> Sought:
 
 def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, units: float | None) -> _Read:
     if len(solid.sections) < len(_sought(part).heights):
-        detail = "the solid has no section where the part has its layers"
-        if solid.units_mm is None:
-            detail += f"; it states no unit and is read in one of {units or 1.0:.9g} mm, another is given by --units"
-        raise ReadError("empty", detail, path)
+        raise ReadError("height", "the solid has no section where the part has its layers", path)
     if part.layers:
         from kin.judge.layers import leans, settled
 

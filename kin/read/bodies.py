@@ -43,7 +43,8 @@ class ReadSolid(Nest):
     height              at which the section was taken
     prism               the walls stand upright from the lowest face to the highest one, to the file's rounding
     volume              mm^3, negative if the surface faces inward
-    sections            at the heights given to the reader, in their order, without heights that the reader leaves out
+    sections            at the heights given to the reader, in their order; one of several bodies has none at heights
+                        that it does not reach
     faces               heights of the horizontal faces, rising
     leaning             triangles or faces neither horizontal nor upright (k, 4): least and greatest height, reach from
                         the axis, mm, and mm that they go inward per mm of height, nan for a STEP file
@@ -66,8 +67,11 @@ class ReadSolid(Nest):
     units_mm: float | None = None
 
     def section(self, z: float) -> Section:
-        """Section at one of the heights z, mm, that were given to the reader; StopIteration for any other height."""
-        return next(cut for cut in self.sections if cut.height == z)
+        """Section at a height z, mm, that was given to the reader; raises ValueError for any other height."""
+        for cut in self.sections:
+            if cut.height == z:
+                return cut
+        raise ValueError(f"no section was taken at z = {z:.9g} mm")
 
     @property
     def thickness(self) -> float:
@@ -89,8 +93,11 @@ class ReadSolid(Nest):
         return float(rows[chosen, 3].max(initial=0.0))
 
     def in_units(self, heights: Sequence[float], units: float) -> Self:
-        """The solid, read as if its file were in mm, in units of `units` mm; its sections get `heights`, mm."""
-        sections = zip(heights, self.sections, strict=False)
+        """The solid, read as if its file were in mm with sections at z / `units` for each of `heights`, mm, in mm.
+
+        `units`, mm, is the length of its unit.
+        """
+        own = {z / units: z for z in heights}  # to the last bit, by which sections are looked up
         return replace(
             self,
             chains=scaled(self.chains, units),
@@ -98,7 +105,7 @@ class ReadSolid(Nest):
             z_max=units * self.z_max,
             height=units * self.height,
             volume=units**3 * self.volume,
-            sections=tuple(Section(scaled(section.chains, units), z) for z, section in sections),
+            sections=tuple(Section(scaled(cut.chains, units), own[cut.height]) for cut in self.sections),
             faces=tuple(units * z for z in self.faces),
             leaning=self.leaning * [units, units, units, 1.0],
             slivers=units * self.slivers,
@@ -106,13 +113,17 @@ class ReadSolid(Nest):
         )
 
     def lowered(self, heights: Sequence[float], level: float) -> Self:
-        """The solid with its heights counted from a level, mm; its sections get `heights`, mm above that level."""
+        """The solid with its heights counted from a level, mm.
+
+        Its sections are at `level` + z for z among `heights`, mm above that level.
+        """
+        own = {level + z: z for z in heights}  # to the last bit
         return replace(
             self,
             z_min=self.z_min - level,
             z_max=self.z_max - level,
             height=self.height - level,
-            sections=tuple(Section(section.chains, z) for z, section in zip(heights, self.sections, strict=False)),
+            sections=tuple(Section(cut.chains, own[cut.height]) for cut in self.sections),
             faces=tuple(z - level for z in self.faces),
             leaning=self.leaning - [level, level, 0.0, 0.0],
             slivers=self.slivers - [level, level, 0.0, 0.0],
@@ -146,6 +157,17 @@ class Sought(NamedTuple):
 
     heights: Sequence[float] = ()
     deepest: int = 1
+
+
+def demand_reached(low: float, high: float, heights: Sequence[float], path: Path, why: str = "") -> None:
+    """Raise ReadError for the first of `heights` that a part from `low` to `high`, all mm, does not reach.
+
+    Its message ends with the words `why`, if there are any.
+    """
+    for z in heights:
+        if not low < z < high:
+            message = f"the part reaches from z = {low:.9g} to {high:.9g} mm: it has no section at {z:.9g}"
+            raise ReadError("height", "; ".join(filter(None, [message, why])), path)
 
 
 def missing(count: int, expected: int, path: Path) -> ReadError:

@@ -18,6 +18,7 @@ REASONS = {
     "open": "the contour does not close: a segment is missing",
     "gap": "two ends are farther apart than the permitted gap",
     "branch": "more than two ends meet",
+    "height": "the part does not reach a height at which its section is sought",
     "several": "there is more than one outer contour",
     "crossing": "two contours cross or touch",
     "island": "a contour lies inside a hole",

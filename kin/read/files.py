@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from kin.read.bodies import demand_reached
 from kin.read.errors import ReadError
 from kin.read.formats import FORMATS, DrawingOptions, format_of
 
@@ -52,19 +53,31 @@ def read_solid(
 ) -> AnySolid:
     """Read a solid with its sections at `heights`, mm, the first of which gives its contour.
 
-    In a section a closed chain may lie inside `deepest` others. A height beyond a plain prism of triangles has no
-    section. `units`, mm, is the unit of a file that states none; None is mm.
+    In a section a closed chain may lie inside `deepest` others. `units`, mm, is the unit of a file that states none;
+    None is mm.
 
-    Raises OSError where the file cannot be read; ReadError for a damaged or too large file, a height beyond any other
-    part, and a section that is not one closed contour with others in it; ValueError for a suffix that is no solid's.
+    Raises OSError where the file cannot be read; ReadError for a damaged or too large file, a height beyond the part,
+    and a section that is not one closed contour with others in it; ValueError for a suffix that is no solid's.
     """
     path = Path(path)
     record = format_of(path)
     if record.solid is None:
         raise ValueError(f"{path.name} is no solid")
-    if record.units or units is None or units == 1.0:
+    if record.units:
         return record.solid(path, heights, deepest)
-    return record.solid(path, [z / units for z in heights], deepest).in_units(heights, units)
+    mm = units or 1.0
+    own = heights if mm == 1.0 else [z / mm for z in heights]
+    try:
+        solid = record.solid(path, own, deepest)
+    except ReadError as error:
+        if error.reason != "height":
+            raise
+        # words of the heights in mm, by the part's own, which is read without them
+        solid = record.solid(path, (), deepest)
+        unit = f"it states no unit and is read in one of {mm:.9g} mm, another is given by --units"
+        demand_reached(mm * solid.z_min, mm * solid.z_max, heights, path, unit)
+        raise
+    return solid if mm == 1.0 else solid.in_units(heights, mm)
 
 
 def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import re
 from contextlib import suppress
-from itertools import takewhile
+from itertools import takewhile, zip_longest
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -122,8 +122,8 @@ def read_rows(text: str, comments: tuple[str, ...] = ("#",)) -> Rows:
     headings = [_heading(line, mark, widths) for _, line in kept[:count]]
     fitting = [heading for heading in headings if len(heading) in widths] or headings[-1:]
     heading = tuple(
-        " ".join([name, *(f"({word.strip('[()]')})" for word in more if word)])
-        for name, *more in zip(*fitting, strict=True)
+        " ".join([name, *(f"({word.strip('[()]')})" for word in more if word)]).strip()
+        for name, *more in zip_longest(*fitting, fillvalue="")  # a line may leave out its last cells
     )
     return Rows([line for _, line in rows], np.array([i for i, _ in rows], dtype=np.intp), mark, heading)
 

@@ -58,14 +58,15 @@ class Sheet(NamedTuple):
     """How a table is read: its quantity, and what the caller states of columns and units, None where the file does.
 
     Columns are those of the angle and of the value, by their heading or their number from 1. The angles "cam" and
-    "crank" are degrees of that shaft. Units of values are keys of `UNITS` for the quantity.
+    "crank" are degrees of that shaft. Units of values are keys of `UNITS` for the quantity; `instead` is the unit where
+    neither caller nor heading states one, None for the first of them.
     """
 
     quantity: Quantity
     columns: tuple[Column, Column] | None = None
     angle: AngleUnit | None = None
     unit: str | None = None  # of the values
-    instead: str = "mm"  # unit of the values where neither caller nor heading states one
+    instead: str | None = None
     scale: float = 1.0
     offset: float = 0.0  # in the values' unit, after the scale
 
@@ -197,7 +198,8 @@ def _units(rows: Rows, sheet: Sheet, places: tuple[int, int], field: str) -> tup
         unit = None
     if unit is not None and sheet.unit not in {None, unit}:
         raise IntentError(f"the column {second!r} is in {unit}, not in {sheet.unit}", f"{field}.units")
-    return _ANGLE_UNITS[kind or "degrees"] * (0.5 if crank else 1.0), sheet.unit or unit or sheet.instead
+    instead = next(iter(known)) if sheet.instead is None else sheet.instead
+    return _ANGLE_UNITS[kind or "degrees"] * (0.5 if crank else 1.0), sheet.unit or unit or instead
 
 
 def _rounded(angles: Array, half: float) -> float:

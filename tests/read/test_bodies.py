@@ -11,8 +11,9 @@ from support.meshfiles import HEIGHT, binary, in_3mf, ring, text
 from support.stepfiles import washer
 
 from kin.contour.arcs import unit
+from kin.read.bodies import Sought
 from kin.read.errors import ReadError
-from kin.read.files import read_drawing, read_solid
+from kin.read.files import read_bodies, read_drawing, read_solid
 from kin.read.mesh.stl import read_stl
 
 T = np.arange(24) * 2.0 * np.pi / 24
@@ -107,3 +108,32 @@ def test_the_order_of_triangles_does_not_matter(tmp_path):
     rng = np.random.default_rng(1)
     with pytest.raises(ReadError, match="it holds 2 bodies"):
         read_stl(binary(tmp_path / "shuffled.stl", solid[rng.permutation(len(solid))]))
+
+
+@pytest.mark.parametrize("write", [binary, in_3mf])
+@pytest.mark.parametrize("stepped", [False, True])
+def test_a_height_beyond_a_single_part_is_refused_in_mm_whether_it_is_a_prism_or_not(tmp_path, stepped, write):
+    """A plain prism once had no such section, without a word, and its other sections had heights of the first ones."""
+    path = tmp_path / ("part.3mf" if write is in_3mf else "part.stl")
+    hub = [ring(8.0 * unit(T), 6.0 * unit(T), HEIGHT, 14.0)] if stepped else []
+    write(path, np.concatenate([ring(), *hub]))
+    high = 14.0 if stepped else HEIGHT
+    with pytest.raises(ReadError, match=rf"reaches from z = 0 to {high:g} mm: it has no section at -30") as caught:
+        read_solid(path, [-30.0, 5.0])
+    assert caught.value.reason == "height"
+    assert ("--units" in caught.value.message) == (write is binary)
+    if write is binary:
+        with pytest.raises(ReadError, match=rf"to {25.4 * high:g} mm: .* -30; .* in one of 25.4 mm"):
+            read_solid(path, [-30.0, 50.0, 60.0], 25.4)
+        solid = read_solid(path, [50.0, 60.0], 25.4)
+        assert [cut.height for cut in solid.sections] == [50.0, 60.0]
+        assert solid.section(60.0) is solid.sections[1]
+    with pytest.raises(ValueError, match="no section was taken at z = 3 mm"):
+        read_solid(path, [5.0]).section(3.0)
+
+
+def test_sections_of_one_of_several_bodies_have_the_heights_at_which_they_are(tmp_path):
+    path = in_3mf(tmp_path / "two.3mf", ring(), ring(low=20.0, high=30.0))
+    low, high = read_bodies(path, [Sought((-3.0, 5.0)), Sought((0.7, -0.1, 0.3))], [0.0, 20.0])
+    assert [cut.height for cut in low.sections] == [5.0]
+    assert [cut.height for cut in high.sections] == [0.7, 0.3]

@@ -14,6 +14,8 @@ from kin.read.rows import RowError, read_rows
         ("angle,lift\ndeg,mm\n0,1\n2,3\n", ("angle (deg)", "lift (mm)")),
         ("angle;lift\n[deg];[mm]\n0;1\n2;3\n", ("angle (deg)", "lift (mm)")),
         ("angle;lift\n;mm\n0;1\n2;3\n", ("angle", "lift (mm)")),
+        ("x;y;z\nmm;mm\n0;1;\n2;3;\n", ("x (mm)", "y (mm)", "z")),
+        ("x;y\nmm;mm;mm\n0;1;\n2;3;\n", ("x (mm)", "y (mm)", "(mm)")),
         ("Intake cam 7\nangle,lift\n0,1\n2,3\n", ("angle", "lift")),
         ("\ufeffsep=;\nangle;lift\n0,0;1,0\n2,0;3,0\n", ("angle", "lift")),
         ("angle;lift\n0 1\n2 3\n", ("angle", "lift")),

@@ -42,6 +42,15 @@ def test_crank_degrees_inches_and_degrees():
 
 
 @pytest.mark.parametrize(
+    ("quantity", "unit"),
+    [("length", 1.0), ("angle", np.pi / 180), ("force", 1.0), ("moment", 1.0), ("share", 1.0)],
+)
+def test_a_column_without_a_unit_is_in_the_first_of_its_quantity(quantity, unit):
+    rows, _ = read_table("0;0\n90;1\n", Sheet(quantity))
+    assert rows.s.tolist() == [0.0, unit]
+
+
+@pytest.mark.parametrize(
     ("text", "message"),
     [
         (

@@ -12,7 +12,7 @@ from kin.contour.intersections import first_meeting
 from kin.numeric.distinct import distinct
 from kin.numeric.places import place_text
 from kin.numeric.records import dataclass
-from kin.read.bodies import MOST_BODIES, ReadSolid, Section, beside, no_rows
+from kin.read.bodies import MOST_BODIES, ReadSolid, Section, beside, demand_reached, no_rows
 from kin.read.errors import ReadError
 from kin.read.formats import contents
 from kin.read.mesh.mesh import WordError, doubles
@@ -84,11 +84,11 @@ def read_stl(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) 
     """Read a part from an STL file, as mm. Costs about one sort of the corners.
 
     `heights`, mm, become `sections`, and the contour is that of the first. Without any it is that of the section at
-    half the part's height, or where a part has steps of the widest section midway between two of them. A height beyond
-    a prism with corners at two heights alone is left out. In a section a closed chain may lie inside `deepest` others.
+    half the part's height, or where a part has steps of the widest section midway between two of them. In a section a
+    closed chain may lie inside `deepest` others.
 
     Raises OSError where the file cannot be read; ReadError where the file is too large, cut short or damaged, for
-    bodies apart, a height beyond any other part, and a section that does not close or is not one contour with holes.
+    bodies apart, a height beyond the part, and a section that does not close or is not one contour with holes.
     All other faults are in the Solid's fields.
     """
     path = Path(path)
@@ -100,11 +100,11 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     """Make the part of triangles (t, 3, 3), mm.
 
     `heights`, mm, become `sections`, and the contour is that of the first. Without any it is that of the section at
-    half the part's height, or where a part has steps of the widest section midway between two of them. A height beyond
-    a prism with corners at two heights alone is left out. In a section a closed chain may lie inside `deepest` others.
+    half the part's height, or where a part has steps of the widest section midway between two of them. In a section a
+    closed chain may lie inside `deepest` others.
 
-    Raises ReadError for coordinates out of range, a flat part, bodies apart, a height beyond any other part, and a
-    section that does not close or is not one contour with holes.
+    Raises ReadError for coordinates out of range, a flat part, bodies apart, a height beyond the part, and a section
+    that does not close or is not one contour with holes.
     """
     if not bool((np.abs(corners) <= LARGEST).all()):
         raise ReadError("range", "a coordinate is not finite or out of range", path)
@@ -112,6 +112,7 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     z_min, z_max = float(z.min()), float(z.max())
     if z_min == z_max:
         raise ReadError("empty", f"the part is flat: all corners lie at z = {z_min:g}", path)
+    demand_reached(z_min, z_max, heights, path)
     shell = upright(corners)
     mesh_in_file, leaning, slivers = (
         shell.mesh,
@@ -142,12 +143,13 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
         chains = sectioned(outline, path, deepest, across=prism_outline is None)
     except ReadError as error:
         raise _named_bodies(mesh_in_file, error, path) from None
-    sections = []
-    for wanted in heights:
-        if prism_outline is None:
-            sections.append(Section(sectioned(cut(mesh, wanted, path)[1], path, deepest, across=True), wanted))
-        elif z_min < wanted < z_max:
-            sections.append(Section(chains, wanted))
+    sections = [
+        Section(
+            sectioned(cut(mesh, wanted, path)[1], path, deepest, across=True) if prism_outline is None else chains,
+            wanted,
+        )
+        for wanted in heights
+    ]
     return Solid(
         chains=chains,
         z_min=z_min,
@@ -222,9 +224,7 @@ def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
     Raises ReadError where the part does not reach there, or reaches above and below and has no wall there.
     """
     z = mesh.points[:, 2]
-    if not z.min() < height < z.max():
-        message = f"the part reaches from z = {z.min():.9g} to {z.max():.9g} mm: it has no section at {height:.9g}"
-        raise ReadError("several", message, path)
+    demand_reached(float(z.min()), float(z.max()), [height], path)
     level, outline = section(mesh, height)
     if not len(outline.points):
         message = f"nothing is at z = {level:.9g} mm, and something above and below: walls are missing between faces"

@@ -52,14 +52,13 @@ def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) 
     """Read the part: the only object that is built, or of several the object named "cam".
 
     `heights`, mm, become `sections`, and the contour is that of the first. Without any it is that of the section at
-    half the part's height, or where a part has steps of the widest section midway between two of them. A height beyond
-    a prism with corners at two heights alone is left out. In a section a closed chain may lie inside `deepest` others.
-    A place on the plate that only turns and shifts the part is passed over; one that scales, shears or mirrors it is
-    applied.
+    half the part's height, or where a part has steps of the widest section midway between two of them. In a section a
+    closed chain may lie inside `deepest` others. A place on the plate that only turns and shifts the part is passed
+    over; one that scales, shears or mirrors it is applied.
 
     Raises OSError where the file cannot be read; ReadError for a file that is too large, damaged or no 3MF, several
-    objects none or more of which are named "cam", bodies apart, a height beyond any other part, and a section that does
-    not close or is not one contour with holes.
+    objects none or more of which are named "cam", bodies apart, a height beyond the part, and a section that does not
+    close or is not one contour with holes.
     """
     path = Path(path)
     built = read_placed(path)

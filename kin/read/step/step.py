@@ -18,7 +18,7 @@ import numpy as np
 from kin.numeric.distinct import distinct
 from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass, replace
-from kin.read.bodies import MOST_BODIES, ReadSolid, Section, Sought, beside, missing
+from kin.read.bodies import MOST_BODIES, ReadSolid, Section, Sought, beside, demand_reached, missing
 from kin.read.drawing.drawing import CutEntities, drawing_of
 from kin.read.errors import ReadError
 from kin.read.formats import DrawingOptions, contents
@@ -92,7 +92,8 @@ def read_step_bodies(path: Path | str, sought: Sequence[Sought]) -> list[StepSol
 
 def _solid(body: _Body, sought: Sought) -> StepSolid:
     misfit, heights = body.misfit, sought.heights
-    cuts = [body.demand_reached(z) for z in heights] or [body.widest()]
+    demand_reached(body.levels[0], body.levels[-1], heights, body.space.file.path)
+    cuts = list(heights) or [body.widest()]
     drawings = [body.section(z) for z in cuts]
     sections = [Section(drawing.chains, z) for z, drawing in zip(cuts, drawings, strict=True)]
     first = drawings[0]
@@ -179,14 +180,6 @@ class _Body:
     def prism(self) -> bool:
         """Whether all walls stand upright over the whole height."""
         return len(self.levels) == 2 and all(face.surface.level or face.surface.upright for face in self.faces)
-
-    def demand_reached(self, z: float) -> float:
-        """The height z, mm, itself; raises ReadError where the part does not reach there."""
-        low, high = self.levels[0], self.levels[-1]
-        if not low < z < high:
-            message = f"the part reaches from z = {low:.9g} to {high:.9g} mm: it has no section at {z:.9g}"
-            raise ReadError("several", message, self.space.file.path)
-        return z
 
     def widest(self) -> float:
         """Height, mm, midway between two levels, at which the section has the largest area."""
