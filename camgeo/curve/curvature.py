@@ -88,6 +88,7 @@ def enclosed_least_radius(curve: Curve) -> Least:
     possible &= np.isnan(arcs)
     if not possible.any():
         return Least(best, place)
+    # rows 6 and 7 of the cells are the bounds of sigma'' and omega''
     state = _Intervals.of(
         curve, cells.low[possible], cells.high[possible], cells.rows[6, possible], cells.rows[7, possible]
     )

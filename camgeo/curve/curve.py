@@ -386,7 +386,8 @@ def _repeat_cells(part: Cells, stretches: Array) -> Cells:
     low = part.low + (stretches[:, owner, 0] - stretches[0, owner, 0])
     opens = np.flatnonzero(np.diff(owner, prepend=-1))
     low[:, opens] = stretches[:, :, 0]
-    # the parts are one function folded, but their parameters are each rounded
+    # the parts are one function folded, but their parameters are each rounded: bounds are widened as for a small shift.
+    # Rows of speed and turn: 0 and 2 are lower bounds, 1 and 3 upper ones, 4 and 5 those of slopes, 6 and 7 of bends
     rows = part.rows.copy()
     rows[6:] *= 1.0 + SHIFT
     rows[4:6] += SHIFT * rows[6:]

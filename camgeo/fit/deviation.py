@@ -201,7 +201,8 @@ def _bends(samples: _Samples, bounds: Bounds, k: Array) -> tuple[Array, Array, M
     m_bend = bounds.turn_bend + np.abs(k) * bounds.speed_bend
     m_slope = bounds.turn_slope + np.abs(k) * bounds.speed_slope
     m = np.maximum(np.abs(ma), np.abs(mb)) + square * m_bend
-    # beta and f inside the step: limits are assumed with a margin, then confirmed
+    # beta and f inside the step: beta' differs from m by about `lag`; limits are assumed for twice that, and confirmed
+    # if the bound `extra` that follows from them is no more
     size = np.abs(k)
     furthest = np.maximum(np.abs(fa), np.abs(fb))
     first = angle + 0.5 * step * m

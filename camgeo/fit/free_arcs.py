@@ -281,9 +281,9 @@ def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: f
     curvature = arcs.frame.curvature
     reach = _lesser_at_joints(layout, arcs.length)
     scale = np.column_stack([ALONG * reach, np.full(reach.size, aim), aim / reach])
-    half = np.sum(chain.tangent * arcs.chord, axis=1) / arcs.length
-    ahead = arcs.length * half
-    lever = 0.5 * arcs.length / half
+    cosine = np.sum(chain.tangent * arcs.chord, axis=1) / arcs.length  # of half an arc's turn
+    ahead = arcs.length * cosine
+    lever = 0.5 * arcs.length / cosine
     bend0, bend1 = curvature[left] - chain.curvature, curvature[right] - chain.curvature
     lean0, lean1 = joints.lean[left], joints.lean[right]
     ones, kink = np.ones_like(lean0), arcs.miss / arcs.length
@@ -292,7 +292,7 @@ def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: f
     rows = np.zeros((left.size, 3, 8))
     rows[:, 0, 0:3] = np.column_stack([lever * bend0 - lean0 - kink, -ones, lever])
     rows[:, 0, 3:6] = np.column_stack([lever * bend1 + lean1 - kink, ones, lever])
-    rows[:, 0, 7] = -arcs.miss / half
+    rows[:, 0, 7] = -arcs.miss / cosine
     # w and x of the two extremes of each arc
     w = np.sum(peaks.foot**2, axis=2) / (arcs.length**2)[:, None]
     x = np.sum(peaks.foot * chain.tangent[:, None], axis=2) - ahead[:, None] * w
@@ -331,18 +331,18 @@ def _close(layout: _Layout, joints: _Joints, frame: Frame, enough: float) -> _Ar
     left, right = layout.left, layout.left + 1
     free = np.where(layout.ends, 0.0, 1.0)
     arcs = _arcs(layout, joints, frame)
-    # each arc's miss is taken off by its two joints, each by its share of the arc's whole effect
+    # each arc's miss is taken off by its two joints: `effect` is what they take off together for a pull of 1
     for _ in range(CLOSING):
         if not float(np.abs(arcs.miss).max()) > enough:
             break
-        half = np.sum(arcs.chain.tangent * arcs.chord, axis=1) / arcs.length
-        lever = 0.5 * arcs.length / half
+        cosine = np.sum(arcs.chain.tangent * arcs.chord, axis=1) / arcs.length  # of half an arc's turn
+        lever = 0.5 * arcs.length / cosine
         product = np.ones_like(free)
         product[left] *= lever
         product[right] *= lever
         lightness = free / product
-        share = free[left] + free[right] + lever**2 * (lightness[left] + lightness[right])
-        pull = arcs.miss / (half * share)
+        effect = free[left] + free[right] + lever**2 * (lightness[left] + lightness[right])
+        pull = arcs.miss / (cosine * effect)
         off, lean = joints.off.copy(), joints.lean.copy()
         off[left] += free[left] * pull
         off[right] -= free[right] * pull

@@ -31,7 +31,8 @@ def mesh_format(
     """Record of a format whose files hold one mesh each.
 
     numbers  gives the precision of the numbers of a file
-    write    writes one mesh, whose points have that precision: (path, [mesh], title, mm of the unit, about)
+    write    writes one mesh, whose points have that precision: (path, [mesh], title, mm of the unit, `about` of the
+             recipe)
     units    whether a file states its unit
     """
     return Format(

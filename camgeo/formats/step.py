@@ -60,6 +60,8 @@ def write_step(
 ) -> Bound:
     """Write solids in a unit, each a product of its own; returns the proved bound of the written contours, mm.
 
+    `name`, the file's in its header, begins the names of the products; `about` describes them and the file.
+
     Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError
     where a piece is too short for the kernel, an arc is sharper than the chamfer, a cross hole divides a solid, or the
     kernel finds it unsound, TypeError for a chamfer along anything but arcs, OSError where the file cannot be written.

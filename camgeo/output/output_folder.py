@@ -56,7 +56,8 @@ class Family:
     """Kind of a set of files that a run replaces; a recipe's folder may hold several sets, each with its own report.
 
     `report` is the name of the report that lists the files of the set. The names of the files begin with a word of
-    `begins`; where it is empty, with the recipe's name or `report.`. `role` begins the roles of private folders.
+    `begins`; where it is empty, with the recipe's name or `report.`. `role` stands before `lock`, `partial`, `swap` and
+    `undo` in the names of what stands beside that folder.
     """
 
     report: str = REPORT

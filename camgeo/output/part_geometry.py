@@ -31,7 +31,7 @@ def rim_of(body: Body) -> list[LayerOutline]:
 
 
 def openings_of(body: Body) -> list[LayerOutline]:
-    """Outlines that are cut or engraved besides the contours, each on its layer."""
+    """Outlines of a body's openings, cut or engraved, in its order, each on its layer."""
     return [LayerOutline(opening.layer, opening.outline, opening.circle) for opening in body.openings]
 
 
@@ -68,7 +68,7 @@ def part_mesh(
     `outlines` are the outermost one, further contours, then the openings of the body in its order; `precision` is that
     of the file. Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where outlines
     cross or a chamfer is too wide, ModuleNotFoundError where manifold3d is needed and missing, ValueError without a
-    thickness, TypeError for a spline.
+    thickness, TypeError for a spline, and for an outermost outline that is no polygon where prisms are joined.
     """
     if body.thickness is None:
         raise ValueError("a solid needs a thickness")

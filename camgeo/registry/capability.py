@@ -210,7 +210,7 @@ class FileJudge(NamedTuple):
 
 
 def always(value: T) -> Callable[..., T]:
-    """Function that returns this value whatever its arguments."""
+    """Function of any positional arguments that returns this value."""
     return lambda *_: value
 
 

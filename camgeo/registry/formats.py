@@ -69,7 +69,8 @@ class Variant:
     option    the key, whose default is the cam alone; it stands before the options of the format
     offered   whether files of a format have the key
     tag       text behind the recipe's name in the name of the first file of a format
-    check     notes the faults of a file with the option: (request, values of the recipe, reader, path of the file)
+    check     notes the faults of a file with the option: (request, values of the recipe, reader, place of the file in
+              the recipe, such as `export.files[0]`)
     foresee   refuses what is certain to be refused, before anything is fitted
     make      writes and judges the files: (job, request, path of the first file)
     """
@@ -100,8 +101,9 @@ class Alteration:
 
     option    the key, a number whose default leaves the part as it is; it stands before the options of the format
     offered   whether files of a format have the key
-    check     notes the faults of a file with another number: (request, values of the recipe, reader, path of the file)
-    alter     gives a cam altered by the number: (recipe, design, that cam, the number, scale at which it is drawn);
+    check     notes the faults of a file with another number: (request, values of the recipe, reader, place of the
+              file in the recipe, such as `export.files[0]`)
+    alter     gives the altered cam: (recipe, design, cam to be altered, the number, scale at which it is drawn);
               raises CallError in the words of the recipe for what cannot be altered, OSError where a file that it
               needs cannot be read
     """

@@ -161,7 +161,7 @@ class Field:
                 return f"{noun}{self._bounds()}"
 
     def out_of_bounds(self, value: float) -> str:
-        """Bound that a number breaks, in words: `above 99`; empty for a number within the bounds."""
+        """Bound that a number breaks, in words: `above 99`, `an even number` where odd ones are taken; else empty."""
         if self.above is not None and value <= self.above:
             return f"not above {self.above:.10g}"
         if self.at_least is not None and value < self.at_least:
@@ -238,8 +238,9 @@ def field_at(root: FieldTable, path: str, kinds: Mapping[str, str]) -> Field | N
         tables = field.form.tables if field.form else None
         instead = field.form.instead if field.form else None
         if tables is None:
-            lists = field.table.fields if field.table else ()
-            table = FieldTable((*lists, *instead.fields)) if instead else field.table
+            # of a list in whose place a mapping may stand: the fields of an entry of the list, and those of the mapping
+            of_entry = field.table.fields if field.table else ()
+            table = FieldTable((*of_entry, *instead.fields)) if instead else field.table
         elif field.name in kinds:
             table = tables.get(kinds[field.name])
         else:

@@ -32,9 +32,9 @@ def contact_table(
 
     `motion` has names and rows of the motion table, over equal steps of the shaft. The columns of a contact are the
     radius of curvature of the metal, below 0 in a hollow and nan where it is straight, the pressure angle in degrees,
-    above 0 where the cam pushes the follower out, and x and y of the place of contact. All are nan where a trimmed cam
-    is not touched. At a break the radius is that after it, at the end of the turn that before it. Raises ValueError
-    where a failed check prevents the contour.
+    above 0 where the cam pushes the follower out, and x and y of the place of contact; lengths are in the recipe's
+    unit. All are nan where a trimmed cam is not touched. At a break the radius is that after it, at the end of the turn
+    that before it. Raises ValueError where a failed check prevents the contour.
     """
     from camgeo.curve.measures import touched
 

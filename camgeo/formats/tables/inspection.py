@@ -29,14 +29,15 @@ NOTHING = 1e-14  # of a direction or of the cam's size: rounding about a coordin
 
 
 def inspection_table(recipe: Recipe, design: Design, step: float | None = None) -> tuple[tuple[str, ...], Array]:
-    """Column names and rows (angles + 1, k) over equal steps of the shaft; nan where nothing is touched.
+    """Column names and rows (angles + 1, k) over equal steps of the shaft, in the recipe's unit of length and degrees.
 
     `step`, rad, replaces a turn over `verify.angles`.
 
-    Each contact has its place, as x and y and as radius and polar angle, the outward normal with its direction, and
-    with `manufacture` the centre of the cutter that touches the same point. Of two rollers or faces the columns of A
-    come first, of several surfaces those of the first. Raises ValueError for a design without a contour, or with a
-    linkage that does not turn right round.
+    First come the shaft angle, with a linkage the relative angle too, and the follower's position. Each contact has its
+    place, as x and y and as radius and polar angle, the outward normal with its direction, and with `manufacture` the
+    centre of the cutter that touches the same point; all are nan where a trimmed cam is not touched. Of two rollers or
+    faces the columns of A come first, of several surfaces those of the first. Raises ValueError for a design without a
+    contour, or with a linkage that does not turn right round.
     """
     if not design.contours:
         raise ValueError(f"{recipe.name}: there is no contour to inspect")
