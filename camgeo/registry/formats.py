@@ -104,8 +104,8 @@ class Alteration:
     check     notes the faults of a file with another number: (request, values of the recipe, reader, place of the
               file in the recipe, such as `export.files[0]`)
     alter     gives the altered cam: (recipe, design, cam to be altered, the number, scale at which it is drawn);
-              raises CallError in the words of the recipe for what cannot be altered, OSError where a file that it
-              needs cannot be read
+              raises CallError in the words of the recipe for what cannot be altered, RecipeErrors for a file that it
+              needs and that does not serve, OSError where such a file cannot be read
     """
 
     option: Field
