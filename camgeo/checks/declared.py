@@ -85,12 +85,13 @@ OfFile: TypeAlias = "Callable[[CheckFacts, FileRequest], bool]"
 class Declared:
     """Declaration of one check.
 
-    units      units that it may have, lengths as mm exact      whether it is made for the exact cam, its motion and
-    mechanism; None: never of_file    whether it is made for a file; None: never why_not    reason why it is not made,
-    for the report; empty where it is made or no reason is reported field      path of the recipe's field that
-    influences it most; `own_field` replaces it where the recipe has that remedy     sentence on a change that would let
-    it hold, empty where none is known; None: there is none, or the detail
-               of the check has it
+    units      units that it may have, lengths as mm
+    exact      whether it is made for the exact cam, its motion and mechanism; None: never
+    of_file    whether it is made for a file; None: never
+    why_not    reason why it is not made, for the report; empty where it is made or no reason is reported
+    field      path of the recipe's field that influences it most; `own_field` replaces it where the recipe has that
+    remedy     sentence on a change that would let it hold, empty where none is known; None: there is none, or the
+               detail of the check has it
     backlash   whether it concerns the play between contour and follower
     between    whether it is made once for a pair of discs, with the last of their files
     in_frame   whether with a linkage it concerns the cam in its frame, so that its place is the relative angle

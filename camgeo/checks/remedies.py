@@ -75,12 +75,13 @@ def lone_ring(recipe: Recipe) -> bool:
 
 
 def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Remedy for too thin a wall: a smaller bore, or for a ring a larger outline.
+    """Remedy for too thin a wall: a smaller bore, or for a ring too thin about its opening a larger outline.
 
-    Empty for other parts, whose check names the edges, and where no bore would be left.
+    Empty for other parts, whose check names the edges, and where the detail has a remedy or no bore would be left.
     """
     value, limit, part = check["value"], check["limit"], recipe.part
     detail = check.get("detail", "")
+    # a wall between opening and outline is too thin, and the detail does not end with what would do
     outline = part.outer is not None and "opening and outline: " in detail and not detail.endswith(" would do")
     if value is None or limit is None or not (part.plain or outline or lone_ring(recipe)):
         return ""
@@ -211,8 +212,9 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
     elif figure in {figures.RADIUS, figures.HOLLOW_RADIUS} and advice.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
         roller, hollow = advice.radius / recipe.mm, figure == figures.HOLLOW_RADIUS
-        wider = recipe.cam.side > 0 and roller + lack < advice.most_radius / recipe.mm
-        if wider if hollow else lack < roller:  # in a ring it is the base radius that makes hollows wider
+        may_grow = recipe.cam.side > 0 and roller + lack < advice.most_radius / recipe.mm
+        # a larger roller widens hollows, in a ring the base radius does; a smaller one, if any is left, convex places
+        if may_grow if hollow else lack < roller:
             remedy = f"a {advice.radius_field} of {upward(roller + lack) if hollow else downward(roller - lack)} {unit}"
             remedy += advice.same_pitch(recipe.mm)
     elif figure == figures.RADIUS:

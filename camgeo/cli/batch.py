@@ -134,5 +134,8 @@ def folder_conflicts(recipes: Sequence[Order]) -> list[str]:
 
 
 def failed_entry(recipe: str, message: str, errors: Sequence[RecipeError]) -> dict[str, object]:
-    """Entry in place of a report for a recipe that has none, with its errors."""
+    """Entry in place of a report for a recipe that has none, with its errors, else the message as the only one.
+
+    `recipe` is its name or its path.
+    """
     return {"recipe": recipe, "ok": False, "errors": [asdict(error) for error in errors] or [{"problem": message}]}

@@ -268,8 +268,9 @@ class _Search:
 
     def _first_look(self, cells: _Cells, meeting: Encounter) -> list[_Cells]:
         """Find D among all pairs of features; the intervals that the greatest speed leaves open, with their pairs."""
-        nowhere = np.full(len(cells.phi), np.nan)
-        views = see(meeting, meeting.near(nowhere, cells.half * 0.0), 0.25 * self.accuracy, whole=True)
+        # no D is known yet: pairs are chosen by the distances of features at the middles
+        unknown_size = np.full(len(cells.phi), np.nan)
+        views = see(meeting, meeting.near(unknown_size, cells.half * 0.0), 0.25 * self.accuracy, whole=True)
         self._take(cells.phi, views)
         lower = np.maximum(cells.lower, views.value - views.doubt - cells.half * meeting.fastest)
         open_ = self._open(lower)

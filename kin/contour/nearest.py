@@ -37,7 +37,7 @@ def nearest(arcs: Arcs, points: Array) -> tuple[Indices, Array]:
 
 
 def _foot(arcs: Arcs, points: Array) -> tuple[Indices, Array, Array]:
-    """The piece nearest to chosen of the points (m, 2), the foot's arc length on it, and the distance, (m,) chosen."""
+    """The piece nearest to each of the points (m, 2), the foot's arc length on it, and the distance, (m,) each."""
     if len(arcs) * len(points) <= FEW_PAIRS:
         shape = len(points), len(arcs)
         every = arcs.take(np.tile(np.arange(shape[1]), shape[0]))

@@ -64,7 +64,10 @@ class ResponseFigure:
         return value
 
     def together(self, starts: Array, x: Array, polynomials: Array) -> Array:
-        """Values (m, n) at the same x (n,) in [-1, 1] of all m stretches; `polynomials` (DEGREE + 1, n) of these x."""
+        """Values (m, n) of the figure at the same x (n,) in [-1, 1] of all m stretches.
+
+        `starts` (2, m) are the states at the starts of the stretches, `polynomials` (DEGREE + 1, n) Chebyshev's at x.
+        """
         first, second = self._free(starts)
         cosine, sine = self.response.oscillator.basis(self.response.half[:, None] * (1.0 + x))
         values: Array = self.series @ polynomials + first[:, None] * cosine + second[:, None] * sine

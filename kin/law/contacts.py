@@ -215,6 +215,8 @@ class Arrangement:
     def offers(self) -> frozenset[str]:
         """Names of the properties that decide which figures and options the follower has.
 
+        Contacts are counted on each disc: followers of a pair of discs have one, also where both are on one arm.
+
         swings          two contacts on one arm
         plate           two faces on a line of travel, as a linkage's frame has
         guided          neither `swings` nor `plate`: a stem or an arm of its own

@@ -130,14 +130,14 @@ def _demand_within(
 def _polar(
     ratio: tuple[int, int, float], stretches: Sequence[FromExpression], places: Sequence[float], field: str
 ) -> Transmission:
-    """Make the law of a ratio and an arm, (lam, mu, l), from stretches over t from 0 to delta or to 2 delta."""
+    """Make the law of a ratio and an arm, (lam, mu, l), from stretches in t between `places`, 0 to delta or 2 delta."""
     lam, mu, arm = ratio
     alpha, delta = math.pi * mu / lam, math.pi / lam
     whole = places[-1] > 1.5 * delta
     if whole and len(stretches) == 1 and _runs_on(stretches[0], 2 * delta):
-        motion = [_at_rest(stretches[0], 0.0)]
-        over = Piecewise(np.array(places), tuple(motion), 2 * delta, smooth_seam=True)
-        return checked(Transmission(lam, mu, arm, over, (0.5,), alpha / 2), [0.0, delta], motion, field)
+        one_stretch = [_at_rest(stretches[0], 0.0)]
+        whole_psi = Piecewise(np.array(places), tuple(one_stretch), 2 * delta, smooth_seam=True)
+        return checked(Transmission(lam, mu, arm, whole_psi, (0.5,), alpha / 2), [0.0, delta], one_stretch, field)
     count = sum(place < delta * (1 - _CLEAR) for place in places)
     knots = [*places[:count], delta]
     functions: list[Stretch] = [_at_rest(f, low) for f, low in zip(stretches[:count], knots, strict=False)]

@@ -151,7 +151,10 @@ class FromArc:
 
 @dataclass(frozen=True)
 class FromLeaf:
-    """Psi = 2 asin(|OQ|/2l), with |OQ| given over x = (t - start)/delta (W section 5)."""
+    """Psi = 2 asin(|OQ|/2l), with |OQ| given by `leaf` over x = (t - start)/delta (W section 5).
+
+    |OQ|/2l is the leaf's value times `scale`: its unit, mm, over 2 l.
+    """
 
     leaf: Expression
     scale: float
@@ -159,14 +162,17 @@ class FromLeaf:
     delta: float
 
     def __call__(self, t: Series, /) -> Series:
-        """Give psi over the polar angle t; `scale` is the leaf's unit over 2 l."""
+        """Give psi over the polar angle t."""
         distance: Series = self.leaf.on((t - self.start) / self.delta)
         return asin(distance * self.scale) * 2.0
 
 
 @dataclass(frozen=True)
 class FromExpression:
-    """Psi from a formula over the polar angle t: of D/l^2 (W 5.10) or, where `is_distance`, of r/2l (W 4.10)."""
+    """Psi from a formula over the polar angle t: of D/l^2 (W 5.10) or, where `is_distance`, of r/2l (W 4.10).
+
+    Either is the formula's value times `scale`: its unit, mm^2 or mm, over l^2 or 2 l.
+    """
 
     formula: Expression
     scale: float
@@ -174,6 +180,6 @@ class FromExpression:
     is_distance: bool
 
     def __call__(self, t: Series, /) -> Series:
-        """Give psi over the polar angle t; `scale` is the formula's unit over l^2 or 2 l."""
+        """Give psi over the polar angle t."""
         value: Series = self.formula.on(t) * self.scale
         return acos(value) * 2.0 - self.alpha if self.is_distance else -asin(value)

@@ -122,13 +122,13 @@ def _scan(extremes: Extremes, block: _Block, resolution: float) -> tuple[Extreme
     x, value, doubt = _cubic(high - low, at_low, at_high)
     trusted = doubt <= resolution
     values = np.stack([at_low[0], at_high[0], *np.where(trusted, value, at_low[0])])
-    for i, rising in ((int(values.argmax()), True), (int(values.argmin()), False)):
+    for i, of_greatest in ((int(values.argmax()), True), (int(values.argmin()), False)):
         which, k = divmod(i, len(low))
         share = (0.0, 1.0, *x[:, k])[which]
         at = float(high[k] if which == 1 else low[k] + share * (high[k] - low[k]))
-        if rising and values[which, k] > extremes.greatest:
+        if of_greatest and values[which, k] > extremes.greatest:
             extremes = replace(extremes, greatest=float(values[which, k]), greatest_at=at, greatest_index=int(owner[k]))
-        if not rising and values[which, k] < extremes.least:
+        if not of_greatest and values[which, k] < extremes.least:
             extremes = replace(extremes, least=float(values[which, k]), least_at=at, least_index=int(owner[k]))
     if trusted.all():
         return extremes, ~trusted

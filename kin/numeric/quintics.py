@@ -68,18 +68,19 @@ class Quintics:
     def extremes(self, begin: float, end: float, resolution: float) -> Extremes:
         """Extremes from x = `begin` to `end`, less than a period on, to a resolution.
 
-        Places are in the period from x[0] to x[-1]; indices count intervals from the one that holds `begin`. Raises
-        UnsettledError where rounding makes the function rougher than the resolution.
+        They are those of the whole period where `end` lies so far on that all intervals are met. Places are in the
+        period from x[0] to x[-1]; indices count intervals from the one that holds `begin`. Raises UnsettledError where
+        rounding makes the function rougher than the resolution.
         """
         (first, last), (x, y) = self._place(np.array([begin, end]), 1)
         count = len(self.x) - 1
         further = int(last - first) % count
-        if further == 0 and y < x:
+        if further == 0 and y < x:  # a period on, but for less than an interval
             further = count - 1
         interval = (first + np.arange(further + 1)) % count
         low, high = self.x[interval], self.x[interval + 1]
         at_low, at_high = self.low[:, interval], self.high[:, interval]
-        if further < count - 1:
+        if further < count - 1:  # else the whole period: no interval is cut off at `begin` and `end`
             ends = self.within(np.array([first, last]), np.array([x, y]), 2)
             low[0], at_low[:, 0], high[-1], at_high[:, -1] = x, ends[:, 0], y, ends[:, 1]
         return extremes(low, high, at_low, at_high, lambda x, k: self.within(interval[k], x, 2), resolution=resolution)

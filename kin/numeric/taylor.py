@@ -57,11 +57,12 @@ def ball_product(a: Ball, b: Ball) -> Ball:
         right[:, 0], right[:, 1], right[:, 2] = b.mid, b.rad + unit * q, sizes[1]
         product_rows = product(left, right)
         mid, rad = product_rows[:, 0], (product_rows[:, 1] + product_rows[:, 2]) * (1 + 4 * unit)
+        # Products that underflow are allowed for in the rows from `low` to `high`, those that need not be exactly 0.
         live = np.any(sizes, axis=2)
         if live.any(axis=1).all():
             low, high = live.argmax(axis=1).sum(), 2 * size - 1 - live[:, ::-1].argmax(axis=1).sum()
             rad[low:high] += 64 * np.minimum(sizes.max(axis=1).min(axis=0), 1e-300)
-        if not np.isfinite(rad).all():
+        if not np.isfinite(rad).all():  # a ball beyond all numbers is the whole line
             sound = np.isfinite(rad)
             mid, rad = np.where(sound, mid, 0.0), np.where(sound, rad, np.inf)
         return Ball(mid, rad)

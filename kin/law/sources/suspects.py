@@ -182,7 +182,7 @@ def _together(rows: Tabled, plain: Least, i: int, j: int) -> bool:
 def spanned(rows: Tabled, place: int) -> int:
     """Number of rows in the stroke, a monotone run of values, to which the row of index `place` belongs, with it.
 
-    For a row between two strokes of opposite sense, a peak, it is that of the shorter stroke.
+    For a row between two strokes of opposite sense, a peak, it is that of the shorter stroke, the peak left out.
     """
     n = len(rows.s)
     sides = []

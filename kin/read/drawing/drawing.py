@@ -203,7 +203,7 @@ def demand_one_plane(heights: Array, most: float, path: Path) -> None:
 
 
 def extent(pieces: Pieces) -> float:
-    """Return the greater side of a box round the pieces, mm, to within a half: how large a drawing is."""
+    """Greater side, mm, of a box round the ends and middles of the pieces: about the size of a drawing, never more."""
     every = np.arange(len(pieces))
     points = [pieces.start, pieces.end, pieces.points(every, np.full(every.size, 0.5))]
     return float(np.ptp(np.concatenate(points), axis=0).max())

@@ -241,7 +241,8 @@ class _Model:
         if self.mm is None:
             raise self._fault("there is no model in it")
         objects = []
-        self.room = MOST_TRIANGLES + sum(len(item.corners) for item in self.objects.values())  # three corners each
+        # besides each mesh of the file three times: `corners` has three entries for each of its triangles
+        self.room = MOST_TRIANGLES + sum(len(item.corners) for item in self.objects.values())
         for name, place in self.items:
             item = self._named(name)
             if not item.printed:
