@@ -14,10 +14,11 @@ from camgeo.common.units import UNIT_MM
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.registry.root import root_of
+from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
     from os import PathLike
     from pathlib import Path
 
@@ -43,15 +44,15 @@ def export(
     lists them; True adds further checks. A check that fails raises nothing: `ok` of the report is False then. Raises
     RecipeErrors where there is no such cam or a tolerance cannot be held, SurroundingsError where the disk refuses or a
     package is missing, BusyError where another run of this name is at work, CallError where the recipe lists no file of
-    the kinds `only`, TypeError for an unknown option.
+    one of the kinds `only`, TypeError for an unknown option.
     """
     recipe = order_of(recipe)
     demand_callable("progress", progress)
     used = _with_options("export", recipe, options)
     only, folder = texts_of("only", only), path_of("out", out)
     listed = {request.kind for request in recipe.export.files}
-    faults = [_fault_of_kind(kind) for kind in only if kind not in listed]
-    if faults and not listed.intersection(only):
+    faults = [_fault_of_kind(kind, listed) for kind in dict.fromkeys(only) if kind not in listed]
+    if faults:
         raise CallError(*faults)
     progress_log = stage_reporter(recipe, progress)
     outcome = root_of(used).export(used, folder, only, progress_log)
@@ -216,10 +217,12 @@ def _log(report: Report) -> Report:
     return report
 
 
-def _fault_of_kind(kind: str) -> str:
+def _fault_of_kind(kind: str, listed: Collection[str]) -> str:
+    """Message on a kind of file that is none, with the nearest one, or that is not among those `listed`."""
     if kind not in FORMATS:
-        return f"a kind of file is one of {', '.join(FORMATS)}, not {short_repr(kind)}"
-    return f"export.files lists no {kind}"
+        near = suggestion(kind, FORMATS)
+        return f"a kind of file is one of {', '.join(FORMATS)}, not {short_repr(kind)}{near and f'; {near}'}"
+    return f"export.files lists no {kind}; it lists {', '.join(name for name in FORMATS if name in listed)}"
 
 
 def _is_drawing(path: Path) -> bool:

@@ -257,13 +257,14 @@ def _watch(arguments: argparse.Namespace) -> int:
     def export_page() -> tuple[str | None, str]:
         try:
             recipe = load_order(path)
+            files[:] = [path, *recipe.parts]
+            requests = [request for request in recipe.export.files if not request.format.summary]
+            page = FileRequest("html")
+            recipe = replace(recipe, export=replace(recipe.export, files=(*requests, page)))
+            _demand_listed(recipe, only)
         except RecipeErrors as errors:
             complain(str(errors))
             return None, str(errors)
-        files[:] = [path, *recipe.parts]
-        requests = [request for request in recipe.export.files if not request.format.summary]
-        page = FileRequest("html")
-        recipe = replace(recipe, export=replace(recipe.export, files=(*requests, page)))
         outcome = result(_with_tolerance(recipe, arguments.tolerance), BatchTask(out, only))
         if outcome.report is None:
             complain(outcome.message)
@@ -284,7 +285,7 @@ def _watch(arguments: argparse.Namespace) -> int:
 def _load_recipes(
     paths: Sequence[str], tolerance: str | None, only: Sequence[str]
 ) -> tuple[list[Order], dict[int, Entry]]:
-    """Recipes without fault that list a file of a kind in `only`, and an entry of the report for each other path.
+    """Recipes without fault that list a file of each kind in `only`, and an entry of the report for each other path.
 
     The entries are by the places of the paths in the call; the faults are written to the terminal.
     """
@@ -296,14 +297,20 @@ def _load_recipes(
     for i, path in enumerate(paths):
         try:
             recipe = load_order(path)
-            if only and not any(request.kind in only for request in recipe.export.files):
-                raise recipe.error("export.files", f"lists no {' or '.join(only)}, which --only requests")
+            _demand_listed(recipe, only)
         except RecipeErrors as errors:
             complain(str(errors))
             refused[i] = failed_entry(path, str(errors), errors.errors)
             continue
         recipes.append(_with_tolerance(recipe, tolerance))
     return recipes, refused
+
+
+def _demand_listed(recipe: Order, only: Sequence[str]) -> None:
+    """Raise RecipeErrors, at `export.files`, for kinds in `only` of which the recipe lists no file."""
+    listed = {request.kind for request in recipe.export.files}
+    if missing := [kind for kind in dict.fromkeys(only) if kind not in listed]:
+        raise recipe.error("export.files", f"lists no {' or '.join(missing)}, which --only requests")
 
 
 def _with_tolerance(recipe: O, tolerance: str | None) -> O:

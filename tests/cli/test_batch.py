@@ -57,6 +57,12 @@ def test_a_kind_that_no_file_has_is_in_the_json(capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.usefixtures("recipes")
+def test_each_kind_of_a_call_is_one_that_the_recipe_lists(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "--only", "dxf", "--only", "stl", "sound.yaml"]) == 2
+    assert capsys.readouterr().err == "sound.yaml:2:34: export.files: lists no stl, which --only requests\n"
+
+
+@pytest.mark.usefixtures("recipes")
 def test_one_recipe_twice_is_called_that(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", "sound.yaml", "./sound.yaml"]) == 2
     said = "camgeo: sound.yaml: the same recipe is named twice in this call; name it once\n"

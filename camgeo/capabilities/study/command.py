@@ -49,8 +49,8 @@ def _seconds(text: str) -> float:
 def run(arguments: argparse.Namespace) -> int:
     """Study one recipe; return the exit status.
 
-    0 if all checks of the exact cam and of every file hold, 1 if one fails, 3 if the disk refuses. Raises RecipeErrors
-    for a wrong recipe, for which the command exits with 2.
+    0 if all checks of the exact cam and of every file hold, 1 if one fails, 3 if the disk refuses or a missing package
+    leaves the picture out. Raises RecipeErrors for a wrong recipe, for which the command exits with 2.
     """
     from camgeo.capabilities.study.document import document, table
     from camgeo.capabilities.study.margins import margins
@@ -82,7 +82,8 @@ def run(arguments: argparse.Namespace) -> int:
         say_json(as_json(study))
     else:
         say(f"{recipe.name}\n{table(study)}")
-    return OK if ok else FAILED
+    left_out = any(entry.get("missing") for entry in study["skipped"])
+    return FAILED if not ok else SURROUNDINGS if left_out else OK
 
 
 def _climb_all(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | End]:
@@ -120,7 +121,7 @@ def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> Non
                 (run.folder / PICTURE).write_bytes(files[PICTURE])
         except ModuleNotFoundError as error:
             why = f"the package {error.name} is missing: {install('study')}"
-            study["skipped"].append({"what": PICTURE, "why": why})
+            study["skipped"].append({"what": PICTURE, "why": why, "missing": True})
         study["files"] = [file_entry(name, data) for name, data in files.items()]
         (run.folder / REPORT).write_text(as_json(study), encoding="utf-8", newline="\n")
         if ok:

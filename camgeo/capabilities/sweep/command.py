@@ -41,8 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe; return the exit status.
 
-    0 if a design keeps the limits, 1 if none does, 3 if the surroundings fail, 130 if interrupted. Raises RecipeErrors
-    for a wrong recipe, for which the command exits with 2.
+    0 if a design keeps the limits, 1 if none does, 3 if the surroundings fail or a missing package leaves files out, 130
+    if interrupted. Raises RecipeErrors for a wrong recipe, for which the command exits with 2.
     """
     from camgeo.capabilities.sweep.task import EXACT, SweepTask
     from camgeo.recipe.loading import load
@@ -96,7 +96,8 @@ def _search(task: SweepTask, arguments: argparse.Namespace) -> tuple[SweepOutcom
         return None, f"{path}: {error.strerror or error}; {resume}", SURROUNDINGS
     finally:
         progress.clear()
-    return outcome, "", OK if outcome.report["ok"] else FAILED
+    left_out = any(entry.get("missing") for entry in outcome.report["skipped"])
+    return outcome, "", FAILED if not outcome.report["ok"] else SURROUNDINGS if left_out else OK
 
 
 def missing_package(error: ModuleNotFoundError) -> str:

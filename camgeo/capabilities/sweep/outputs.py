@@ -212,10 +212,10 @@ def as_parquet(heads: Columns, about: dict[str, str]) -> bytes:
 
 @dataclass()
 class Files:
-    """Bytes of files by name, and entries `what`, `why` for those left out."""
+    """Bytes of files by name, and entries `what`, `why` for those left out; with `missing` for want of a package."""
 
     contents: dict[str, bytes] = field(default_factory=dict)
-    skipped: list[dict[str, str]] = field(default_factory=list)
+    skipped: list[dict[str, str | bool]] = field(default_factory=list)
 
     def add(self, names: Sequence[str], write: Callable[[], Sequence[bytes]]) -> None:
         """Add files with the contents that `write` returns in the order of `names`; skip them without a package."""
@@ -223,7 +223,7 @@ class Files:
             self.contents.update(zip(names, write(), strict=True))
         except ModuleNotFoundError as error:
             why = f"the package {error.name} is missing: {EXTRA}"
-            self.skipped.append({"what": ", ".join(names), "why": why})
+            self.skipped.append({"what": ", ".join(names), "why": why, "missing": True})
 
 
 def outputs(

@@ -114,6 +114,19 @@ def test_a_rung_of_two_discs_is_of_both_files(tmp_path: Path) -> None:
     assert not rung.failed
 
 
+def test_a_picture_left_out_for_want_of_a_package_exits_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def without(_study: object) -> None:
+        raise ModuleNotFoundError(name="matplotlib")
+
+    monkeypatch.setattr("camgeo.capabilities.study.picture.picture", without)
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\nverify: {angles: 90}\n")
+    assert main.main(["study", str(recipe), "--form", "arcs", "--patience", "0.001", "--out", str(tmp_path)]) == 3
+    skipped = json.loads((tmp_path / "cam" / "study.json").read_text(encoding="utf-8"))["skipped"]
+    why = "the package matplotlib is missing: pip install '.[study]' in a clone of camgeo"
+    assert skipped[1:] == [{"what": "study.png", "why": why, "missing": True}]
+
+
 @pytest.mark.slow
 def test_a_study_of_two_discs_says_of_which_a_figure_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recipe = str(RECIPES / "conjugate-stem.yaml")

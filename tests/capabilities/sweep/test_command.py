@@ -72,6 +72,24 @@ def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.Capture
 
 
 @pytest.mark.usefixtures("no_pictures")
+@pytest.mark.parametrize(("margin", "status"), [(1.0, 3), (99.0, 1)])
+def test_a_file_left_out_for_want_of_a_package_exits_3(
+    margin: float,
+    status: int,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def without(*_arguments: object) -> None:
+        raise ModuleNotFoundError(name="pyarrow")
+
+    monkeypatch.setattr("camgeo.capabilities.sweep.outputs.as_parquet", without)
+    assert main(["sweep", str(written(tmp_path, margin=margin)), "--out", str(tmp_path / "out")]) == status
+    why = "the package pyarrow is missing: pip install '.[sweep]' in a clone of camgeo"
+    assert capsys.readouterr().err == f"camgeo: four-bar: without sweep.parquet: {why}\n"
+
+
+@pytest.mark.usefixtures("no_pictures")
 def test_json_is_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "--json"]) == 0
     report = json.loads((tmp_path / "out" / "four-bar" / "sweep.json").read_text(encoding="utf-8"))

@@ -109,7 +109,7 @@ def test_what_a_missing_package_leaves_out_is_told(
         monkeypatch.setattr(outputs, name, without)
     report = search(task(), tmp_path, Workers(1), PROCEDURES).report
     why = f"the package {package} is missing: pip install '.[sweep]' in a clone of camgeo"
-    assert report["skipped"] == [{"what": what, "why": why} for what in left_out]
+    assert report["skipped"] == [{"what": what, "why": why, "missing": True} for what in left_out]
     assert (tmp_path / "four-bar" / "best-1.yaml").exists()
     assert (tmp_path / "four-bar" / "sweep.csv").exists()
 
