@@ -41,8 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe; return the exit status.
 
-    0 if a design keeps the limits, 1 if none does, 3 if the surroundings fail or a missing package leaves files out, 130
-    if interrupted. Raises RecipeErrors for a wrong recipe, for which the command exits with 2.
+    0 if a design keeps the limits, 1 if none does, 3 if the surroundings fail or a missing package leaves files out,
+    130 if interrupted. Raises RecipeErrors for a wrong recipe, for which the command exits with 2.
     """
     from camgeo.capabilities.sweep.task import EXACT, SweepTask
     from camgeo.recipe.loading import load
