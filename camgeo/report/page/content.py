@@ -11,7 +11,7 @@ from camgeo.registry import registry
 from camgeo.report.page import curves, guided, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, faces, flat, flat_pair
 from camgeo.report.page.overlays import Stage, overlay_bodies
-from camgeo.report.page.scene import CONTACTS, FilledShape, MovingBody, Scene, pivot
+from camgeo.report.page.scene import CONTACTS, STEPS, FilledShape, MovingBody, Scene, pivot
 from camgeo.synthesis.view import Drawer, Round, View, entry, view_of
 from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 from kin.numeric.angles import TURN
@@ -55,10 +55,19 @@ class FileError:
 
 @dataclass(frozen=True, eq=False)
 class Traced:
-    """Points and outward normals (STEPS, 2) of an exact contour in the cam's axes, at one place in each step."""
+    """Points and outward normals (STEPS, 2) of an exact contour in the cam's axes, at one place in each step.
+
+    That of step k is at the shaft angle ``(k + share) / STEPS`` of a turn, the share from 0 to 1/2.
+    """
 
     point: Array
     normal: Array
+    share: float
+
+    def at(self, angle: float) -> tuple[float, float]:
+        """The point (x, y) nearest to a shaft angle, degrees."""
+        x, y = self.point[round(angle / 360.0 * STEPS - self.share) % STEPS].tolist()
+        return x, y
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,11 +111,11 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
         replace(alike[0], name=", ".join(error.name for error in alike))
         for alike in curves.group_alike(errors, FileError.like)
     )
-    # the exact contours as they are drawn, at one of the `per` places in each step
+    # the exact contours as they are drawn, at one of the `per` places in each step: the middle, or the last before it
     flip = np.array([1.0, -1.0 if recipe.rotation == "ccw" else 1.0])
     middle = slice(per // 2, None, per)
     contours = {
-        name: Traced(exact.point[middle] * flip / recipe.mm, exact.normal[middle] * flip)
+        name: Traced(exact.point[middle] * flip / recipe.mm, exact.normal[middle] * flip, per // 2 / per)
         for name, exact in exacts.items()
     }
     rests = tuple(curves.rests(recipe, design))

@@ -140,7 +140,7 @@ def _marks(content: Content, report: dict[str, Any]) -> list[dict[str, Any]]:
         if entry["at_deg"] is None:
             continue
         contour = content.contours[entry.get("surface", next(iter(content.contours)))]
-        x, y = contour.point[round(entry["at_deg"] / 360.0 * STEPS - 0.5) % STEPS].tolist()
+        x, y = contour.at(entry["at_deg"])
         text = entry.get("sentence") or headline(entry)
         marks.append({"name": entry["name"], "kind": kind, "at_deg": entry["at_deg"], "x": x, "y": y, "text": text})
     return marks
