@@ -228,7 +228,8 @@ def _roller(recipe: Recipe, design: Design) -> RuleRemark | None:
         return None
     size = design.exact.rounder_pitch(surface, recipe.mm)
     if recipe.cam.sizes:
-        size = recipe.cam.advice.on(surface).rounder(radius / recipe.mm, roller / recipe.mm, UNIT_NAMES[recipe.units])
+        unit = UNIT_NAMES[recipe.units]
+        size = recipe.cam.advice.on(surface).rounder(HALF * radius / recipe.mm, roller / recipe.mm, unit)
     if not size:
         return None
     where = f" on {surface}" if sharpest.surface.disc else ""

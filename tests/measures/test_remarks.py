@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -43,6 +44,21 @@ INCH = "units: inch\ncam: {kind: support, p: 1.5 + 0.1*cos(2*t)}\n"
 KEYED = "part: {bore: %s, keyway: %s}\n"
 
 
+SIZED_PAIR = """\
+units: inch
+cam:
+  kind: disc
+  sizing: {pressure-angle: {at_most: 30}}
+  follower: {kind: roller, radius: 0.35}
+  conjugate: {radius: %s, distance: 5, gap: 0.1}
+  motion:
+    - {rise: 1, over: 100, law: polynomial-4567}
+    - {dwell: 40}
+    - {return: 1, over: 140, law: polynomial-4567}
+    - {dwell: 80}
+"""
+
+
 def remarks(text: str) -> list[RuleRemark]:
     recipe = load_text(text, "cam.yaml")
     return list(remarks_of(recipe, designed(recipe)))
@@ -50,6 +66,15 @@ def remarks(text: str) -> list[RuleRemark]:
 
 def names(text: str) -> list[str]:
     return [remark.name for remark in remarks(text)]
+
+
+def test_a_large_second_roller_of_a_sized_pair_is_told_the_radius_that_keeps_the_rule() -> None:
+    (remark,) = remarks(SIZED_PAIR % 1.1)
+    assert remark.name == "large-roller"
+    keeping = re.search(r"which a conjugate\.radius below (\S+) in keeps$", remark.sentence)
+    assert keeping
+    assert names(SIZED_PAIR % (float(keeping[1]) + 0.001)) == ["large-roller"]
+    assert names(SIZED_PAIR % keeping[1]) == []
 
 
 @pytest.mark.parametrize("text", [FLAT, PAIR, LINKED, INCH, ROLLER.replace("625", "300")])
