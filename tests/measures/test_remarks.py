@@ -69,12 +69,11 @@ def names(text: str) -> list[str]:
 
 
 def test_a_large_second_roller_of_a_sized_pair_is_told_the_radius_that_keeps_the_rule() -> None:
-    (remark,) = remarks(SIZED_PAIR % 1.1)
-    assert remark.name == "large-roller"
+    (remark,) = (remark for remark in remarks(SIZED_PAIR % 1.1) if remark.name == "large-roller")
     keeping = re.search(r"which a conjugate\.radius below (\S+) in keeps$", remark.sentence)
     assert keeping
-    assert names(SIZED_PAIR % (float(keeping[1]) + 0.001)) == ["large-roller"]
-    assert names(SIZED_PAIR % keeping[1]) == []
+    assert "large-roller" in names(SIZED_PAIR % (float(keeping[1]) + 0.001))
+    assert "large-roller" not in names(SIZED_PAIR % keeping[1])
 
 
 @pytest.mark.parametrize("text", [FLAT, PAIR, LINKED, INCH, ROLLER.replace("625", "300")])
