@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 from camgeo.cams.disc_cams import DiscCam, ExactFaced
 from camgeo.cams.family import Advice
 from camgeo.cams.guided import SMALLER_STROKE, ExactGuided
-from camgeo.common.rounding import downward, upward
+from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.schema.fields import Field, Kind, length, mapping
 from kin.law.contacts import Flat, Oscillating, Translating
 from kin.numeric.angles import degrees
@@ -133,9 +133,11 @@ class SizedAdvice(Advice):
         from kin.law.programme import IntentError
 
         cam, limits, bounding = self.cam, self.cam.sizing, _binding_limits(self.cam, exact)
-        # sizes other than the base radius, by the last part of their keys
+        # sizes other than the base radius, by the last part of their keys; what only rounding left of an offset is 0
+        places = {path.rpartition(".")[2]: x for path, x in cam.sizes.items() if "." in path}
         more = "".join(
-            f" with {path.rpartition('.')[2]} {_four_digits(x / mm)}" for path, x in cam.sizes.items() if "." in path
+            f" with {key} {_four_digits(x / mm) if abs(x) > NOISE * cam.base_radius else '0'}"
+            for key, x in places.items()
         )
         bounds = [f"{name} at {at_deg:.4g} deg" for name, at_deg in bounding.items()]
         sentence = f"base radius {_four_digits(cam.base_radius / mm)}{more}, bound by {' and '.join(bounds)}"

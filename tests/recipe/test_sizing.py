@@ -206,6 +206,14 @@ def test_the_remark_says_what_bounds_the_size() -> None:
     )
 
 
+def test_an_offset_that_only_rounding_left_is_0() -> None:
+    """A rise and a return alike are best on a stem without an offset."""
+    law = "over: 60, law: cycloidal"
+    text = "cam: {kind: disc, sizing: {pressure-angle: {at_most: 30}}, follower: {kind: roller, radius: 6}, "
+    text += f"motion: [{{rise: 20, {law}}}, {{dwell: 10}}, {{return: 20, {law}}}, {{dwell: 230}}]}}\n"
+    assert remark(text, "sizing").startswith("base radius 50.77 with offset 0, bound by pressure-angle-rise at ")
+
+
 @pytest.mark.slow
 def test_what_was_found_is_a_figure_and_can_be_limited() -> None:
     stem, arm = camgeo.design(camgeo.load(BOUND)).figures, camgeo.design(camgeo.load(ARM)).figures
