@@ -73,10 +73,11 @@ class Engine:
 
 @dataclass(frozen=True)
 class Lobe:
-    """A lobe: its cam's recipe, where it stands on the shaft (mm), and its phase.
+    """A lobe: its cam's recipe, the heights (mm) between which it stands on the shaft, and its phase.
 
-    Either `at`, the cam angle (rad) by which its zero is turned, or `cylinder` and `valve`. `direction` (rad) is the
-    angle about the shaft between where its follower is and where its own recipe has it, counter-clockwise for `cw`.
+    Either `at`, the cam angle (rad) by which its zero is turned, or `cylinder` and `valve`, intake or exhaust.
+    `direction` (rad) is the angle by which its follower is turned about the shaft from where its own recipe has it.
+    Both turn counter-clockwise in a drawing for the rotation `cw`, clockwise for `ccw`.
     """
 
     name: str

@@ -63,7 +63,11 @@ class CamshaftDesign:
 
     @cached_property
     def figures(self) -> Figures:
-        """The figures of each lobe, such as `radius-of-curvature, intake`."""
+        """The figures of each lobe, such as `radius-of-curvature, intake`.
+
+        Raises RecipeErrors where a capability cannot measure its own, as a valve whose table of ratios ends too early,
+        EventError where a valve's motion is too rough to follow.
+        """
         return Figures(
             {
                 f"{name}, {lobe}": figure

@@ -78,7 +78,11 @@ class PlacedLobe:
 
     @property
     def moved(self) -> MovedBody | None:
-        """Motion of the part that the follower drives, such as a valve; None where the recipe names none."""
+        """Motion of the part that the follower drives, such as a valve; None where the recipe names none.
+
+        Raises RecipeErrors where the follower cannot drive it, as by a table of ratios that ends below its lift,
+        EventError where its motion is too rough to tell.
+        """
         return moved_by(self.lobe.recipe, self.design)
 
     @property
@@ -242,10 +246,9 @@ def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
     for lobe in recipe.lobes:
         made = replace(lobe.made, export=replace(lobe.made.export, files=()))
         for foreseen_check in foreseen(made):
-            figure = foreseen_check.name.startswith(LIMIT) and FIGURES[foreseen_check.name.removeprefix(LIMIT)]
-            if (
-                figure.of == "design" if figure else not CHECKS.owner(foreseen_check.name)
-            ):  # a lobe's train does not run
+            # only limits on the exact cam's figures, and the core's checks: no train or other capability runs for a lobe
+            limited = foreseen_check.name.startswith(LIMIT) and FIGURES[foreseen_check.name.removeprefix(LIMIT)]
+            if limited.of == "design" if limited else not CHECKS.owner(foreseen_check.name):
                 expected[foreseen_check] = None
     expected[Foreseen("shaft")] = None
     shaft, *journals = recipe.bars

@@ -45,8 +45,8 @@ def places(tolerance: float, mm: float, lengths: Sequence[float] = ()) -> int:
 
     The program's unit is `mm` millimetres.
 
-    An end, a centre and so a radius are each off by up to 0.71, 0.71 and 1.42 of the last place's half, in a machine
-    that takes the arc from any of them: together less than 2.5 times the last place. Nor do `lengths`, mm, by which
+    An end is off by up to 0.71 of the last place, the centre, computed from the ends as written, by 0.71 more, and so
+    is the radius from it to either end: together less than 2.5 times the last place. Nor do `lengths`, mm, by which
     places lie apart (a pass above another, a rough path beside a fine one), change by more than `KEPT` of themselves.
     However coarse the tolerance, a centre off by 0.71 of the last place makes the two radii of an arc differ by up to
     1.42 of it: beyond `ARC_MM` controllers refuse the arc.

@@ -50,9 +50,10 @@ def few_passes(recipe: Recipe, depth: float | None, paths: int = 1) -> None:
 
 
 def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
-    """Pairs of a feature of the part that a program leaves unmade, and the reason.
+    """Pairs of the name of a feature of the part that a program leaves unmade, and the reason.
 
-    A program cuts straight down into a disc.
+    A program cuts straight down: chamfers and holes across the shaft stay unmade, a hub and the outline round a ring or
+    a groove come with the stock. Raises ValueError without a contour or without `manufacture`.
     """
     part = recipe.part
     items = list(milled_holes(recipe, design)[1])
@@ -65,7 +66,10 @@ def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
 
 
 def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
-    """Holes that the cutter goes round, and pairs of the name of a hole that is not milled, and the reason."""
+    """Holes that the cutter goes round, and pairs of the name of a hole that is not milled, and the reason.
+
+    Raises ValueError without a contour or without `manufacture`.
+    """
     _, manufacture = milled_contours(recipe, design)
     boss = recipe.part.boss
     reach, within = (0.0, "") if boss is None else (0.5 * boss.diameter, f"within the {boss.name}")

@@ -38,7 +38,7 @@ class ClosedPath:
 
 @dataclass(frozen=True, eq=False)
 class Pass:
-    """Round of the cutter on a closed path at one height z, mm, 0 at the top of the stock."""
+    """Round of the cutter on a closed path at one height z, mm: 0 at the disc's upper face, below 0 in the metal."""
 
     z: float
     loop: ClosedPath

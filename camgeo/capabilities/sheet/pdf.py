@@ -69,11 +69,12 @@ def _pieces(line: LineMark) -> list[Array]:
         return [line.points]
     steps = np.hypot(*np.diff(line.points, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
-    ends, pieces = 0.0, []
+    end, pieces = 0.0, []
+    # dashes (k even) and gaps by turns, at least as many as the line is long; those beyond its end have no length
     for k in range(2 * len(line.points) + int(len(pattern) * along[-1] / sum(pattern)) + 1):
-        start, ends = ends, min(ends + pattern[k % len(pattern)], float(along[-1]))
-        if k % 2 == 0 and ends > start:
-            places = np.concatenate([[start], along[(along > start) & (along < ends)], [ends]])
+        start, end = end, min(end + pattern[k % len(pattern)], float(along[-1]))
+        if k % 2 == 0 and end > start:
+            places = np.concatenate([[start], along[(along > start) & (along < end)], [end]])
             pieces.append(np.column_stack([np.interp(places, along, column) for column in line.points.T]))
     return pieces
 

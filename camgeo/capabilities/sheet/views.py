@@ -238,22 +238,24 @@ def _lay_out_at(drawn: DrawnDisc, sizes: Dimensions, area: Area, word: str, *, b
     """Place the views at a scale, the bore's own view beside the others or below; None where they do not fit."""
     k = SCALES[word]
     reach = k * drawn.reach
+    # widths from the left; the tolerance stands above the face and may reach over the column
     column = max((callout.wide for callout in sizes.column), default=0.0) + (NARROW if sizes.column else 0.0)
     face = max(LEFT + 2.0 * reach + ROUND, sizes.tolerance.long - column)
-    bore = NARROW + LANE if sizes.bore is not None else NARROW
-    section = bore + k * drawn.depth + _beyond(sizes, k) if drawn.body.thickness is not None else 0.0
+    gap = NARROW + LANE if sizes.bore is not None else NARROW
+    section = gap + k * drawn.depth + _beyond(sizes, k) if drawn.body.thickness is not None else 0.0
     own = _bore_view(drawn, k)
     below = max(UNDER, LANE * len(sizes.under))
     wide = column + face + section + (own.wide if beside else 0.0)
     high = STRIP + 2.0 * (reach + ROUND) + below + (0.0 if beside else own.above + own.below)
     if wide > area.right - area.left or high > area.high - area.low:
         return None
+    # places: the views in the middle of the area; the column, from the face's upper end downward, stays within it
     start = area.left + column + 0.5 * (area.right - area.left - wide)
     x, y = start + face - reach - ROUND, area.high - STRIP - reach - ROUND - 0.5 * (area.high - area.low - high)
     if sum(callout.high for callout in sizes.column) + SLANT > y + reach + ROUND - area.low:
         return None
-    middle = (start + face + section + 0.5 * own.wide, y) if beside else (x, y - reach - ROUND - below - own.above)
-    return Layout(word, k, (x, y), (start + face + bore, y), middle, start - NARROW, area)
+    bore = (start + face + section + 0.5 * own.wide, y) if beside else (x, y - reach - ROUND - below - own.above)
+    return Layout(word, k, (x, y), (start + face + gap, y), bore, start - NARROW, area)
 
 
 def _beyond(sizes: Dimensions, k: float) -> float:

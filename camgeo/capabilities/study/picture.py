@@ -59,10 +59,10 @@ def picture(study: Entry) -> bytes:
 
 
 def _draw_slope(axes: Axes, rows: list[Entry], order: int, colour: str) -> None:
-    """Draw error ~ pieces^-order through the last row, and through theory's own count where there is one."""
+    """Draw error ~ pieces^-order through the last row's error, at theory's count of pieces or else at its own."""
     last = rows[-1]
     count = last["least_pieces"] or last["pieces"]
-    least = max(min(row["pieces"] for row in rows), 2)
-    ends = [least, count]
+    fewest = max(min(row["pieces"] for row in rows), 2)
+    ends = [fewest, count]
     errors = [last["geometry_error"] * (count / n) ** order for n in ends]
     axes.plot(ends, errors, "--", color=colour, linewidth=0.8, alpha=0.7)

@@ -41,7 +41,7 @@ class Rung:
     proved          bound of that distance which the fit proved; None where a file has none
     motion_error    greatest error of the follower by contact, in `motion_unit`
     output_error    greatest error of a linkage's output, in `output_unit`; None without one
-    seconds         median of the repeats, the sum of `stages`: fit, write, judge
+    seconds         sum of `stages`, the seconds of fit, write and judge, each the median of the repeats
     least_pieces    least number of pieces by theory; None without a contour
     failed          names of the checks on the file that fail
     """

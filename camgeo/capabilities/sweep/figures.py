@@ -405,9 +405,11 @@ def _acute_angle(sine: Array | None, count: int, smooth: Mask) -> Array:
 
 
 def compute_figures(scene: SweepScene, values: Array) -> dict[str, Array]:
-    """Figures by name, (m,) each, of designs with `values` (m, axes) in the recipe's units.
+    """Figures by name, (m,) each, of designs with `values` (m, axes) in the recipe's units, words by their index.
 
-    Lengths are in mm, angles in degrees; REASON has the index into `REASONS`.
+    Lengths are in mm, angles in degrees. Under REASON is the index into `REASONS`, 0 for a design without a fault that
+    keeps the limits. Figures not computed are nan, dwells of a design that breaks a limit on another figure -inf.
+    Raises ValueError for a dwell in a recipe without a band.
     """
     table = _evaluator(scene).evaluate(values)
     return {**table.figures, REASON: table.reason.astype(np.float64)}

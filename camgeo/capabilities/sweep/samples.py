@@ -216,7 +216,7 @@ class Template:
         return groups
 
     def _shift(self, cam: CamSample, values: Array, numbers: Array) -> MotionBatch:
-        """The cams of designs (m, k) from the cam with `numbers` (k,), by the slopes."""
+        """The cams of m designs with `values` (m, k) from the cam with `numbers` (k,), by the slopes."""
         steps = {column: values[:, column] - numbers[column] for column in self.slopes}
         sizes = {
             name: value + sum((steps[k] * self.slopes[k].sizes[name] for k in steps), np.zeros(len(values)))
@@ -228,12 +228,13 @@ class Template:
                 rows = rows + steps[column][None, :, None] * slope.rows[:, None, :]
             if slope.widths.any():
                 widths = widths + steps[column][:, None] * slope.widths
-        counts = np.array(cam.counts) + 1
-        width = widths[:, np.repeat(np.arange(len(counts)), counts)]
+        # derivatives by the share of a piece, divided by the width of each sample's piece, are those by rad
+        samples = np.array(cam.counts) + 1  # of each piece, both its ends among them, which do not lie inside it
+        width = widths[:, np.repeat(np.arange(len(samples)), samples)]
         rows = np.stack([rows[0] + 0.0 * width, rows[1] / width, rows[2] / width**2, rows[3] / width**3])
-        inside = np.ones(counts.sum(), dtype=np.bool_)
-        last = np.cumsum(counts) - 1
-        inside[last] = inside[last + 1 - counts] = False
+        inside = np.ones(samples.sum(), dtype=np.bool_)
+        last = np.cumsum(samples) - 1
+        inside[last] = inside[last + 1 - samples] = False
         return MotionBatch({name: column[:, None] for name, column in sizes.items()}, rows, inside[1:-1])
 
 

@@ -433,9 +433,10 @@ class Screen:
         return Screen(recipe, tuple(names), side, contours, template)
 
     def estimate(self, values: Array) -> tuple[dict[str, Array], Codes]:
-        """Estimates by name, (m,) each, and fault codes (m,), indices into REASONS, of designs with `values` (m, k).
+        """Estimates by name, (m,) each, and fault codes (m,), indices into REASONS, of m designs.
 
-        Lengths are in mm, angles in degrees; designs with a fault have nan.
+        `values` (m, k) are those at the paths given to `prepare`, in the recipe's units. Estimated lengths are in mm,
+        angles in degrees; designs with a fault have nan.
         """
         m = len(values)
         figures, faults = {name: np.full(m, np.nan) for name in self.names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)

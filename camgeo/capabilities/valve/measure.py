@@ -98,7 +98,9 @@ def measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measur
 def measure(recipe: Recipe, design: Design, names: Sequence[str]) -> dict[str, Measured]:
     """Measure the figures `names` of a valve, by name; a value is None where the figure does not exist.
 
-    A figure at a lift is measured at the lift of the recipe's first limit on it, else at its usual lift.
+    A figure at a lift is measured at the lift of the recipe's first limit on it, else at its usual lift. Raises
+    RecipeErrors for a table of ratios that does not fit the tappet's lift (`valve_of`), and EventError for a motion too
+    rough to follow where the greatest lift is measured or the ratio has a table.
     """
     valve, figures = valve_of(recipe, design), dict[str, Measured]()
     for name in names:

@@ -27,7 +27,8 @@ def section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
     """Section `valve` of the report; None without a valve.
 
     Lift and lash are in the recipe's unit, events in degrees of the cam, durations in degrees of the crank, peaks by
-    rad of the cam.
+    rad of the cam. Raises RecipeErrors for a table of ratios that does not fit the tappet's lift (`valve_of`),
+    EventError for a motion too rough to follow.
     """
     valve = valve_of(recipe, design)
     if valve is None:

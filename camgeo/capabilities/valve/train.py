@@ -67,7 +67,7 @@ def valve_of(recipe: Recipe, design: Design) -> Valve | None:
     """The valve of a recipe, None without one.
 
     Raises RecipeErrors for a table of ratios that ends below the tappet's greatest lift, or by which the valve falls
-    while the tappet rises.
+    while the tappet rises, EventError for a table with a motion too rough to follow.
     """
     valve = recipe.of(Valve)
     if valve is None or len(valve.ratios) == 1:
