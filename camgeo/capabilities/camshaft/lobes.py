@@ -246,7 +246,7 @@ def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
     for lobe in recipe.lobes:
         made = replace(lobe.made, export=replace(lobe.made.export, files=()))
         for foreseen_check in foreseen(made):
-            # only limits on the exact cam's figures, and the core's checks: no train or other capability runs for a lobe
+            # only limits on the exact cam's figures and the core's checks: no train or other capability runs for a lobe
             limited = foreseen_check.name.startswith(LIMIT) and FIGURES[foreseen_check.name.removeprefix(LIMIT)]
             if limited.of == "design" if limited else not CHECKS.owner(foreseen_check.name):
                 expected[foreseen_check] = None
