@@ -51,7 +51,7 @@ class Shifted:
 
     @property
     def breaks(self) -> Array:
-        """Breaks (k,) of the drive that is shifted, rad of shaft."""
+        """Shaft angles (k,), rad, of the breaks of `drive`, which a shift of its position leaves where they are."""
         return self.drive.breaks
 
     @property

@@ -145,11 +145,16 @@ class _Prescribed(_Intended):
         return angles
 
     def _over_shaft(self, shaft: Array, order: int) -> Array:
-        """Output and its derivatives by the shaft angle (order + 1, n); of dyads from r1 cos theta_4 = r4 - Y."""
-        chain, turned = self.mechanism.chain, self.swing.output(shaft, order)
+        """Output and its derivatives by the shaft angle (order + 1, n), rad or mm, at shaft angles (n,), rad.
+
+        Without dyads it is theta_4, which the law prescribes. With dyads the chain is solved for the lift S that gives
+        that theta_4: r1 cos theta_4 = r4 - Y, where Y = S - w/2 + e and the swing's `rocker` is r4 - e.
+        """
+        chain, theta_4 = self.mechanism.chain, self.swing.output(shaft, order)
         if not chain.dyads:
-            return turned.derivatives()
-        s = cos(turned) * -self.swing.ground + (self.swing.rocker + 0.5 * chain.breadth)
+            return theta_4.derivatives()
+        s = cos(theta_4) * -self.swing.ground + (self.swing.rocker + 0.5 * chain.breadth)
+        # S1 only moves the frame along its own line, on which nothing hangs, so any constant serves
         return chain.solve(s, s.constant(0.5 * chain.breadth), self.mechanism.about).outputs[-1].derivatives()
 
     def rows(self, theta: Array) -> Array:

@@ -23,6 +23,7 @@ def dwells(lift: Lift) -> Iterator[tuple[float, float]]:
     """Dwells of a lift, stretches of constant p: pairs (from, to) of shaft angles, rad, to > from."""
     ends = lift.breaks if len(lift.breaks) else np.zeros(1)
     begin, width = ends[lift.steady], np.diff(ends, append=ends[0] + TURN)[lift.steady]
+    # on a steady stretch rho is constant: a dwell if p has no slope at two places of it, else an eccentric arc
     places = begin + width * np.array([[0.25], [0.6]])
     p, slope = lift.derivatives(places.ravel(), 1).reshape(2, *places.shape)
     still = (np.abs(slope) <= 1e-12 * np.abs(p)).all(axis=0)

@@ -120,7 +120,10 @@ class FlatContacts:
         return x, radius
 
     def nodes(self, low: float, high: float, breaks: Array, turned: float = 0.0) -> Array:
-        """Angles low and high, rad, and between them, rising, the breaks of q(theta + turned) and `breaks`."""
+        """Angles low and high, rad, and between them, rising, the breaks of q(theta + turned) and `breaks`.
+
+        `breaks` (k,) are angles, rad, in [0, 2 pi]; all recur on every turn.
+        """
         all_breaks = np.concatenate([np.mod(self.breaks - turned, TURN), breaks])
         first = int(np.floor(low / TURN))
         turns = TURN * np.arange(first, int(np.ceil(high / TURN)) + 1)

@@ -381,38 +381,39 @@ def greatest_error(rollers: Sequence[Tracked], law: IntendedLaw, sampled: Greate
     resolution = rollers[0].resolution
     most = 4 * sum(len(group.piece) for group in groups) + MOST_OPEN
     error, best, ceiling = sampled.error, None, sampled.error
-    for cut in range(MOST_CUTS + 1):
+    for round_ in range(MOST_CUTS + 1):
         # bounds of the error over every stretch that is still open, and the greatest error reached
         states = [group.state() for group in groups]
         limits = [group.limits(state) for state, group in zip(states, groups, strict=True)]
         phi = np.concatenate([state.phi for state in states])
+        # shaft angles that each roller's stretches reach to either side, by the limits of the slope of its angle
         reach = np.concatenate([roller.angle[0] * group.half for roller, group in zip(limits, groups, strict=True)])
-        cuts = np.cumsum([len(group.piece) for group in groups])[:-1]
+        ends = np.cumsum([len(group.piece) for group in groups])[:-1]  # of each roller's stretches among all
         rows, steepest = law.rows(phi), law.steepest(phi - reach, phi + reach)
-        tasks = zip(groups, states, limits, np.split(rows, cuts, axis=1), np.split(steepest, cuts, axis=1), strict=True)
+        tasks = zip(groups, states, limits, np.split(rows, ends, axis=1), np.split(steepest, ends, axis=1), strict=True)
         upper = []
-        for number, (group, state, limit, intended, steep) in enumerate(tasks):
+        for owner, (group, state, limit, intended, steep) in enumerate(tasks):
             bound, reached, where = group.bounds(state, limit.of_error(steep), intended)
             upper.append(bound)
             i = int(np.argmax(reached)) if len(reached) else -1
             if i >= 0 and reached[i] > error:
                 error = float(reached[i])
-                best = number, group.one(i), float(where[i])
+                best = owner, group.one(i), float(where[i])
         # stretches that may hold more are cut in four; the greatest bound of the others is the ceiling
         enough = error + max(SHARE * error, resolution)
         open_ = [~(bound <= enough) for bound in upper]
         ceiling = max(ceiling, *(float(b[~o].max(initial=ceiling)) for b, o in zip(upper, open_, strict=True)))
-        count = sum(int(np.count_nonzero(roller)) for roller in open_)
+        count = sum(int(np.count_nonzero(roller)) for roller in open_)  # stretches of all rollers
         if not count:
             break
-        if cut == MOST_CUTS or 4 * count > most:  # rougher than rounding, or too many that stay undecided
+        if round_ == MOST_CUTS or 4 * count > most:  # rougher than rounding, or too many that stay undecided
             ceiling = max(float(bound.max(initial=ceiling)) for bound in upper)
             break
         groups = [group.quarters(which) for group, which in zip(groups, open_, strict=True)]
     if best is not None:
         # the piece may be hidden behind another one there, so the error is taken where the roller itself rests
-        number, span, off = best
-        on, phi = rollers[number], span.summit(law, off)
+        owner, span, off = best
+        on, phi = rollers[owner], span.summit(law, off)
         errors = np.abs(on.reached(phi) - on.contact.own(law.rows(phi)[0]))
         claimed, (error, at) = error, greatest(errors, phi)
         if tries and not claimed <= error + SHARE * claimed + resolution:

@@ -103,9 +103,10 @@ def _placed(check: Check, contour: Contour, envelope: Envelope, tolerance: float
 
 
 def fine(contour: Contour, tolerance: float) -> Fine:
-    """Contour for whose splines arcs stand, and the distance of these from the splines, mm.
+    """Contour with arcs in place of its splines, and the distance of the arcs from the splines, mm.
 
-    The arcs stay within a small share of `tolerance`, mm, or finer. A contour without splines comes back unchanged.
+    That is a small share of `tolerance`, mm, or less, but no less than rounding on a large part. A contour without
+    splines comes back unchanged.
     """
     spline = 0.0
     if contour.beziers.count:

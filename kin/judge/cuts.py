@@ -40,7 +40,7 @@ FINE = 0.05  # of the tolerance, within which joints of the path may be snapped 
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """Moves at one height: on the way to the closed path, round it, and away from it."""
+    """Moves at one height z, mm, below 0: on the way to the closed path, round it, and away from it."""
 
     z: float
     entry: list[ToolMove]
@@ -75,7 +75,10 @@ class CutEdge(NamedTuple):
 
 
 class Feature(NamedTuple):
-    """Cuts in order down to a depth, mm, and the edges that they leave: one, or both sides of a pocket."""
+    """Cuts in the program's order, the depth, mm, intended for them, and the edges that they leave.
+
+    The depth is above 0. There is one edge, or of a pocket both: the inner, then the outer.
+    """
 
     cuts: list[Cut]
     depth: float
@@ -89,7 +92,7 @@ def cuts_of(program: Program) -> Iterator[Cut]:
     """
     down: list[ToolMove] = []
     plunge: ToolMove | None = None
-    for move in (*program.moves, None):
+    for move in (*program.moves, None):  # None ends the last cut
         if move is not None and not move.rapid and move.start[2] == move.end[2] < 0.0:
             if move.start != move.end or move.centre is not None:
                 down.append(move)
@@ -120,7 +123,7 @@ def _unread(program: Program, move: ToolMove, what: str) -> ReadError:
 
 
 def _cut(program: Program, down: list[ToolMove]) -> Cut:
-    """Divide a path into entry, its longest closed part and exit; raises ReadError where no part closes."""
+    """Divide a path into entry, its closed part of the most moves, and exit; raises ReadError where no part closes."""
     places: dict[tuple[float, float], int] = {}
     best = (0, 0)
     for i, move in enumerate(down):
@@ -141,9 +144,9 @@ def features_of(program: Program, cuts: list[Cut], milling: Milling, tolerance: 
     """
 
     def edge(cut: Cut, side: Side) -> CutEdge:
-        inward = side if cut.area > 0.0 else -side
+        to_left = side if cut.area > 0.0 else -side  # 1 where the edge lies on the left of the path, else -1
         try:
-            contour = parallel(cut.path, inward * milling.radius, FINE * tolerance)
+            contour = parallel(cut.path, to_left * milling.radius, FINE * tolerance)
         except TightError as error:
             raise ReadError("open", f"the cutter's path from line {cut.loop[0].line}: {error}", program.path) from error
         return CutEdge(counter_clockwise(contour), side, cut)
@@ -161,7 +164,10 @@ def features_of(program: Program, cuts: list[Cut], milling: Milling, tolerance: 
 
 
 def _side_by_side(cuts: list[Cut], radius: float) -> tuple[list[Cut], list[Cut]]:
-    """Cuts round the shaft from the outermost inward, as far as the swept areas overlap; and all other cuts."""
+    """Cuts round the shaft from the outermost inward, as far as the swept areas overlap; and all other cuts.
+
+    Two overlap where the inner path starts within the cutter's diameter of the outer one.
+    """
     paths = {cut.key: cut for cut in cuts}
     round_shaft = [cut for cut in paths.values() if rounds(cut.path, np.zeros(2))]
     falling = sorted(round_shaft, key=lambda cut: -abs(cut.area))
@@ -174,14 +180,17 @@ def _side_by_side(cuts: list[Cut], radius: float) -> tuple[list[Cut], list[Cut]]
 
 
 def at_the_floor(cuts: list[Cut], tolerance: float) -> list[Cut]:
-    """Cuts of a pocket at its full depth, one for each path, from within outward."""
+    """Cuts of a pocket at its full depth, within `tolerance`, mm, one for each path, from within outward."""
     bottom = min(cut.z for cut in cuts)
     paths = {cut.key: cut for cut in cuts if cut.z <= bottom + tolerance}
     return sorted(paths.values(), key=lambda cut: abs(cut.area))
 
 
 def _about_one_contour(cuts: list[Cut], radius: float) -> list[list[Cut]]:
-    """Cuts about the same contour together, in order; two paths about one are nearer to each other than the radius."""
+    """Cuts about the same contour together, in the program's order.
+
+    A cut is about the contour of a later one where its path starts less than the radius from the path of the last.
+    """
     outlines: list[tuple[Arcs, list[Cut]]] = []
     for cut in reversed(cuts):
         place = np.array([cut.loop[0].start[:2]])

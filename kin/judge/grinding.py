@@ -66,7 +66,8 @@ class Ground(NamedTuple):
 
     chain    the contour
     units    of the table's lengths, mm
-    off      greatest error of the contour, mm
+    off      greatest distance of the contour from what the wheel leaves, mm, by arcs in place of the joins of the rows
+             and by short pieces left out
     faults   words for each length that the head lacks, or states otherwise than intended
     error    greatest distance from the exact contour that the head states, mm; None where it states none
     centres  of the wheel (n, 2), mm, row by row

@@ -20,13 +20,14 @@ if TYPE_CHECKING:
 class SurfaceIntent:
     """A surface of a disc that a follower runs on.
 
-    gauge     the follower that judges it, with its motion law, in mm and radians name      name in checks and closures;
-    empty where there is no other surface layer     layer of a drawing on which it lies; without such a layer the
-    nesting of the chains decides z         height of the section of a solid in which it lies, mm; None for the section
-    of the plain disc side      side of the contour on which the metal lies: 1 inside, -1 outside trimmed   an undercut
-    is cut off: the motion lost is reported, and judged only against limits that are given follower  follower that runs
-    on it, where the gauge is larger by a clearance, or has room for an interference; None for the
-              gauge itself
+    gauge     the follower that judges it, with its motion law, in mm and radians
+    name      name in checks and closures; empty where there is no other surface
+    layer     layer of a drawing on which it lies; without such a layer the nesting of the chains decides
+    z         height of the section of a solid in which it lies, mm; None for the section of the plain disc
+    side      side of the contour on which the metal lies: 1 inside, -1 outside
+    trimmed   an undercut is cut off: the motion lost is reported, and judged only against limits that are given
+    follower  follower that runs on it, where the gauge is larger by a clearance, or has room for an interference; None
+              for the gauge itself
     """
 
     gauge: Follower

@@ -221,7 +221,10 @@ def between_sections(
 
 
 def _together(rows: Array, low: float, high: float, slack: float) -> tuple[float, float]:
-    """Heights between which walls lean one above the other, from the walls between two heights on."""
+    """The range of heights from low to high, mm, widened by all leaning walls that meet it, within `slack`, mm.
+
+    Walls that meet the wider range widen it further. Of each wall `rows` (k, 4) begins with its lowest and highest z.
+    """
     while True:
         touching = rows[(rows[:, 0] <= high + slack) & (rows[:, 1] >= low - slack)]
         bottom, top = float(touching[:, 0].min(initial=low)), float(touching[:, 1].max(initial=high))

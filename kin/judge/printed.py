@@ -25,20 +25,21 @@ if TYPE_CHECKING:
 __all__ = ["judge_body"]
 
 ROUNDING = 1e-9  # mm
-INSIDE = 1.5  # times the tolerance, inside two levels, which may be off by it themselves: heights of judged sections
+INSIDE = 1.5  # times the tolerance: distance of judged sections from the levels, which may be off by the tolerance
 
 
 def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: float, path: Path) -> list[Check]:
     """Judge a body's triangles (t, 3, 3), in its own axes, mm: two checks, and a third if both hold.
 
-    `tolerance` is in mm.
+    `slabs`, one at least, are the body as intended, `tolerance` is in mm; `name` is the body's, `path` its file's.
 
-    watertight  every edge has two triangles, facing outward, none without area
+    watertight  every edge has two triangles, facing outward; no triangle is without area or there twice
     thickness   the body reaches from the lowest slab's lower face to the highest one's upper face, to `tolerance`
-    outline     just within any two levels farther apart than twice the tolerance the corners of its section, and
-                the middles of its edges, lie within `tolerance` of the edge of the union of the slabs there, and the
-                slabs' corners within it of the section's; of a single slab the section's area differs from the slab's
-                by no more than the tolerance times the length of the slab's edges
+    outline     just within any two neighbouring levels (faces of slabs) farther apart than twice the tolerance the
+                corners of the body's section, and the middles of its edges, lie within `tolerance` of the edge of the
+                union of the slabs there, and the slabs' corners on that edge within it of the section's; of a single
+                slab the section's area differs from the slab's by no more than the tolerance times the length of the
+                slab's edges
     """
     mesh = welded(corners)
     faults = [*mesh.edge_faults, mesh.degenerate, mesh.duplicate, int(mesh.volume <= 0.0)]
@@ -56,7 +57,10 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
 
 
 def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, path: Path) -> Check:
-    """Compare sections between any two levels with the slabs that pass there, of which there is one at least."""
+    """Check two sections between any two neighbouring levels against the slabs that pass there.
+
+    It fails where no slab passes between two levels, and where a section is not read.
+    """
     levels = distinct(np.array([level for slab in slabs for level in (slab.low, slab.high)]))
     worst, where = 0.0, ""
     for below, above in zip(levels[:-1].tolist(), levels[1:].tolist(), strict=True):
@@ -76,9 +80,11 @@ def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, pat
 
 
 def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
-    """Greatest distance, mm, of the section at a height from the union of the slabs there.
+    """Greatest distance, mm, between the edge of the section at a height and the edge of the union of these slabs.
 
-    It is inf where the section or the union is empty.
+    It is taken at the section's corners and the middles of its edges, and at the slabs' corners. Of a single slab it is
+    no less than the difference of the areas over the length of the slab's edges. It is inf where the section or the
+    union is empty.
     """
     _, outline = section(mesh, height)
     loops = [outline.points[ring] for ring in rings(outline, path)]
@@ -90,7 +96,7 @@ def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
     for slab in slabs:
         points = np.concatenate([edge.vertices for edge in (slab.outer, *slab.holes)])
         others = [other for other in slabs if other is not slab]
-        if others:  # what lies in another slab, or on its edge, need not be an edge of the body
+        if others:  # corners that lie in another slab, or on its edge, need not lie on the edge of the body
             points = points[_signed(others, points) > ROUNDING]
         if len(points):
             off = max(off, float(np.min([contour.distance(points) for contour in drawn], axis=0).max()))
@@ -102,6 +108,9 @@ def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
 
 
 def _signed(slabs: Sequence[Slab], points: Array) -> Array:
-    """Distance (n,) of points (n, 2) from the union of slabs, negative inside it; below 0 it is only a bound."""
+    """Distance (n,), mm, of points (n, 2) from the union of slabs, negative inside it.
+
+    Inside the union a point may lie deeper than this, where slabs meet or overlap.
+    """
     distances: Array = np.min([slab.region.signed(points) for slab in slabs], axis=0)
     return distances

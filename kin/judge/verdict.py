@@ -51,7 +51,8 @@ UNREAD = SurfaceVerdict()
 class ClosureVerdict:
     """Play of a follower between the surface named `pushes`, which drives it out, and `stops`, which holds it back.
 
-    `gauges` is the play of the gauges, intended to be 0, `play` the follower's own; mm or degrees.
+    `gauges` is the play of the followers that judge the surfaces, each its gauge, which should fit without any; `play`
+    is that of the follower itself, which may have a clearance or an interference besides. Both are in mm or degrees.
     """
 
     pushes: str

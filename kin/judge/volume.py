@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
 
 def exact_area(contours: Sequence[Contour], part: PartIntent) -> tuple[float, float, str]:
-    """Area, mm^2, and length of edges, mm, of the part's section, and their source: "intent" or "contour".
+    """Area, mm^2, and length of edges, mm, of the part's section without bore or holes, and their source.
 
-    A trimmed cam has no closed form: the file's contours, one of each surface, give its area and length.
+    The edges are those of the surfaces and of a round outline. The source is "intent", or "contour" where a trimmed
+    cam has no closed form: then the file's contours, one of each surface in their order, give area and length.
     """
     area, length, regular = 0.0, 0.0, True
     for contour, surface in zip(contours, part.surfaces, strict=True):

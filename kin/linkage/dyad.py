@@ -4,10 +4,12 @@ A point P of the earlier link drives each dyad: RRR (two bars to a ground pivot 
 line) and RPR (a block at P in a slotted rocker about G). All are triangles or right triangles, solved and
 differentiated as in `kin.linkage.loop`. Angles are counter-clockwise from the x axis.
 
-Of each dyad `output_link` is the link that it drives, `driven` the name of that link, `joints` are P, Q and G, and
-`lengths` are the fields of its links' lengths. For P on the closed path x, y (n,), the direction of GP is taken about
-the `middle` of its range, so that the output is continuous on it, and `turned` is the angle by which that direction
-turns once round the path, which must be 0.
+Of each dyad `on` names the link that carries P: the linkage's output or coupler, or the output link of the previous
+dyad; `point` is P in that link's axes, mm. `output_link` is the link that the dyad drives, `driven` the name of that
+link, `joints` are those of P, Q and G that it has, and `lengths` are the fields of its links' lengths. For P on the
+closed path x, y (n,), the direction of GP is taken about the `middle` of its range, so that the output is continuous on
+it, and `turned` is the angle by which that direction turns once round the path, which must be 0. Making a dyad raises
+ValueError for another link or assembly, for a number that is not finite and for a length that is not above 0.
 """
 
 from __future__ import annotations
@@ -143,13 +145,16 @@ class RRP:
         demand_lengths(self.assembly, link=self.link)
 
     def margins(self, x: float | Array, y: float | Array) -> Array:
-        """Length of the bar less P's distance from the line, on either side, mm (2, n), for P at x, y (n,)."""
+        """Length of the bar less P's height above the line and plus it, mm (2, n), for P at x, y (n,).
+
+        The height is above 0 on the left of the line; where a row is negative the bar does not reach the line.
+        """
         c, s = math.cos(self.direction), math.sin(self.direction)
         across = np.atleast_1d((y - self.through[1]) * c - (x - self.through[0]) * s)
         return np.stack([self.link - across, self.link + across])
 
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:  # noqa: ARG002 - one call for all dyads
-        """Solve along the line and across it: (output - along P)^2 = link^2 - (across P)^2.
+        """Solve (output - P's place along the line)^2 = link^2 - (P's distance from the line)^2.
 
         Raises BindingError where P is farther from the line than the link is long, or as far and the jets have
         derivatives.
@@ -164,7 +169,7 @@ class RRP:
         return Reached(output, (output * c + self.through[0], output * s + self.through[1]))
 
     def output_link(self, reached: Reached) -> Link:
-        """Return the slide as a link."""
+        """Return the slide: origin Q, its axes fixed."""
         return Link(reached.joint, None)
 
     def joints(self, point: Place, reached: Reached) -> dict[str, Joint]:
@@ -185,8 +190,8 @@ class RRP:
 class RPR(_Pivoted):
     """A block at P in a slotted rocker about G; the output is the direction of the slot, away from G.
 
-    The slot's line passes G at the distance `offset`, mm, which is positive where P lies on the left of the line
-    through G. The output link's origin is G, its x axis along the slot.
+    The slot's line passes G at the distance `offset`, mm, which is positive where that line lies on the left of its
+    parallel through G. The output link's origin is G, its x axis along that parallel.
     """
 
     on: On
@@ -201,14 +206,15 @@ class RPR(_Pivoted):
         _demand_place(self.on, self.point, (*self.ground, self.offset))
 
     def margins(self, x: float | Array, y: float | Array) -> Array:
-        """Distance GP less the slot's offset from G, mm (1, n), for P at x, y (n,): negative out of reach."""
+        """Distance GP less the size of the slot's offset, mm (1, n), for P at x, y (n,): negative out of reach."""
         terms = _arm_terms(x, y, self.ground)
         return longer(_square(*terms), excess(*terms, (self.offset,)), self.offset)[None]
 
     def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:
-        """Solve GP^2 = slide^2 + offset^2; the direction of GP is taken within pi of `about`, rad.
+        """Solve GP^2 = slide^2 + offset^2 for P's place `slide` along the slot, away from G.
 
-        Raises BindingError where GP is shorter than the offset, or as short and derivatives are asked for, or is 0.
+        The direction of GP is taken within pi of `about`, rad. Raises BindingError where GP is shorter than the offset,
+        or as short and derivatives are asked for, or is 0.
         """
         arm = _arm(x, y, self.ground)
         square = excess(arm.x_terms, arm.y_terms, (self.offset,))
@@ -234,6 +240,7 @@ def _demand_place(on: str, point: Point, numbers: tuple[float, ...]) -> None:
 def _arm_terms(
     x: float | Array, y: float | Array, ground: Point
 ) -> tuple[tuple[float | Array, float], tuple[float | Array, float]]:
+    """X and y of GP, as the terms of which they are the sums."""
     return (x, -ground[0]), (y, -ground[1])
 
 

@@ -31,7 +31,8 @@ class ForceLine(NamedTuple):
 def angle(lever: Array, along: Array, side: Array) -> tuple[Array, Array]:
     """Sine and cosine (n,) of a force angle, from parts in their ratio: `lever` of the sine, `along` of the cosine.
 
-    Both are (n,), mm. Where `side` (n,) is negative both change their sign, so that the sine has the sign of phi'.
+    The parts are (n,), in one unit, whichever it is; where both are 0 so are both results. Where `side` (n,) is
+    negative both results change their sign, so that the sine has the sign of phi'.
     """
     size = np.hypot(lever, along)
     size = np.where(size > 0, size, 1.0) * np.where(side < 0, -1.0, 1.0)

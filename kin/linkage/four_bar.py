@@ -149,9 +149,9 @@ class FourBar:
         dB).h = dr4 along the rocker h.
         """
         away = np.exp(1j * (math.pi - positions.output.c[0]))  # from B to D
-        x = (link - _dot(away, joint - pivot)) / _dot(away, sweep)
-        along: Array = _dot(-1j * away, joint + sweep * x - pivot) / self.rocker
-        return along
+        turn = (link - _dot(away, joint - pivot)) / _dot(away, sweep)  # of the frame, rad, that closes the loop again
+        change: Array = _dot(-1j * away, joint + sweep * turn - pivot) / self.rocker
+        return change
 
     def closure(
         self,
@@ -372,8 +372,8 @@ class SliderCrank:
         displacement, mm, per rad of the frame's turn, `pivot` that of the slide's line. Derived from the loop to first
         order; D_y is the offset.
         """
-        x = (link - (joint - pivot).imag) / sweep.imag
-        change: Array = (joint + sweep * x - pivot).real
+        turn = (link - (joint - pivot).imag) / sweep.imag  # of the frame, rad, that closes the loop again
+        change: Array = (joint + sweep * turn - pivot).real
         return change
 
     def closure(

@@ -143,9 +143,10 @@ class Triangle:
 
     @staticmethod
     def of(a: float, b: float, third: Vector) -> Triangle:
-        """Make the triangle with the sides a, b and the vector `third`.
+        """Make the triangle with the sides a, b, mm, and the vector `third`.
 
-        Raises BindingError if the sides cannot close.
+        Raises BindingError where the sides do not close, where they lie in one line and the jets have derivatives, and
+        where `third` is 0.
         """
         q = third.q
         near, far = excesses(third.x_terms, third.y_terms, a, b)

@@ -52,7 +52,7 @@ _LOOKS = 256  # relative angles at which the direction of a dyad's point is look
 class PlaceError(BindingError):
     """A mechanism that binds, or would turn its shaft back, at the relative angle `at`, rad.
 
-    `indices` (k,) are the points concerned; empty where the whole turn is.
+    `indices` (k,) are the points concerned; it is empty where the whole turn was looked at, not points of it.
     """
 
     def __init__(self, message: str, angle: float, indices: Indices) -> None:

@@ -88,6 +88,7 @@ def mobility(
         for limit, (noise, (least, at)) in enumerate(zip(curve.noise, places, strict=True)):
             if least < nearest_binding[0]:
                 nearest_binding = (least, at % TURN, loop)
+            # a least margin lost in rounding binds too, all over where the margin is within four roundings of 0
             rounding = float(noise.min())
             if least <= rounding:
                 binds += _below(pieces(curve, limit), 0.0 if least < -2 * rounding else 4 * rounding)
@@ -155,6 +156,7 @@ def _others(spans: tuple[Span, ...]) -> list[Span]:
 
 
 def _reversing(sense: Callable[[Array], Array], begin: float, end: float, breaks: Array) -> list[Span]:
+    """Spans between two relative angles in which `sense` is not above 0: there the shaft would turn back."""
     places = between(begin, end, [*breaks.tolist(), *(breaks + TURN).tolist()])
     curve = pieces(cells(lambda x: sense(np.mod(x, TURN))[None], places, 1e-9))
     ends = np.array([begin, *curve.crossings(0.0).tolist(), end])
