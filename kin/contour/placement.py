@@ -62,7 +62,8 @@ def _words(placed: Array, factor: float, exact: Array, tolerance: float, *, mirr
     fine = tolerance / float(np.abs(exact).max())
     turn = _rounded(float(np.degrees(np.pi - np.mod(np.pi - turn, TURN))), float(np.degrees(fine)))
     turn = abs(turn) if turn == -180.0 else turn
-    x, y, offset = (_rounded(length, tolerance) for length in (x, y, offset))
+    # the fit is to the file's contour in the exact one's size; its lengths are given as they are in the file
+    x, y, offset = (_rounded(factor * length, factor * tolerance) for length in (x, y, offset))
     words = (
         [] if factor == 1.0 else [f"{max(factor, 1.0 / factor):.6g} times as {'large' if factor > 1.0 else 'small'}"]
     )
