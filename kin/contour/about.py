@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.contour.arcs import cross, dot
+from kin.contour.arcs import cross, dot, radial
+from kin.contour.nearest import nearest
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.contour.contour import Contour
 
-LOOKS = 16  # points on each piece: enough for an arc of a whole turn to be seen to go round
 ROUND = 1e-4  # of the radius: greatest difference of the corners' distances from the centre
 # Of the radius: the middles of a polygon's edges lie inside the circle by less, that of a D-shaped bore's flat by more.
 FLAT = 0.01
@@ -21,9 +22,15 @@ FLAT = 0.01
 
 def goes_round(contour: Contour) -> bool:
     """Whether a contour encloses the shaft, in either sense."""
-    points = contour.sample(LOOKS)
-    after = np.roll(points, -1, axis=0)
-    return bool(abs(np.arctan2(cross(points, after), dot(points, after)).sum()) > np.pi)
+    chain, off = contour.rough
+    if off and bool(nearest(chain, np.zeros((1, 2)))[1][0] <= off):
+        chain = contour.as_arcs()[0]
+    start, end = chain.start, chain.ends
+    angle = np.arctan2(cross(start, end), dot(start, end))
+    # seen from between a piece and its chord, the piece goes the other way round
+    way = np.sign(chain.curvature)
+    between = (way * radial(chain, np.zeros(2)) < 0.0) & (way * angle < 0.0)
+    return bool(abs((angle + TURN * way * between).sum()) > np.pi)
 
 
 def circle_about(contour: Contour, x: float = 0.0, y: float = 0.0) -> float | None:
