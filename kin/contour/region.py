@@ -29,6 +29,8 @@ PARTS = 8  # a piece is no longer than the region's extent over this
 SMOOTH = 0.02  # rad; a joint that turns by less is no corner but widens the normals of both its pieces
 STRAIGHT = 1e6  # times a piece's length: a radius from which on its centre is of no use
 GRID = 24  # points along each side of the grid on which a point inside is looked for
+# Of a region's extent: from what its width may be where the grid misses it down to the rounding of its coordinates.
+HALVINGS = (5, 40)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,12 +104,22 @@ class Region:
 
     @cached_property
     def inner_point(self) -> Array:
-        """The deepest point (2,) of a grid of 24 by 24 over the region: inside, unless the region is very thin."""
+        """A point (2,) inside the region: the deepest of a grid of 24 by 24 over it.
+
+        In a region so thin that the grid misses it, it is the deepest of the points that lie 1/32 of the region's
+        extent, 1/64 and so on inwards of pieces' middles: at about a quarter of the region's width there, or deeper.
+        """
         low, high = self.chain.start.min(axis=0), self.chain.start.max(axis=0)
         share = (np.arange(GRID) + 0.5) / GRID
         x, y = np.meshgrid(*(low[k] + share * (high[k] - low[k]) for k in (0, 1)))
         points = np.column_stack([x.ravel(), y.ravel()])
-        point: Array = points[int(np.argmin(self.signed(points)))]
+        depth = self.signed(points)
+        if not float(depth.min()) < 0.0:
+            some = np.unique(np.linspace(0, self.pieces - 1, GRID * GRID).astype(np.intp))
+            inwards = float((high - low).max()) * 0.5 ** np.arange(*HALVINGS)
+            points = (self.middle[some] - inwards[:, None, None] * self.normal[some]).reshape(-1, 2)
+            depth = self.signed(points)
+        point: Array = points[int(np.argmin(depth))]
         return point
 
     @cached_property

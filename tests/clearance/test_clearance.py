@@ -115,6 +115,13 @@ def test_bodies_that_overlap_wholly_do_not_pass_for_touching():
     assert only(mover("a", disc(0, 0, 2), Still()), mover("b", disc(0, 0, 2), Still())).least < -1.8
 
 
+def test_thin_rings_that_overlap_are_no_deeper_in_one_another_than_they_are_wide():
+    """The point kept inside a ring of 0.03 mm was outside it, and 0.066 mm deep in the other ring."""
+    thin = mover("thin", disc(0, 0, 50), Still(), [disc(0, 0, 49.97)])
+    found = only(thin, mover("wide", disc(0, 0, 60), Still(), [disc(0, 0, 49.99)]))
+    assert found.least == pytest.approx(-0.01, abs=1e-3)
+
+
 def test_narrow_window_that_sampling_would_miss():
     """A thin needle meets a pin within less than a hundredth of a degree, midway between two of 3600 samples."""
     centre, thickness, radius = math.radians(123.45), 1e-4, 0.02
