@@ -148,8 +148,13 @@ def through_points(points: Sequence[tuple[float, float]], field: str = "law") ->
     Raises IntentError for fewer than three points or more than 1000, and for points that are not finite, do not rise in
     u, or do not lead from (0, 0) to (1, 1).
     """
-    from kin.law.sources.points import from_points
+    from kin.law.sources.points import MOST_POINTS, from_points
 
+    if len(points) > MOST_POINTS:
+        raise IntentError(f"a law has at most {MOST_POINTS} points, not {len(points)}", field)
+    for k, point in enumerate(points):
+        if not all(map(math.isfinite, point)):
+            raise IntentError("both numbers of a point are finite", f"{field}[{k}]")
     if len(points) < _LEAST_POINTS or points[0] != (0.0, 0.0) or points[-1] != (1.0, 1.0):
         raise IntentError("the points of a law lead from [0, 0] to [1, 1] by one or more between", field)
     u, s = zip(*points, strict=True)

@@ -120,6 +120,19 @@ def test_points_that_are_no_law_are_refused(points: list[tuple[float, float]]) -
         through_points(points)
 
 
+@pytest.mark.parametrize("bad", [(0.6, math.nan), (math.nan, 0.6), (0.6, math.inf)])
+def test_numbers_of_points_that_are_not_finite_are_named(bad: tuple[float, float]) -> None:
+    with pytest.raises(IntentError, match="both numbers of a point are finite") as caught:
+        through_points([(0.0, 0.0), (0.5, 0.5), bad, (1.0, 1.0)])
+    assert caught.value.field == "law[2]"
+
+
+def test_too_many_points_are_counted() -> None:
+    u = np.linspace(0.0, 1.0, 1001).tolist()
+    with pytest.raises(IntentError, match="a law has at most 1000 points, not 1001"):
+        through_points([(x, x) for x in u])
+
+
 def test_a_law_of_rows_is_the_law_that_they_were_taken_of() -> None:
     u = np.linspace(0.0, 1.0, 41)
     s = np.round(named("cycloidal").derivatives(u, 0)[0], 4)
