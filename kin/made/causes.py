@@ -121,7 +121,8 @@ def _explained(deviations: Sequence[Deviations], curves: Sequence[Smooth]) -> _E
 def correlated_groups(correlation: Array) -> list[list[int]]:
     """Groups of the n estimates whose correlations are given, (n, n), by their indices.
 
-    Any two estimates of a group are joined by a chain of estimates, each correlated with the next by more than ALIKE.
+    Any two estimates of a group are joined by a chain of estimates, each correlated with the next by more than ALIKE,
+    above or below 0.
     """
     groups: list[list[int]] = []
     for k in range(len(correlation)):

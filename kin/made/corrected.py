@@ -174,7 +174,8 @@ class Corrected(Follower):
         """Effect of the correction on the position of each of c contacts, and two derivatives by rad: (c, 3, n).
 
         It is in mm or rad, at shaft angles (n,), rad. Derivatives come from a quartic through five places of the
-        stretch between two breaks, since velocity or acceleration jumps at breaks.
+        stretch between two breaks, since velocity or acceleration jumps at breaks. Raises ContactError where a contact
+        finds no metal.
         """
         ends = np.unique(np.concatenate([self.motion.breaks, self.metal_breaks, [0.0]]))
         ends = ends[np.diff(ends, prepend=-np.inf) > CLOSE]

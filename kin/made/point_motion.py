@@ -138,12 +138,13 @@ def measured_motion(
     for gauge, side, places, directions in runs:
         deviations = SurfacePoints(gauge, side, places, 0.0, directions).deviations
         smooth = fit(deviations.parameter, deviations.e)
-        still = gauge.intended(shaft) - gauge.intended(np.zeros(1))
+        # position from its zero: the error, and the intended motion of the gauge, which hardly moves
+        intended = gauge.intended(shaft) - gauge.intended(np.zeros(1))
         for contact, errors in zip(gauge.contacts, contact_errors(gauge, side, smooth.curve, shaft), strict=True):
-            each.append((contact.sense, errors.rows[0] + still, errors.sds[0]))
+            each.append((contact.sense, errors.rows[0] + intended, errors.sds[0]))
         curves.append(smooth.curve)
         outliers += int(smooth.outliers.sum())
-    turn = np.mean([position for _, position, _ in each], axis=0)
+    turn = np.mean([position for _, position, _ in each], axis=0)  # over the whole turn, midway between contacts
     sd = float(np.sqrt(sum(own**2 for _, _, own in each)).max()) / len(each)
     play, uneven = None, 0.0
     if len(each) > 1:
@@ -159,6 +160,7 @@ def measured_motion(
     else:
         count = round(len(turn) * span / TURN)
         position, last = turn[:count], float(turn[count % len(turn)])
+    # spans of the smoothed curve in the span of the motion
     own = max(round(min(curve.spans for curve in curves) * span / TURN), 1)
     return PointMotion(
         runs[0].gauge, runs[0].side, turn, position, span, last, own, sd, outliers, play, uneven, sections

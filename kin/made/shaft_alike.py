@@ -143,7 +143,11 @@ def _together(rows: LobeRows, measured: Array, nominal: Array) -> tuple[float, M
 
 
 def _demand_shaft(rows: LobeRows, nominal: Array, off: Array, *, aligned: bool) -> None:
-    """Raise UnlikePointsError for rows far off that another unit, turn, sense or order of the cams explains."""
+    """Raise UnlikePointsError for rows far off that another unit, turn, sense or order of the cams explains.
+
+    `nominal` (m, k) are the intended rows of the measured cams, `off` (m,) how far the measured rows are off them, as
+    shares of the sizes of the cams. `aligned` is whether the shaft as a whole is turned back already.
+    """
     far = _mean(off * rows.sizes[rows.owner]) if rows.words.unit else _mean(off)
     problem = rows.words.problem.format(far)
     ratio = float(np.median(rows.sizes[rows.owner] / rows.measured_sizes))

@@ -219,7 +219,8 @@ class EdgeMetal(ReadMetal):
     def along(self, way: Complexes, middle: Complexes, radius: Array) -> Array:
         """Distance from `middle` along the unit direction `way` to the knife edge, mm, (parts, angles).
 
-        Raises LostError where its path crosses no chord near the contact.
+        `radius` is how far the metal has grown along its normals, mm. Raises LostError where the path of the edge
+        crosses no chord near the contact.
         """
 
         def bound(within: Indices, d: Complexes, m: Complexes, r: Array) -> Array:
@@ -231,7 +232,8 @@ class EdgeMetal(ReadMetal):
     def arm(self, pivot: Complexes, length: Array, radius: Array) -> Complexes:
         """Unit direction from a pivot to the knife edge, (parts, angles).
 
-        `length` is that of the arm, mm. Raises LostError where its path crosses no chord near the contact.
+        `length` is that of the arm, `radius` how far the metal has grown along its normals, mm. Raises LostError where
+        the path of the edge crosses no chord near the contact.
         """
 
         def bound(within: Indices, a: Complexes, arm: Array, r: Array, start: Complexes) -> Array:

@@ -301,7 +301,7 @@ def _linkage_errors(
     relative = mechanism.relative(angles)
     motion = mechanism.at(relative, 0)
     frame, nominal = motion.frame[0], motion.output[0]
-    # from the frame's face +x to the joint, by X = w + r3 - S1
+    # r3 from the frame's face +x to the joint, which stands w + r3 - S1 along the frame: w breadth, S1 lift of face 2
     coupler = motion.solved.linkage.slide.c[0] - breadth + motion.faces[1][0]
 
     def errors(sizes: Sizes) -> Array:
@@ -323,15 +323,15 @@ def _linkage_errors(
 
         def output(sense: int) -> Array:
             """Output where the frame bears with its faces +y and -x (`sense` 1), or with the opposite two (-1)."""
-            near, far = size(PROFILE), size(PROFILE)
+            y_profile, x_profile = size(PROFILE), size(PROFILE)  # the cam's errors under the faces that bear
 
             def off(change: Array) -> tuple[Array, Array]:
                 """Distance by which the loop is open, mm, and output where the frame is turned by `change`, rad."""
                 # place of the mid-line by the y face, then of the joint along it by the x face
                 direction = relative + change
-                y_face = support(direction + (1 - sense) * QUARTER) + near
+                y_face = support(direction + (1 - sense) * QUARTER) + y_profile
                 middle = sense * (y_face - 0.5 * (breadth + higher))
-                x_face = support(direction + sense * QUARTER + squared) + far + sense * middle * np.sin(squared)
+                x_face = support(direction + sense * QUARTER + squared) + x_profile + sense * middle * np.sin(squared)
                 along = coupler + longer - sense * x_face / np.cos(squared) + (breadth + wider if sense > 0 else 0.0)
                 u = np.exp(1j * (frame + change))
                 joint_at = u * (along + 1j * (middle + loop.joint_offset + joint))

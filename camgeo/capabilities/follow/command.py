@@ -136,6 +136,7 @@ def document(followed: Followed) -> dict[str, Any]:
             }
             for rest in followed.rests
         ],
+        # the greatest magnitude, as the least of the negative ones
         "pressure_angle": _least(followed, -math.degrees(1.0) * abs(followed.pressure_angle)),
         "radius_of_curvature": _least(followed, np.where(radius < 0.0, math.inf, radius)),
         "hollow_radius": _least(followed, np.where(radius < 0.0, -radius, math.inf)),

@@ -39,7 +39,10 @@ OPENINGS = "verify: {openings: ignore}  # those of the file are not made: name i
 
 @dataclass(frozen=True)
 class Rest:
-    """A dwell: shaft angles from `begin` to `end`, rad, end > begin; its level and its flatness, mm or rad."""
+    """A dwell: shaft angles from `begin` to `end`, rad, end > begin, with its level and flatness, mm or rad.
+
+    The level is the median of its positions, the flatness the greatest less the least of them.
+    """
 
     begin: float
     end: float
@@ -169,7 +172,11 @@ class Followed:
         return self.reading if self.unit == "mm" else self.reading / self.follower.motion_to_mm
 
     def table(self) -> str:
-        """Motion over the turn as CSV text: a header, then a row for each step; lengths in mm, angles in degrees."""
+        """Motion over the turn as CSV text: a header, then a row for each step; lengths in mm, angles in degrees.
+
+        The columns are the shaft angle, position, velocity and acceleration by radian of the shaft, pressure angle, and
+        radius of curvature, empty on a straight line; then the breadth of a yoke, or the play in a groove.
+        """
         arm = self.unit == "rad"
         scale, unit = (math.degrees(1.0), "deg") if arm else (1.0, "mm")
         finite = np.where(np.isfinite(self.radius), self.radius, np.nan)

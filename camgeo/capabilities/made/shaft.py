@@ -156,8 +156,9 @@ class ShaftMade:
 def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOptions) -> ShaftMade:
     """Judge the cams of a shaft by their measured points: each cam's result and phase, and the axis of the shaft.
 
-    Raises CallError for files without points, points on no cam, too few points of a cam, points of something else or
-    that cannot be smoothed, a cam without a contour, and a lean that cannot be taken out.
+    Raises CallError for files without points, or some with points and others with lifts; for points on no cam, too few
+    points of a cam, and points of something else, that cannot be smoothed or on which the follower does not run; for a
+    cam without a contour, or whose undercut is cut off; and for a lean that cannot be taken out.
     """
     files, probing = read_tables(paths), options.probing
     tables = [table for _, table in files]

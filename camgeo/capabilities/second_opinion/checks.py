@@ -19,7 +19,7 @@ REASONS = {"csv": "a table has no contour", "glb": "a GLB is to look at", "html"
 
 
 def libraries(record: Format) -> frozenset[str]:
-    """Names of the libraries that judge files of a format.
+    """Names of the libraries that judge files of a format; trimesh stands for manifold3d, which judges meshes too.
 
     There are none for a format without a contour, and none for a program, which shows the cutter's path.
     """

@@ -65,7 +65,10 @@ class _Skip(Exception):  # noqa: N818 - no error: a row that is left out, with t
 
 
 def demand_libraries(recipe: Recipe) -> None:
-    """Import the libraries; raises SurroundingsError, with the command that installs them, where one is missing."""
+    """Import all libraries of a second opinion, whatever the recipe asks for.
+
+    Raises SurroundingsError, with the recipe's path and the command that installs them, where one is missing.
+    """
     from importlib import import_module
 
     from kin.read.home import prepare_home
