@@ -61,7 +61,8 @@ def grinding_table(recipe: Recipe, design: Design, request: FileRequest, toleran
     Columns are the direction of the wheel's centre, degrees, its distance from the shaft in the recipe's unit, and the
     direction of the metal's normal, degrees; of a roller the direction and its lift. Raises RecipeErrors for a missing
     wheel, a wheel or roller that the contour does not let in, a trimmed contour, a path that a ray from the shaft
-    crosses twice, a step that is too wide for the tolerance, and a tolerance that takes too fine a step.
+    crosses twice, a step that is too wide for the tolerance, and a tolerance that takes too fine a step, CurveError
+    where it cannot be proved what is reached.
     """
     wheel = _Wheel.of(recipe, request, field)
     path = _path(recipe, design, wheel)
@@ -105,7 +106,8 @@ def grinding_table(recipe: Recipe, design: Design, request: FileRequest, toleran
 def grinding_intent(recipe: Recipe, design: Design) -> Grinding:
     """Radius of the wheel, and of a tabled roller with its least distance from the shaft, mm, for kin's judgement.
 
-    Raises RecipeErrors for a roller that the contour does not let in, and for a trimmed contour.
+    The wheel's is None without a wheel. Raises RecipeErrors for a roller that the contour does not let in, and for a
+    trimmed contour, CurveError where it cannot be proved what the roller reaches.
     """
     request = next((request for request in recipe.export.files if request.form.ground and ROLLER in request.own), None)
     if request is None or not design.contours:
@@ -135,6 +137,7 @@ def greatest_bend(path: Curve) -> float:
     h_sway = 0.5 * width * turn * g_most
     h_low, h_high = h.min(axis=0) - h_sway, h.max(axis=0) + h_sway
     with np.errstate(divide="ignore", invalid="ignore"):
+        # |x'| = sigma |g|/x: by as much as x may be less than far - width*speed, g_most exceeds |g|, which is at most x
         x_sway = 0.5 * width * speed * np.minimum(g_most / (far - width * speed), 1.0)
         x_low, x_high = x.min(axis=0) - x_sway, x.max(axis=0) + x_sway
         bent = np.stack([a / b for a in (proved.turn_low, proved.turn_high) for b in (proved.speed_low, speed)])
@@ -152,7 +155,8 @@ def greatest_bend(path: Curve) -> float:
 def _path(recipe: Recipe, design: Design, wheel: _Wheel) -> Curve:
     """The path of the wheel's or the roller's centre.
 
-    Raises RecipeErrors for one that does not reach all of the contour, and for a trimmed contour, which has corners.
+    Raises RecipeErrors for one that does not reach all of the contour, and for a trimmed contour, which has corners,
+    CurveError where it cannot be proved what is reached.
     """
     ((_, contour),) = design.contours
     try:

@@ -35,7 +35,8 @@ def limit_checks(
 
     `checks` are all checks of the run; `runs` has figures of runs by name, each by the file that drives it, None for
     the intended motion. A figure without a value fails with its reason; a figure that was not measured has no check.
-    Raises KeyError for a figure of files whose check is not declared.
+    Raises RecipeErrors where a capability cannot measure its figures, KeyError for a figure of files whose check is not
+    declared.
     """
     scene = CheckFacts(recipe, design.follower)
     speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}

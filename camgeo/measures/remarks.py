@@ -165,14 +165,15 @@ def _pressure(recipe: Recipe, design: Design) -> RuleRemark | None:
         return None
     slopes = [slope for surface in design.exact.surfaces if (slope := surface.extremes("slope")) is not None]
     # rise and return have rules of their own where a spring holds the follower
-    falling, value, at_deg, where = rule, steepest.value, steepest.at_deg, ""
+    return_rule, value, at_deg, where = rule, steepest.value, steepest.at_deg, ""
     if slopes and not design.follower.closure:
-        falling = RETURN_RULE
+        return_rule = RETURN_RULE
         sides = [
             side
             for least, most in slopes
-            for side in ((most, 1.0, rule, " on the rise"), (least, -1.0, falling, " on the return"))
+            for side in ((most, 1.0, rule, " on the rise"), (least, -1.0, return_rule, " on the return"))
         ]
+        # of each flank: its extreme slope, the angle in degrees, the rule for it, and words for where it is
         flanks = [(side, math.degrees(math.atan(sign * side.value)), most, name) for side, sign, most, name in sides]
         over = [row for row in flanks if row[1] > row[2]]
         if not over:
@@ -182,10 +183,10 @@ def _pressure(recipe: Recipe, design: Design) -> RuleRemark | None:
     if steepest.surface and not where:
         where = f" on {steepest.surface}"
     sentence = f"the pressure angle reaches {value:.4g} deg{where}; up to {rule:.0f} is the rule for {kind} followers"
-    remedy = design.exact.less_pressure(math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
+    remedy = design.exact.less_pressure(math.radians(PRESSURE_RULE[kind]), math.radians(return_rule), recipe.mm)
     if remedy is not None:
-        size, other = remedy
-        against = _against(recipe, other, design)
+        size, resized = remedy
+        against = _against(recipe, resized, design)
         sentence += f"; {size} would keep it, but {against}" if against else f", which {size} keeps"
     return RuleRemark("pressure-angle", value, rule, "deg", sentence, at_deg)
 
@@ -218,8 +219,8 @@ def _roller(recipe: Recipe, design: Design) -> RuleRemark | None:
     """A roller above half the pitch curve's least convex radius, where the recipe limits no radius."""
     if any(limit.figure in {RADIUS, PITCH_RADIUS} and limit.at_least is not None for limit in recipe.limits):
         return None
-    discs = [disc for disc in design.surfaces if disc.surface.side > 0]
-    radii = [(disc.bent.value, disc) for disc in discs if disc.bent.value is not None]
+    solid = [made for made in design.surfaces if made.surface.side > 0]  # metal inside: no ring, no outer flank
+    radii = [(made.bent.value, made) for made in solid if made.bent.value is not None]
     if not design.contours or not radii:
         return None
     radius, sharpest = min(radii, key=lambda row: HALF * row[0] - row[1].surface.radius)

@@ -47,8 +47,8 @@ def lobe_motion(
 ) -> Motion:
     """Motion of a lobe of a lift, mm or rad, over `total` rad, with the sides `sides`, opening and closing.
 
-    `nose` is the angle of its greatest lift, rad; `around` is 1 where the motion repeats each turn. Raises IntentError,
-    at `field` or a path below it, where no such lobe exists.
+    `nose` is the angle of its greatest lift, rad. `around`, 1, -1 or None, is how the motion goes on beyond `total`, as
+    in `camgeo.motions.motion`. Raises IntentError, at `field` or a path below it, where no such lobe exists.
     """
     from kin.law.programme import IntentError
     from kin.law.sources.cam_card import sides_of_card

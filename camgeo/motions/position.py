@@ -141,7 +141,7 @@ class SwingPosition(_Swing, _Turn):
     share: float = 1.0
 
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
-        """Swing, rad, and its derivatives by the shaft angle, (order + 1, n)."""
+        """Swing, rad, and derivatives by the shaft angle at `shaft` (n,), (order + 1, n); `side` -1 before breaks."""
         return self.share * self.law.psi_of_shaft(shaft, order, side)
 
     def travel(self, shaft: Array, order: int) -> Array:

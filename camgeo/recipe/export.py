@@ -304,5 +304,8 @@ def _request(kind: str, file: Values) -> FileRequest:
 
 
 def build_export(values: Values) -> Export:
-    """Build the export from values of a recipe without faults; a single dxf where no files are given."""
+    """Build the export from the values of `export`, in a recipe without faults; a single dxf where no files are given.
+
+    The tolerance is `TOLERANCE` unless given.
+    """
     return Export(values.get("tolerance", TOLERANCE), requests(values.get("files", [{"kind": "dxf"}])))

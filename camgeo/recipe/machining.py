@@ -191,7 +191,7 @@ def build_manufacture(values: Values) -> tuple[Manufacture | None, float | None]
 
 
 def build_compensation(file: Values) -> Compensation | None:
-    """Compensation of a file from its values, with the shrinkage in percent; None for a nominal file."""
+    """Compensation of a file from its values, in which the shrinkage is in percent; None for a nominal file."""
     own = {name: file[name] for name in ("kerf", "clearance", "shrinkage") if name in file}
     if "shrinkage" in own:
         own["shrinkage"] /= 100.0

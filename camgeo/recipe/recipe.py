@@ -279,8 +279,8 @@ class Recipe(Order):
 def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
     """Read a recipe from bytes; raises RecipeErrors with all its faults.
 
-    `path` names the recipe in errors and gives its default name; `unplaced` names in errors bytes that stand in no file
-    and so have no lines to refer to.
+    `path` names the recipe in errors and gives its default name, and files that the recipe names are in its folder.
+    `unplaced` names in errors bytes that stand in no file and so have no lines to refer to.
     """
     with without_places(unplaced):
         return replace(of_source(read_source(data, str(path)), path), unplaced=unplaced)
@@ -365,8 +365,8 @@ def file_bytes(path: str | PathLike[str]) -> bytes:
 def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recipe:
     """Read a recipe from a text. Raises RecipeErrors with all its faults.
 
-    `path` names the recipe in errors and gives its default name; `unplaced` names in errors a text that stands in no
-    file and so has no lines to refer to.
+    `path` names the recipe in errors and gives its default name, and files that the recipe names are in its folder.
+    `unplaced` names in errors a text that stands in no file and so has no lines to refer to.
     """
     return read(text.encode("utf-8", "surrogatepass"), path, unplaced)
 

@@ -53,6 +53,7 @@ def _face_length(exact: ExactCam, surface: Surface) -> Check:
     if place is None:
         raise TypeError("no contact travels along a face")
     t = spread(exact.breaks, 2.0 * math.pi)
+    # the greatest of -place and of place, with their angles: the sum of the values is the travel
     low, high = greatest(lambda u: np.array([-1.0, 1.0])[:, None] * place(u), t)
     return Check(TRAVEL.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
 

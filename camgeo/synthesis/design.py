@@ -246,6 +246,11 @@ def sound(recipe: Recipe, exact: ExactCam, surface: Surface) -> SurfaceDesign:
 
 
 def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], float]) -> tuple[list[Check], Curve | None]:
+    """Checks of curvature and undercut of a surface, and the contour to be made, trimmed where the recipe has it so.
+
+    The contour is None where undercut is not to be trimmed or cannot be, and where the radius just reaches its limit.
+    `shaft_deg` gives the shaft angle, degrees, at a parameter of the contour. Raises as `sound` does.
+    """
     from camgeo.curve.undercut.causes import UndercutError
     from camgeo.curve.undercut.undercut import MOST_REPORTED, undercuts
 
@@ -262,8 +267,8 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
     if math.isinf(radius):
         bent = replace(bent, detail="the pitch curve of the ring has no hollow")
     if least.excess and roomy:
-        lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.excess) / recipe.mm:.12g}"
-        bent = replace(bent, detail=lower)
+        bound = f"nearly a circle over a long way; proved to be no less than {(radius - least.excess) / recipe.mm:.12g}"
+        bent = replace(bent, detail=bound)
     try:
         undercut = undercuts(surface.curve)
     except UndercutError as error:
@@ -288,6 +293,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
     free = advice.free_of_undercut(free_at, recipe.mm)
     for kind in ("local", "global"):
         cuts = [cut for cut in undercut if cut.kind == kind]
+        # declared for rollers alone: without one it is reported only where it is found
         if kind == "global" and surface.radius == 0.0 and not cuts:
             continue
         if not cuts:

@@ -11,19 +11,20 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from kin.numeric.arrays import Array
 
-ORDER = 3
+ORDER = 3  # of the highest derivative, the jerk
 
 
 def motion_table(recipe: Recipe, position: Position) -> tuple[tuple[str, ...], Array]:
-    """Column names, and rows (angles + 1, 5): shaft angle, position and its derivatives by radian of shaft.
+    """Names of 5 columns, and rows (angles + 1, 5) over `verify.angles` equal steps of a turn of the shaft, both ends.
 
-    A plate's lift is in the recipe's unit, the distance from the shaft less its datum; a follower that swings is in
-    degrees, a flat pair by its own swing psi/2. At a break the derivatives are those that follow, at the end of the
-    turn those that precede.
+    Columns are the shaft angle, degrees, the follower's position, and velocity, acceleration and jerk, which are its
+    derivatives by radian of the shaft. The position is a lift above its datum in the recipe's unit of length, or a
+    swing about a pivot in degrees; derivatives are in the same unit per rad, rad^2 and rad^3. A flat pair has its own
+    swing, psi/2. At a break the derivatives are those that follow, at the end of the turn those that precede.
     """
     count = recipe.verify.angles
-    phi = np.linspace(0.0, 2.0 * np.pi, count + 1)
-    rows = position.turn(phi, ORDER)
+    shaft = np.linspace(0.0, 2.0 * np.pi, count + 1)
+    rows = position.turn(shaft, ORDER)
     name, scale = position.column(recipe.units), position.factor(recipe.mm)
     table = np.column_stack([np.linspace(0.0, 360.0, count + 1), *(rows * scale)])
     return ("shaft_deg", name, "velocity", "acceleration", "jerk"), table

@@ -158,7 +158,7 @@ def forces_table(running: Running, count: int, units: str = "mm") -> tuple[tuple
 
     Columns are the shaft angle in degrees, contact forces, torque, reactions, and, where known, pressures and speeds of
     rollers: N, N m, N/mm^2, rpm. With the `units` inch the same in lbf, lbf in and psi follow. Forces are nan where the
-    stem jams. Raises RecipeErrors for a load without a finite value.
+    stem jams. Raises RecipeErrors for a load without a finite value, RoughError for too abrupt a motion.
     """
     state = running.state(np.linspace(0.0, TURN, count + 1))
     names = [name.replace(" ", "_") for name in running.turn.names]

@@ -143,7 +143,8 @@ class FrameRunning(Running):
     def lost_rpm(self) -> list[LossSpeed]:
         """Lowest speed at which each preloaded face loses contact somewhere in the turn, by the faces' names.
 
-        Empty without preload. Raises RecipeErrors for a load without a finite value.
+        Empty with play, and where the recipe gives no stiffness of the preload. Raises RecipeErrors for a load without
+        a finite value, RoughError for too abrupt a motion.
         """
         pressed = self.pressed
         if pressed is None:

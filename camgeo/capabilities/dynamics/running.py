@@ -107,7 +107,11 @@ class Running(ABC):
         return None
 
     def lost_rpm(self) -> list[LossSpeed]:
-        """Lowest speed at which each preloaded contact is lost somewhere in the turn; empty without preload."""
+        """Lowest speed at which each contact that is preloaded by interference is lost somewhere in the turn.
+
+        Empty without such a preload, and where the recipe gives no stiffness of it; a spring does not count. Raises
+        RecipeErrors for a load without a finite value, RoughError for too abrupt a motion.
+        """
         return []
 
     def state(self, phi: Array) -> State:
@@ -127,7 +131,7 @@ class Running(ABC):
 
     @cached_property
     def lowest(self) -> float:
-        """Least position y of the follower over the turn, m or rad."""
+        """Least position y of the follower over the turn, m or rad; RoughError for too abrupt a motion."""
         ((least, _),) = self.turn.extremes(lambda t: self.position(self.turn.rows(t))[:1])
         return least.value
 
@@ -161,7 +165,7 @@ class Running(ABC):
         """Part of F without inertia and preload, N or N m (n,): k (y - least y) + load.
 
         `t` (n,) are parameters of the turn, `y` (n,) positions there, m or rad. Raises RecipeErrors for a load without
-        a finite value.
+        a finite value, RoughError for too abrupt a motion.
         """
         load = self.load(self.turn.shaft(t))
         rest: Array = self.train.rate * (y - self.lowest) + load if self.train.rate else load
@@ -180,7 +184,7 @@ class Running(ABC):
     def preload(self) -> float:
         """Force of the spring at the lowest position, N or N m: as stated, or the least that keeps `least_force`.
 
-        0 without a spring. Raises RecipeErrors for a load without a finite value.
+        0 without a spring. Raises RecipeErrors for a load without a finite value, RoughError for too abrupt a motion.
         """
         if self.train.least_force is None:
             return self.train.preload or 0.0

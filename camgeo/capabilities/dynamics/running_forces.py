@@ -284,9 +284,10 @@ class FollowerRunning(Running):
         return section
 
     def lost_rpm(self) -> list[LossSpeed]:
-        """Lowest speed at which each preloaded contact is lost somewhere in the turn; empty without preload.
+        """Lowest speed at which each contact that is preloaded by interference is lost somewhere in the turn.
 
-        Raises RecipeErrors for a load without a finite value.
+        Empty without such a preload, and where the recipe gives no stiffness of it. Raises RecipeErrors for a load
+        without a finite value, RoughError for too abrupt a motion.
         """
         preload = self.held_by
         if preload is None:

@@ -143,8 +143,8 @@ def arm_assembly(
     under = overlap(away, drive) > 0.0
     clips = [] if under else [Member("retainer-pivot", retainer(s, pivot, z.high), GROUND, colour=CLIP_COLOUR)]
     width = max(2.0 * least_pad_radius(drive), drive.reach)
-    foot_plates = bearing(drive, [bar((0.0, 0.0), pivot, width)], z.cam_low + drive.disk.bottom - s.gap)
-    ground = base((*foot_plates, *pin(s, pivot, s.plate, z.low, z.high, crowned=not under)))
+    base_plates = bearing(drive, [bar((0.0, 0.0), pivot, width)], z.cam_low + drive.disk.bottom - s.gap)
+    ground = base((*base_plates, *pin(s, pivot, s.plate, z.low, z.high, crowned=not under)))
     members = (Member("arm", tuple(plates), "arm", place, ARM_COLOUR), *running, ground, *clips)
     every = (*fits, *shaft_fits(drive), BodyFit("arm on the pivot", s.clearance), *roller_fits(feet, drive))
     touching = frozenset(frozenset({"cam", foot.touches}) for foot in feet)

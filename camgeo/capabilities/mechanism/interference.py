@@ -91,7 +91,10 @@ def exempt_pairs(assembly: Assembly) -> Iterable[frozenset[str]]:
 
 
 def swept_size(bodies: Sequence[Mover]) -> tuple[float, float, float]:
-    """Length, width and height of the box that holds all bodies at every angle, mm; each side within COARSE."""
+    """Length, width and height of the box that holds all bodies at every angle, mm.
+
+    Each of its four upright sides may lie too far out by COARSE; the height is exact.
+    """
     boxes = np.array([swept_box(body, COARSE) for body in bodies])
     (left, bottom), (right, top) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
     heights = [height for body in bodies for slab in body.slabs for height in (slab.low, slab.high)]
