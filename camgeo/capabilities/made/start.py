@@ -34,7 +34,7 @@ from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.recipe.recipe import load_text
 from camgeo.schema.change import replace_entry, set_value
 from camgeo.schema.errors import RecipeErrors
-from camgeo.schema.yaml_source import Mapping, Scalar, Source, entries
+from camgeo.schema.yaml_source import Mapping, Scalar, Source, entries, read_source
 from camgeo.synthesis.design import designed
 from kin.follower.motion_error import ContactError
 from kin.law.programme import IntentError
@@ -207,7 +207,7 @@ def _placeholders(path: Path, paths: Sequence[Path]) -> _Rough:
     Raises CallError for lifts, which show no base radius, and for files without points or surfaces without any;
     RecipeErrors for a faulty recipe, OSError for a recipe that cannot be read.
     """
-    source = Source.of(path.read_text("utf-8"), str(path))
+    source = read_source(path.read_bytes(), str(path))
     keys = _keys(source)
     if keys.base and not keys.series:
         source = _with(source, f"cam.{keys.base}", 40.0)

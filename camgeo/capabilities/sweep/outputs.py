@@ -49,6 +49,7 @@ REPORT = "sweep.json"
 TABLES = ("sweep.csv", "sweep.parquet")
 PICTURES = ("sweep-map.png", "sweep-map.svg", "sweep-best.png", "sweep-best.svg")
 EXTRA = install("sweep")
+_NO_VALUE = "no-value"  # why a design without a fault does not count: one of its figures has none
 _DRAWN = 10  # best designs in the picture of curves
 _POINTS = 720  # of a curve, over a turn
 
@@ -355,7 +356,7 @@ def _report(task: SweepTask, designs: Selection, best: Sequence[Best], reasons: 
         "counts": {
             "computed": counts.computed,
             "not_turning": counts.not_turning,
-            "reasons": {reasons[number]: count for number, count in counts.reasons},
+            "reasons": {reasons[number] or _NO_VALUE: count for number, count in counts.reasons},
             "failing": dict(counts.failing),
             "kept": counts.kept,
             "rows": designs.rows,

@@ -375,6 +375,7 @@ BAD = {
     "few points": (bare(RECIPES["flat"]), "x,y\n1,2\n3,4\n", "points"),
     "a fault": (bare(RECIPES["flat"]).replace("bore: 12", "bore: x"), None, "part.bore: "),
     "no cam": ("part: {bore: 12}\n", None, "cam"),
+    "bytes that are not UTF-8": ("part: {bore: \udcff12}\n", None, "bare.yaml:1:14: not UTF-8"),
 }
 
 
@@ -383,7 +384,7 @@ def test_bad_input_is_told_and_nothing_is_written(name, tmp_path, capsys):
     recipe, data, told = BAD[name]
     ((_, part, surface),) = surfaces(RECIPES["flat"])
     (tmp_path / "points.csv").write_text(data or table(points(part, surface)), "utf-8")
-    (tmp_path / "bare.yaml").write_text(recipe, "utf-8")
+    (tmp_path / "bare.yaml").write_text(recipe, "utf-8", errors="surrogateescape")
     before = set(tmp_path.iterdir())
     assert (
         main(["new", "--from", str(tmp_path / "points.csv"), str(tmp_path / "bare.yaml"), str(tmp_path / "new.yaml")])

@@ -62,3 +62,20 @@ def test_what_cannot_be_searched_is_told(tmp_path: Path, monkeypatch: pytest.Mon
     (tmp_path / "file").write_text("")
     with pytest.raises(camgeo.SurroundingsError, match="file"):
         camgeo.search(recipe, tmp_path / "file")
+
+
+LOBE = """\
+cam:
+  kind: disc
+  base_radius: 18
+  follower: {kind: flat, width: 27}
+  motion: {lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}
+sweep: {vary: {cam.motion.lobe.lift: {from: 0.5, to: 8, steps: 3}}, rank: duration}
+"""
+
+
+@pytest.mark.usefixtures("no_pictures")
+def test_designs_whose_figure_has_no_value_are_counted_by_that_reason(tmp_path: Path) -> None:
+    """A lobe of 0.5 mm is never above the lift of 1.27 mm between whose crossings the duration counts."""
+    counts = camgeo.search(camgeo.load(LOBE), tmp_path, jobs=1)["counts"]
+    assert (counts["not_turning"], counts["reasons"]) == (1, {"no-value": 1})
