@@ -88,8 +88,9 @@ class Beziers:
     def from_spline(degree: int, knots: Array, control: Array, weight: Array) -> Beziers:
         """Return the polynomial or rational spans of a B-spline over its domain knots[d] .. knots[-d-1].
 
-        knots (n+d+1,) not falling, control (n, 2), weight (n,) positive. Each span's control points are the blossom's
-        values at its two ends, found by de Boor's scheme with an argument of its own at every level.
+        knots (n+d+1,) not falling, none of them inside the domain more than d times, where the spline would have a gap;
+        control (n, 2), weight (n,) positive. Each span's control points are the blossom's values at its two ends, found
+        by de Boor's scheme with an argument of its own at every level.
         """
         n = control.shape[0]
         # spans of some width, and the d + 1 control points of each

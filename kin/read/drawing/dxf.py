@@ -223,7 +223,7 @@ def entities_to_cut(document: Document, drawn: list[Drawn], path: Path) -> CutEn
 
     Raises ReadError for an entity on these layers that is not read, and where there is nothing to cut.
     """
-    drawn_on = {entity.layer.upper() for entity in drawn if entity.kind in CURVES}
+    drawn_on = _layers_of_curves(drawn)
     by_name = CUT in drawn_on
     wanted = {CUT, *BESIDE} if by_name else drawn_on - REFERENCE
     dashed = Counter[tuple[str, str]]()
@@ -257,12 +257,16 @@ def _dashes(document: Document, drawn: Drawn) -> str:
 
 
 def entities_engraved(drawn: list[Drawn], path: Path) -> CutEntities:
-    """The entities on the engraving layer; empty unless something is drawn on the layer CUT.
+    """The entities on the engraving layer; empty unless curves are drawn on the layer CUT.
 
     Raises ReadError for an entity on it that is not read.
     """
-    by_name = any(entity.layer.upper() == CUT for entity in drawn)
-    return gather(drawn, {ENGRAVED} if by_name else set(), path)
+    return gather(drawn, {ENGRAVED} if CUT in _layers_of_curves(drawn) else set(), path)
+
+
+def _layers_of_curves(drawn: list[Drawn]) -> set[str]:
+    """Names, in capitals, of the layers on which there are curves; text there makes no layer one to cut."""
+    return {entity.layer.upper() for entity in drawn if entity.kind in CURVES}
 
 
 def gather(drawn: list[Drawn], layers: set[str], path: Path) -> CutEntities:

@@ -815,3 +815,18 @@ def test_a_line_without_its_end_is_not_drawn_to_the_origin(sample: Path) -> None
     sample.write_text("\n".join(lines) + "\n")
     with pytest.raises(ReadError, match="its end is missing"):
         read_drawing(sample)
+
+
+@pytest.mark.parametrize("note", [False, True])
+def test_a_circle_to_engrave_is_cut_or_engraved_and_not_both(tmp_path: Path, *, note: bool) -> None:
+    """Text alone on CUT makes it no layer to cut: all curves are cut then, those on ENGRAVE too."""
+    document = new()
+    space = document.modelspace()
+    space.add_circle((0.0, 0.0), 5.0, dxfattribs={"layer": "ENGRAVE"})
+    if note:
+        space.add_text("5 mm steel", dxfattribs={"layer": "CUT"})
+    else:
+        space.add_circle((0.0, 0.0), 20.0, dxfattribs={"layer": "CUT"})
+    drawing = read_drawing(saved(document, tmp_path), engraved=True)
+    assert drawing.contour.area == pytest.approx(np.pi * (5.0 if note else 20.0) ** 2)
+    assert len(drawing.engraved) == (0 if note else 1)
