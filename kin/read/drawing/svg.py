@@ -35,7 +35,7 @@ UNIT_MM |= {"": UNIT_MM["px"]}
 LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z]*)\s*")
 STEP = re.compile(r"\s*([A-Za-z]+)\s*\(([^()]*)\)[\s,]*")
 VALUE = re.compile(NUMBER)
-HIDDEN = re.compile(r"(?:^|;)\s*display\s*:\s*none\s*(?:;|$)")
+DECLARED = re.compile(r"(?:^|;)\s*([-\w]+)\s*:\s*([^;!]*)")
 # What a style sheet could move, hide or draw otherwise than the elements say.
 MOVING = re.compile(r"(?<![-\w])(transform|translate|scale|rotate|display|visibility|offset-path|cx|cy|r|d)\s*:")
 # Scales along the width and the height of the page may differ by so much.
@@ -45,6 +45,8 @@ UNITS = (1e-6, 1e4)
 DEEPEST = 100
 LEANING = 1e-6  # least cosine of an angle of skew
 DRAWN = frozenset({"path", "circle"})
+# Elements whose content may be seen where they are hidden themselves.
+HOLDERS = frozenset({"g", "a", "switch", "svg", "use", "symbol", "foreignObject"})
 # Elements that draw nothing themselves, and whose content draws nothing where it stands.
 SILENT = frozenset({"title", "desc", "metadata", "defs", "style", "text", "namedview", "script"})
 TURNED_OVER = Affine(d=-1.0)
@@ -63,14 +65,15 @@ def read_svg(path: Path, options: DrawingOptions) -> Drawing:
 
     A group is a layer if its id, or Inkscape's label, is the name of a layer of a DXF file. Cut are CUT, BORE, HOLES,
     MARK, GROOVE_INNER, GROOVE_OUTER and what stands on no layer; where nothing stands on CUT, all but reference
-    geometry. Elements with display none are left out.
+    geometry. Elements that no viewer shows are left out: those with display none, and those with visibility hidden or
+    collapse, which the elements of a group have from it unless they state their own.
 
     Raises OSError where the file cannot be read; ReadError for a damaged or too large file, elements, transforms and
     units that are not read, and a contour that is not one closed chain of lines, arcs of circles and cubics.
     """
     root = _parsed(contents(path, "svg"), path)
     unit = unit_of(root, path)
-    elements = list(_elements(root, "", TURNED_OVER, path))
+    elements = list(_elements(root, "", TURNED_OVER, path, hidden=_hidden(root, inherited=False)))
     by_name = any(element.layer == CUT for element in elements)
     # what stands on no layer is seen, and cut, all the same
     wanted = {CUT, *BESIDE, ""} if by_name else {element.layer for element in elements} - REFERENCE
@@ -132,8 +135,11 @@ def _length(text: str | None, path: Path) -> float | None:
     return float(match[1]) * UNIT_MM[match[2].lower()]
 
 
-def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 0) -> Iterator[_Drawn]:
-    """Find all elements that may draw, in order; raises ReadError for styles and transforms that are not read."""
+def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 0, *, hidden: bool) -> Iterator[_Drawn]:
+    """Find all elements that may draw, in order; raises ReadError for styles and transforms that are not read.
+
+    `hidden` says whether the parent's visibility hides what states none of its own.
+    """
     for element in parent:
         tag = element.tag if isinstance(element.tag, str) else ""  # not a comment
         kind = tag.removeprefix(SVG)
@@ -141,10 +147,10 @@ def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 
             raise ReadError("unsupported", f"a style sheet sets {moving[1]}; give it to the elements", path)
         if not tag or kind.rpartition("}")[2] in SILENT:
             continue
-        style = element.get("style", "")
-        if element.get("display") == "none" or HIDDEN.search(style):
+        unseen = _hidden(element, inherited=hidden)
+        if _property(element, "display") == "none" or (unseen and kind not in HOLDERS):
             continue
-        if "transform" in style:
+        if "transform" in element.get("style", ""):
             raise ReadError("unsupported", f"{kind} is transformed by its style", path)
         placing = to.after(_transform(element.get("transform", ""), path))
         if kind != "g":
@@ -154,7 +160,19 @@ def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 
             raise ReadError("unsupported", f"groups within groups, {DEEPEST} deep", path)
         names = (element.get(LABEL, "").upper(), element.get("id", "").upper())
         own = next((name for name in names if name in LAYERS), layer)
-        yield from _elements(element, own, placing, path, depth + 1)
+        yield from _elements(element, own, placing, path, depth + 1, hidden=unseen)
+
+
+def _hidden(element: Element, *, inherited: bool) -> bool:
+    """Whether an element's visibility hides it: its own, or that of its parent, `inherited`."""
+    own = _property(element, "visibility")
+    return own != "visible" and (inherited or own in {"hidden", "collapse"})
+
+
+def _property(element: Element, name: str) -> str:
+    """Value of a property in small letters, by the style or else by the attribute; empty where neither states it."""
+    declared = {key.lower(): value for key, value in DECLARED.findall(element.get("style", ""))}
+    return str(declared.get(name, element.get(name, ""))).strip().lower()
 
 
 def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> CutEntities:
