@@ -70,7 +70,10 @@ class View(Generic[G_co, T_co]):
         return self.design.motion.travel(shaft, order)
 
     def pressure(self, shaft: Array) -> Array:
-        """Pressure angle of contact 1 at shaft angles (n,), rad, above 0 where the cam drives a rise."""
+        """Pressure angle of contact 1 at shaft angles (n,), rad, with the sign that `Surface.pressure` states.
+
+        Not for two rollers on one arm, as the parameter of their contour is another angle than the shaft's.
+        """
         return self.surface(self.contacts[0]).pressure(shaft)
 
     def surface(self, contact: Contact[G_co, T_co]) -> Surface:
