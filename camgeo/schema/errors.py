@@ -76,9 +76,14 @@ def suggestion(word: str, words: Iterable[str], near: float = NEAR) -> str:
 
     `near` is the least likeness from 0 to 1, the ratio of difflib; 1 is the same word.
     """
+    nearest = nearest_word(word, words, near)
+    return f"did you mean {nearest}?" if nearest else ""
+
+
+def nearest_word(word: str, words: Iterable[str], near: float = NEAR) -> str:
+    """The nearest of the known words, of a likeness of `near` or more; empty without one."""
     from difflib import get_close_matches  # for the message alone
 
     if len(word) > _LONGEST_WORD:
         return ""
-    matches = get_close_matches(word.lower(), list(words), n=1, cutoff=near)
-    return f"did you mean {matches[0]}?" if matches else ""
+    return next(iter(get_close_matches(word.lower(), list(words), n=1, cutoff=near)), "")

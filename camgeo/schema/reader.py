@@ -6,7 +6,7 @@ import math
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from camgeo.schema.errors import RecipeError, quote, suggestion
+from camgeo.schema.errors import RecipeError, nearest_word, quote
 from camgeo.schema.fields import Field, FieldTable, Kind, belongs_to_other_kind, either, place_of_key
 from camgeo.schema.quantity import split_unit
 from camgeo.schema.scalars import Complaint, read_number
@@ -122,10 +122,13 @@ class Reader:
                 self.survey(value, below)
 
     def table(self, table: FieldTable, node: Mapping, path: str) -> Values:
-        """Values of a mapping by key, without faulty ones; unknown, missing and conflicting keys are noted."""
+        """Values of a mapping by key, without faulty ones; unknown, missing and conflicting keys are noted.
+
+        A missing key is not noted where it is what the remedy of an unknown one names.
+        """
         nodes = entries(node)
-        self._refuse_unknown(table, node, path)
-        self._refuse_alternatives(table, nodes, node, path)
+        misspelled = self._refuse_unknown(table, node, path)
+        self._refuse_alternatives(table, nodes, node, path, misspelled)
         values: Values = {}
         for field in table.fields:
             below = join(path, field.name)
@@ -133,7 +136,7 @@ class Reader:
                 value = self.field(field, nodes[field.name], below)
                 if value is not None:
                     values[field.name] = value
-            elif field.required:
+            elif field.required and field.name not in misspelled:
                 self.fault(node.mark, below, "missing", None, f"{self.wanted(field)}: {field.about}")
         return values
 
@@ -146,8 +149,10 @@ class Reader:
         read_field = field.form.read if field.form else self.readers[field.kind]
         return read_field(self, field, node, path)
 
-    def _refuse_unknown(self, table: FieldTable, node: Mapping, path: str) -> None:
+    def _refuse_unknown(self, table: FieldTable, node: Mapping, path: str) -> set[str]:
+        """Note unknown keys; return the known ones that their remedies name."""
         known_keys = table.keys
+        misspelled: set[str] = set()
         for name, key in keys(node).items():
             below = join(path, name)
             if name in known_keys:
@@ -157,18 +162,24 @@ class Reader:
             elif name.isdecimal() and is_empty(entries(node)[name]):  # {rise: 12,5}
                 self.fault(key.mark, below, "a number cut at its comma", None, "a decimal takes a point, not a comma")
             else:
-                if intended := _other_measure(name, entries(node)[name], known_keys):
-                    self.fault(key.mark, below, "unknown key", None, intended)
-                    continue
-                near = suggestion(name, known_keys)
-                if name not in near and belongs_to_other_kind(self.root, below):
-                    near = ""  # a key of another kind is no slip of the pen, unless it is a part of the near word
-                self.fault(key.mark, below, "unknown key", None, near or place_of_key(self.root, name, table))
+                near, remedy = _other_measure(name, entries(node)[name], known_keys)
+                if not near:
+                    near = nearest_word(name, known_keys)
+                    if name not in near and belongs_to_other_kind(self.root, below):
+                        near = ""  # a key of another kind is no slip of the pen, unless it is a part of the near word
+                    remedy = f"did you mean {near}?" if near else place_of_key(self.root, name, table)
+                self.fault(key.mark, below, "unknown key", None, remedy)
+                if near:
+                    misspelled.add(near)
+        return misspelled
 
-    def _refuse_alternatives(self, table: FieldTable, nodes: dict[str, Node], node: Mapping, path: str) -> None:
+    def _refuse_alternatives(
+        self, table: FieldTable, nodes: dict[str, Node], node: Mapping, path: str, misspelled: collections.abc.Set[str]
+    ) -> None:
+        """Note alternatives that are missing, but for those that are misspelled, and those that exclude each other."""
         names = [name for name, _ in table.alternatives]
         chosen = [name for name, _ in table.alternatives if name in nodes]
-        if names and not chosen and not table.optional:
+        if names and not chosen and not table.optional and misspelled.isdisjoint(names):
             self.fault(node.mark, path, f"needs {either(tuple(names))}", None, "give exactly one of them")
         chosen_key = join(path, chosen[0]).rpartition(".")[2] if chosen else ""
         for name in chosen[1:]:
@@ -178,7 +189,7 @@ class Reader:
             return
         companions = dict(table.alternatives)
         for name in companions[chosen[0]]:
-            if name not in nodes:
+            if name not in nodes and name not in misspelled:
                 field = table.field(name)
                 problem, remedy = f"missing, needed with {chosen_key}", f"{self.wanted(field)}: {field.about}"
                 self.fault(node.mark, join(path, name), problem, None, remedy)
@@ -212,10 +223,10 @@ class Reader:
             return self.table(FieldTable((kind, *table.fields), table.alternatives), node, path)
         # Without a kind only keys that no table has are faults; the kind is not guessed.
         all_fields = {item.name: item for table in tables.values() for item in table.fields}
-        self._refuse_unknown(FieldTable((kind, *all_fields.values())), node, path)
+        misspelled = self._refuse_unknown(FieldTable((kind, *all_fields.values())), node, path)
         if "kind" in entries(node):
             self.field(kind, entries(node)["kind"], join(path, "kind"))
-        else:
+        elif "kind" not in misspelled:
             self.fault(node.mark, join(path, "kind"), "missing", None, f"{self.wanted(kind)}: {kind.about}")
         return None
 
@@ -232,16 +243,16 @@ class Reader:
         return node.items
 
 
-def _other_measure(name: str, node: Node, names: collections.abc.Collection[str]) -> str:
-    """Remedy for a diameter given in place of a radius, or the reverse, with its value; empty for other keys."""
+def _other_measure(name: str, node: Node, names: collections.abc.Collection[str]) -> tuple[str, str]:
+    """Key for a diameter given in place of a radius, or the reverse, and a remedy with its value; empty for others."""
     for measure, counterpart, factor in (("diameter", "radius", 0.5), ("radius", "diameter", 2.0)):
         new_name = name.replace(measure, counterpart)
         if measure in name and new_name in names and isinstance(node, Scalar):
             text, unit = split_unit(node.text)
             with suppress(Complaint):
-                return f"give {new_name}: {factor * read_number(text):.12g} {unit}".rstrip()
-            return f"give {new_name}"
-    return ""
+                return new_name, f"give {new_name}: {factor * read_number(text):.12g} {unit}".rstrip()
+            return new_name, f"give {new_name}"
+    return "", ""
 
 
 def kind_of(node: Node | None, tables: collections.abc.Mapping[str, FieldTable]) -> str:

@@ -53,7 +53,7 @@ units: inch
 cam:
   kind: double-roller
   ratio: 4/2
-  arms: 60
+  length: 60
   roller_radius: -8
   delta: {cos: {2: 625}}
 part: {bore: 10um, follower: 3}
@@ -68,7 +68,10 @@ dynamics: {mass: 1, stiffness: 1e5, rpm: 100}  # needs: dynamics
             "arm length, the distance l of the closing equation"
         ),
         "cams/a.yaml:5:10: cam.ratio: not in lowest terms, given 4/2; write 2",
-        "cams/a.yaml:6:3: cam.arms: unknown key; did you mean arm?",
+        (
+            "cams/a.yaml:6:3: cam.length: unknown key; the keys here are kind, ratio, arm, roller_radius, delta, law, "
+            "arc, rosette, undercut and preload"
+        ),
         "cams/a.yaml:7:18: cam.roller_radius: not above 0, given -8; give a length above 0 in inch",
         "cams/a.yaml:8:17: cam.delta.cos.2: an even number, given 2; give an odd whole number from 1 to 199",
         f"cams/a.yaml:9:14: part.bore: 'um' is no unit of a length, given '10um'; {TAKEN} inch",
@@ -82,6 +85,45 @@ dynamics: {mass: 1, stiffness: 1e5, rpm: 100}  # needs: dynamics
         "cams/a.yaml:11:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         (f"cams/a.yaml:12:1: tolerance: unknown key; it belongs under export, or under the file {HELD}"),
         "cams/a.yaml:13:11: dynamics: needs preload or backlash; give exactly one of them",  # needs: dynamics
+    ]
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        # a required key, the kind, one of several, one that another needs, a diameter for a radius
+        (
+            "cam: {kind: double-roller, ratio: 2, arms: 30, roller_radius: 3, arc: {radius: 40, side: convex}}",
+            "1:38: cam.arms: unknown key; did you mean arm?",
+        ),
+        ("cam: {knd: support, p: 9}", "1:7: cam.knd: unknown key; did you mean kind?"),
+        (
+            "cam: {kind: disc, base_radius: 30, follower: {knd: flat}, motion: [{dwell: 360}]}",
+            "1:47: cam.follower.knd: unknown key; did you mean kind?",
+        ),
+        ("cam: {kind: support, forier: {mean: 9}}", "1:22: cam.forier: unknown key; did you mean fourier?"),
+        (
+            (
+                "cam: {kind: disc, base_radius: 30, follower: {kind: flat}, "
+                "motion: [{rise: 9, ovr: 180, law: cycloidal}, {return: 9, over: 180, law: cycloidal}]}"
+            ),
+            "1:79: cam.motion[0].ovr: unknown key; did you mean over?",
+        ),
+        (
+            "cam: {kind: disc, base_radius: 30, follower: {kind: roller, diameter: 16}, motion: [{dwell: 360}]}",
+            "1:61: cam.follower.diameter: unknown key; give radius: 8",
+        ),
+    ],
+)
+def test_one_misspelled_key_is_one_fault(body: str, message: str) -> None:
+    assert told(body) == [f"c.yaml:{message}"]
+
+
+def test_a_key_that_is_near_one_that_stands_hides_no_missing_one() -> None:
+    body = "cam: {kind: double-roller, ratio: 2, ratios: 2, roller_radius: 3, arc: {radius: 40, side: convex}}"
+    assert [message.split("; ")[0] for message in told(body)] == [
+        "c.yaml:1:6: cam.arm: missing",
+        "c.yaml:1:38: cam.ratios: unknown key",
     ]
 
 
@@ -659,10 +701,7 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
         ),
         (
             MOTION.replace("LAW", "{polynom: [0, 1]}"),
-            [
-                "1:84: cam.motion[0].law: needs polynomial, scca, uniform, points or table; give exactly one of them",
-                "1:85: cam.motion[0].law.polynom: unknown key; did you mean polynomial?",
-            ],
+            ["1:85: cam.motion[0].law.polynom: unknown key; did you mean polynomial?"],
         ),
     ],
 )
