@@ -214,8 +214,10 @@ def face_on_arm(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
     low = s.plate + s.gap - disk.bottom
     high = low + disk.thickness
     hub, inner = 0.5 * s.hole + max(s.wall, THIN), 0.5 * s.hole + THIN
-    # the bar, from the face away from the cam, has to lap over the hub; remedies keep well within these bounds
-    if not -0.5 * s.bar < nearer < hub + 0.6 * s.bar:
+    # the bar, from the face away from the cam, has to lap over the hub by a wall that stands by itself, or half of what
+    # is there; a bar that begins this far beside the pivot does. Remedies keep well within these bounds
+    beside = math.sqrt(hub**2 - (inner + min(THIN, 0.5 * (hub - inner))) ** 2)
+    if not -beside <= nearer < hub + 0.6 * s.bar:
         message = "the face passes {away} beside the pivot, and its bar beside the hub"
         remedy = "give at most {most}" if nearer > 0.0 else "give 0 or more"
         raise BodyError("cam.follower.arm.face", message, remedy, away=abs(nearer), most=hub + 0.5 * s.bar)

@@ -591,6 +591,15 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
         (
             "face on a leading arm",
             "face: -2",
+            "face: -6",  # the bar would lap over the hub by less than a wall
+            "cam.follower.arm.face",
+            "6 mm beside the pivot",
+            "give 0 or more",
+            "face: 0",
+        ),
+        (
+            "face on a leading arm",
+            "face: -2",
             "face: -20",
             "cam.follower.arm.face",
             "20 mm beside the pivot",
