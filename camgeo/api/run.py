@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from camgeo.api.loading import order_of
 from camgeo.api.log import library_log, log_failures, stage_reporter
 from camgeo.api.report import Report
 from camgeo.common.arguments import demand_callable, demand_type, number_of, path_of, short_repr, texts_of
-from camgeo.common.errors import CallError, with_packages
+from camgeo.common.errors import CallError, SurroundingsError, with_packages
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.registry import registry
@@ -18,7 +19,7 @@ from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
     from os import PathLike
     from pathlib import Path
 
@@ -99,10 +100,9 @@ def verify(
 
     Raises RecipeErrors where there is no such cam, CallError for a path that is no file of a known kind, for a file
     given twice, points that cannot be judged, and a tolerance, gap or unit that makes no sense; UnitsError where a file
-    states another unit than `units`, SurroundingsError where a package is missing, TypeError for an unknown option.
+    states another unit than `units`, SurroundingsError where a file cannot be read or a package is missing, TypeError
+    for an unknown option.
     """
-    from kin.read.formats import suffixes
-
     recipe = order_of(recipe)
     paths = [path_of("file" if i == 0 else f"files[{i - 1}]", name) for i, name in enumerate((file, *files))]
     within = None if tolerance is None else number_of("tolerance", tolerance)
@@ -115,20 +115,35 @@ def verify(
     used = _with_options(
         "verify", recipe, {name: value for name, value in options.items() if name not in judge_options}
     )
+    with _with_readable(paths[0]):
+        report = _verify(recipe, used, paths, judge_options, within=within, gap_width=gap_width, units=units, page=page)
+    return _log(report)
+
+
+def _verify(
+    recipe: Order,
+    used: Order,
+    paths: list[Path],
+    judge_options: Mapping[str, object],
+    *,
+    within: float | None,
+    gap_width: float | None,
+    units: Units | None,
+    page: bool,
+) -> Report:
+    """Report on files by a recipe; `used` is the recipe with the capabilities of the call.
+
+    `within` is the tolerance, in the recipe's unit as is the gap; `judge_options` are those of capabilities that claim
+    files. Raises what `verify` does, and OSError where a file cannot be read.
+    """
+    from kin.read.formats import suffixes
+
     # files that a capability claims, such as measured points, are judged by it in a call of their own
     path_faults = {path: _path_fault(path) for path in paths}
     claimed = [path for path in paths if not path_faults[path] and registry.judge_of(path, judge_options)]
     if claimed:
-        return _log(
-            _judge_claimed(
-                recipe,
-                paths,
-                claimed,
-                units,
-                judge_options,
-                has_file_bounds=within is not None or gap_width is not None or page,
-            )
-        )
+        has_file_bounds = within is not None or gap_width is not None or page
+        return _judge_claimed(recipe, paths, claimed, units, judge_options, has_file_bounds=has_file_bounds)
     # all faults of the call are collected, and raised together
     path_faults |= {path: _size_fault(path) for path in paths if not path_faults[path]}
     readable = [path for path in paths if not path_faults[path]]
@@ -158,11 +173,11 @@ def verify(
     unit = None if units is None else UNIT_MM[units]
     kind = root_of(used)
     if not page:
-        return _log(Report(recipe, kind.judge(used, paths, within, unit, gap_width), None, tuple(paths)))
+        return Report(recipe, kind.judge(used, paths, within, unit, gap_width), None, tuple(paths))
     if kind.show is None:
         raise CallError(f"{recipe.name}: a page shows the files of one cam; give {kind.instead}, or leave page out")
     report, text = kind.show(used, paths, within, unit, gap_width)
-    return _log(Report(recipe, report, None, tuple(paths), page=text))
+    return Report(recipe, report, None, tuple(paths), page=text)
 
 
 def _judge_claimed(
@@ -223,6 +238,16 @@ def _fault_of_kind(kind: str, listed: Collection[str]) -> str:
         near = suggestion(kind, FORMATS)
         return f"a kind of file is one of {', '.join(FORMATS)}, not {short_repr(kind)}{near and f'; {near}'}"
     return f"export.files lists no {kind}; it lists {', '.join(name for name in FORMATS if name in listed)}"
+
+
+@contextmanager
+def _with_readable(path: Path) -> Iterator[None]:
+    """Turn an OSError into a SurroundingsError with the name of its file; `path` stands for one that has none."""
+    try:
+        yield
+    except OSError as error:
+        refused = path if error.filename is None else path_of("file", error.filename)
+        raise SurroundingsError(f"cannot be read: {error.strerror or error}", refused) from error
 
 
 def _is_drawing(path: Path) -> bool:
