@@ -299,7 +299,7 @@ def summary(report: dict[str, Any]) -> str:
             if motion.get("extremes") == "sampled":
                 text += f" (sampled, estimated within {motion['remainder']:.2g})"
         parts.append(text)
-    parts += _linkage_parts(report.get("linkage"))
+    parts += _linkage_parts(report)
     parts += [f"remark: {remark['sentence']}" for remark in report.get("remarks", ())]
     failed = [_failure_text(check) for check in report["checks"] if not check["ok"]]
     verdict = "ok" if report["ok"] else "FAILED"
@@ -321,8 +321,12 @@ def _worst(file: dict[str, Any]) -> tuple[dict[str, Any] | None, str]:
     return max(motions, key=lambda pair: pair[0]["max"], default=(None, ""))
 
 
-def _linkage_parts(linkage: dict[str, Any] | None) -> list[str]:
-    """The linkage's worst output error and the shortest dwell of the files; without files the intended dwell."""
+def _linkage_parts(report: dict[str, Any]) -> list[str]:
+    """The linkage's worst output error and the shortest dwell of the files.
+
+    Without a file whose dwell is known it is the intended one, and called that if there are files.
+    """
+    linkage = report.get("linkage")
     if linkage is None:
         return []
     parts = []
@@ -332,7 +336,8 @@ def _linkage_parts(linkage: dict[str, Any] | None) -> list[str]:
     lengths = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] != "intended"]
     intended = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] == "intended"][:1]
     if lengths or intended:
-        parts.append(f"dwell {min(lengths or intended):.2f} deg")
+        of_files = lengths or not report["files"]
+        parts.append(f"{'dwell' if of_files else 'intended dwell'} {min(lengths or intended):.2f} deg")
     return parts
 
 

@@ -14,6 +14,16 @@ def test_only_the_recipe_s_own_name_is_left_out(path, told):
     assert summary(report) == f"c: ok  {told}"
 
 
+def test_a_dwell_of_no_file_is_called_intended():
+    def dwell(*lengths, files=({"path": "c.dxf"},)):
+        rows = [{"from": name, "length_deg": length} for name, length in lengths]
+        return summary({"recipe": "c", "ok": True, "files": files, "checks": [], "linkage": {"dwells": rows}})
+
+    assert dwell(("intended", 37.05)) == "c: ok  dxf; intended dwell 37.05 deg"
+    assert dwell(("intended", 37.05), ("c.dxf", 36.5), ("c.dxf", 36.2)) == "c: ok  dxf; dwell 36.20 deg"
+    assert dwell(("intended", 37.05), files=()) == "c: ok  dwell 37.05 deg"
+
+
 def checked(value, *, ok=True, sense="at_most", limit=1e-3):
     name = "motion"
     return {"name": name, "ok": ok, "value": value, "limit": limit, "unit": "mm", "sense": sense, "at_deg": None}
