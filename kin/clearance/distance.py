@@ -327,6 +327,7 @@ def rates(meeting: Encounter, pairs: Pairs, apart: Mask) -> tuple[Array, Array]:
     home = turned(first.middle[i], back.angle[cell]) + back.place[cell]
     of_first, of_second = (first.normal[i], first.fan[i]), (second.normal[j], second.fan[j])
     on_first, on_second = spin * first.reach[i], spin * second.reach[j]
+    # velocity, and its error, of the middle of the second feature seen from the first region, and the other way round
     passing, passed = motion.along(cell, body), back.along(cell, home)
     # |n.v| with the normals n of either feature, and v at its centre of curvature or at points of either feature
     through = np.minimum(

@@ -234,8 +234,8 @@ def _safe(train: Train, drive: Drive) -> float:
         running = train.at(rpm)
         oscillator = running.bound
         gain = oscillator.amplification * (1.0 + 2.0 * zeta)
-        lasting = -math.expm1(-TURN * oscillator.fading)
-        return running.inertia * (gain * bend + (1.0 + 2.0 * zeta) * oscillator.natural * kicks / lasting)
+        lost = -math.expm1(-TURN * oscillator.fading)  # share of a kick's motion that a turn takes away
+        return running.inertia * (gain * bend + (1.0 + 2.0 * zeta) * oscillator.natural * kicks / lost)
 
     low, high = 1e-9, train.natural * 60.0
     for _ in range(_BISECTIONS):  # `low` is safe after any number of them

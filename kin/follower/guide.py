@@ -380,7 +380,10 @@ def polar_rows(angle: Array, length: float) -> tuple[Array, Array, Array]:
 
 
 def _on_arm(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
-    """Both crossings (2, n, 2), from the pieces' starts, nan without any; their places come from the arm's circle."""
+    """Both crossings (2, n, 2), from the pieces' starts, nan without any; their places come from the arm's circle.
+
+    `q` (n, 2) is the pivot from there, `length` the arm, mm: `Arm.crossings` has the formulas.
+    """
     m, k = right(pieces.tangent), pieces.curvature
     v = m + k[:, None] * q
     size = np.hypot(v[:, 0], v[:, 1])
@@ -395,7 +398,10 @@ def _on_arm(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
 
 
 def _on_piece(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
-    """Both crossings (2, n, 2), from the pieces' starts, nan without any; their places come from the piece's circle."""
+    """Both crossings (2, n, 2), from the pieces' starts, nan without any; their places come from the piece's circle.
+
+    `q` (n, 2) is the pivot from there, `length` the arm, mm: `Arm.crossings` has the formulas.
+    """
     m, k = right(pieces.tangent), pieces.curvature
     v = m + k[:, None] * q
     size, away = np.hypot(v[:, 0], v[:, 1]), np.hypot(q[:, 0], q[:, 1])

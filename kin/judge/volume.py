@@ -49,7 +49,10 @@ def volume_check(
 
 
 def layers_volume_check(measured: float, contours: Sequence[Contour], part: PartIntent, tolerance: float) -> Check:
-    """Check the volume of a part in layers, mm^3, against closed forms: within the tolerance times the walls' area."""
+    """Check the volume of a part in layers, mm^3, against that by the area and length of edges of `exact_area`.
+
+    `contours` are the file's, one of each surface. The limit is the tolerance, mm, times the area of the walls.
+    """
     from kin.judge.layers import volume, wall_area
 
     area, perimeter, source = exact_area(contours, part)

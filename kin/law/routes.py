@@ -169,9 +169,10 @@ class FromLeaf:
 
 @dataclass(frozen=True)
 class FromExpression:
-    """Psi from a formula over the polar angle t: of D/l^2 (W 5.10) or, where `is_distance`, of r/2l (W 4.10).
+    """Psi from a formula over the polar angle t: -asin(D/l^2) (W 5.10) or, where `is_distance`, 2 acos(r/2l) - alpha.
 
-    Either is the formula's value times `scale`: its unit, mm^2 or mm, over l^2 or 2 l.
+    D/l^2, or r/2l with the polar radius r of the pitch curve (W 4.10), is the formula's value times `scale`: its unit,
+    mm^2 or mm, over l^2 or 2 l.
     """
 
     formula: Expression

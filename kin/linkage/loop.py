@@ -177,8 +177,9 @@ class Triangle:
         value = np.arctan2(self.root.c[0], self.along.c[0])
         if not self.q.order:
             return Jet(value[None])
-        arm = (-self.near + 2 * self.b * (self.a - self.b)).lower()
-        return (arm * self.between.derivative() / (2.0 * self.q.lower())).integral(value)
+        # a^2 - b^2 - q = 2 b (a cos C - b), without cancellation
+        factor = (-self.near + 2 * self.b * (self.a - self.b)).lower()
+        return (factor * self.between.derivative() / (2.0 * self.q.lower())).integral(value)
 
 
 def triangle_margins(a: float, b: float, q: Array, near: Array, far: Array) -> Array:

@@ -160,7 +160,10 @@ class Corrected(Follower):
         return [_Beyond(drive, self, k) for k, drive in enumerate(self.exact.drives(contour))]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:
-        """Pressure angle, rad, and radius of curvature, mm, (n,) each, on a contour at shaft angles phi (n,), rad."""
+        """Pressure angle at contact 1, rad, and radius of curvature of a contour there, mm, (n,) each, at phi (n,).
+
+        With the signs of `Follower.pressed`; like it, raises ContactError where contact 1 finds no contact.
+        """
         return self.exact.pressed(contour, phi)
 
     def touching(self, points: Array, normals: Array) -> list[tuple[Array, Array]]:

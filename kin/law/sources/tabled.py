@@ -70,7 +70,10 @@ class Tabled:
         return in_unit(value, self.unit, digits)
 
     def bounds(self, share: float = 1.0, least_level: float | None = None) -> Bounds:
-        """Bounds of a motion with readings `share` times as great; lower bounds are no less than `least_level`."""
+        """Bounds of a motion with readings `share` times as great, a little narrower than these.
+
+        Lower bounds are no less than `least_level`, mm or rad, but where a row's upper bound is below it.
+        """
         within = share * self.reading * _KEPT
         within[list(self.fixed)] = 0.0
         lo, hi = self.s - within, self.s + within
