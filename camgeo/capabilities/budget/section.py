@@ -130,6 +130,7 @@ def _over_turn(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
     """What each dimension adds to the worst case, in the report's unit, by the worst contact, every 5 degrees."""
     rows, (scale, _) = outcome.influence, motion_unit(recipe)
     step = max(len(rows.shaft) * SHARES_STEP // 360, 1)
+    # in a worst case the powers are the influences times the tolerances themselves
     added = by_name(rows, powers(rows, outcome.worst_output, "worst")[:, ::step])
     at = [degrees(float(angle)) for angle in rows.shaft[::step]]
     return {"at_deg": at, "worst": {name: (scale * values).tolist() for name, values in added.items()}}

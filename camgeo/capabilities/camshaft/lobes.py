@@ -59,7 +59,8 @@ class PlacedLobe:
     def on_shaft(self, engine: Engine | None) -> ShaftCam:
         """Lobe as a ShaftCam for capabilities that judge files.
 
-        Its event lift is None without an engine, or where its follower swings.
+        Its event lift is None without an engine, or where its follower swings. Where the engine's lift is the valve's,
+        raises RecipeErrors and EventError as `moved` does.
         """
         lobe = self.lobe
         events = None if engine is None or self.swings else self.event_lift(engine)
@@ -71,7 +72,10 @@ class PlacedLobe:
         return self.design.only_surface.contour
 
     def event(self, lift: float) -> Event | None:
-        """Event of the lobe at a lift of its follower, mm or rad; None where that is not one stretch of a turn."""
+        """Event of the lobe at a lift of its follower, mm or rad.
+
+        None where that is not one stretch of a turn, or the motion is too rough to tell.
+        """
         if lift not in self.events:
             self.events[lift] = event(self.design.exact, self.zero, lift)
         return self.events[lift]
@@ -94,7 +98,8 @@ class PlacedLobe:
         """Lift of the lobe's follower, mm or rad, at which its events are stated.
 
         It is the engine's lift, converted to the follower where it is a valve's lift; without an engine, or for a
-        follower that swings, the middle of the stroke.
+        follower that swings, the middle of the stroke. Where the engine's lift is the valve's, raises RecipeErrors and
+        EventError as `moved` does.
         """
         if engine is None or self.swings:
             lift = self.design.motion.rows(equal_steps(STROKE_STEPS), 0)[0]

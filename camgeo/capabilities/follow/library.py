@@ -138,7 +138,11 @@ class Followed:
 
     @property
     def contact_travel(self) -> tuple[float, float] | None:
-        """Least and greatest place of contact on a flat face, mm from the stem's axis or the pivot; else None."""
+        """Least and greatest place of contact on a flat face, mm; None for a round touch.
+
+        On a stem they count from its axis, above 0 on the side from which the contour comes, on an arm from the foot of
+        the pivot on the face.
+        """
         return self._motion.travel
 
     @property
@@ -190,8 +194,8 @@ class Followed:
         }
         second = self._motion.second
         if second is not None:
-            name, sign = ("breadth_mm", -1.0) if self.follower.yoke else (f"play_{unit}", scale)
-            columns[name] = sign * (second - self.position)
+            name, factor = ("breadth_mm", -1.0) if self.follower.yoke else (f"play_{unit}", scale)
+            columns[name] = factor * (second - self.position)
         rows = np.column_stack(list(columns.values())) + 0.0
         lines = [",".join("" if math.isnan(value) else f"{value:.12g}" for value in row) for row in rows.tolist()]
         return "\n".join([",".join(columns), *lines, ""])
@@ -268,8 +272,9 @@ class Followed:
             )
         if len(self.theta) % 2:
             raise CallError("a recipe of a yoke has a table over half a turn: give an even number of steps")
-        middle = 0.5 * (float(self.position[0] - self.position[len(self.theta) // 2]) + 0.5 * (narrow + wide))
-        base = f"{middle - self.follower.touch.radius:.9g}"
+        # of the first contact at angle 0: the middle of the yoke there, and half the mean breadth
+        distance = 0.5 * (float(self.position[0] - self.position[len(self.theta) // 2]) + 0.5 * (narrow + wide))
+        base = f"{distance - self.follower.touch.radius:.9g}"
         if self.follower.flat:
             return {"kind": "constant-breadth", "base_radius": base}
         return {"kind": "constant-diameter", "base_radius": base, "roller_radius": f"{self.follower.touch.radius!r}"}

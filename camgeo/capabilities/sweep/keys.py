@@ -275,7 +275,7 @@ def _report_absent(axis: Values, numbers: list[str], reader: Reader) -> None:
 
 
 def _is_absent(path: str, reader: Reader) -> bool:
-    """Whether a known field has no value in the recipe; False for an entry beyond the end of a list."""
+    """Whether a path without a value is that of a known field; False for an entry beyond the end of a list."""
     end = path.find("]")
     while end >= 0:
         entry = path[: end + 1]

@@ -150,8 +150,8 @@ def _optimise(task: SweepTask, goal: _Goal) -> tuple[_Goal, Array]:
 def output_error(recipe: Recipe) -> float:
     """Greatest error of the output within the tolerance of a recipe's files, rad or mm.
 
-    The recipe has a linkage. Raises PolishError where the mechanism may bind within the tolerance, or twice the error
-    fills the dwell's band.
+    The recipe has a linkage. Raises PolishError where the mechanism may bind within the tolerance, or twice the error,
+    times `_ERROR_FACTOR`, fills the band of a dwell.
     """
     from kin.follower.frame import implied_limit
 
@@ -166,6 +166,7 @@ def output_error(recipe: Recipe) -> float:
     if recipe.dwell is None or 2.0 * _ERROR_FACTOR * bound < recipe.dwell.band:
         return bound
     size = f"{error:.3g} deg" if swings else f"{error / recipe.mm:.3g} {'in' if recipe.units == 'inch' else 'mm'}"
+    # a tolerance by which the error either way takes half of the band
     most = downward(tolerance / recipe.mm * recipe.dwell.band / (4.0 * bound))
     raise PolishError(
         f"within the tolerance of {within} the output may be off by {size} either way, which leaves nothing of "

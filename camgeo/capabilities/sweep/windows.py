@@ -240,6 +240,7 @@ def _straight_lengths(
     right, right_side = _straight_share(value[row, j], value[row, after], lowest, highest)
     left = left * (x_i - x_before)
     right = right * (x_after - x_j)
+    # ends that leave on opposite sides together exceed the band: the longer one alone is added
     more = np.where(left_side * right_side < 0, np.maximum(left, right), left + right)
     lengths: Array = np.where(cells == n, np.inf, (x_j - x_i) + more)
     return lengths

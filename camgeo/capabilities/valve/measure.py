@@ -37,7 +37,8 @@ class GreatestDerivative(NamedTuple):
 def valve_event(valve: Valve, design: Design, lift: float) -> LobeEvent:
     """Stretch of a turn in which the valve is above a lift, mm: opening and closing as shaft angles, rad.
 
-    Raises EventError unless the valve crosses that lift once upward and once downward.
+    The `lift` of the result is the tappet's there, mm. Raises EventError unless the valve crosses that lift once upward
+    and once downward, and for a motion too rough to follow.
     """
     most = greatest_lift(valve, design)
     if lift > most or most == 0.0:
@@ -52,6 +53,7 @@ def extremes(valve: Valve, design: Design) -> dict[int, GreatestDerivative]:
     Raises EventError unless the valve opens and closes once in a turn, and for a motion too abrupt to be followed.
     """
     event, exact = valve_event(valve, design, 0.0), design.exact
+    # position of the tappet at lift 0: `event.lift` is its lift where the valve opens
     datum = float(exact.motion.by_parameter(np.array([event.opening % TURN]), 0)[0, 0]) - event.lift
 
     def rows(t: Array) -> Array:
