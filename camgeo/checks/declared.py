@@ -201,7 +201,10 @@ def _dwelling(scene: CheckFacts, file: FileRequest) -> bool:
 
 
 def run_with(scene: CheckFacts, file: FileRequest) -> bool:
-    """Whether the motion of a file drives a computed run, as of dynamics: the part is nominal and without a linkage."""
+    """Whether the motion of a file drives a computed run, as of dynamics.
+
+    It does where the file shows the part itself, uncompensated, and the recipe has no linkage.
+    """
     return not scene.linked and file.format.part and file.compensation is None
 
 

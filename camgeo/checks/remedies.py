@@ -191,13 +191,14 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
         least = recipe.cam.advice.least_pressure_angle
         if missed.bound <= least:
             return f"a ratio nearer to 1 (at this one no swing, however small, stays below {least:.4g} deg)"
-    limits = "cam.sizing.pressure-angle"
-    if limits in recipe.marks and figure in {figures.PRESSURE_ANGLE, figures.ON_RISE, figures.ON_RETURN}:
-        limits_both = figure == figures.PRESSURE_ANGLE and f"{limits}.on_return" in recipe.marks
+    sizing_path = "cam.sizing.pressure-angle"
+    if sizing_path in recipe.marks and figure in {figures.PRESSURE_ANGLE, figures.ON_RISE, figures.ON_RETURN}:
+        limits_both = figure == figures.PRESSURE_ANGLE and f"{sizing_path}.on_return" in recipe.marks
         key = "on_return" if figure == figures.ON_RETURN else "at_most and on_return" if limits_both else "at_most"
         return f"{key} of {missed.bound:.6g} under sizing"
     advice = recipe.cam.advice.on(missed.surface)
-    if advice.larger and eased_by == "size" and not recipe.cam.sizes:  # a size that is found is no larger one
+    # a recipe that leaves its sizes open cannot be told to give a larger one
+    if advice.larger and eased_by == "size" and not recipe.cam.sizes:
         return f"{advice.larger}, {advice.less_steep}"
     return advice.less_steep
 
@@ -212,8 +213,9 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
     elif figure in {figures.RADIUS, figures.HOLLOW_RADIUS} and advice.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
         roller, hollow = advice.radius / recipe.mm, figure == figures.HOLLOW_RADIUS
+        # a larger roller widens hollows if the pitch curve keeps a base circle; in a ring the base radius widens them
         may_grow = recipe.cam.side > 0 and roller + lack < advice.most_radius / recipe.mm
-        # a larger roller widens hollows, in a ring the base radius does; a smaller one, if any is left, convex places
+        # a hollow needs a roller that may grow; a convex place a smaller one, of which something has to be left
         if may_grow if hollow else lack < roller:
             remedy = f"a {advice.radius_field} of {upward(roller + lack) if hollow else downward(roller - lack)} {unit}"
             remedy += advice.same_pitch(recipe.mm)

@@ -154,6 +154,7 @@ def reversals(curve: Curve) -> tuple[Reversal, ...]:
     whose speed falls below zero by more than `ROUNDING` of the curve's size. Raises CurveError where the proof does not
     end.
     """
+    # rows of the cells, in the order of `Bounds`: 0 is the lower bound of sigma, 6 and 7 bound sigma'' and omega''
     cells = curve.cells
     doubtful = cells.rows[0] <= 0.0
     if not doubtful.any():
@@ -168,9 +169,9 @@ def reversals(curve: Curve) -> tuple[Reversal, ...]:
         a, b = state.at_low, state.at_high
         swing = 0.125 * state.speed_bend * (state.high - state.low) ** 2
         least, most = np.minimum(a.speed, b.speed), np.maximum(a.speed, b.speed)
-        turning = state.speed_bend * (state.high - state.low)
+        slope_change = state.speed_bend * (state.high - state.low)
         monotone = (a.speed_slope * b.speed_slope > 0.0) & (
-            np.minimum(np.abs(a.speed_slope), np.abs(b.speed_slope)) > turning
+            np.minimum(np.abs(a.speed_slope), np.abs(b.speed_slope)) > slope_change
         )
         decided = (least - swing >= -tolerance) | (most + swing < -tolerance) | monotone | (swing <= 0.25 * tolerance)
         stretches += _below_zero(curve, state.part(decided), tolerance)

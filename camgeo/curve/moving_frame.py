@@ -53,9 +53,10 @@ class Displacement:
 
     @staticmethod
     def of(motion: Motion) -> Displacement:
-        """Displacement of a motion over a whole turn or an equal part of one.
+        """Displacement of a motion that repeats, over a whole turn or an equal part of one.
 
-        Raises IntentError unless S and S' join all round, ValueError for a motion over another angle.
+        Raises IntentError unless S and S' join all round, ValueError for a motion over another angle, or with another
+        `around` than 1, which does not repeat.
         """
         repeats = round(TURN / motion.total)
         if not (motion.around == 1 and repeats >= 1 and abs(repeats * motion.total - TURN) <= 1e-9):

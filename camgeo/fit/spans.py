@@ -204,9 +204,10 @@ def _curvature_bounds(cubic: Cubics, u: Array, pace: Array, wedge: Array) -> _Ra
 def _bend(
     step: Array, bounds: Bounds, rates: _Rates, *, g: Array, angle: Array, speed: Array, turn: Array, excess: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Bound of the change of g'' from -sigma m at the step's ends, and whether it is confirmed: (n, m).
+    """Bound, over each step, of g'' less the greater -sigma m of its ends, and whether it is confirmed: (n, steps).
 
-    `g`, `angle` gamma, `speed`, `turn` and `excess` m are values at the nodes (n, m + 1).
+    `g`, `angle` gamma, `speed` sigma, `turn` omega and `excess` m, as the head of this module defines them, are values
+    at the nodes (n, steps + 1). The bound holds for -g'' and sigma m as well.
     """
     # greatest and least speed and turn over each step
     shape, square = step.shape, step**2 / 8.0

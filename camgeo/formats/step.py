@@ -64,7 +64,8 @@ def write_step(
 
     Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError
     where a piece is too short for the kernel, an arc is sharper than the chamfer, a cross hole divides a solid, or the
-    kernel finds it unsound, TypeError for a chamfer along anything but arcs, OSError where the file cannot be written.
+    kernel finds it unsound, TypeError for a polygon and for a chamfer along anything but arcs, OSError where the file
+    cannot be written.
     """
     need_kernel()
     fitted = [layered.outline for body in bodies for layered in body.outlines if layered.circle is None]

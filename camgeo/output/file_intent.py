@@ -21,9 +21,11 @@ def shaft_of_file(
 ) -> ShaftIntent:
     """Intent of the files of the format `kind`, whose discs may differ from the nominal ones by a compensation.
 
-    Each file holds one disc or all. `field` is the request's path in the recipe, at which errors are reported. Raises
-    RecipeErrors for a program without `manufacture` in the recipe, and where the compensation leaves nothing of a
-    roller or of an opening, or the altered contour cannot be made or proved; KeyError for an unknown format.
+    Each file holds one disc or all. Raises RecipeErrors at `field`, the request's path in the recipe, where the
+    compensation leaves nothing of a roller or of an opening, an alteration is refused, or the altered contour cannot be
+    made or proved; RecipeErrors elsewhere for an entry that the recipe lacks, such as `manufacture` for a program, and
+    where the cutter of a program or the roller of a lift table cannot follow the contour; CurveError where it cannot be
+    proved what that roller reaches, KeyError for an unknown format.
     """
     from kin.judge.intent import ShaftIntent
 

@@ -42,7 +42,10 @@ def units_for(own_unit: str) -> tuple[str, ...]:
 
 
 def quantity_in(own_unit: str) -> str:
-    """Quantity that a unit measures, for messages: `a length`; raises KeyError for a unit that no number may carry."""
+    """Quantity of a field whose own unit is `degrees`, `mm`, `N/m`, for messages: `a length`.
+
+    Raises KeyError for another unit: for `deg` or `psi`, which only numbers carry, and where numbers carry none.
+    """
     return _TAKEN[own_unit][2]
 
 

@@ -235,7 +235,8 @@ def _decode(data: bytes, file: str) -> str:
         place = _place(data[: error.start].decode("utf-8") + "?", None)
         raise _fault(file, place, "not UTF-8", f"byte 0x{data[error.start]:02x}", "save the file as UTF-8") from None
     text = text.removeprefix("\ufeff")
-    printable = text.replace("\n", "").isprintable()  # no such character is; the pattern takes long to compile
+    # no forbidden character is printable: the pattern, which takes long to compile, is left out for most texts
+    printable = text.replace("\n", "").isprintable()
     if not printable and (forbidden := re.search(_FORBIDDEN, text)):
         value = f"U+{ord(forbidden[0]):04X}"
         raise _fault(
