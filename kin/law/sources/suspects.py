@@ -187,13 +187,17 @@ def spanned(rows: Tabled, place: int) -> int:
     n = len(rows.s)
     sides = []
     for way in (-1, 1):
-        s = rows.s[(place + way * np.arange(1, n)) % n] if rows.period else rows.s[place + way :: way][: n - 1]
+        if rows.period:
+            s = rows.s[(place + way * np.arange(1, n)) % n]
+        else:
+            s = rows.s[:place][::-1] if way < 0 else rows.s[place + 1 :]
         signs = np.sign(np.diff(s))
         changes = np.flatnonzero(signs != signs[0]) if len(signs) else signs
         run = int(changes[0]) if len(changes) else len(signs)
-        sides.append((run + 1, way * float(signs[0]) if len(signs) else 0.0))
+        # one row alone, at the end of a table, is of the sense of the other side
+        sides.append((min(run + 1, len(s)), way * float(signs[0]) if len(signs) else None))
     (left, rising), (right, later) = sides
-    if rising == later:
+    if rising is None or later is None or rising == later:
         return left + right + 1
     if not rising or not later:  # at the foot of a stroke, beside a dwell
         return (left if rising else right) + 1

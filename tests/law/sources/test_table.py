@@ -1,6 +1,6 @@
 """Tables kept within their reading error; what is no table is refused with its line.
 
-Holds: kin.law.sources.dwells, kin.law.sources.suspects.
+Holds: kin.law.sources.dwells.
 """
 
 import math
