@@ -106,8 +106,8 @@ def grinding_table(recipe: Recipe, design: Design, request: FileRequest, toleran
 def grinding_intent(recipe: Recipe, design: Design) -> Grinding:
     """Radius of the wheel, and of a tabled roller with its least distance from the shaft, mm, for kin's judgement.
 
-    The wheel's is None without a wheel. Raises RecipeErrors for a roller that the contour does not let in, and for a
-    trimmed contour, CurveError where it cannot be proved what the roller reaches.
+    The wheel's is None without a wheel, the roller's where none is tabled. With a roller raises RecipeErrors where the
+    contour does not let it in or is trimmed, CurveError where it cannot be proved what it reaches.
     """
     request = next((request for request in recipe.export.files if request.form.ground and ROLLER in request.own), None)
     if request is None or not design.contours:
@@ -137,7 +137,8 @@ def greatest_bend(path: Curve) -> float:
     h_sway = 0.5 * width * turn * g_most
     h_low, h_high = h.min(axis=0) - h_sway, h.max(axis=0) + h_sway
     with np.errstate(divide="ignore", invalid="ignore"):
-        # |x'| = sigma |g|/x: by as much as x may be less than far - width*speed, g_most exceeds |g|, which is at most x
+        # |x'| = sigma |g|/x. Where x is less than near = far - width*speed, g_most is |g| + near - x or more; as |g| is
+        # at most x, |g|/x is at most (|g| + near - x)/near, and so at most g_most/near
         x_sway = 0.5 * width * speed * np.minimum(g_most / (far - width * speed), 1.0)
         x_low, x_high = x.min(axis=0) - x_sway, x.max(axis=0) + x_sway
         bent = np.stack([a / b for a in (proved.turn_low, proved.turn_high) for b in (proved.speed_low, speed)])

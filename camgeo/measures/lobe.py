@@ -87,14 +87,18 @@ def _off_rest(event: LobeEvent, exact: ExactCam) -> LobeEvent:
 
 
 def _crossings(pieces: MonotonePieces, level: float) -> Array:
-    """Places at which a level is crossed, rad, ascending: 0 and the whole turn are one place, a dwell on it is none."""
+    """Places at which a level is crossed, rad, ascending; of a dwell on it both ends.
+
+    0 and the whole turn are one place, given once: as the whole turn where a dwell on the level begins there, not at
+    all within such a dwell, else as 0.
+    """
     places = pieces.crossings(level)
     if len(places) < _TWO or places[0] > 0.0 or places[-1] < TURN:
         return places
     middles = np.array([0.5 * places[1], 0.5 * (places[-2] + TURN)])
     values = pieces.at(np.searchsorted(pieces.x, middles, side="right") - 1, middles)
-    rests, rested = (np.abs(values - level) <= pieces.noise).tolist()
-    return places[int(rests) : len(places) - int(rested or not rests)]
+    rests_after, rests_before = (np.abs(values - level) <= pieces.noise).tolist()
+    return places[int(rests_after) : len(places) - int(rests_before or not rests_after)]
 
 
 @lru_cache(maxsize=16)

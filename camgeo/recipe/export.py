@@ -97,10 +97,11 @@ class FileRequest:
             parts.append(self.compensation.tags)
         if alike and self.units and not self.variant:
             parts.append(self.units)
-        plain = (
+        # without anything of its own the file would have the plain name, which an earlier file that differs may bear
+        rivals = (
             other for other in alike if len(parts) == 1 and not (other.compensation and other.compensation.altered)
         )
-        if any(request.compensation or request.units for request in plain):
+        if any(request.compensation or request.units for request in rivals):
             parts.append("nominal")
         return f"{'-'.join(parts)}.{self.own.get('suffix', self.format.ending)}"
 

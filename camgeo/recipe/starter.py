@@ -275,7 +275,11 @@ def starter(kind: str) -> str:
 
 
 def _recipe(name: str, chosen: Starter) -> FieldTable:
-    """Table of a starter's recipe, with the keys of its kinds of cam and linkage; no keys of a linkage without one."""
+    """Table of a starter's recipe, with the keys of its kinds of cam and linkage.
+
+    Without a linkage the starter's `unfit` fields, `dwell` and `verify.output_error` are left out, and `linkage` too
+    for a cam that cannot drive one.
+    """
     linkage = chosen.more.get("linkage")
     kinds = {"cam": _with_forms(_kind_table("the kind of cam", CAMS, chosen.kind), chosen)}
     if isinstance(linkage, dict):

@@ -20,7 +20,8 @@ def trace_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], Array]
 
     The four are x and y in the fixed axes, in the recipe's unit; the curvature of the path, by that unit, above 0 where
     it turns left, nan where the point stands still; and its speed by radian of the shaft. At a break derivatives are
-    those that follow, at the end of the turn those that precede. Raises ValueError without a linkage.
+    those that follow, at the end of the turn those that precede. Raises ValueError without a linkage, PlaceError for
+    one that does not turn right round.
     """
     from kin.linkage.trace import traced
 

@@ -91,7 +91,10 @@ class View(Generic[G_co, T_co]):
         return place(shaft)
 
     def contact_points_fixed(self, shaft: Array) -> list[Array]:
-        """Points of each contact in the fixed frame at shaft angles (n,), rad: mm, as complex numbers (n,)."""
+        """Points of the contacts in the fixed frame at shaft angles (n,), rad: mm, as complex numbers (n,) each.
+
+        Both contacts of a double-roller or a flat-pair; of any other follower contact 1 alone.
+        """
         places = []
         parameters = self.design.motion.parameters(shaft, shaft).values()
         for contact, t in zip(self.contacts, parameters, strict=False):  # opposite contacts on a line have one

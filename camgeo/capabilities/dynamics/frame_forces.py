@@ -161,9 +161,10 @@ class FrameRunning(Running):
         return sorted(first + second)
 
     def _joints(self, motion: LinkageMotion, force: Array) -> dict[str, Array]:
-        """Force `joint` in joint D, N (n,); of an output that slides also `guide`, its part across the slide's line.
+        """Size `joint` of the force in joint D, N (n,); of an output that slides also `guide`, its guide's reaction.
 
-        `force` (2, n) is in fixed axes, the slide's line along x. Empty with dyads, or with a slot.
+        `force` (2, n) is that of the frame on the output at D, in fixed axes, the slide's line along x; the guide's
+        reaction balances its part across that line. Empty with dyads, or with a slot.
         """
         joint = self.mechanism.linkage.joints(motion.solved.linkage)["D"]
         if self.mechanism.dyads or joint.kind == "slot":

@@ -121,10 +121,11 @@ def pose_matrix(pose: Array) -> Array:
 
 
 def layout(meshes: Sequence[Mesh], gap: float = GAP) -> list[Array]:
-    """Matrices (4, 3) that lay bodies on the plate z = 0 in rows, `gap` mm apart, at positive x and y, deepest first.
+    """Matrices (4, 3), one for each mesh in the order given, that lay bodies on the plate z = 0, at positive x and y.
 
-    Each body lies on the larger of its lowest and highest faces, and is turned over for the highest. A matrix has the
-    images of the axes, then of the origin, mm.
+    Bodies lie in rows along x, at least `gap` mm apart; those that are longest in y fill the first rows. Each body lies
+    on the larger of its lowest and highest faces, and is turned over for the highest. A matrix has the images of the
+    axes, then of the origin, mm.
     """
     ways = [print_pose(mesh) for mesh in meshes]
     # boxes of the bodies as they lie, filled row by row up to a width

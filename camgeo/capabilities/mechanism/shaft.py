@@ -148,10 +148,11 @@ def shaft_in(part: Part, s: Sizes) -> Shaft:
 
 
 def require_drive(part: Part, clearance: float, off: float) -> None:
-    """Raise BodyError for a bore in which the shaft may slip round, in files with errors up to `off`, mm.
+    """Raise BodyError for a bore with sides, a keyway or a flat in which the shaft may slip round.
 
-    `clearance`, mm, is the running clearance; each of the four sides of bore and shaft may be off. A key on the shaft
-    that is too thin to be printed is refused too.
+    A plain round bore passes, as the shaft is pressed into it. `clearance`, mm, is the running clearance; each of the
+    four sides of bore and shaft may be off by up to `off`, mm, the files' error. A key on the shaft that is too thin to
+    be printed is refused too.
     """
     widths = _turning_widths(part, clearance)
     if widths is None:
