@@ -220,8 +220,8 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
                 nodes[i], settled[i] = _denser(nodes[i], worst[rows], tolerance, settled[i])
     least = cover + max(best[i] for i in nodes if i not in done)
     raise ToleranceError(
-        f"arcs within {limit + cover:.3g} mm were not reached; the best were seen within {least:.4g} mm, of which "
-        f"rounding takes {cover:.2g} mm",
+        f"arcs within {limit + cover:.3g} mm were not reached; the best were seen within {upward(least, 3)} mm, of "
+        f"which rounding takes {cover:.2g} mm",
         least,
     )
 

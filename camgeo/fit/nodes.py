@@ -61,7 +61,7 @@ def check_count(needed: float, form: str, tolerance: float, order: float, lost: 
         reached = (tolerance - lost) * (needed / MOST_PIECES) ** order + lost
         raise ToleranceError(
             f"{form} within {tolerance:.3g} mm need about {needed:.3g} pieces, more than {MOST_PIECES}; "
-            f"{reached:.3g} mm can be held",
+            f"{upward(reached, 3)} mm can be held",
             reached,
         )
 

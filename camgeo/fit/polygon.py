@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.common.rounding import upward
 from camgeo.fit.edges import ProvedEdges, Sagittas, node_frames, place_edges, prove_edges, sagittas
 from camgeo.fit.inflection import REACH, crossings, inflections, reaches
 from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshare, rounding
@@ -119,7 +120,7 @@ def _fit_run(curve: Curve, run: SmoothRun, tolerance: float, full: float) -> Pro
         best = min(best, max(edges.extremes))
         if best <= tolerance:
             return edges
-    raise ToleranceError(f"a polygon within {full:.3g} mm was not reached; the best was {best:.3g} mm", best)
+    raise ToleranceError(f"a polygon within {full:.3g} mm was not reached; the best was {upward(best, 3)} mm", best)
 
 
 def _balance(curve: Curve, run: SmoothRun, parts: list[_Part], shift: float, tolerance: float) -> ProvedEdges:

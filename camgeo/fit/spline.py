@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.common.rounding import upward
 from camgeo.fit.cubic import LEAST, ORDER, span_density
 from camgeo.fit.handles import cubic_spans
 from camgeo.fit.nodes import ToleranceError, check_count, check_precision, reshare, rounding
@@ -170,7 +171,7 @@ def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: floa
             else:
                 last = attempt >= TRIES - LAST_TRIES
                 nodes[i], states[i] = _denser(nodes[i], reached[own], tolerance, states[i], last=last)
-    raise ToleranceError(f"a spline within {tolerance:.3g} mm was not reached; the best was {best:.3g} mm", best)
+    raise ToleranceError(f"a spline within {tolerance:.3g} mm was not reached; the best was {upward(best, 3)} mm", best)
 
 
 def _joint_offset(curve: Curve, side: float, tolerance: float) -> float:

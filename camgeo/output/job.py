@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from camgeo.checks.declared import MOTION, RATIO
 from camgeo.common.clock import Clock
 from camgeo.common.errors import SurroundingsError
+from camgeo.common.rounding import upward
 from camgeo.curve.curve import CurveError
 from camgeo.files.errors import MissingExtraError, RegionError
 from camgeo.fit.cache import Fits, formula_rounding
@@ -186,8 +187,9 @@ class Job:
     def refusal(self, request: FileRequest, error: ToleranceError) -> RecipeErrors:
         """Errors for a tolerance that cannot be held, at the field that sets it."""
         field_path, recipe = self.tolerance_field(request), self.recipe
-        reached = f"{error.reached:.3g} mm are {error.reached / recipe.mm:.3g} in" if recipe.units == "inch" else ""
-        return recipe.error(field_path, str(error), None, reached)
+        # rounded up as in the message: each figure works as it is written
+        inches = f"{upward(error.reached, 3)} mm are {upward(error.reached / recipe.mm, 3)} in"
+        return recipe.error(field_path, str(error), None, inches if recipe.units == "inch" else "")
 
     def judge(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> MadeFiles:
         """Read a file of one disc back and judge it by the recipe's motion; returns the file and its checks.

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -369,3 +370,21 @@ def test_what_would_free_a_reduced_reuleaux_polygon_of_undercut(
     (undercut,) = (x for x in refused.report["checks"] if x["name"] == "undercut-local" and x.get("file"))
     assert told in undercut["detail"]
     assert pipeline.check(read((text % (breadth, rounding, clearance)).encode(), "c.yaml")).ok
+
+
+@pytest.mark.parametrize(("kind", "tolerance"), [("dxf", "1e-13"), ("glb", "1e-9")])
+def test_a_refused_tolerance_names_one_that_is_held_in_either_unit(kind: str, tolerance: str) -> None:
+    def tried(tolerance: str) -> str:
+        text = f"part: {{thickness: 0.2}}\nexport: {{tolerance: {tolerance}, files: [{kind}]}}\n"
+        text = f"units: inch\ncam: {{kind: support, p: 2.4 + 0.004*cos(3*t)}}\n{text}"
+        try:
+            report = pipeline.check(read(text.encode(), "cam.yaml")).report
+        except RecipeErrors as errors:
+            return str(errors)
+        return "ok" if report["ok"] else str(report["checks"])
+
+    refused = re.search(r"at least (\S+) mm; (\S+) mm are (\S+) in$", tried(tolerance))
+    assert refused
+    least, again, inches = refused.groups()
+    assert least == again
+    assert tried(inches) == tried(f"{least} mm") == "ok"
