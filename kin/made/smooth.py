@@ -46,6 +46,10 @@ class GapError(CamgeoError, ValueError):
     """Points with a gap so wide that no curve may bridge it."""
 
 
+class SpansError(CamgeoError, ValueError):
+    """A number of spans that is below the least, or more than the points permit."""
+
+
 def _basis() -> Array:
     """Coefficients (6, 6) by powers of the place in a span, [0, 1); row m has the m-th of the six splines there."""
     rows = [np.array([1.0])]
@@ -150,7 +154,7 @@ def fit(t: Array, e: Array, spans: int | None = None) -> SmoothFit:
 
     `spans` is the number of spans, by default chosen by cross-validation. It is from 12 to n/5, and at most MOST_SPANS;
     12 are always permitted. Raises GapError where a gap is above two of 12 spans, or of the given number, and
-    ValueError for a given number out of that range.
+    SpansError for a given number out of that range.
     """
     order = np.argsort(np.mod(t, TURN), kind="stable")
     angle, value = np.mod(t, TURN)[order], e[order]
@@ -221,13 +225,13 @@ class _Points:
     def chosen(self, spans: int | None) -> int:
         """Number of spans: the given one, else that of the least cross-validation.
 
-        Raises ValueError for a given number that is too small, or too large for the points, GapError for a gap above
+        Raises SpansError for a given number that is too small, or too large for the points, GapError for a gap above
         two spans.
         """
         most = min(max(self.count // POINTS_A_SPAN, LEAST_SPANS), MOST_SPANS)
         if spans is not None:
             if not LEAST_SPANS <= spans <= most:
-                raise ValueError(f"from {LEAST_SPANS} to {most} spans are fitted to {self.count} points, not {spans}")
+                raise SpansError(f"from {LEAST_SPANS} to {most} spans are fitted to {self.count} points, not {spans}")
             self._demand_filled(spans)
             return spans
         self._demand_filled(LEAST_SPANS)

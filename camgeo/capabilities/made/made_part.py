@@ -113,7 +113,7 @@ def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], options: Po
     """Judge a part by the points in files; the result has deviations, errors of the motion, and remarks.
 
     Raises CallError for files without points and a disc without any, UnlikePointsError for points of something else,
-    ValueError for a number of spans that the points do not permit, UnsettledError and GapError for points that are too
+    SpansError for a number of spans that the points do not permit, UnsettledError and GapError for points that are too
     few or too far apart, ContactError and FrameError where the follower does not run on the metal that they show.
     """
     datum = datum_of(recipe.of(Made), recipe.part)
@@ -124,7 +124,7 @@ def made_part(recipe: Recipe, design: Design, paths: Sequence[Path], options: Po
 def part_of_points(recipe: Recipe, design: Design, points: PartPoints, options: PointOptions, datum: Datum) -> PartMade:
     """Judge a part by its points and the datum of its profile; the result has deviations, motion errors, and remarks.
 
-    Raises CallError where a disc has no points, ValueError for a number of spans that the points do not permit,
+    Raises CallError where a disc has no points, SpansError for a number of spans that the points do not permit,
     UnsettledError and GapError for points that are too few or too far apart, ContactError and FrameError where the
     follower does not run on the metal that they show.
     """

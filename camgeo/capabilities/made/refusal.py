@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from camgeo.capabilities.made.keys import in_recipe
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
-from camgeo.schema.errors import RecipeErrors
 from kin.follower.frame_contact import FrameError
 from kin.follower.motion_error import ContactError
+from kin.made.points import UnlikePointsError
+from kin.made.smooth import GapError, SpansError
 from kin.numeric.errors import UnsettledError
 
 if TYPE_CHECKING:
@@ -20,11 +21,15 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
 
 
+_OF_POINTS = (UnlikePointsError, GapError, SpansError, UnsettledError)  # errors of points that cannot be judged
+
+
 @contextmanager
 def as_call_errors(paths: Sequence[Path], name: str = "") -> Iterator[None]:
-    """Turn ContactError, FrameError, UnsettledError and ValueError into CallErrors that name the files of points.
+    """Turn errors of points, ContactError and FrameError into CallErrors that name the files of points.
 
-    With the `name` of a cam they name it too, also in CallErrors that pass through.
+    Those of points are UnlikePointsError, GapError, SpansError and UnsettledError. With the `name` of a cam they name
+    it too, also in CallErrors that pass through. Other errors pass unchanged.
     """
     files, lobe = ", ".join(escaped(str(path)) for path in paths), f"{name}: " if name else ""
     try:
@@ -35,24 +40,23 @@ def as_call_errors(paths: Sequence[Path], name: str = "") -> Iterator[None]:
         if not name:
             raise
         raise CallError(*(f"{lobe}{fault}" for fault in error.faults)) from error
-    except (UnsettledError, ValueError) as error:
+    except _OF_POINTS as error:
         raise CallError(f"{files}: {lobe}{error}") from error
 
 
 @contextmanager
 def refused_at(recipe: Recipe, place: str, file: str = "", path: Path | None = None) -> Iterator[None]:
-    """Turn CallError, ContactError, UnsettledError and ValueError into RecipeErrors at `place` in the recipe.
+    """Turn CallError, ContactError and errors of points into RecipeErrors at `place` in the recipe.
 
-    RecipeErrors pass unchanged. A message that begins with the `path` of the file begins with its name in the recipe,
-    `file`, instead; options of `verify` in remedies become keys of the file's entry.
+    Errors of points are as in `as_call_errors`; others pass unchanged. A message that begins with the `path` of the
+    file begins with its name in the recipe, `file`, instead; options of `verify` in remedies become keys of the file's
+    entry.
     """
     try:
         yield
     except CallError as error:
         faults = [fault.removeprefix(f"{escaped(str(path))}: ") for fault in error.faults]
-    except (ContactError, UnsettledError, ValueError) as error:
-        if isinstance(error, RecipeErrors):
-            raise
+    except (ContactError, *_OF_POINTS) as error:
         faults = [str(error)]
     else:
         return

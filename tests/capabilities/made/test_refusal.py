@@ -13,6 +13,8 @@ from camgeo.recipe.recipe import read
 from camgeo.schema.errors import RecipeErrors
 from kin.follower.frame_contact import FrameError
 from kin.made.points import UnlikePointsError
+from kin.made.smooth import GapError, SpansError
+from kin.numeric.errors import UnsettledError
 
 FILES = [Path("a.csv"), Path("b.csv")]
 
@@ -35,6 +37,25 @@ def test_what_is_refused_of_points_names_their_files(error: Exception, lobe: str
     with pytest.raises(CallError) as caught, as_call_errors(FILES, lobe):
         refuse(error)
     assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("error", [GapError("a gap"), SpansError("13 spans"), UnsettledError("no foot")])
+def test_errors_of_points_are_those_of_the_call_and_of_the_recipe(error: Exception) -> None:
+    with pytest.raises(CallError, match=f"^a.csv, b.csv: {error}$"), as_call_errors(FILES):
+        refuse(error)
+    recipe = read(f"{RECIPES['flat']}\nmade: {{profile: 0.02}}\n".encode(), "part.yaml")
+    with pytest.raises(RecipeErrors, match=f"made: {error}$"), refused_at(recipe, "made"):
+        refuse(error)
+
+
+def test_an_error_of_another_kind_passes() -> None:
+    """What the calls do not name is no fault of points: shapes that disagree, a value that is none."""
+    recipe = read(f"{RECIPES['flat']}\nmade: {{profile: 0.02}}\n".encode(), "part.yaml")
+    defect = ValueError("operands could not be broadcast together")
+    for context in (as_call_errors(FILES), as_call_errors(FILES, "intake"), refused_at(recipe, "made")):
+        with pytest.raises(ValueError, match=r"^operands could not be broadcast together$") as caught, context:
+            refuse(defect)
+        assert caught.value is defect
 
 
 def test_what_is_refused_in_a_recipe_stands_at_its_place() -> None:
