@@ -242,7 +242,10 @@ def fields() -> tuple[Field, ...]:
 
 
 def check_budget(values: Values, reader: Reader) -> None:
-    """Note the faults between the fields of a budget, and those with other sections of the recipe."""
+    """Note the faults between the fields of a budget, and those with other sections of the recipe.
+
+    A dimension that has only a cost is put into `budget.tolerances` of the values as free.
+    """
     if "budget" not in values:
         return
     budget = values["budget"]

@@ -26,7 +26,7 @@ def budget(recipe: Recipe, *files: str | PathLike[str]) -> dict[str, Any]:
     each disc; with `runs` 0 the key `parts` is missing and the files are not read. `ok` is whether the budget is kept.
     Raises RecipeErrors for a recipe without a budget, for a cam that does not exist, for tolerances that leave nothing
     for a free dimension, and for a linkage that does not turn; CallError for files that do not hold all contours of the
-    cam.
+    cam; ArithmeticError where the search for the tolerances of least cost does not end.
     """
     stated = recipe.of(Budget)
     if stated is None:

@@ -210,8 +210,9 @@ def _follower_errors(
 def errors_at_contacts(sizes: Sizes, count: int, discs: int, *, on_one_arm: bool) -> list[SizeErrors]:
     """Errors of the sizes at each of `count` contacts, in their order.
 
-    An error that contacts share is drawn once: those of the shaft, the turn on it, the pivot and the guide; where there
-    is one disc (`discs`), the bore's and the first touch's; and the squareness of faces that are not `on_one_arm`.
+    An error that contacts share is drawn once: those of the shaft, the turn on it, the pivot, the guide and the stem's
+    offset; where there is one disc (`discs`), the bore's and the first touch's; and the squareness of faces that are
+    not `on_one_arm`.
     """
     size, radius = sizes.size, sizes.radius
     turned, shaft, pivot = size("angle"), radius("shaft"), radius("pivot") + size("follower.arm.pivot")

@@ -111,6 +111,7 @@ def _turned(recipe: CamshaftRecipe, lobe: PlacedLobe) -> Array:
     surface = lobe.design.only_surface
     ring = exact(surface.surface.curve, whole=True) if surface.contour is None else exact(surface.contour)
     c, s = math.cos(lobe.at), math.sin(lobe.at)
+    # every fourth point is enough for a drawing
     points: Array = ring.points[::4] @ np.array([[c, s], [-s, c]])
     return points * (1.0, -1.0) if recipe.rotation == "ccw" else points
 

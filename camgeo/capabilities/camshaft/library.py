@@ -53,12 +53,15 @@ class CamshaftDesign:
 
     @cached_property
     def checks(self) -> tuple[Check, ...]:
-        """The checks that need no file: the checks of each cam, and that each lobe stands out of the shaft."""
+        """The checks that need no file: the checks of each cam, and that each lobe stands out of the shaft.
+
+        Raises RecipeErrors and EventError as `figures` does, for figures that a lobe's recipe limits.
+        """
         return tuple(Check.of(self.recipe, check) for check in lobe_checks(self.recipe, self._placed))
 
     @property
     def ok(self) -> bool:
-        """Whether all checks that need no file hold."""
+        """Whether all checks that need no file hold; raises as `checks` does."""
         return all(check.ok for check in self.checks)
 
     @cached_property

@@ -220,7 +220,8 @@ def lifts(lobes: Sequence[PlacedLobe], shaft: Array) -> Array:
 def lobe_checks(recipe: CamshaftRecipe, lobes: tuple[PlacedLobe, ...]) -> list[Check]:
     """Checks of the exact cam of each lobe, of its own recipe's limits, and that it stands out of the shaft.
 
-    Lobes of one recipe and one length are checked once, under the name of the first.
+    Lobes of one recipe and one length are checked once, under the name of the first. Raises RecipeErrors and EventError
+    where a capability cannot measure a figure that a lobe's recipe limits.
     """
     checks: list[Check] = []
     judged: set[tuple[Path, float | None]] = set()

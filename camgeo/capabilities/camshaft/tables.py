@@ -94,8 +94,9 @@ def write_inspection(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedL
     """Write places on every lobe to be measured, as the shaft is drawn, with their normals and limits.
 
     `lobe` is a number, from 1 as they are listed, and z the middle of its length; `step`, rad, is the shaft angle
-    between places, None for `verify.angles` places a turn. Cells of limits are empty for a lobe whose recipe gives
-    none.
+    between places, None for `verify.angles` places a turn. The limits, minus and plus half of `profile` along the
+    normal, have columns where some lobe's recipe gives it, with empty cells for the other lobes. Lengths are in the
+    recipe's unit.
     """
     shaft = equal_steps(recipe.verify.angles if step is None else round(TURN / step))
     rows, limited = [], any(lobe.lobe.recipe.profile is not None for lobe in lobes)

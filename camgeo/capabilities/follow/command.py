@@ -72,8 +72,8 @@ def _lengths(text: str) -> tuple[float, ...]:
 def run(arguments: argparse.Namespace) -> int:
     """Follow one contour, print its figures and write the files of the call; returns the exit status 0.
 
-    Raises CallError for a wrong call or file, RecipeErrors where the motion makes no recipe, SurroundingsError where a
-    file cannot be written.
+    Raises CallError for a wrong call or file, and for a recipe or page of a motion that makes no recipe; RecipeErrors
+    where the recipe of a page is refused; SurroundingsError where a file cannot be written or a package is missing.
     """
     from camgeo.capabilities.follow.library import follow, judged_by_recipe
     from camgeo.cli.new_file import demand_new, write_new

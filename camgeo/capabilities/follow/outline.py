@@ -48,8 +48,9 @@ def read_outline(path: Path, units: float | None, at: tuple[float, float], track
 
     `units` is mm in the unit of a file that states none; `mirrored` is whether to mirror the contours, as for a shaft
     that turns counter-clockwise. A follower runs on the outermost closed contour round the shaft that is no circle
-    about it, in a ring on the innermost one, in a groove between the two outermost. Raises CallError for a file without
-    such contours, and for one that cannot be read.
+    about it, in a ring on the innermost one, in a groove between the two outermost; circles about the shaft count where
+    there is no other contour round it. Raises CallError for a file without such contours or one that cannot be read,
+    and where a follower that does not run in a ring or a groove would run within another contour.
     """
     name = escaped(str(path))
     kinds = [suffix for suffix, kind in suffixes().items() if FORMATS[kind].contents in {"drawing", "solid"}]

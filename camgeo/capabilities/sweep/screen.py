@@ -360,7 +360,10 @@ def estimates() -> dict[str, FigureEstimate]:
 
 
 def allowance(name: str, value: float) -> float:
-    """Greatest error to be expected of an estimate near `value`, in the figure's unit; 0 for an exact figure."""
+    """Greatest error to be expected of an estimate near `value`, in the figure's unit.
+
+    It is 0 for an exact figure, and for one without an estimate.
+    """
     estimate = estimates().get(name)
     if estimate is None or estimate.error is None:
         return 0.0

@@ -101,8 +101,9 @@ def panel(report: dict[str, Any]) -> str:
 def plots(recipe: Recipe, design: Design) -> Sequence[Plot]:
     """Plots of lift, velocity and acceleration of the valve over the turn, in the recipe's unit.
 
-    Empty without a valve. Raises RecipeErrors for a table of ratios that does not fit the tappet's lift (`valve_of`),
-    EventError for a table with a motion too rough to follow.
+    Derivatives are by radian of the cam, or by second where the recipe gives the shaft's speed. Empty without a valve.
+    Raises RecipeErrors for a table of ratios that does not fit the tappet's lift (`valve_of`), EventError for a table
+    with a motion too rough to follow.
     """
     valve = valve_of(recipe, design)
     if valve is None:
