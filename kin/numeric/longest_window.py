@@ -370,6 +370,7 @@ class _Family:
             apart |= in_run[of] & unlike
             one_way = ((to_a <= at_a) & (to_b >= at_b)) | ((to_a >= at_a) & (to_b <= at_b))
             small = (right - left) * (most_a - least_b) <= _EQUAL * period * least_b
+            small |= right - left <= _SAME * period  # also where f is flat at an end, whose slope no part outweighs
             settled = apart | one_way | small | (len(of) > _MOST_CELLS)
             peak = settled & ~apart & (at_a >= at_b) & (to_a <= to_b)
             places.append((of[peak], left[peak], right[peak], (at_a - at_b)[peak], (to_a - to_b)[peak]))

@@ -332,6 +332,29 @@ def test_flanks_along_which_the_slope_rises_or_falls_are_not_searched(monkeypatc
     assert sum(counts) < 300  # each range of starts at both its ends, none of them halved
 
 
+def test_a_band_from_a_valley_to_a_rest_is_settled(monkeypatch):
+    """Where f is flat at both ends no part of the slopes settles a range, which was halved without end."""
+    calls, ends = [], _Family.ends
+
+    def counting(family, a):
+        calls.append(len(a))
+        assert len(calls) < 500
+        return ends(family, a)
+
+    monkeypatch.setattr(_Family, "ends", counting)
+    x, y = np.array([0.0, 1.6, 2.1, 3.8, TURN]), np.array([0.0, 4.0, -2.0, 0.0, 0.0]) / 7.0
+
+    def f(at, _order):
+        i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, 3)
+        return (y[i] + (y[i + 1] - y[i]) * (1.0 - np.cos(np.pi * (at - x[i]) / (x[i + 1] - x[i]))) / 2.0)[None]
+
+    found = dwells(f, x, 2.0 / 7.0)
+    # from where the fall comes through 0, two thirds of its stroke down, to the end of the rest
+    start = 1.6 + 0.5 * math.acos(-1.0 / 3.0) / np.pi
+    assert found[0].start == pytest.approx(start, abs=1e-6)
+    assert found[0].end == pytest.approx(TURN, abs=1e-3)
+
+
 def test_few_steps_balance_the_slopes(monkeypatch):
     counts = counted(monkeypatch)
     period = 4 * math.pi
