@@ -220,6 +220,7 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
             remedy = f"a {advice.radius_field} of {upward(roller + lack) if hollow else downward(roller - lack)} {unit}"
             remedy += advice.same_pitch(recipe.mm)
     elif figure == figures.RADIUS:
+        # a flat face's size grows by the difference of both, 0 to the lack; a knife edge has no words for a radius of 0
         remedy = advice.rounder(0.0, lack, unit)
     elif figure == figures.PITCH_RADIUS:
         remedy = "" if recipe.cam.sizes else ", ".join(filter(None, (advice.larger, advice.less_steep)))

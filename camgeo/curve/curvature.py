@@ -351,9 +351,9 @@ def _below_zero(curve: Curve, state: _Intervals, tolerance: float) -> list[tuple
     crossing = mixed & (a * b < 0.0)
     ends = a[crossing], b[crossing]
     change = roots(lambda t: curve.sample(t).speed, state.low[crossing], state.high[crossing], ends, 0.0)
-    falling = first[crossing]
-    end[crossing] = np.where(falling, change, state.high[crossing])
-    begin[crossing] = np.where(falling, state.low[crossing], change)
+    below_at_low = first[crossing]
+    end[crossing] = np.where(below_at_low, change, state.high[crossing])
+    begin[crossing] = np.where(below_at_low, state.low[crossing], change)
     kept = np.flatnonzero(first | last)
     return [(float(begin[i]), float(end[i]), False) for i in kept if end[i] > begin[i]]
 

@@ -59,7 +59,8 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
 
     Further outlines are contours through it or, with a pocket, the two about the pocket. Raises RegionError where a
     piece is too short for the kernel, an arc is sharper than the chamfer, a cross hole divides the solid, or the kernel
-    finds it unsound; TypeError for a polygon, and for a chamfer along anything but arcs.
+    finds it unsound; TypeError for a polygon, and for a chamfer along anything but arcs; ValueError for a periodic
+    spline.
     """
     stack = _Stack()
     top = solid.thickness
@@ -117,7 +118,8 @@ def stack_shape(stretches: Sequence[tuple[Outline, float, float]], bore: Outline
     """Return the kernel's solid of prisms one above the other, with a hole through all of them where there is a bore.
 
     `stretches` are (outline, z below, z above), mm, from below; of two neighbouring outlines one has to lie within the
-    other. Raises RegionError where a piece is too short for the kernel, or the kernel finds the solid unsound.
+    other. Raises RegionError where a piece is too short for the kernel, or the kernel finds the solid unsound;
+    TypeError for a polygon, ValueError for a periodic spline.
     """
     stack = _Stack()
     low, high = stretches[0][1], stretches[-1][2]

@@ -188,8 +188,8 @@ def _joint_offset(curve: Curve, side: float, tolerance: float) -> float:
 class _Spans:
     """Bezier spans (n, 4, 2) between nodes, over parameters [low, high] (n,).
 
-    `load` (n,) is the sampled deviation, scaled to the tolerance; `outward` and `inward` (n,) are proved deviations,
-    mm, nan where no proof was tried.
+    `load` (n,) is the sampled deviation, mm, divided so that it may be at most the tolerance; `outward` and `inward`
+    (n,) are proved deviations, mm, nan where no proof was tried.
     """
 
     low: Array
@@ -258,8 +258,8 @@ class _State:
 def _denser(nodes: Array, load: Array, tolerance: float, state: _State, *, last: bool) -> tuple[Array, _State]:
     """Nodes for the next try, and their history: shared anew while that helps, then more nodes.
 
-    Spans are halved where their error is infinite, or few of them fail. `load` (n,) is each span's error, scaled to the
-    tolerance; `last` allows halving alone.
+    Spans are halved where their error is infinite, or few of them fail. `load` (n,) is the error of each span, mm, that
+    may be at most `tolerance`, mm; `last` allows halving alone.
     """
     count = nodes.size - 1
     failing = ~(load <= tolerance)

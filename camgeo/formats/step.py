@@ -64,8 +64,8 @@ def write_step(
 
     Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError
     where a piece is too short for the kernel, an arc is sharper than the chamfer, a cross hole divides a solid, or the
-    kernel finds it unsound, TypeError for a polygon and for a chamfer along anything but arcs, OSError where the file
-    cannot be written.
+    kernel finds it unsound, TypeError for a polygon and for a chamfer along anything but arcs, ValueError for a
+    periodic spline, OSError where the file cannot be written.
     """
     need_kernel()
     fitted = [layered.outline for body in bodies for layered in body.outlines if layered.circle is None]
@@ -94,8 +94,12 @@ def write_stack(
     """Write one solid of prisms one above the other; returns the greatest distance of its walls from the outlines, mm.
 
     `stretches` are (outline, z below, z above), mm, from below; of two neighbouring outlines one has to lie within the
-    other. `bore` goes through all of them. Raises MissingExtraError without the kernel, RegionError where a
-    piece is too short for the kernel or the kernel finds the solid unsound, OSError where the file cannot be written.
+    other. `bore` goes through all of them. `name` is the product's and, in the header, the file's; `about` describes
+    both.
+
+    Raises MissingExtraError without the kernel, RegionError where a piece is too short for the kernel or the kernel
+    finds the solid unsound, TypeError for a polygon, ValueError for a periodic spline, OSError where the file cannot be
+    written.
     """
     need_kernel()
     path.write_bytes(_text([stack_shape(stretches, bore)], [name], units, name, about))

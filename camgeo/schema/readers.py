@@ -46,7 +46,8 @@ def read_numbers(reader: Reader, field: Field, node: Node, path: str) -> tuple[f
 def read_harmonics(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[int, float], ...] | None:
     """Pairs of a harmonic and its coefficient, harmonics rising; None where it is no mapping, with the fault noted.
 
-    Faulty entries are noted and left out.
+    Coefficients are in mm or mm^2, as the field's `unit` is LENGTH or AREA, and plain numbers without one. Faulty
+    entries are noted and left out.
     """
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a mapping", describe(node), reader.wanted(field))
