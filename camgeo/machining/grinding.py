@@ -106,8 +106,9 @@ def grinding_table(recipe: Recipe, design: Design, request: FileRequest, toleran
 def grinding_intent(recipe: Recipe, design: Design) -> Grinding:
     """Radius of the wheel, and of a tabled roller with its least distance from the shaft, mm, for kin's judgement.
 
-    The wheel's is None without a wheel, the roller's where none is tabled. With a roller raises RecipeErrors where the
-    contour does not let it in or is trimmed, CurveError where it cannot be proved what it reaches.
+    The distance is that of the roller's centre. The wheel's radius is None without a wheel, the roller's where none is
+    tabled or no contour is made. With a roller raises RecipeErrors where the contour does not let it in or is trimmed,
+    CurveError where it cannot be proved what it reaches.
     """
     request = next((request for request in recipe.export.files if request.form.ground and ROLLER in request.own), None)
     if request is None or not design.contours:

@@ -56,9 +56,10 @@ def design_figures(
 ) -> dict[str, Measured]:
     """Measure the named figures of the exact cam, its motion and mechanism, by name in the order of `names`.
 
-    `checks` are all checks of the run; a figure that a check measures is left out without that check. `speeds` has
-    the speed, turns a minute, of each figure whose limit states one. Names of other figures are passed over. Raises
-    RecipeErrors where a capability cannot measure its figures.
+    `checks` are all checks of the run; a figure that a check measures is left out without that check, but the pressure
+    angle is then 0, as of a flat face. `speeds` has the speed, turns a minute, of each figure whose limit states one.
+    Names of other figures are passed over. Raises RecipeErrors where a capability cannot measure its figures,
+    CurveError where a figure of the contour cannot be proved, KeyError for a name of no figure.
     """
     wanted = [name for name in names if FIGURES[name].of == "design"]
     measured: dict[str, Measured] = {}

@@ -154,9 +154,10 @@ _UNITS = {DURATION: "deg", LOBE_CENTRE: "deg", RAMP_VELOCITY: "mm/deg", LIFT_ARE
 
 
 def lobe_figure(name: str, exact: ExactCam, lift: float) -> Measured:
-    """Figure of a lobe at a `lift`, mm above the lowest position; without a value where that is not crossed just twice.
+    """Figure of a lobe at a `lift`, mm above the lowest position.
 
-    Raises KeyError for a name of no figure of lobes.
+    Without a value where the lift is not crossed just twice, or the motion is too abrupt to tell. The lift area at 0 is
+    that of the whole turn, and always has a value. Raises KeyError for a name of no figure of lobes.
     """
     if name == LIFT_AREA and lift == 0.0:
         turn = between(0.0, TURN, exact.breaks.tolist())
@@ -169,7 +170,11 @@ def lobe_figure(name: str, exact: ExactCam, lift: float) -> Measured:
 
 
 def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measured:
-    """Figure of the lobe, or of the body that a capability has it move, at a lift, mm."""
+    """Figure of the lobe, or of a body that it moves, such as a valve, at a lift of that lobe or body, mm.
+
+    A capability measures the figures that it declares. A figure may have no value, with the reason as its detail.
+    Raises KeyError for a name of no figure, and for a figure of the core that is not of a lobe.
+    """
     owner = FIGURES.owner(name)
     if owner:
         return registry.capability(owner).measure_at(recipe, design, name, lift)

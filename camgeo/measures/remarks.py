@@ -491,6 +491,7 @@ def _metric(recipe: Recipe) -> list[RuleRemark]:
     if bore is None:
         return []
     by_inch, metric = _is_whole(bore * STEP / INCH), _is_whole(bore / HALF_MM)
+    # a bore is by the inch: in a recipe in inches unless it is a size in mm only, in mm if it is one in inches only
     if not (by_inch or not metric if recipe.units == "inch" else by_inch and not metric):
         return []
     features = with_records(recipe.part.features)

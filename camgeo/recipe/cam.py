@@ -36,11 +36,12 @@ def check_cam(cam: Values, reader: Reader) -> None:
 
 
 def check_tappet(values: Values, reader: Reader) -> None:
-    """Note keys that do not go with a round tappet, and set the follower's `width` to a chord of its face.
+    """Note keys that do not go with a round tappet, and a lobe beyond it; set the follower's `width` and `beyond`.
 
-    The line of contact runs across the lobe's thickness. The tappet's axis is `axial_offset` beside the lobe's middle,
-    so the lobe's farther edge is `beyond` the axis by the offset and half the thickness, mm. The whole line lies on the
-    round face if its end there does: the chord at that distance is the width.
+    `values` are the whole recipe's, and change in place. The line of contact runs across the lobe's thickness. The
+    tappet's axis is `axial_offset` beside the lobe's middle, so the lobe's farther edge is `beyond` the axis by the
+    offset and half the thickness, mm. The whole line lies on the round face if its end there does: the chord at that
+    distance, mm, is the width. Neither is set without a `diameter`, on an arm, or for a lobe beyond the tappet.
     """
     follower, path = values.get("cam", {}).get("follower", {}), "cam.follower"
     if "axial_offset" in follower and f"{path}.diameter" not in reader.marks:

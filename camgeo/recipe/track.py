@@ -22,6 +22,7 @@ def check_track(values: Values, reader: Reader) -> None:
         _check_ring(reader)
     elif is_groove(cam or {}):
         _check_groove(values, reader)
+    # a cam or a track that is given but could not be read has its fault already
     elif "part.outer" in reader.marks and cam is not None and ("track" in cam or "cam.track" not in reader.marks):
         remedy = "give a disc cam with `track: internal` or a groove, or leave it out"
         reader.fault_at("part.outer", "belongs to a ring or a groove", None, remedy)

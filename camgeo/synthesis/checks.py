@@ -106,7 +106,7 @@ def needed_width(surface: Surface) -> tuple[float, float]:
 def wheel_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surface, Curve]]) -> list[Check]:
     """Check of each surface on the grinding wheel: the contour's least hollow radius must be at least the wheel's, mm.
 
-    Empty where the recipe has no wheel.
+    Empty where the recipe has no wheel. Raises CurveError where the proof of a radius does not end.
     """
     checks: list[Check] = []
     wheel = recipe.wheel
@@ -124,7 +124,7 @@ def wheel_checks(recipe: Recipe, exact: ExactCam, contours: Iterable[tuple[Surfa
 def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
     """Least radius of the metal's hollows, mm, infinite without a hollow, and the contour's parameter there.
 
-    `side` is 1 for metal inside the contour, -1 for metal outside.
+    `side` is 1 for metal inside the contour, -1 for metal outside. Raises CurveError where the proof does not end.
     """
     from camgeo.curve.backwards import least_hollow
     from camgeo.curve.curvature import least_radius

@@ -19,8 +19,9 @@ def motion_table(recipe: Recipe, position: Position) -> tuple[tuple[str, ...], A
 
     Columns are the shaft angle, degrees, the follower's position, and velocity, acceleration and jerk, which are its
     derivatives by radian of the shaft. The position is a lift above its datum in the recipe's unit of length, or a
-    swing about a pivot in degrees; derivatives are in the same unit per rad, rad^2 and rad^3. A flat pair has its own
-    swing, psi/2. At a break the derivatives are those that follow, at the end of the turn those that precede.
+    swing about a pivot in degrees, of a flat pair the swing of the whole pair, half the angle psi of its law.
+    Derivatives are in the same unit per rad, rad^2 and rad^3; at a break they are those that follow, at the end of the
+    turn those that precede.
     """
     count = recipe.verify.angles
     shaft = np.linspace(0.0, 2.0 * np.pi, count + 1)

@@ -113,7 +113,7 @@ class FollowerRunning(Running):
         return None if preload is None or preload.stiffness is None else preload
 
     def preload_force(self, rows: Array, gap: Array) -> Array | None:
-        """Force of the preload along the travel (n,), N or N m; None without preload.
+        """Force of the preload along the travel (n,), N or N m; None without preload, or without its stiffness.
 
         `rows` (3, n) are position, mm or rad, and two derivatives by the shaft angle. `gap` (n,), mm or rad along the
         travel, is how much less than intended the contacts overlap with made metal.

@@ -143,8 +143,9 @@ def _slider_crank(site: BodyStack, frame: Carrier, linkage: SliderCrank) -> tupl
     """Add the coupler to the frame, and the slide between its rails; return the frame."""
     s = site.s
     _coupler(frame, linkage, site)
-    last = frame.plates.pop()
-    frame.plates.append(Plate(last.outline, (eye(s, *frame.origin),), last.low, last.high))
+    # the coupler's bar, which was added last, gets the hole for the pin of joint D
+    coupler = frame.plates.pop()
+    frame.plates.append(Plate(coupler.outline, (eye(s, *frame.origin),), coupler.low, coupler.high))
     frame.holes = (frame.origin,)
     place = site.links.output(0)
     slide = Carrier("slide", site.slide(frame.low, frame.high), place, 0.0, 0.0, BLOCK_COLOUR)
