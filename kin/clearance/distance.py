@@ -117,6 +117,7 @@ class Pairs(NamedTuple):
 
     def finer(self, first: Region, second: Region) -> Pairs:
         """Return the pairs of the features' halves, in the finer regions of `first` and `second`."""
+        # there piece k is 2 k and 2 k + 1; corners and the point inside stand farther on by the number of pieces
         cell, (i, j) = (
             self.cell,
             (

@@ -104,7 +104,7 @@ class Response:
 
     @property
     def ends(self) -> tuple[Array, Array]:
-        """Values of p and p' at the start and at the end of each stretch, (m, 2) each."""
+        """Rows (p, p') (m, 2) at the starts of the stretches, then such rows (m, 2) at their ends."""
         return self._steps[:2]
 
     def starts(self, state: Array, first: int, count: int) -> Array:

@@ -127,6 +127,7 @@ class FlatFace(Follower):
         """Least and greatest place of contact 1 along the face, mm from the stem's axis, above 0 ahead of it."""
         q, slope, _ = bearing_of(contour).all_round(TRAVEL_STEPS)
         guide = self.contacts[0].guide
+        # the stem's axis meets the face aside - q tan(tilt) ahead of the foot of the shaft on it; _share is cos(tilt)
         aside = guide.offset / self._share if isinstance(guide, Translating) else 0.0
         place = slope + q * np.tan(self.tilt) - aside
         return float(place.min()), float(place.max())

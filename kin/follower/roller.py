@@ -302,9 +302,10 @@ class GuidedRoller(_Guided):
 class RollerYoke(_Guided):
     """Two rollers opposite each other in a frame that travels on a line through the shaft.
 
-    Their centres are w apart, mm, the zero of roller 2. The position is the distance p of roller 1's centre from the
-    shaft, of which `law` is the intended one; p(theta) + p(theta + pi) = w, so the pitch curve has constant diameters
-    through the shaft, and roller 2 makes the error that roller 1 makes half a turn on.
+    The position is the distance p, mm, of roller 1's centre from the shaft, of which `law` is the intended one; that of
+    roller 2's centre is w - p, where w, mm, is the distance between the centres. p(theta) + p(theta + pi) = w, so the
+    pitch curve has constant diameters through the shaft, and roller 2 makes the error that roller 1 makes half a turn
+    on.
     """
 
     @cached_property
@@ -479,9 +480,9 @@ def end_angles(pieces: Arcs, guide: Guide, angles: Array) -> Array:
 
 
 def passing_angles(obstacle: Arcs, guide: Guide) -> Array:
-    """Shaft angles, rad (n,), at which the roller's centre comes to the start and to the middle of each piece.
+    """Shaft angles (n,), rad, in [0, 2 pi), at which the roller's centre comes to the start or middle of a piece.
 
-    Empty for more than MOST_PIECES pieces.
+    All starts come first. Points out of the guide's reach are left out, and all for more than MOST_PIECES pieces.
     """
     if len(obstacle) > MOST_PIECES:
         return np.empty(0)

@@ -431,6 +431,7 @@ def outward(roller: Held, law: IntendedLaw) -> tuple[Array, Array]:
 
     The error is -inf of pieces out of reach.
     """
+    # only the middles count: neither signs nor half widths are asked for
     spans = Spans(roller, np.ones(0), np.arange(len(roller.pieces)), 0.5 * roller.pieces.length, np.zeros(0))
     state = spans.state()
     error = state.error(own_rows(roller.contact, law.rows(state.phi)))[0]

@@ -241,6 +241,7 @@ class Transmission:
         def at(tau: Array, order: int) -> Array:
             variable = Jet.variable(tau, order)
             places = self.psi.places(variable)
+            # the whole angle, tau + lead
             return lead.on(variable, self.psi.at(variable, places), places).c
 
         # the angles at the knots tell the stretch of each angle, in which the solution is bracketed

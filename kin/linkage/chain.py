@@ -48,8 +48,8 @@ class Carrier(NamedTuple):
 class Chain:
     """A linkage, the breadth of its frame, mm, and dyads in the order in which they are reached.
 
-    Loop 0 is the linkage's, loop k the k-th dyad's, counted from 1. Raises ValueError if the first dyad hangs on a
-    previous one.
+    Dyad k is `dyads[k]`, from 0; loop 0 is the linkage's, loop k + 1 that of dyad k. Raises ValueError if the first
+    dyad hangs on a previous one.
     """
 
     linkage: Linkage
@@ -93,7 +93,7 @@ class Chain:
         return Carrier(f"{dyad.driven}-{loop}", lambda solved: dyad.output_link(solved.dyads[k]))
 
     def carrier(self, k: int) -> Carrier:
-        """Return the link on which dyad k hangs."""
+        """Return the link on which `dyads[k]` hangs."""
         on = self.dyads[k].on
         return self.output(k) if on == "previous" else self.carrier_of(on)
 
@@ -111,7 +111,7 @@ class Chain:
         return self.carrier(k).pose(solved).point(*self.dyads[k].point)
 
     def rod(self, solved: Solved, k: int) -> Link:
-        """Link from the point P on which dyad k hangs, its origin, towards the joint Q on its x axis."""
+        """Link from the point P to which `dyads[k]` is attached, its origin, towards the joint Q on its x axis."""
         return bar(self.hung(solved, k), solved.dyads[k].joint)
 
     def joints(self, solved: Solved, loop: int) -> dict[str, Joint]:

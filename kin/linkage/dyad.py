@@ -96,7 +96,10 @@ class RRR(_Pivoted):
         demand_lengths(self.assembly, **{"first link": self.links[0], "second link": self.links[1]})
 
     def margins(self, x: float | Array, y: float | Array) -> Array:
-        """Distances of GP from the least and the greatest length that the bars span, mm (2, n), for P at x, y (n,)."""
+        """Length GP less the least that the bars span, and the greatest less GP, mm (2, n), for P at x, y (n,).
+
+        A row is negative out of reach.
+        """
         a, b = self.links[1], self.links[0]
         terms = _arm_terms(x, y, self.ground)
         return triangle_margins(a, b, _square(*terms), *excesses(*terms, a, b))

@@ -54,6 +54,7 @@ class FrameBearing:
         (s, slope), (_, slope1) = self.motion.faces
         x, y = positions.slide.c[0], s - 0.5 * self.mechanism.breadth + self.mechanism.linkage.joint_offset
         u = np.exp(1j * self.motion.frame[0])
+        # a frame that turns with the shaft held turns about the instant centre, at -S', -S1' in its axes
         sweep = u * (-slope1 - y + 1j * (x + slope))
         off = u * (along + 1j * across) + joint
         return self.mechanism.linkage.deviation(positions, sweep, off, pivot, link)

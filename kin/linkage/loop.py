@@ -37,7 +37,8 @@ _STILL = 1e-30
 class BindingError(CamgeoError, ValueError):
     """A loop that cannot be closed, or whose derivatives are wanted in a limit position.
 
-    `message` says by how much the links miss each other; `indices` (k,) are the points concerned, out of n.
+    `message` says by how much the links miss each other, or that they stand in a limit position; `indices` (k,) are the
+    points concerned, out of n.
     """
 
     def __init__(self, message: str, indices: NDArray[np.intp]) -> None:

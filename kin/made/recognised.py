@@ -312,10 +312,14 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
 
 
 def _hidden(motion: PointMotion, columns: Array, free: Indices, scale: Array, boundaries: int) -> Hidden:
-    """The form of few waves a turn that is hidden the most by f unknowns, whose columns are (n, f)."""
+    """The form of few waves a turn that is hidden the most by f unknowns, whose columns are (n, f).
+
+    `free` (f,) are their indices among all unknowns: as many boundaries as `boundaries` says, then levels. `scale` has
+    for each of all unknowns the step, rad or mm, to which its column belongs.
+    """
     base, _ = np.linalg.qr(columns)
     most: Hidden | None = None
-    for waves in motion.alike(MOST_WAVES):
+    for waves in motion.alike(MOST_WAVES):  # numbers of waves that motion and form may share
         form = np.column_stack([np.cos(waves * motion.shaft), np.sin(waves * motion.shaft)])
         share = float(np.linalg.norm(base.T @ np.linalg.qr(form)[0], 2))
         if most is None or share > most.share:

@@ -320,6 +320,7 @@ def _solved(
         level = 0.5 * (ends[0] + ends[1])
         own = tried(level)
         best = min(best, _one_acceleration(lift, sides, own, None), key=_peak)
+        # the side with the higher peak draws the level towards its own best: the end of the other side moves
         ends[own[0].peak > own[1].peak] = level
     if bound < best.peak < math.inf:
         best = min(best, _one_acceleration(lift, sides, tried(best.nose), None), key=_peak)

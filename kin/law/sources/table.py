@@ -238,6 +238,7 @@ def _angles(rows: Samples, total: float) -> list[TableRemark]:
     over = abs(float(rows.theta[-1] - rows.theta[0]))
     if over >= (1.0 - _NEARLY) * total:
         return []
+    # greatest angle as the file has it: `turned` is the number of its units of angle in a degree
     last = float(np.degrees(np.abs(rows.theta).max())) * rows.turned
     covered = f"the angles cover {math.degrees(over):.6g} degrees"
     unit = next((word for end, word in _UNITS_BY_END.items() if abs(last - end) <= _NEARLY * end), None)
