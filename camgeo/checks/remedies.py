@@ -207,8 +207,10 @@ def _to_raise(recipe: Recipe, figure: str, missed: Missed) -> str:
     """Change that would raise a figure to a bound, lengths in the recipe's unit; empty where none is known."""
     unit, remedy = "in" if recipe.units == "inch" else "mm", ""
     value, bound = missed.value / recipe.mm, missed.bound / recipe.mm
-    lack, advice = bound - value, recipe.cam.advice.on(missed.surface)
-    if figure == figures.RADIUS and recipe.cam.sizes:
+    lack, own_advice = bound - value, recipe.cam.advice
+    advice = own_advice.on(missed.surface)
+    # sizing makes the contour of disc 1 rounder; that of disc 2, and a ring, are rounder by a smaller roller alone
+    if figure == figures.RADIUS and recipe.cam.sizes and advice is own_advice and recipe.cam.side > 0:
         remedy = advice.rounder(value, bound, unit)
     elif figure in {figures.RADIUS, figures.HOLLOW_RADIUS} and advice.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more

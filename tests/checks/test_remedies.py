@@ -505,6 +505,22 @@ def test_files_of_a_recipe_that_is_changed_as_told_pass(text: str, pattern: str,
     assert not said_of_files(follow(figure(said_of_files(text), pattern)))
 
 
+def test_a_sized_ring_is_rounder_by_a_smaller_roller_alone() -> None:
+    def ring(radius: float, least: float) -> str:
+        size = "sizing: {pressure-angle: {at_most: 30}}, track: internal"
+        cam = f"kind: disc, {size}, follower: {{kind: roller, radius: {radius!r}}}, motion: {SHARP}"
+        return f"cam: {{{cam}}}\npart: {{outer: 900}}\nlimits: {{radius-of-curvature: {{at_least: {least}}}}}{FILES}"
+
+    smaller = figure(said_of_files(ring(6.0, 76.0)), r"a roller radius of (\S+) mm would satisfy it")
+    assert smaller < 6.0
+    assert said_of_files(ring(smaller, 76.0)) == ""
+    # less than the whole roller does not make it so round
+    (told,) = said_of_files(ring(6.0, 200.0)).splitlines()
+    assert "roller" not in told
+    kept = figure(told, r"limits\.radius-of-curvature\.at_least of (\S+) would satisfy it")
+    assert said_of_files(ring(6.0, kept)) == ""
+
+
 def test_a_smaller_swing_has_a_smaller_pressure_angle() -> None:
     recipes = (load_text(roller(f"delta: {{cos: {{1: {size}}}}}"), "swung.yaml") for size in (400, 200))
     wide, narrow = ({each.name: each.value for each in designed(recipe).checks} for recipe in recipes)
