@@ -178,8 +178,13 @@ _CORE: dict[str, DesignFigure] = {
         "greatest distance of the swing from delta.law, over the turn", Kind.ANGLE, "least", OF_WANTED_LAW
     ),
     CONTACT_TRAVEL: _of_size("how far the contact travels along the face", Kind.LENGTH, OF_FACE),
-    FACE_WIDTH: _of_size(
-        "least width of a face, centred on the stem's axis, that the contact does not leave", Kind.LENGTH, OF_STEM_FACE
+    FACE_WIDTH: DesignFigure(  # the contact lies off the axis by the velocity, on a cam of any size
+        "least width of a face, centred on the stem's axis, that the contact does not leave",
+        Kind.LENGTH,
+        "least",
+        OF_STEM_FACE,
+        dear=True,
+        eased_by="motion",
     ),
     ROLLER_SPEED: DesignFigure(
         "greatest speed of the roller, turns per turn of the shaft", Kind.NUMBER, "least", OF_ROLLING, dear=True

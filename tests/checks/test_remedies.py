@@ -521,6 +521,15 @@ def test_a_sized_ring_is_rounder_by_a_smaller_roller_alone() -> None:
     assert said_of_files(ring(6.0, kept)) == ""
 
 
+def test_a_face_on_a_stem_is_as_wide_on_a_larger_cam() -> None:
+    def limited(base: float) -> str:
+        return said_of_files(disc(base, "kind: flat", "\nlimits: {face-width: {at_most: 20}}"))
+
+    assert "base radius" not in limited(120.0)
+    assert limited(120.0) == limited(160.0) != ""
+    assert "a smaller stroke, or the same over a wider angle would satisfy it" in limited(120.0)
+
+
 def test_a_smaller_swing_has_a_smaller_pressure_angle() -> None:
     recipes = (load_text(roller(f"delta: {{cos: {{1: {size}}}}}"), "swung.yaml") for size in (400, 200))
     wide, narrow = ({each.name: each.value for each in designed(recipe).checks} for recipe in recipes)
