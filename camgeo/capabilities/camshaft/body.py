@@ -111,7 +111,7 @@ def camshaft_outlines(
     # two outlines do not cross if one lies within the other's least radius
     for (below, _, z), (above, _, _) in pairwise(stretches):
         least, most = zip(*(_reach(outline) for outline in (below, above)), strict=True)
-        if max(least) < min(most):
+        if least[0] < most[1] - SAME and least[1] < most[0] - SAME:
             message = f"the outlines that meet at z = {z:.9g} mm cross one another, which a STEP of it does not hold"
             raise RegionError(f"{message}; leave a gap between them, or give stl or 3mf")
     return stretches, bound, count
