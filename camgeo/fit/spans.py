@@ -26,8 +26,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.deviation import peak
-from kin.numeric.angles import TURN
+from camgeo.fit.deviation import FORWARD, peak
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -223,7 +222,7 @@ def _bend(
     def within(rate: Array) -> tuple[Array, Array, Array]:
         """Bounds of gamma, g and k (v - sigma) where gamma' is at most `rate`."""
         most_lean = lean + half * rate + 1e-15
-        tangent, secant = np.tan(np.minimum(most_lean, TURN)), 1.0 / np.cos(np.minimum(most_lean, TURN))
+        tangent, secant = np.tan(np.minimum(most_lean, FORWARD)), 1.0 / np.cos(np.minimum(most_lean, FORWARD))
         clearance = 1.0 - half * tangent * turns
         most_off = (off + half * tangent * speeds) / np.where(clearance > 0.0, clearance, np.nan)
         return most_lean, most_off, rates.curvature * (speeds * (secant - 1.0) + most_off * turns * secant)
@@ -231,9 +230,9 @@ def _bend(
     # an assumed rate of turning, which the bounds that follow from it confirm
     rate = SPARE * (rates.curvature * (speeds + off * turns) + turns)
     most_lean, most_off, lag = within(rate)
-    sane = (rates.curvature * speeds + lag + turns <= rate) & (most_lean < TURN) & (slowest > most_off * turns)
+    sane = (rates.curvature * speeds + lag + turns <= rate) & (most_lean < FORWARD) & (slowest > most_off * turns)
     # bounds of the span's speed and its slope, and of the second derivative of m
-    secant, tangent = 1.0 / np.cos(np.minimum(most_lean, TURN)), np.tan(np.minimum(most_lean, TURN))
+    secant, tangent = 1.0 / np.cos(np.minimum(most_lean, FORWARD)), np.tan(np.minimum(most_lean, FORWARD))
     pace = (speeds + most_off * turns) * secant
     pace_slope = (speed_slope + pace * tangent * turns + most_off * turn_slope) * secant + pace * tangent * rate
     bend = (rates.bend * pace**2 + rates.slope * pace_slope) * speeds + 2.0 * rates.slope * pace * speed_slope
@@ -243,7 +242,7 @@ def _bend(
         rate = np.minimum(rate, most_excess + lag)
         most_lean, most_off, lag = within(rate)
     # g'' + sigma m, and sigma m between its values at the ends
-    tangent = np.tan(np.minimum(most_lean, TURN))
+    tangent = np.tan(np.minimum(most_lean, FORWARD))
     small = pace_slope * tangent + most_off * turns * rate + speeds * lag
     excess_slope = np.abs(np.diff(excess)) / step + half * bend
     product = speed_bend * most_excess + 2.0 * speed_slope * excess_slope + speeds * bend

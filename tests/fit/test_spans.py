@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from support.cases import examples, few
 from support.shapes import booth
 
-from camgeo.curve.curve import Curve
+from camgeo.curve.curve import Bounds, Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit import spans
 from camgeo.fit.handles import cubic_spans
-from camgeo.fit.spans import Cubics, _curvature_bounds, plane, spans_deviation
+from camgeo.fit.spans import Cubics, _bend, _curvature_bounds, _Rates, plane, spans_deviation
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 
 STEPS, DENSE = 4, 101  # of a span, and places in each at which its curvature is seen
@@ -167,3 +167,14 @@ def test_no_place_of_a_step_exceeds_its_bound(seed: int) -> None:
             sane = np.isfinite(bound)
             assert sane.any()
             assert (seen.max(axis=1)[sane] <= bound[sane] * (1.0 + 1e-9)).all()
+
+
+def test_a_step_in_which_the_span_may_stand_across_the_curve_is_not_confirmed() -> None:
+    """A span of curvature 4 along a curve that turns by 1 rad: bounds leave an angle between them above a right one."""
+    one, none, ends = np.ones(1), np.zeros(1), np.zeros((1, 2))
+    bounds = Bounds(one, one, one, one, none, none, none, none)
+    rates = _Rates(np.full((1, 1), 4.0), np.zeros((1, 1)), np.zeros((1, 1)))
+    _, confirmed = _bend(
+        np.ones((1, 1)), bounds, rates, g=ends, angle=ends, speed=ends + 1.0, turn=ends + 1.0, excess=ends + 3.0
+    )
+    assert not confirmed.any()

@@ -17,7 +17,7 @@ def outlines(journal: float, lobe: tuple[float, float]) -> int:
     contour = ArcSpline(np.array([[far, 0.0], [-near, 0.0]]), np.ones(2), Bound(0.0, 0.0))
     bars = [SimpleNamespace(diameter=6.0, low=0.0, high=30.0), SimpleNamespace(diameter=journal, low=20.0, high=25.0)]
     placed = SimpleNamespace(at=0.0, lobe=SimpleNamespace(low=10.0, high=20.0))
-    fits = SimpleNamespace(within=lambda form, tolerance: contour)
+    fits = SimpleNamespace(within=lambda _form, _tolerance: contour)
     return len(camshaft_outlines(SimpleNamespace(bars=bars, rotation="cw"), [placed], lambda _: fits, 0.01)[0])
 
 
