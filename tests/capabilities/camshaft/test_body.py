@@ -1,6 +1,7 @@
 """Outlines of a camshaft that meet at one height: one within the other, or crossing."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,9 +17,10 @@ def outlines(journal: float, lobe: tuple[float, float]) -> int:
     near, far = lobe
     contour = ArcSpline(np.array([[far, 0.0], [-near, 0.0]]), np.ones(2), Bound(0.0, 0.0))
     bars = [SimpleNamespace(diameter=6.0, low=0.0, high=30.0), SimpleNamespace(diameter=journal, low=20.0, high=25.0)]
-    placed = SimpleNamespace(at=0.0, lobe=SimpleNamespace(low=10.0, high=20.0))
-    fits = SimpleNamespace(within=lambda _form, _tolerance: contour)
-    return len(camshaft_outlines(SimpleNamespace(bars=bars, rotation="cw"), [placed], lambda _: fits, 0.01)[0])
+    recipe: Any = SimpleNamespace(bars=bars, rotation="cw")
+    placed: Any = SimpleNamespace(at=0.0, lobe=SimpleNamespace(low=10.0, high=20.0))
+    fits: Any = SimpleNamespace(within=lambda *_: contour)
+    return len(camshaft_outlines(recipe, [placed], lambda _: fits, 0.01)[0])
 
 
 @pytest.mark.parametrize("journal", [16.0, 16.3, 32.3, 32.6])  # circles of some diameters have no rounding
