@@ -270,7 +270,7 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
     if not motion.closed:
         held[:m] = (boundaries == 0.0) | (boundaries == motion.span)
         held[[m, -1]] = motion.zero_ends
-        values[held & (scale != 1.0)] = 0.0
+        values[m:][held[m:]] = 0.0
     free = np.flatnonzero(~held)
 
     def off(at: Array) -> Array:

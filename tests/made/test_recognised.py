@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from support.measured import disc, points, surfaces
@@ -11,7 +13,7 @@ from camgeo.synthesis.design import designed
 from kin.follower.follower import still_follower
 from kin.law.sources.laws import NAMES
 from kin.made.point_motion import SurfaceRun, measured_motion
-from kin.made.recognised import recognised
+from kin.made.recognised import Stroke, _fitted, recognised
 
 ROLLER = "kind: roller, radius: 10, offset: 6"
 READING = 0.01
@@ -122,3 +124,25 @@ def test_what_a_long_wave_hides_is_what_it_moves():
     assert 0.9 < hidden.share <= 1.0
     assert (np.max(moved, axis=0) < 1.05 * hidden.levels).all()
     assert (np.max(moved, axis=0) > 0.8 * hidden.levels).all()
+
+
+@pytest.mark.parametrize("height", [1.0, 2.0])  # 1 is also the scale of a boundary
+def test_ends_of_a_part_of_a_turn_that_rest_at_zero_stay_there(height):
+    boundaries = np.radians([0.0, 60.0, 120.0])
+    strokes = (
+        Stroke(0, 1, 0, 1, "cycloidal", (), 0.0),
+        Stroke(1, 2, 1, 2, "cycloidal", (), 0.0),
+    )
+    shaft = np.linspace(0.0, boundaries[-1], 400)
+    position = height * np.sin(0.5 * np.pi * (1.0 - np.abs(shaft / boundaries[1] - 1.0))) ** 2
+    motion = SimpleNamespace(
+        closed=False,
+        span=boundaries[-1],
+        zero_ends=True,
+        shaft=shaft,
+        position=position,
+        spans=40,
+        alike=lambda _: (1,),
+    )
+    programme = _fitted(motion, boundaries, np.array([0.02, height + 0.02, 0.02]), strokes)
+    assert programme.levels[[0, -1]].tolist() == [0.0, 0.0]
