@@ -114,10 +114,11 @@ def sampled_deviation(curve: Curve, chain: Chain, nodes: int) -> Array:
 
 
 def radial(start: Array, tangent: Array, curvature: Array, point: Array) -> tuple[Array, Array]:
-    """Signed distance (n,), mm, of points (n, 2) outside circles or lines, and the unit radial direction there (n, 2).
+    """Signed distance (n,), mm, of points (n, 2) from circles or lines, and unit directions (n, 2) in which it grows.
 
-    A circle or line passes `start` (n, 2) in the direction `tangent` (n, 2) with a signed `curvature` (n,), 1/mm. No
-    digit is lost where the radius is large beside the distance.
+    A circle or line passes `start` (n, 2) in the direction `tangent` (n, 2) with a signed `curvature` (n,), 1/mm, above
+    0 where it turns left. The distance is above 0 to its right: outside a circle that turns left, inside one that turns
+    right. No digit is lost where the radius is large beside the distance.
     """
     normal = np.stack([tangent[..., 1], -tangent[..., 0]], axis=-1)
     offset = point - start

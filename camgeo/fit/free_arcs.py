@@ -209,7 +209,7 @@ def _level_out(curve: Curve, layout: _Layout, t: Array, aim: float) -> tuple[_Jo
         places = np.clip(places + np.clip(peaks.move / span, -0.1, 0.1), 0.02, 0.98)
         unsure = np.abs(arcs.miss) + DOUBT * np.abs(peaks.doubt).max(axis=1)
         level = np.maximum.reduceat(np.abs(peaks.height).max(axis=1) + unsure, begin)
-        # settled: within the aim, or as near as Newton's method foresees to a level that is not
+        # settled: a part within the aim, or one near the level that Newton's method foresaw where that is above the aim
         settled = (level <= aim) | ((level <= LEVEL * foreseen) & (foreseen > aim))
         if settled.all() or step == STEPS:
             break

@@ -36,8 +36,9 @@ class ContactPoints(NamedTuple):
         places, normals = self.places, self.normals
         if angle:
             c, s = math.cos(angle), math.sin(angle)
-            back = np.array([[c, s], [-s, c]])
-            places, normals = places @ back, normals @ back
+            # rows times this matrix are turned counter-clockwise
+            turn = np.array([[c, s], [-s, c]])
+            places, normals = places @ turn, normals @ turn
         mirror = np.array([1.0, -1.0 if rotation == "ccw" else 1.0])
         return self._replace(places=places * mirror, normals=normals * mirror)
 

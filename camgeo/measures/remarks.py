@@ -363,6 +363,7 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
         tolerance = tolerances.get(check.file or "")
         if not tolerance or check.limit is None:
             continue
+        # `direct` is what the tolerance permits at a pressure angle of 0
         direct, radius = follower.direct_limit(tolerance), None
         if closure is not None and check.name == closure.name:
             direct = direct_play(closure, follower, tolerance)

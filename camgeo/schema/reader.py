@@ -181,6 +181,7 @@ class Reader:
         chosen = [name for name, _ in table.alternatives if name in nodes]
         if names and not chosen and not table.optional and misspelled.isdisjoint(names):
             self.fault(node.mark, path, f"needs {either(tuple(names))}", None, "give exactly one of them")
+        # as the last name of its path, which `join` would quote if it were unusual
         chosen_key = join(path, chosen[0]).rpartition(".")[2] if chosen else ""
         for name in chosen[1:]:
             remedy = f"give exactly one of {either(names)}"

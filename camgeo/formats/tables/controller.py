@@ -43,7 +43,10 @@ def _write(path: Path, columns: Sequence[str], rows: Array, head: Sequence[str])
 
 
 def fixed(value: float) -> str:
-    """Text of a number to nine decimals without an exponent, since the manual mentions none."""
+    """Text of a number rounded to nine decimals, without zeros at its end and without an exponent; -0 is 0.
+
+    SEW-EURODRIVE's manual of the MOVI-C mentions no exponents.
+    """
     text = f"{value:.{PLACES}f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
