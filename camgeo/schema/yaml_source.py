@@ -56,7 +56,7 @@ class Scalar:
 class Sequence:
     """A list; `end` is the place behind its bracket, or behind its last entry where it has none.
 
-    `tag` is its YAML tag as written, None without one; `size` the number of nodes in it, also those of aliases.
+    `tag` is its YAML tag as written, None without one; `size` counts it and the nodes in it, also those of aliases.
     """
 
     items: tuple[Node, ...]
@@ -71,7 +71,7 @@ class Mapping:
     """A mapping as written, keys that stand twice included; `flow` is whether it stands in braces.
 
     `end` is the place behind its brace, or behind its last entry where it has none. `tag` is its YAML tag as written,
-    None without one; `size` the number of nodes in it, also those of aliases.
+    None without one; `size` counts it and the nodes in it, keys and those of aliases too.
     """
 
     entries: tuple[tuple[Node, Node], ...]
