@@ -93,6 +93,7 @@ def measured_faces(follower: Follower, contour: Contour, play: float | None) -> 
         raise ValueError("a follower of one contact has no backlash")
     rests = follower.resting(contour)
     if play is None:
+        # it counts away from the cam, whichever way the follower's position counts; both are 0 at the same place
         return Faces(replace(rests[0], sign=1.0, offset=contacts[0].sense * rests[0].offset), None)
     # one contact pushes it up, the other keeps it below
     lower, upper = sorted(rests, key=lambda rest: -rest.sign)

@@ -261,11 +261,15 @@ def _no_steady_state(running: Running, natural: float, damped: float) -> str:
 
 
 def _residual(running: Running, response: Response, starts: Array, begin: float, end: float) -> Residual:
+    """Vibration in the drive's dwell from `begin` to `end`, rad; `starts` (2, m) are the states where stretches start.
+
+    The static z is where both springs balance, -(F + k_p s)/(k + k_p).
+    """
     drive, train = response.drive, running.train
     middle = 0.5 * (drive.knots[:-1] + drive.knots[1:])
     inside = np.flatnonzero(np.mod(middle - begin, TURN) < end - begin)
-    share = 1.0 / (train.stiffness + train.rate)
-    more = share * train.rate * drive.position
-    more[:, 0] += share * train.preload
-    peaks = ResponseFigure.of(response, 1.0, 0.0, more).peaks(starts, inside)
+    compliance = 1.0 / (train.stiffness + train.rate)
+    minus_static = compliance * train.rate * drive.position
+    minus_static[:, 0] += compliance * train.preload
+    peaks = ResponseFigure.of(response, 1.0, 0.0, minus_static).peaks(starts, inside)
     return Residual(begin, end, max(peaks.greatest, -peaks.least, 0.0))

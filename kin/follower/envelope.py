@@ -78,7 +78,10 @@ class Envelope(Protocol):
         """Envelope of the parallel contour inside this one, at a distance, mm."""
 
     def displaced(self, by: Outwards) -> Envelope:
-        """Contour that lies the distance `by` farther outside, to first order, without corners of its own."""
+        """Contour that lies the distance `by` farther outside, to first order of it.
+
+        To that order a jump of this contour's curvature leaves no corner in it.
+        """
 
 
 class Outwards(Protocol):

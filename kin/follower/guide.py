@@ -261,7 +261,10 @@ class Line:
         return lead
 
     def lead_slope(self, least: Array, most: Array) -> Array:  # noqa: ARG002 - steepest where it is nearest
-        """Greatest slope of the lead over r, rad/mm (n,), from the distance `least` (n,), mm, on; else infinite."""
+        """Greatest magnitude of the lead's slope over r, rad/mm (n,), from the distance `least` (n,), mm, on.
+
+        Infinite where `least` is no more than the magnitude of `offset`.
+        """
         e = abs(self.offset)
         with np.errstate(divide="ignore", invalid="ignore"):
             steepest: Array = np.where(least > e, e / (least * np.sqrt(least**2 - e**2)), np.inf)

@@ -363,7 +363,8 @@ class Piecewise:
 
     def _within(self, index: Indices, begin: Array, end: Array, t: BallJet, here: Indices) -> BallJet:
         """Intervals number `here` of t with their values replaced by [begin, end], each inside its stretch `index`."""
-        # The fold t - turns * period is rounded; its ulp is covered, within the stretch.
+        # The fold t - turns * period is rounded; its ulp is covered, within the stretch. An interval that begins at
+        # exactly 0 is taken as it is.
         slack = np.where(np.abs(begin) > 0, np.spacing(np.maximum(np.abs(t.mid[0, here]), np.abs(begin))), 0.0)
         interval = Ball.between(
             np.maximum(begin - slack, self.knots[index]), np.minimum(end + slack, self.knots[index + 1])

@@ -117,7 +117,7 @@ class FourBar:
 
         AS 20 takes theta_4 from its sine, which loses the branch beyond 90 degrees; here it is 2 atan2 of the roots of
         AD^2 - (r1 - r4)^2 and (r1 + r4)^2 - AD^2, and 2 r1 r4 sin theta_4 theta_4' = (AD^2)'. Raises BindingError where
-        the triangle does not close, or is flat and the jets have derivatives.
+        the triangle does not close, where AD is 0, and where it is flat and the jets have derivatives.
         """
         r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
         ad = _frame_vector(s, s1, w, self.coupler, self.joint_offset)

@@ -156,7 +156,11 @@ class Corrected(Follower):
         return self.exact.shaft_angle(parameter)
 
     def drives(self, contour: Contour) -> Sequence[Excitation]:
-        """Drive of each contact that rests on a contour, its own position, m or rad, less the correction's effect."""
+        """Drive of each contact that rests on a contour, its own position, m or rad, less the correction's effect.
+
+        Raises ContactError as `Follower.drives` does. A drive raises it when it is evaluated, where a contact finds no
+        metal.
+        """
         return [_Beyond(drive, self, k) for k, drive in enumerate(self.exact.drives(contour))]
 
     def pressed(self, contour: Contour, phi: Array) -> tuple[Array, Array]:

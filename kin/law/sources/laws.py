@@ -59,7 +59,11 @@ def scca(sine: float, constant: float, velocity: float = 0.0, field: str = "law"
 
 
 def scca_motion(b: float, c: float, x: float) -> Piecewise:
-    """Displacement of the SCCA law of shares b of sine and c of constant acceleration, x of constant velocity."""
+    """Displacement of the SCCA law, 0 to 1 over 0 to 1.
+
+    b and c are the shares of sine and of constant acceleration in the accelerating half, of which the cosine has the
+    rest; x is the share of the whole segment at constant velocity.
+    """
     d = max(1.0 - b - c, 0.0) if b + c < 1.0 - _SAME else 0.0
     # Norton's Ca and Cv without constant velocity; with it V = Cv/(1 + x (Cv - 1)) and A = V Ca/(Cv (1 - x)).
     plain = 4 * _PI**2 / ((_PI**2 - 8) * (b * b - d * d) - 2 * _PI * (_PI - 2) * b + _PI**2)
