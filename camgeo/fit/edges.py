@@ -172,8 +172,9 @@ def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -
 
 
 def prove_edges(curve: Curve, edges: PlacedEdges, tolerance: float) -> ProvedEdges:
-    """Edges with their proved deviation; bounds are sharpened to decide whether an edge holds the `tolerance`, mm.
+    """Edges with their proved deviation, its bounds sharp to a share of the `tolerance`, mm, as in `chain_deviation`.
 
+    Of no more pieces than `deviation.FEW` they are sharpened further where only they exceed the tolerance.
     An edge across a break of the curve is proved on both sides of the break.
     """
     chain = Chain(
