@@ -50,7 +50,10 @@ class Linkage(NamedTuple):
     traces: tuple[TracedPoint, ...] = ()
 
     def shaped(self, cam: Cam) -> Cam:
-        """The cam with the links by which it follows from the frame's swing; itself for another kind of linkage."""
+        """The cam with the links of an inverted slider crank, by which its shape follows from the frame's swing.
+
+        It is the cam itself for another kind of linkage, and for a cam whose recipe gives no swing.
+        """
         from kin.linkage.four_bar import InvertedSliderCrank
         from kin.linkage.loop import side_of
 

@@ -261,6 +261,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
     if roller and len(backward := _seen_backward(surface.curve)) > MOST_REPORTED * surface.curve.shape.repeats:
         raise CurveError(TOO_MANY.format(len(backward)), float(backward[0]))
     least = _bent_most(surface)
+    # of the path of the roller's centre, the contour's own without a roller; roomy where it exceeds the roller's
     radius = least.radius + roller
     roomy, at_deg = radius > roller, None if math.isinf(radius) else shaft_deg(least.at)
     bent = Check((PITCH if roller else CURVATURE).name, roomy, radius, roller, "mm", at_deg, "at_least")
@@ -283,7 +284,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
             outcome = f"; trimming is not possible: {error}"
     if not (roomy or undercut):
         contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
-    if not surface.curve.closed:
+    if not surface.curve.closed:  # it has corners that the recipe asks for
         bent = _sharp(surface, shaft_deg)
     # the radius of the contour before it is trimmed is reported, without a limit
     cut_off = bool(undercut and contour)

@@ -35,7 +35,8 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     scene = CheckFacts(recipe, _follower(recipe))
     every = declarations(recipe)
     expected = [Foreseen(check.name) for check in every if check.exact is not None and check.exact(scene)]
-    # of a file, what its contour is in itself comes before what is left between it and the follower
+    # of a file, what its contour is in itself comes first; then the play between it and the follower, and checks that
+    # the exact cam has too, in the order in which they are declared
     in_turn = sorted(every, key=lambda check: check.backlash or check.exact is not None)
     for request in recipe.export.files:
         names = recipe.filenames(request)

@@ -144,7 +144,8 @@ def _split(begin: float, end: float) -> list[tuple[float, float]]:
 def opened(lobes: Sequence[PlacedLobe], engine: Engine) -> dict[int, dict[str, Event]]:
     """Return the events by cylinder and valve, `intake` before `exhaust`, cylinders in the order of firing.
 
-    A lobe that does not pass its event lift in one stretch is left out, as is a cylinder without events.
+    A lobe that does not pass its event lift in one stretch is left out, as is a cylinder without events. Raises
+    RecipeErrors and EventError as `PlacedLobe.event_lift` does.
     """
     events = {(lobe.lobe.cylinder, lobe.lobe.valve): lobe.event(lobe.event_lift(engine)) for lobe in lobes}
     rows = {

@@ -253,11 +253,13 @@ def foresee(recipe: CamshaftRecipe) -> tuple[Foreseen, ...]:
         made = replace(lobe.made, export=replace(lobe.made.export, files=()))
         for foreseen_check in foreseen(made):
             # only limits on the exact cam's figures and the core's checks: no train or other capability runs for a lobe
+            # `limited` is the figure that a limit bounds, False for any other check
             limited = foreseen_check.name.startswith(LIMIT) and FIGURES[foreseen_check.name.removeprefix(LIMIT)]
             if limited.of == "design" if limited else not CHECKS.owner(foreseen_check.name):
                 expected[foreseen_check] = None
     expected[Foreseen("shaft")] = None
     shaft, *journals = recipe.bars
+    # where the shaft is longer than its lobes together, some of it is bare, and is judged as a journal is
     length = math.fsum(lobe.high - lobe.low for lobe in recipe.lobes)
     rounds = ["journal"] if journals or shaft.high - shaft.low > length + ROUNDING else []
     rounds += ["bore"] if recipe.bore is not None else []

@@ -57,7 +57,7 @@ def _lobe(recipe: CamshaftRecipe, lobe: PlacedLobe) -> dict[str, Any]:
 
 
 def _balance(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dict[str, Any] | None:
-    """Unbalance of the lobes, and its couple about the middle of the shaft; None where a density is missing.
+    """Unbalance of the lobes, and its couple about the middle of the shaft; None where a density or contour is missing.
 
     U = sum of m_k times the centre of mass, M = sum of U_k (z_k - z_0) (THEORY: balance in two planes); round parts
     about the axis add nothing to either.
@@ -70,8 +70,9 @@ def _balance(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dict[str, A
         density, contour = lobe.lobe.recipe.part.density, lobe.contour
         if density is None or contour is None:
             return None
-        area, length = moments(contour), lobe.lobe.high - lobe.lobe.low
-        unbalance = density * KG * length * complex(area.x, area.y) * np.exp(1j * lobe.at)
+        # integrals of x and of y over the lobe's section, mm^3: its area times the place of its centre
+        integral, length = moments(contour), lobe.lobe.high - lobe.lobe.low
+        unbalance = density * KG * length * complex(integral.x, integral.y) * np.exp(1j * lobe.at)
         total += unbalance
         couple += unbalance * (0.5 * (lobe.lobe.high + lobe.lobe.low) - middle)
     turned = -1.0 if recipe.rotation == "ccw" else 1.0

@@ -134,7 +134,11 @@ def steady_force(recipe: Recipe, design: Design, dynamics: Dynamics, shaft: Arra
 
 
 def _scene(recipe: Recipe, dynamics: Dynamics, design: Design, runs: int) -> _Scene:
-    """Data shared by so many runs; RecipeErrors for backlash of one contact and a linkage that does not turn."""
+    """Data shared by so many `runs`, whose searches share two budgets of places, for float and for courses.
+
+    Raises RecipeErrors for backlash of one contact and a linkage that does not turn, ValueError for a recipe without
+    an elastic train.
+    """
     from kin.dynamics.train import Train
     from kin.law.contacts import METRE
 
@@ -194,7 +198,9 @@ def _drives(scene: _Scene, design: Design, file: FileResult | None) -> list[Driv
     from kin.follower.drive import Shifted
 
     faces = _faces(scene, design, file)
-    if scene.dynamics.rate:  # the spring's force is given at the lowest place
+    # a spring's force is given at the lowest place of the intended motion, from which positions count then; with a rate
+    # there is no backlash, so no upper face
+    if scene.dynamics.rate:
         faces = Faces(Shifted(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
     ends = [end for rest in scene.rests for end in rest]
     return drives([face for face in faces if face is not None], ends)

@@ -291,10 +291,11 @@ def unbounded(formula: Formula) -> float | None:
 
 
 def place_beyond(formula: Formula, most: float) -> float | None:
-    """A shaft angle, rad, at which the magnitude of a formula exceeds `most`; None where it nowhere does.
+    """A shaft angle, rad, at which the magnitude of a formula exceeds `most`; None where none is found.
 
-    Stretches over which intervals do not prove the magnitude to be within `most` are halved down to NARROW, at most
-    MOST_OPEN of them. Raises FormulaDomainError where the formula has no value at a place that is evaluated.
+    Stretches over which intervals do not prove the magnitude to be within `most` are halved down to NARROW, and their
+    middles evaluated; of more than MOST_OPEN the rest is given up. None is no proof where any is left. Raises
+    FormulaDomainError where the formula has no value at a place that is evaluated.
     """
     low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
     high: Array = low + TURN / STRETCHES

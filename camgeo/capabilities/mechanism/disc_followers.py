@@ -96,7 +96,10 @@ def on_stem(view: View[Translating, Round], drive: Drive) -> Assembly:
     place = stem_place(view.design.motion, view.datum, line)
     x = view.datum + view.travel(SHAFT)[0]
     foot = foot_maker(view)((0.0, 0.0), 0.0, (STEM, place), drive)
+    # a roller has a retainer as second member, but none in a groove
     running = roller_fits([foot], drive, clipped=len(foot.members) > 1) if foot.members else []
+    # x at which the guide begins, clear of foot and cam, and the stem's end in its own axes, beyond the guide at the
+    # lowest position
     first = max(float(x.max()) + _greatest_x(foot), drive.reach) + s.space
     end = first + guide_length(s) + s.space - float(x.min())
     stem = Plate(bar((foot.end[0], 0.0), (end, 0.0), s.bar), (), z.low, z.high)
@@ -214,8 +217,9 @@ def face_on_arm(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
     low = s.plate + s.gap - disk.bottom
     high = low + disk.thickness
     hub, inner = 0.5 * s.hole + max(s.wall, THIN), 0.5 * s.hole + THIN
-    # the bar, from the face away from the cam, has to lap over the hub by a wall that stands by itself, or half of what
-    # is there; a bar that begins this far beside the pivot does. Remedies keep well within these bounds
+    # the bar reaches from the face away from the cam, and outwards from `inner`, which clears the hole; the hub has to
+    # reach beyond that. At the height `beside` it does by THIN, or by half its wall beyond `inner`. On the other side
+    # of the pivot the bar has to lap over the hub by 0.4 of its own width. Remedies keep well within both bounds
     beside = math.sqrt(hub**2 - (inner + min(THIN, 0.5 * (hub - inner))) ** 2)
     if not -beside <= nearer < hub + 0.6 * s.bar:
         message = "the face passes {away} beside the pivot, and its bar beside the hub"

@@ -66,6 +66,7 @@ def linkage_assembly(mechanism: Mechanism, drive: Drive) -> Assembly:
         BodyFit("retainers on pins", s.press, pressed=True),
     )
     members = (*site.all_members(), ground)
+    # the cam's x axis is the normal of the face whose lift is given, a quarter turn ahead of the frame
     place = Turning(mechanism.start + 0.25 * TURN)
     return Assembly((*shaft_members(drive, low, place, members), *members), fits, s)
 

@@ -79,7 +79,8 @@ def extremes(valve: Valve, design: Design) -> dict[int, GreatestDerivative]:
 def measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measured:
     """Duration, crank degrees, or else seating velocity, mm per degree of the cam, at a lift of the valve, mm.
 
-    The value is None where the recipe has no valve, or the valve does not cross the lift just twice.
+    The seating velocity is the greater of those with which the valve leaves that lift and comes back to it. The value
+    is None where the recipe has no valve, or the valve does not cross the lift just twice.
     """
     valve = valve_of(recipe, design)
     if valve is None:
@@ -92,7 +93,9 @@ def measure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measur
         return Measured(event.duration, "deg", degrees(event.opening % TURN))
     opening, closing = np.array([event.opening % TURN]), np.array([event.closing % TURN])
     motion, slope = design.exact.motion, valve.travel(np.array([valve.follower_lift(lift)]))[1, 0]
+    # velocity of the tappet, mm/rad: after the opening, and before the closing
     tappet = motion.rows(opening, 1, 1)[1, 0], motion.rows(closing, 1, -1)[1, 0]
+    # event[1:] are the angles of opening and closing
     rate, at = max((abs(float(slope * rate)), at) for rate, at in zip(tappet, event[1:], strict=True))
     return Measured(math.radians(rate), "mm/deg", degrees(at % TURN))
 
