@@ -222,7 +222,9 @@ class _Course:
     def _run_on(self, contact: int, place: int, time: float, current: Array, log: Log) -> _Event | Array:
         """Run on to the next event, or to the end of the turn: the state (2,) there."""
         here = self.responses[contact]
-        window, singly = _FIRST_WINDOW, _ALONE  # the first stretches one by one, then windows that double
+        # The first stretches, and any of long swings, are run along one by one, the others in windows that double.
+        # `current` is the state after the jump where a single stretch begins, before it where a window does.
+        window, singly = _FIRST_WINDOW, _ALONE
         while True:
             event = self._run_along(contact, place, time, current, log)
             if isinstance(event, tuple):

@@ -79,9 +79,10 @@ class Look:
         self.inner = np.where(response.slow, 0.0, left * size_of_rate)
 
     def _particular(self, g: Array) -> tuple[Array, Array, Array]:
-        """Series of a q that a push g moves, those of q' (m, DEGREE + 1), and a bound (m,) of all that q leaves of g.
+        """Series of a q that a push g moves and of q', (m, DEGREE + 1) each, and a bound (m,) of what q leaves of g.
 
-        g/r^2, or g/r^2 - 2 a g'/r^4 if that leaves less: of the integral of its modulus over each stretch.
+        q is g/r^2, or g/r^2 - 2 a g'/r^4 if that leaves less. It leaves g - (q'' + 2 a q' + r^2 q), of whose modulus
+        the integral over each stretch is bounded.
         """
         a, square, half = self.oscillator.decay, self.oscillator.square, self.response.half[:, None]
         first = g @ DERIVATIVE.T / half
@@ -181,7 +182,7 @@ class Look:
 
     @cached_property
     def ages(self) -> Array:
-        """Sums of `moments` (3, m), faded by `fading`."""
+        """Sums (3, m) of size * age^k, k = 0, 1, 2, of all kicks, whose sizes fade by `fading`: see `moments`."""
         return self.moments(self.fading)
 
     @cached_property

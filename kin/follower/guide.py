@@ -92,11 +92,11 @@ class Arm:
         return lead
 
     def lead_slope(self, least: Array, most: Array) -> Array:
-        """Greatest slope of the lead over r, rad/mm (n,), between distances `least` and `most` (n,), mm.
+        """Upper bound of the magnitude of the lead's slope over r, rad/mm (n,), from `least` to `most` (n,), mm.
 
         Infinite at and beyond the ends of the reach.
         """
-        # w = cos(phi - t) = (r^2 + L^2 - l^2)/(2 r L); its slope is steepest, and sqrt(1 - w^2) least, at an end
+        # w = cos(phi - t) = (r^2 + L^2 - l^2)/(2 r L); its slope is steepest at an end, and sqrt(1 - w^2) least at one
         excess = self.pivot**2 - self.length**2
 
         def w(x: Array) -> Array:

@@ -78,10 +78,10 @@ class GuidedPitch:
 
 
 def leeway(slope: Array, sag: Array, tolerance: float) -> Array:
-    """Travel (n,), rad or mm, by which a roller leaves the pitch curve by `tolerance`, mm, to second order.
+    """Greatest travel (n,), rad or mm, at which a roller is `tolerance`, mm, off the pitch curve, to second order.
 
     `slope` and `sag` (n,) are the absolute first and second derivative of the distance from the pitch curve, mm, by the
-    position.
+    position: slope x - sag x^2/2 = tolerance, as the second order takes from the distance on one side.
     """
     swing = tolerance / slope
     leeway: Array = swing + 0.5 * sag / slope * swing**2

@@ -208,7 +208,7 @@ class _Table(NamedTuple):
 
 
 class CurvatureBounds(NamedTuple):
-    """Bounds over n stretches of a path, (n,) each; inf where unknown.
+    """Bounds over n stretches of a path, (n,) each; inf where unknown, `inner` 0.
 
     curvature    of the curvature's magnitude, 1/mm
     change       of the magnitude of its derivative by arc length, 1/mm^2

@@ -78,7 +78,10 @@ def _demand_possible(law: Transmission, knots: Sequence[float], functions: Seque
 
 
 def too_wide(law: Transmission, angle: float, swing: float, field: str) -> IntentError:
-    """Make the error for a law whose swing, `swing` rad at the parameter tau `angle`, leads out of 0 < r < 2l."""
+    """Make the error for a law whose swing leads roller A's distance r from the shaft out of 0 < r < 2l, l the arm.
+
+    The swing is `swing`, rad, at the law's parameter tau = `angle`, rad; `field` is that of the error.
+    """
     limit = min(law.alpha, math.pi - law.alpha)
     end = "2l" if law.alpha < math.pi / 2 else "0"
     return IntentError(

@@ -57,7 +57,8 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
     except FormulaError as error:
         raise IntentError(error.message, "p") from error
     functions = [about(_plain(piece, begin), pivot, scale) for piece, begin in zip(pieces, knots[:-1], strict=True)]
-    one_kind = isinstance(functions[0], Circle) == isinstance(functions[-1], Circle)  # an arc ends where it ends
+    # where an arc meets a formula the seam is a break, however smoothly they join
+    one_kind = isinstance(functions[0], Circle) == isinstance(functions[-1], Circle)
     return joined(knots, functions, "p", smooth_seam=one_kind and _runs_on(pieces[-1], pieces[0]))
 
 

@@ -249,7 +249,7 @@ class Piecewise:
     def places(self, t: Series, side: Side = 1) -> Places:
         """Stretches in which a jet's points lie, or which a ball jet's intervals meet.
 
-        Raises ValueError for points outside the knots where there is no period.
+        Raises ValueError for points, or ends of intervals, outside the knots where there is no period.
         """
         if isinstance(t, Jet):
             index, x = self.locate(t.c[0], side)

@@ -173,7 +173,10 @@ class MadePlay:
 
 
 def metal_of(follower: Follower, side: Side, curve: Smooth) -> Metal:
-    """Metal off the exact contour by a smoothed deviation, mm; `side` is 1 for metal inside the contour, -1 outside."""
+    """Metal off the exact contour by a smoothed deviation, mm, above 0 for too much metal.
+
+    `side` is 1 for metal inside the contour, -1 outside.
+    """
     return Metal.of(follower, side, lambda t: curve.rows(t, 1), curve.spans)
 
 

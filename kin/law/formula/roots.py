@@ -70,8 +70,8 @@ def signs(g: Expression, lower: float, upper: float) -> Signs:
     if whole.zero[0] or _sign(whole)[0]:
         return Signs((), (int(_sign(whole)[0]),), at_start=False, at_end=False)
     zeros = _merged(_zeros(g, lower, upper))
-    snapped = snap(lower, upper)
-    changes = tuple(zero for zero in zeros if lower + snapped < zero < upper - snapped)
+    rounding = snap(lower, upper)
+    changes = tuple(zero for zero in zeros if lower + rounding < zero < upper - rounding)
     edges = np.array([lower, *changes, upper])
     places = []
     for a, b in pairwise(edges.tolist()):
@@ -82,7 +82,7 @@ def signs(g: Expression, lower: float, upper: float) -> Signs:
     for place, (before, after) in enumerate(pairwise(places)):
         if before == after:
             raise UnsettledError("stays too close to zero", changes[place])
-    at_start, at_end = any(z <= lower + snapped for z in zeros), any(z >= upper - snapped for z in zeros)
+    at_start, at_end = any(z <= lower + rounding for z in zeros), any(z >= upper - rounding for z in zeros)
     return Signs(changes, tuple(places), at_start, at_end)
 
 
@@ -146,14 +146,14 @@ def _simple(g: Expression, low: Array, high: Array, lower: float, upper: float) 
         _Zero(float(z), float(a), float(b))
         for z, a, b in zip(_refine(g, 1, low[cross], high[cross]), low[cross], high[cross], strict=True)
     ]
-    snapped = snap(lower, upper)
-    zeros += [_Zero(lower, lower, float(b)) for b in high[low == lower] if _on_end(g, 1, lower, snapped)]
-    zeros += [_Zero(upper, float(a), upper) for a in low[high == upper] if _on_end(g, 1, upper, snapped)]
+    rounding = snap(lower, upper)
+    zeros += [_Zero(lower, lower, float(b)) for b in high[low == lower] if _on_end(g, 1, lower, rounding)]
+    zeros += [_Zero(upper, float(a), upper) for a in low[high == upper] if _on_end(g, 1, upper, rounding)]
     return zeros
 
 
 def _on_end(g: Expression, m: int, end: float, snapped: float) -> bool:
-    """Whether the (m - 1)-th derivative is 0 at an end to within rounding, of itself or of the end."""
+    """Whether the (m - 1)-th derivative is 0 at an end to within rounding, of itself or, by `snapped`, of the end."""
     at = np.array([end])
     c = g.jet(at, m).c[m - 1 :, 0]
     return not _sign(g.ball(at, at, m - 1).rows[m - 1]).any() or bool(abs(c[0]) <= snapped * m * abs(c[1]))
@@ -163,7 +163,7 @@ def _multiple(
     g: Expression, low: Array, high: Array, lower: float, upper: float
 ) -> tuple[list[_Zero], NDArray[np.bool_]]:
     """Multiple zeros of odd multiplicity in small cells [low, high] (n,), and the mask (n,) of the cells settled."""
-    settled, zeros, snapped = np.zeros(len(low), dtype=bool), [], snap(lower, upper)
+    settled, zeros, rounding = np.zeros(len(low), dtype=bool), [], snap(lower, upper)
     if not len(low):
         return [], settled
     certain = _sign(g.ball(low, high, _MOST_MULTIPLE).rows) != 0
@@ -174,13 +174,13 @@ def _multiple(
         signs_at_ends = [_sign(g.ball(x, x, order - 1).rows[order - 1])[0] for x in (a, b)]
         if signs_at_ends[0] * signs_at_ends[1] < 0:  # inside the cell
             zero = _refine(g, order, a, b)
-        elif a[0] == lower and _on_end(g, order, lower, snapped):  # at the lower end of all cells
+        elif a[0] == lower and _on_end(g, order, lower, rounding):  # at the lower end of all cells
             zero = a
-        elif b[0] == upper and _on_end(g, order, upper, snapped):  # at the upper one
+        elif b[0] == upper and _on_end(g, order, upper, rounding):  # at the upper one
             zero = b
         else:
             continue
-        if not _sign(g.ball(zero - snapped, zero + snapped, order - 2).rows).any():
+        if not _sign(g.ball(zero - rounding, zero + rounding, order - 2).rows).any():
             settled[i] = True
             if order % 2:
                 zeros.append(_Zero(float(zero[0]), float(a[0]), float(b[0])))

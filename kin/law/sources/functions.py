@@ -101,10 +101,11 @@ class Flank:
     ) -> tuple[Flank, tuple[float, ...]]:
         """Make the flank of the lobe top + sum of C_k u**k, u = 1 - v, less foot + slope v, from its five powers k.
 
-        Returns the flank and the five coefficients C_k, in the order of the powers. Value and four derivatives of the
-        flank vanish at v = 0. With l_k Lagrange's polynomials over the powers, C_k is (foot - top + slope) l_k(0) -
-        slope l_k(1), which gives the sums of C_k, k C_k, k (k - 1) C_k ... that the conditions at u = 1 need. The
-        division by (1 - u)**5 is done in exact fractions, so that nothing cancels near u = 1.
+        The powers rise, from 2 or above. Returns the flank and the five coefficients C_k, in the order of the powers.
+        Value and four derivatives of the flank vanish at v = 0. With l_k Lagrange's polynomials over the powers, C_k is
+        (foot - top + slope) l_k(0) - slope l_k(1), which gives the sums of C_k, k C_k, k (k - 1) C_k ... that the
+        conditions at u = 1 need. The division by (1 - u)**5 is done in exact fractions, so that nothing cancels near
+        u = 1.
         """
         from fractions import Fraction
 

@@ -274,9 +274,10 @@ def straightened(rows: Samples, reading: float) -> Samples:
 def periodic(rows: Samples, total: float, field: str, unit: str) -> Samples:
     """Rows of a load that repeats after `total` rad, without a last row that closes it; `unit` is for messages.
 
-    Raises TableError, with the line, for numbers that are not finite, angles that do not rise or cover more than
-    `total`, a last row a turn later that differs from the first, and ends that differ beside a gap wider than between
-    any two rows. Raises IntentError for fewer than two rows.
+    They come in rising order, falling ones reversed, and without rows written twice. Raises TableError, with the line,
+    for numbers that are not finite, angles that neither rise nor fall or cover more than `total`, a last row a turn
+    later that differs from the first, and ends that differ beside a gap over 1.5 times the widest between two rows.
+    Raises IntentError for fewer than two rows.
     """
     rows = demand_rows(rows, total, field, _LEAST_LOADS, "load")
     over, line = float(rows.theta[-1] - rows.theta[0]), int(rows.lines[-1])
