@@ -154,7 +154,8 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     """Design of a recipe: exact cam, discs, linkage, and all checks that need no file; `clock` times its stages.
 
     Raises RecipeErrors where there is no such motion or curve, undercut or an edge of the part cannot be proved, and
-    for a linkage that cannot be made.
+    for a linkage that cannot be made; CurveError where the least radius of the hollows that a grinding wheel has to
+    fit cannot be proved.
     """
     from kin.law.programme import IntentError
 
@@ -236,8 +237,9 @@ def _plate(exact: ExactCam) -> Lift:
 
 
 def sound(recipe: Recipe, exact: ExactCam, surface: Surface) -> SurfaceDesign:
-    """A surface with its checks of curvature and undercut, and its contour, None where undercut forbids to make it.
+    """A surface with its checks of curvature and undercut, and the contour to be made.
 
+    The contour is None where undercut is not to be trimmed or cannot be, and where the radius just reaches its limit.
     Raises CurveError where undercut can be neither proved nor excluded, IntentError for a guide or a face that cannot
     follow the motion.
     """

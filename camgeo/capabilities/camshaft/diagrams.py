@@ -217,7 +217,8 @@ def _crank_wheel(
 def cam_wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], engine: Engine) -> str:
     """Return an SVG wheel of one turn of the camshaft, 360 degrees, with a ring for each lobe, and its events below.
 
-    It begins at the firing dead centre of the first cylinder in the order.
+    It begins at the firing dead centre of the first cylinder in the order. Raises RecipeErrors and EventError as
+    `PlacedLobe.event_lift` does.
     """
     outer = INNER + max(100.0, RING * len(lobes))
     step, side = (outer - INNER) / len(lobes), max(WIDTH, 2.0 * (outer + 60.0))

@@ -64,7 +64,7 @@ class Valves(NamedTuple):
 def event(exact: ExactCam, zero: float, lift: float) -> Event | None:
     """Event of a lobe at a lift, mm or rad, with its motion begun at shaft angle `zero`, rad.
 
-    None where the follower is not beyond the lift in exactly one stretch of a turn.
+    None where the follower is not beyond the lift in exactly one stretch of a turn, or its motion is too rough to tell.
     """
     try:
         crossed = event_of(exact, lift)

@@ -33,7 +33,11 @@ def column(name: str) -> str:
 
 
 def write_csv(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], request: FileRequest) -> None:
-    """Write the table that the request's form names: events, inspection, else motion."""
+    """Write the table that the request's form names: events, inspection, else motion.
+
+    Events raise RecipeErrors and EventError as `PlacedLobe.event_lift` does, motion as `PlacedLobe.moved` does; OSError
+    where the file cannot be written.
+    """
     if request.as_ == "events":
         write_events(path, recipe, lobes)
     elif request.as_ == INSPECTION:

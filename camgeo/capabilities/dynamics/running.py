@@ -267,10 +267,11 @@ def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> lis
 
 
 def unbounded(formula: Formula) -> float | None:
-    """A shaft angle, rad, near which a formula grows beyond all bounds; None where it is bounded.
+    """A shaft angle, rad, near which a formula grows beyond all bounds; None where none is found.
 
     Stretches of the turn over which intervals give no finite enclosure are halved down to NARROW; there the formula is
-    evaluated on both sides. Raises FormulaDomainError where it has no value at a place that is evaluated.
+    evaluated on both sides. Of more than MOST_OPEN the rest is given up, so None is no proof. Raises FormulaDomainError
+    where it has no value at a place that is evaluated.
     """
     low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
     high: Array = low + TURN / STRETCHES

@@ -100,7 +100,10 @@ class Member:
     colour: str = "#9aa5b1"
 
     def body(self, steps: int = STEPS) -> PrintBody:
-        """The printed body, with its poses at `steps` equal steps of a turn; ValueError for faults of its name."""
+        """The printed body, with its poses at `steps` equal steps of a turn.
+
+        Raises ValueError for a faulty name or colour, a member without plates, and poses that are not finite.
+        """
         return PrintBody(self.name, self.plates, self.poses(steps), self.place is None, self.colour)
 
     def poses(self, steps: int = STEPS) -> Array:

@@ -266,16 +266,17 @@ def slotted_rocker(site: BodyStack, loop: int, dyad: RPR, mount: Mount) -> tuple
     blocks, angle = site.sample(block_place), site.sample(place)[:, 2]
     along = (blocks[:, 0] - dyad.ground[0]) * np.cos(angle) + (blocks[:, 1] - dyad.ground[1]) * np.sin(angle)
     first, last = float(along.min()), float(along.max())
-    start = first - 0.5 * BLOCK * s.bar - s.space - 0.5 * s.bar
-    if start < 0.5 * s.bar:
+    # place along the rocker at which the arm from G ends: half its breadth before the slot, which its round end touches
+    arm_end = first - 0.5 * BLOCK * s.bar - s.space - 0.5 * s.bar
+    if arm_end < 0.5 * s.bar:
         message = "the block comes too near to the pivot, by {short}"
         remedy = "move the pivot away, or give a smaller mechanism.bar"
-        raise BodyError(f"linkage.dyads[{loop - 1}].ground", message, remedy, short=0.5 * s.bar - start)
+        raise BodyError(f"linkage.dyads[{loop - 1}].ground", message, remedy, short=0.5 * s.bar - arm_end)
     site.add_post(f"g{loop}", dyad.ground, low, high)
     site.fits.append(BodyFit(f"block {loop} in its slot and on its pin", s.clearance))
     holes = ((0.0, 0.0),)
     outer, slot = slotted_bar(first, last, dyad.offset, s)
-    plates = bars(s, [((0.0, 0.0), (start, dyad.offset))], holes, low, high)
+    plates = bars(s, [((0.0, 0.0), (arm_end, dyad.offset))], holes, low, high)
     plates.append(Plate(outer, (slot,), low, high))
     return (site.add(Carrier(f"rocker-{loop}", plates, place, low, high, holes=holes)),)
 
