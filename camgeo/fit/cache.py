@@ -69,6 +69,7 @@ def _fit(form: str, contour: Curve, tolerance: float, unsure: float) -> Outline:
 
 
 def _exact_fit(form: str, contour: Curve, tolerance: float) -> Outline:
+    """Fit by form within a tolerance, mm, of the contour as computed: a formula's rounding is not counted."""
     if form == "arcs":
         from camgeo.fit.arcs import fit_arcs
 

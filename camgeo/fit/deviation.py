@@ -240,9 +240,10 @@ def peak(fa: Array, fb: Array, step: Array, bend: Array) -> Array:
 def foot(curve: Curve, low: Array, high: Array, point: Array, across: Array, *, enough: float) -> tuple[Array, Array]:
     """Parameters (n,) in [low, high] at which the curve meets lines through `point` (n, 2) square to `across` (n, 2).
 
-    With them come the remaining distances (n,) along `across`, mm. Newton's method begins in the middle of an interval,
-    which each step narrows, and ends where that distance is at most `enough`, mm. For a joint of arcs `across` is the
-    common tangent of both arcs.
+    `across` are unit vectors that point forward along the curve: for a joint of arcs the common tangent of both arcs.
+    With the parameters come the remaining distances (n,) from the lines, mm, >= 0. Newton's method begins in the middle
+    of an interval, which each step narrows, and ends where all distances are at most `enough`, mm; a distance stays
+    greater where the curve does not meet the line in the interval.
     """
     t = 0.5 * (low + high)
     frames = curve.sample(t)

@@ -225,8 +225,8 @@ class _Spans:
             control[kept], load[kept] = self.control[old], self.load[old]
             proved[:, kept] = self.outward[old], self.inward[old]
         if not kept.all():
-            control[~kept], strayed, beside = cubic_spans(curve, low[~kept], high[~kept], out)
-            load[~kept] = np.where(np.isfinite(strayed), beside / allowance, np.inf)
+            control[~kept], from_curve, from_parallel = cubic_spans(curve, low[~kept], high[~kept], out)
+            load[~kept] = np.where(np.isfinite(from_curve), from_parallel / allowance, np.inf)
         return _Spans(low, high, control, load, *proved)
 
     def prove(self, curve: Curve, rows: Array, tolerance: float) -> _Spans:

@@ -27,7 +27,8 @@ def write_ply(path: Path, items: Sequence[Item], title: str, mm: float, _about: 
     """
     (item,) = items
     mesh, numbers = item.mesh, _numbers()
-    points = mesh.points if mm == 1.0 else numbers.nearest(mesh.points / mm)  # the quotient of a rounded number
+    # doubles are written as they are; that the quotient rounds is counted by `Precision.in_units`
+    points = mesh.points if mm == 1.0 else numbers.nearest(mesh.points / mm)
     faces = np.empty(len(mesh.triangles), dtype=_FACE)
     faces["count"], faces["corners"] = 3, mesh.triangles
     comment = f"camgeo: in {'inches' if mm == INCH else 'mm'}, z upwards. {' '.join(title.split())}"

@@ -168,12 +168,13 @@ def _pressure(recipe: Recipe, design: Design) -> RuleRemark | None:
     return_rule, value, at_deg, where = rule, steepest.value, steepest.at_deg, ""
     if slopes and not design.follower.closure:
         return_rule = RETURN_RULE
+        # of each flank: its extreme slope, the sign with which it counts, the rule for it, and words for where it is
         sides = [
             side
             for least, most in slopes
             for side in ((most, 1.0, rule, " on the rise"), (least, -1.0, return_rule, " on the return"))
         ]
-        # of each flank: its extreme slope, the angle in degrees, the rule for it, and words for where it is
+        # the same with the pressure angle, degrees, in place of the sign
         flanks = [(side, math.degrees(math.atan(sign * side.value)), most, name) for side, sign, most, name in sides]
         over = [row for row in flanks if row[1] > row[2]]
         if not over:

@@ -28,9 +28,10 @@ def in_pounds(units: str, value: float, unit: str) -> tuple[float, str]: ...
 @overload
 def in_pounds(units: str, value: float | None, unit: str) -> tuple[float | None, str]: ...
 def in_pounds(units: str, value: float | None, unit: str) -> tuple[float | None, str]:
-    """Value and unit of a force, a moment or a pressure, in pounds where a recipe's `units` are inches.
+    """Value and unit of a force, a moment or a pressure, in lbf, lbf in or psi where a recipe's `units` are inches.
 
-    Other figures, and figures of recipes in mm, come back unchanged, as does None.
+    Other figures, and figures of recipes in mm, come back unchanged. None stays None, but its unit changes as that of a
+    value does.
     """
     imperial = pounds(units, unit)
     return (value, unit) if imperial is None else (None if value is None else value * imperial[1], imperial[0])

@@ -50,7 +50,10 @@ def quantity_in(own_unit: str) -> str:
 
 
 def holds_unit(text: str) -> bool:
-    """Whether a known unit stands behind a number anywhere in a text."""
+    """Whether a unit of length, angle, force, moment or mass stands behind a number anywhere in a text.
+
+    Of spring rates and pressures those count that begin with a unit of force, such as N/mm; MPa and psi do not.
+    """
     return re.search(_WITHIN, text) is not None
 
 

@@ -100,8 +100,9 @@ def form_of_kinds(
 ) -> OwnForm[Reader]:
     """Form of a mapping whose `kind` chooses the table of its keys.
 
-    `noun` names the mapping in messages, `group` with the kind the place of a key; `others` is the remedy for a kind
-    that is none of these.
+    `noun`, without an article, names the mapping in messages. `group` stands before the kind where a message names the
+    kind that has a key, `cam of kind` for `cam of kind support`; without it no message does. `others` is the remedy for
+    a kind that is none of these.
     """
     return OwnForm(
         f"a {noun}",

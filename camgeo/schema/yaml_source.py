@@ -39,8 +39,9 @@ Mark: TypeAlias = tuple[int, int]  # line and column, from 1, in characters
 
 @dataclass(frozen=True)
 class Scalar:
-    """A text as written, from `mark` to just before `end`; `plain` is whether it stands without quotes.
+    """A text, or a number as text, from `mark` to just before `end`, quotes included; `text` is without them.
 
+    `plain` is whether it stands as it is, neither in quotes nor as a block behind | or >.
     `tag` is its YAML tag as written, None without one; `size` counts it as one node.
     """
 

@@ -64,9 +64,10 @@ def write_curve_points(path: Path, _columns: Sequence[str], rows: Array, _head: 
 class Controller(NamedTuple):
     """A controller: how it interpolates between the rows of its table, and the layout of the table.
 
-    `join` is the interpolation, `layout` the layout's name, `word` where `join` is documented. `finest` is the least
-    step between rows, degrees, as the controller takes no more rows. `number` gives the text of a position or a rate;
-    `write` writes the table: (path, names of columns, rows, lines of the head).
+    `join` is the interpolation. Two texts are for the head of the table: `layout` describes the layout, `word` says by
+    whose word the controller interpolates so. `finest` is the least step between rows, degrees, as the controller takes
+    no more rows. `number` gives the text of a position or a rate; `write` writes the table: (path, names of columns,
+    rows, lines of the head).
     """
 
     join: Join

@@ -59,7 +59,8 @@ def table_maker(
 ) -> Callable[[Job, FileRequest, Path], MadeFiles]:
     """Function `make` of a form that writes a table of these columns, which nothing judges, in a stage of the run.
 
-    `columns` gives the names of columns and the rows; with `gaps` nan becomes an empty cell.
+    `columns` gives the names of columns and the rows. With `gaps` a nan becomes an empty cell; without it `make` raises
+    ValueError for one.
     """
 
     def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
