@@ -175,7 +175,11 @@ class Response:
         return _STEP / self.oscillator.fast if self.oscillator.fast > 0.0 else np.inf
 
     def swings(self, starts: Array, stretches: Indices) -> tuple[Array, Indices]:
-        """Time (n,), rad, for which free motion is sampled on stretches (n,), and how many samples (n,) that takes."""
+        """Time (n,), rad, for which free motion is sampled on stretches (n,), and how many samples (n,) that takes.
+
+        `starts` (2, m) are the states at the starts of all stretches. These samples come on top of those that every
+        stretch has; time and number are 0 where p is not the slow solution.
+        """
         bound = self.oscillator.bound((starts - self._steps[0].T)[:, stretches])
         lasting = np.minimum(self.lasting(bound, stretches), 2.0 * self.half[stretches])
         fine = np.where(lasting > 0.0, np.ceil(lasting / self.step) + 1.0, 0.0).astype(np.intp)

@@ -141,7 +141,7 @@ class Look:
 
     @cached_property
     def inertial(self) -> float:
-        """Greatest |force that belongs to q - force of the preload spring|, N or N m."""
+        """Upper bound over the turn of |force that goes with q - force of the preload spring at x = s|, N or N m."""
         series = self._series - self.train.rate * self.response.drive.position
         series[:, 0] -= self.train.preload
         return float(np.abs(series).sum(axis=1).max())
@@ -193,7 +193,10 @@ class Look:
 
     @cached_property
     def states(self) -> Array:
-        """States (z, z') (2, m) at the starts of all stretches."""
+        """States (z, z') (2, m) at the starts of all stretches.
+
+        Raises DynamicsError where none is found that repeats each turn, as at resonance without damping.
+        """
         return self.response.starts(periodic(self._running, self.response), 0, len(self.response))
 
     @cached_property

@@ -172,6 +172,10 @@ class _Lifted:
         return cos(half + self.law.start) * sin(half) * (2.0 * self.law.side * self.law.ground)
 
     def _ball_rows(self, lower: Array, upper: Array, order: int) -> Ball:
+        """Balls (order + 1, n) of the lift's Taylor coefficients by the relative angle, over angles `lower` to `upper`.
+
+        The relative angle is the shaft angle `at` less the swing `moved`, psi - psi_0.
+        """
         at = BallJet.variable(*self._shafts_beyond(lower, upper), order)
         moved = self.function(at)
         rows = [row.rows[0] for row in derivatives_by(self._lift(moved), at - moved)]

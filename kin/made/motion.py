@@ -205,8 +205,8 @@ def derivatives_of(errors: Array, step: float) -> Array:
 def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array, turned_by: float = 0.0) -> list[Errors]:
     """Motion errors at shaft angles (n,), rad, by each contact, on metal turned by `turned_by`, rad, counter-clockwise.
 
-    `side` is 1 for metal inside the contour, -1 outside; the metal lies off it by `curve`, mm. Raises ContactError
-    where a contact finds no metal.
+    `side` is 1 for metal inside the contour, -1 outside; the metal lies off it by `curve`, mm, above 0 for too much
+    metal. Raises ContactError where a contact finds no metal.
     """
     step, metal, angle = step_of(curve), metal_of(follower, side, curve), shaft - turned_by
     errors, places = positions_about(metal, angle, step)

@@ -96,6 +96,7 @@ class PointMotion:
         """
         if self.closed:
             return tuple(range(1, most + 1))
+        # sections take turns in sign, so that odd multiples of `first` fit: five times is above 4, the most asked for
         first = round(0.5 * TURN / self.span)
         return tuple(k for k in (first, 3 * first) if k <= max(most, first))
 

@@ -66,7 +66,7 @@ class Tabled:
         return float(np.ptp(levels))
 
     def tell(self, value: float, digits: int = 6) -> str:
-        """Text of a displacement `value`, mm or rad, in the table's own unit, to a number of digits."""
+        """Text of a displacement, mm or rad, in the table's own unit with its name, to so many significant digits."""
         return in_unit(value, self.unit, digits)
 
     def bounds(self, share: float = 1.0, least_level: float | None = None) -> Bounds:
