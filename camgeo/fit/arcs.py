@@ -181,7 +181,7 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
     Raises ToleranceError where rounding takes all of the limit, or the limit is not reached.
     """
     slip = _slip(curve, aim)
-    # rounding's part of the whole tolerance
+    # what rounding and the slip of joints' feet along the curve take; with what is left as limit, the whole tolerance
     cover = 2.0 * (rounding(curve.size) + slip)
     limit -= 2.0 * slip
     if not limit > 0.0:
@@ -208,6 +208,7 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
         high = np.concatenate([nodes[i][1:] for i in todo])
         biarcs = _biarcs(curve, low, high, slip)
         worst, deviation = _biarc_errors(curve, biarcs.chain, tolerance)
+        # without a deviation, as samples of some stretch fail, nodes of stretches that pass stay and wait for the proof
         first = 0
         for i in todo:
             rows = slice(first, first + nodes[i].size - 1)

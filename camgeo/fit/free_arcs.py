@@ -283,9 +283,10 @@ def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: f
     scale = np.column_stack([ALONG * reach, np.full(reach.size, aim), aim / reach])
     cosine = np.sum(chain.tangent * arcs.chord, axis=1) / arcs.length  # of half an arc's turn
     ahead = arcs.length * cosine
-    lever = 0.5 * arcs.length / cosine
+    lever = 0.5 * arcs.length / cosine  # from an arc's ends to where its tangents there meet
     bend0, bend1 = curvature[left] - chain.curvature, curvature[right] - chain.curvature
     lean0, lean1 = joints.lean[left], joints.lean[right]
+    # sine of half the angle between an arc's end and its right joint's direction
     ones, kink = np.ones_like(lean0), arcs.miss / arcs.length
     # a row for the miss and for both extremes of each arc; columns: moves of its left joint, of its right one, the
     # level, the right-hand side

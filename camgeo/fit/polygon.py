@@ -310,7 +310,9 @@ def _shorten(first: _Part, second: _Part, over: float) -> bool:
 def level_loads(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Array:
     """Nodes (n + 1,), ends kept, moved by one step of Newton's method towards equal loads (n,) of all edges.
 
-    `by_low` and `by_high` (n,) are the derivatives of each load by the parameter of its first and second node.
+    `by_low` and `by_high` (n,) are the derivatives of each load by the parameter of its first and second node. The step
+    is cut so that no edge loses more than half of its interval. Where a load is not above 0, or does not grow with its
+    edge at both nodes, nodes are moved by `reshare` instead.
     """
     if not bool((load > 0.0).all() and (by_low < 0.0).all() and (by_high > 0.0).all()):
         return reshare(nodes, load, 2.0)

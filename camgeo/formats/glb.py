@@ -43,7 +43,8 @@ _ROUGHNESS, _METAL = 0.6, 0.1
 class Actor:
     """A named mesh, mm, its colour "#rrggbb", and its pose (n, 3) at equal steps of a turn, or (1, 3) at rest.
 
-    The pose is x and y, mm, and an angle, rad, that goes on from step to step without jumps of a turn.
+    The pose is x and y, mm, and an angle, rad, that goes on from step to step without jumps of a turn. The first row
+    is for the start of the turn, the last one for its end.
     """
 
     name: str

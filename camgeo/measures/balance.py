@@ -57,9 +57,9 @@ class Balance:
 
 
 def balances_of(recipe: Recipe, design: Design) -> tuple[Balance, ...]:
-    """Mass properties of each disc at `part.density`; discs without a part or of several bodies are left out.
+    """Mass properties of each disc at `part.density`; empty without a density.
 
-    Empty without a density.
+    Discs without a part or a contour, or of several bodies, are left out. Raises CurveError as `moments` does.
     """
     density = recipe.part.density
     if density is None:

@@ -55,5 +55,5 @@ class FileResult(OfSurfaces):
 
     @property
     def shows_cam(self) -> bool:
-        """Whether the file has the nominal cam's contour, and not another body's or none."""
+        """Whether the file has the cam's contour, uncompensated for a process, and not another body's or none."""
         return self.body == "cam" and self.request.format.part and self.request.compensation is None

@@ -173,7 +173,8 @@ def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measure
     """Figure of the lobe, or of a body that it moves, such as a valve, at a lift of that lobe or body, mm.
 
     A capability measures the figures that it declares. A figure may have no value, with the reason as its detail.
-    Raises KeyError for a name of no figure, and for a figure of the core that is not of a lobe.
+    Raises KeyError for a name of no figure, and for a figure of the core that is not of a lobe; RecipeErrors and
+    EventError for a body whose motion cannot be told, as `moved_by` does.
     """
     owner = FIGURES.owner(name)
     if owner:
@@ -182,6 +183,10 @@ def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measure
 
 
 def moved_by(recipe: Recipe, design: Design) -> MovedBody | None:
-    """Motion of a body that the follower moves, such as a valve; None where the recipe has none."""
+    """Motion of a body that the follower moves, such as a valve; None where the recipe has none.
+
+    Raises RecipeErrors where the follower cannot move it, as by a table of ratios that ends below its lift, EventError
+    where the follower's motion is too rough to tell.
+    """
     motions = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
     return next((moved for moved in motions if moved is not None), None)

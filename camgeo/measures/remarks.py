@@ -520,7 +520,7 @@ def _thickness(recipe: Recipe, design: Design) -> RuleRemark | None:
 
 
 def size_of(design: Design) -> float:
-    """Greatest distance from the shaft over all surfaces of the exact cam, mm."""
+    """Greatest distance from the shaft over all surfaces of the exact cam, mm, as `Curve.size` samples it."""
     return max(surface.curve.size for surface in design.exact.surfaces)
 
 

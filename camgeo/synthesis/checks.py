@@ -94,7 +94,7 @@ def _face_width(exact: ExactCam, surface: Surface) -> Check:
 def needed_width(surface: Surface) -> tuple[float, float]:
     """Least width of a face, centred on the stem's axis, that the contact does not leave, mm, and its angle, degrees.
 
-    Raises TypeError for a surface that no flat face touches.
+    Raises TypeError for a surface whose places of contact are no series, as a yoke's, or that no flat face touches.
     """
     proved = surface.extremes("contact")
     if proved is None:
@@ -135,8 +135,8 @@ def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
 def greatest(function: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:
     """Greatest value of each of k continuous functions of period 2 pi, with its argument: sampled, then refined.
 
-    `function` gives values (k, n) at arguments (n,); `t` (n,) are the samples. Of samples that are equal but for
-    rounding the first counts.
+    `function` gives values (k, n) at arguments (n,); `t` (n,) are the samples. Each function must reach 0 or more. Of
+    samples that are equal but for rounding the first counts.
     """
     around = np.concatenate([t[-1:] - 2.0 * math.pi, t, t[:1] + 2.0 * math.pi])
     best, ranges = [], []

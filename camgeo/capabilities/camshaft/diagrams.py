@@ -265,6 +265,7 @@ def _listed(
     for cylinder, events in opened(lobes, engine).items():
         y += ROW
         spans = [_span(events[valve]) if valve in events else "" for valve in DEAD_CENTRES]
+        # in crank degrees; the overlap is shown in the camshaft's, half as many
         open_at = {valve: (2.0 * event.opens, 2.0 * event.closes) for valve, event in events.items()}
         cells = [f"{cylinder}", *spans, *_overlap(open_at, 0.5)]
         parts += [text(x, y, words, size=11.0) for x, words in zip(columns, cells, strict=False)]

@@ -63,8 +63,9 @@ def export(
     """Write and judge a camshaft's files under `out`/<name>; where a check fails, to `out`/<name>.rejected.
 
     `only` names the kinds of the files to be made, by default all; files of other kinds stay. `progress` is called with
-    the name of each stage. Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held,
-    SurroundingsError where the file system refuses or none of the files can be made.
+    the name of each stage. Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held, EventError
+    where a valve's motion is too rough to follow, SurroundingsError where the file system refuses or none of the files
+    can be made.
     """
     from camgeo.output.output_folder import RunFolder
 
@@ -83,8 +84,8 @@ def export(
 def check(recipe: CamshaftRecipe, *, progress: Callable[[str], None] | None = None) -> Outcome:
     """Make and judge all files in a temporary folder that is removed afterwards; `progress` gets each stage's name.
 
-    Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held, SurroundingsError where the file
-    system refuses or none of the files can be made.
+    Raises RecipeErrors where a lobe has no such curve or a tolerance cannot be held, EventError where a valve's motion
+    is too rough to follow, SurroundingsError where the file system refuses or none of the files can be made.
     """
     from camgeo.output.output_folder import temporary_folder
 

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 def camshaft_section(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> dict[str, Any]:
     """Section `camshaft` of the report: lobes, valve events of an engine, and unbalance.
 
-    Lengths are in the recipe's unit, angles in degrees.
+    Lengths are in the recipe's unit, angles in degrees. Raises RecipeErrors and EventError as `PlacedLobe.event_lift`
+    does.
     """
     section: dict[str, Any] = {"lobes": [_lobe(recipe, lobe) for lobe in lobes]}
     if recipe.engine is not None:

@@ -100,7 +100,7 @@ def write_inspection(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedL
     `lobe` is a number, from 1 as they are listed, and z the middle of its length; `step`, rad, is the shaft angle
     between places, None for `verify.angles` places a turn. The limits, minus and plus half of `profile` along the
     normal, have columns where some lobe's recipe gives it, with empty cells for the other lobes. Lengths are in the
-    recipe's unit.
+    recipe's unit. Raises OSError where the file cannot be written.
     """
     shaft = equal_steps(recipe.verify.angles if step is None else round(TURN / step))
     rows, limited = [], any(lobe.lobe.recipe.profile is not None for lobe in lobes)

@@ -38,7 +38,7 @@ def make_mechanism(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Write and judge every body in a request's format; checks of clearance and collision are made once a run.
 
     The result has no file for a mechanism that does not turn right round. Raises RecipeErrors for bodies that cannot be
-    made, or not within the tolerance, SurroundingsError where a file cannot be written or read.
+    made, or not within the tolerance, OSError where a file cannot be written, ReadError where it cannot be read back.
     """
     driven = job.design.driven
     if driven is not None and not driven.turns:

@@ -62,7 +62,8 @@ def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[Prin
 
     A format with one file for each disc gets one file for each body, another format that is judged two files of all
     bodies, laid out and assembled, and a format for viewers one file of bodies in motion. Raises RecipeErrors where a
-    mesh cannot be made within the tolerance, SurroundingsError where a file cannot be written or read.
+    mesh cannot be made within the tolerance, OSError where a file cannot be written, ReadError where it cannot be read
+    back.
     """
     record = request.format
     write = write_each if record.by_disc else write_together if record.contour else write_moving

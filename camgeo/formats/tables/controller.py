@@ -125,7 +125,7 @@ def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     """Write a table with the step of the request, or the widest that holds the tolerance; read it back and judge it.
 
     Raises RecipeErrors where the step of the request, or any step of this controller, does not hold the tolerance;
-    OSError where the file cannot be written.
+    RoughError for a motion too abrupt to be followed, OSError where the file cannot be written.
     """
     from camgeo.output.job import MadeFiles
     from camgeo.synthesis.intent import permitted
