@@ -135,13 +135,13 @@ def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
 def greatest(function: Callable[[Array], Array], t: Array) -> list[tuple[float, float]]:
     """Greatest value of each of k continuous functions of period 2 pi, with its argument: sampled, then refined.
 
-    `function` gives values (k, n) at arguments (n,); `t` (n,) are the samples. Each function must reach 0 or more. Of
-    samples that are equal but for rounding the first counts.
+    `function` gives values (k, n) at arguments (n,); `t` (n,) are the samples. Of samples that are
+    equal but for rounding the first counts.
     """
     around = np.concatenate([t[-1:] - 2.0 * math.pi, t, t[:1] + 2.0 * math.pi])
     best, ranges = [], []
     for seen in function(t):
-        worst = int(np.argmax(seen >= (1.0 - SAME) * seen.max()))
+        worst = int(np.argmax(seen >= seen.max() - SAME * abs(seen.max())))
         best.append((float(seen[worst]), float(t[worst])))
         ranges.append((float(around[worst]), float(around[worst + 2])))
     for _ in range(ZOOMS):

@@ -11,7 +11,7 @@ from support.programmes import Segment, law, programme
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.pairs import DeltaRoute, ExactPair
 from camgeo.checks.declared import CLOSING, PRESSURE, RATIO
-from camgeo.synthesis.checks import motion_checks
+from camgeo.synthesis.checks import greatest, motion_checks
 from kin.law.transmission import from_delta, from_law
 
 CAM = DoubleRollerCam(2, 1, 60.0, 1.0, DeltaRoute((), ()), "refuse")  # whose own law is not asked for
@@ -52,3 +52,11 @@ def test_pressure_angle_at_its_very_maximum(lam, mu, arm, wave):
     normal = np.arctan2(-r1, r)
     seen = np.degrees(np.abs(np.arcsin(np.abs(np.cos(normal + half))))).max()
     assert found == pytest.approx(seen, abs=1e-8)
+
+
+@pytest.mark.parametrize("level", [20.0, 0.0, -20.0])
+def test_the_greatest_value_is_found_above_and_below_zero(level: float) -> None:
+    t = np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False)
+    ((value, at),) = greatest(lambda u: (level - 5.0 * np.cos(u - 2.0))[None], t)
+    assert value == pytest.approx(level + 5.0, abs=1e-9)
+    assert at == pytest.approx(2.0 + math.pi, abs=1e-4)
