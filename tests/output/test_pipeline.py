@@ -372,7 +372,7 @@ def test_what_would_free_a_reduced_reuleaux_polygon_of_undercut(
     assert pipeline.check(read((text % (breadth, rounding, clearance)).encode(), "c.yaml")).ok
 
 
-@pytest.mark.parametrize(("kind", "tolerance"), [("dxf", "1e-13"), ("glb", "1e-9")])
+@pytest.mark.parametrize(("kind", "tolerance"), [pytest.param("dxf", "1e-13", marks=pytest.mark.slow), ("glb", "1e-9")])
 def test_a_refused_tolerance_names_one_that_is_held_in_either_unit(kind: str, tolerance: str) -> None:
     def tried(tolerance: str) -> str:
         text = f"part: {{thickness: 0.2}}\nexport: {{tolerance: {tolerance}, files: [{kind}]}}\n"
