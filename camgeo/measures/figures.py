@@ -138,7 +138,7 @@ def _size(_: Recipe, design: Design) -> Measured:
 
 
 def _pivot_clearance(recipe: Recipe, design: Design) -> Measured:
-    """Distance of the contour from the circle on which the pivot goes round the cam, inside the opening of a ring."""
+    """Distance of the disc from the circle on which the pivot goes round the cam, inside the opening of a ring."""
     from camgeo.curve.measures import farthest, nearest
 
     pivot = design.follower.pivot
@@ -150,6 +150,7 @@ def _pivot_clearance(recipe: Recipe, design: Design) -> Measured:
         return Measured(value, "mm", design.motion.shaft_deg(end.at), surface=surface.name)
 
     least = _least(starmap(beside, design.contours))
+    # a disc with an outer diameter, as about a groove, ends there and not at its contours
     return least if within or recipe.part.outer is None else Measured(pivot - 0.5 * recipe.part.outer, "mm")
 
 

@@ -16,9 +16,9 @@ _POUNDS = {"N": ("lbf", LBF), "N m": ("lbf in", MOMENTS["Nm"] / MOMENTS["lbf*in"
 
 
 def pounds(units: str, unit: str) -> tuple[str, float] | None:
-    """Imperial unit of a force, moment or pressure in a recipe in inches, and the factor from `unit` to it.
+    """Imperial unit for a `unit` of N, N m or N/mm^2 in a recipe in inches, and the factor from `unit` to it.
 
-    `units` are the recipe's. None for other units, and for recipes in mm.
+    `units` are the recipe's, mm or inch. None for other units, and for recipes in mm.
     """
     return _POUNDS.get(unit) if units == "inch" else None
 

@@ -57,7 +57,7 @@ class PointMotion:
     position (k,) the same at equal shaft angles of `span`; of sections their mean
     span          part of the turn, from angle 0 on, by which a recipe gives the motion
     last          position at the end of the span
-    spans         number of spans of the smoothed curve in it
+    spans         number of spans of the smoothed curve in `span`, at least 1
     sd            standard deviation of the position, greatest over the turn
     outliers      number of points that were left out
     play          least, mean and greatest play of two contacts beyond the recipe's; None for one contact

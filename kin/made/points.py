@@ -88,7 +88,10 @@ class Placing:
         return (points - self.shift) @ rotation, None if directions is None else directions @ rotation
 
     def on(self, step: Array, free: str) -> Placing:
-        """The placing after a `step` (k,) of the unknowns `free`, in the axes of the metal as placed so far."""
+        """The placing after a `step` (k,) of the unknowns `free`, in the axes of the metal as placed so far.
+
+        `free` has a letter for each: g, turn, rad, x and y, shifts, mm; unknowns that it does not name stay.
+        """
         by = dict(zip(free, step.tolist(), strict=True))
         x, y = by.get("x", 0.0), by.get("y", 0.0)
         c, s = math.cos(self.turn), math.sin(self.turn)
@@ -254,7 +257,7 @@ def turned_at(surfaces: Sequence[SurfacePoints], free: str = "g") -> Placing:
 
 
 def demand_round(surfaces: Sequence[SurfacePoints]) -> None:
-    """Raise UnlikePointsError for points that leave more than 150 degrees round the shaft without any."""
+    """Raise UnlikePointsError for a surface whose points leave more than 150 degrees round the shaft without any."""
     for surface in surfaces:
         angle = np.sort(np.arctan2(surface.places[:, 1], surface.places[:, 0]))
         gaps = np.diff(angle, append=angle[:1] + TURN)
