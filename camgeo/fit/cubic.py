@@ -38,7 +38,8 @@ class NearestCubic:
     """The cubics nearest to a curve at n places, all (n,).
 
     `miss` is the coefficient c, 1/mm^5, positive where the cubic lies outside a convex curve; `lean` is the coefficient
-    a, 1/mm: how fast the cubic's own parameter gains on the arc length.
+    a, 1/mm: where it is positive the cubic's speed rises, and the arc length ``t + a t^2`` gains on its parameter t.
+    Where terms are not finite the miss is nan and the lean 0.
     """
 
     miss: Array

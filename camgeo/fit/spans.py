@@ -139,9 +139,9 @@ def _ranges(curve: Curve, spans: Cubics, low: Array, high: Array, steps: int) ->
         pace = (cubic.velocity(u) * along).real
         u = np.clip(u - miss / np.where(pace > 0.0, pace, np.inf), 0.0, 1.0)
     u[:, 0], u[:, -1] = 0.0, 1.0
-    # at the nodes g and gamma; `slip` is how far a place lies beside its normal, by rounding
+    # g and gamma at the nodes; `missed` is how far Newton's method leaves a place beside its normal
     beside = (offset + cubic.ahead(u)) * along
-    g, left = -beside.imag, np.abs(beside.real)
+    g, missed = -beside.imag, np.abs(beside.real)
     velocity, acceleration = cubic.velocity(u), cubic.acceleration(u)
     pace = np.abs(velocity)
     wedge = (velocity.conj() * acceleration).imag
@@ -154,7 +154,7 @@ def _ranges(curve: Curve, spans: Cubics, low: Array, high: Array, steps: int) ->
         bend, sane = _bend(np.diff(t), bounds, rates, g=g, angle=angle, speed=speed, turn=turn, excess=excess)
     pull = speed * excess
     step = np.diff(t)
-    slip = np.maximum(left[:, :-1], left[:, 1:])
+    slip = np.maximum(missed[:, :-1], missed[:, 1:])
     a, b = g[:, :-1], g[:, 1:]
     top = peak(a, b, step, np.maximum(pull[:, :-1], pull[:, 1:]) + bend) + slip
     bottom = peak(-a, -b, step, np.maximum(-pull[:, :-1], -pull[:, 1:]) + bend) + slip

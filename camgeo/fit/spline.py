@@ -286,6 +286,7 @@ def _halve(nodes: Array, failing: NDArray[np.bool_]) -> Array:
 
 def _reshare(nodes: Array, load: Array, tolerance: float, state: _State) -> tuple[Array, _State]:
     """Nodes shared anew, as many or more, so that spans' errors become alike, and their history."""
+    # the load of every span if all were alike
     mean = float(np.mean(load ** (1.0 / ORDER))) ** ORDER
     worst = float(load.max())
     stalled = 0 if worst < LESS * state.least else state.stalled + 1
@@ -295,6 +296,7 @@ def _reshare(nodes: Array, load: Array, tolerance: float, state: _State) -> tupl
         else:
             moved = reshare(nodes, load, DAMPED if state.shared else ORDER)
         return moved, _State(state.shared + 1, state.grown, min(worst, state.least), stalled)
+    # as many more as that load foresees or, where sharing has been tried in vain, a small share, greater each time
     count = nodes.size - 1
     if state.shared:
         share, grown = GROWTH * FASTER**state.grown, state.grown + 1
