@@ -258,12 +258,13 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
 
     trim, advice = recipe.cam.undercut == "trim", recipe.cam.advice.on(surface.name)
     of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
-    # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     roller = surface.radius
+    # a contour with more stretches that run backwards than are reported is refused before any bound is computed
     if roller and len(backward := _seen_backward(surface.curve)) > MOST_REPORTED * surface.curve.shape.repeats:
         raise CurveError(TOO_MANY.format(len(backward)), float(backward[0]))
     least = _bent_most(surface)
-    # of the path of the roller's centre, the contour's own without a roller; roomy where it exceeds the roller's
+    # of the path of the roller's centre: the contour's radius and the roller's together, the contour's own without a
+    # roller; roomy where it exceeds the roller's
     radius = least.radius + roller
     roomy, at_deg = radius > roller, None if math.isinf(radius) else shaft_deg(least.at)
     bent = Check((PITCH if roller else CURVATURE).name, roomy, radius, roller, "mm", at_deg, "at_least")

@@ -96,6 +96,7 @@ class View(Generic[G_co, T_co]):
         Both contacts of a double-roller or a flat-pair; of any other follower contact 1 alone.
         """
         places = []
+        # where no frame carries the follower, the cam's angle against it is the shaft's
         parameters = self.design.motion.parameters(shaft, shaft).values()
         for contact, t in zip(self.contacts, parameters, strict=False):  # opposite contacts on a line have one
             point = self.surface(contact).curve.sample(np.mod(t, TURN)).point

@@ -156,10 +156,11 @@ def opened(lobes: Sequence[PlacedLobe], engine: Engine) -> dict[int, dict[str, E
 
 
 def crank_wheels(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], engine: Engine) -> list[str]:
-    """Return an SVG for each cylinder, a wheel of one turn of the crank, 360 degrees; cylinders alike share one.
+    """Return an SVG for each cylinder that has events: a wheel of one turn of the crank; cylinders alike share one.
 
     Events are counted from the dead centres of the cylinder itself. Its four strokes are two turns: the exhaust opens
-    about the lower dead centre, both valves move about the upper one.
+    about the lower dead centre, both valves move about the upper one. Raises RecipeErrors and EventError as
+    `PlacedLobe.event_lift` does.
     """
     alike: dict[tuple[tuple[str, float, float], ...], list[int]] = {}
     for cylinder, events in opened(lobes, engine).items():
@@ -207,7 +208,7 @@ def _crank_wheel(
             last = max(y, last + APART)
             parts.append(text(x, last + 4.0, words, size=11.0, anchor="start" if right else "end", colour=valve))
     spans = {valve: (opens, opens + lasts) for valve, opens, lasts in events}
-    inside += [(words, "ink") for words in _overlap(spans, 1.0)]
+    inside += [(words, "ink") for words in _overlap(spans, 1.0)]  # in crank degrees, as all of this wheel
     for row, (words, colour) in enumerate(inside):
         y = middle[1] + ROW * (row - 0.5 * len(inside) + 0.75)
         parts.append(text(middle[0], y, words, size=11.0, anchor="middle", colour=colour))

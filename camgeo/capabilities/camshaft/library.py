@@ -116,7 +116,9 @@ class CamshaftDesign:
 def designed(recipe: CamshaftRecipe) -> CamshaftDesign:
     """Design the cams of a camshaft.
 
-    Raises RecipeErrors where a lobe has no such motion or curve, its cam cannot be a lobe, or a part is too thin.
+    Raises RecipeErrors where a lobe has no such motion or curve, its cam cannot be a lobe, a part is too thin, or a
+    lobe that is set by an engine's centres has no event at the engine's lift, EventError where the motion of the
+    valve that states the lift is too rough to tell.
     """
     return CamshaftDesign(recipe, placed(recipe, Clock(stage_reporter(recipe))))
 

@@ -122,8 +122,9 @@ class PlacedLobe:
 def placed(recipe: CamshaftRecipe, clock: Clock) -> tuple[PlacedLobe, ...]:
     """Design each lobe, each recipe once, and find its angle on the shaft.
 
-    Raises RecipeErrors where a lobe has no such motion or curve, for a cam that cannot be a lobe, and for lobes or
-    journals that are too thin.
+    Raises RecipeErrors where a lobe has no such motion or curve, for a cam that cannot be a lobe, for lobes or journals
+    that are too thin, and for a lobe set by an engine's centres that has no event at the engine's lift; EventError
+    where the motion of the valve that states the lift is too rough to tell.
     """
     _demand_thick(recipe)
     designs: dict[str, Design] = {}
@@ -191,7 +192,8 @@ def _angle(recipe: CamshaftRecipe, lobe: Lobe, design: Design, index: int) -> fl
 def _tappet_lift(recipe: CamshaftRecipe, engine: Engine, lobe: Lobe, design: Design, index: int) -> float:
     """Lift of a lobe's tappet, mm, at which its events are stated.
 
-    Raises RecipeErrors where they are stated by the valve's lift and the lobe's recipe has no valve.
+    Where they are stated by the valve's lift, raises RecipeErrors for a recipe of the lobe without a valve, and
+    RecipeErrors and EventError as `moved_by` does.
     """
     if not engine.at_valve:
         return engine.lift

@@ -183,7 +183,7 @@ def _demand_packages(request: FileRequest) -> None:
     """Raise MissingExtraError where a package is missing that makes the requested solid."""
     if not SHAFT_FILES[request.kind].solid:
         return
-    if request.format.numbers is None:
+    if request.format.numbers is None:  # not a mesh, but a STEP
         from camgeo.files.brep import need_kernel
 
         need_kernel()

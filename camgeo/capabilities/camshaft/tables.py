@@ -70,7 +70,9 @@ def write_motion(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]
 def write_events(path: Path, recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe]) -> None:
     """Write the events of every lobe, degrees of the shaft, and of an engine's cylinders, crank degrees.
 
-    `lobe` and `cylinder` are numbers, from 1 as they are listed; what a lobe does not have is an empty cell.
+    `lobe` and `cylinder` are numbers, from 1 as they are listed; what a lobe does not have is an empty cell. `lift`, of
+    the follower, is in the recipe's unit, or degrees where it swings. Raises RecipeErrors and EventError as
+    `PlacedLobe.event_lift` does, OSError where the file cannot be written.
     """
     heads = ["lobe", "at_deg", "opens_deg", "closes_deg", "centre_deg", "duration_deg", "lift"]
     engine, rows = recipe.engine, []
