@@ -111,7 +111,8 @@ class Log:
         step = np.diff(level)
         before = np.append(0.0, np.where(joined, step, 0.0))  # how much a sample is above the one before
         after = np.append(np.where(joined, -step, 0.0), 0.0)
-        # the top of a parabola is above its highest sample by an eighth of their difference at most
+        # the top of a parabola is above its highest of three samples by an eighth of the greater difference at most; a
+        # half leaves room for what is no parabola
         known = sign * (self._greatest if sign > 0.0 else self._least)[0]
         apart = np.maximum(before, after)
         near = np.flatnonzero((before >= 0.0) & (after >= 0.0) & (level + 0.5 * apart > known) & (apart > 0.0))

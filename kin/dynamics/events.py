@@ -36,7 +36,7 @@ _STRIDE = 40  # places that a stride of a flight costs
 
 
 class SpentError(CamgeoError):
-    """A search that would look at more places than are permitted."""
+    """A search that would look at more places than are permitted, or a turn of too many changes of contact."""
 
 
 @dataclass()

@@ -111,6 +111,7 @@ class Flight:
 
     def _depths(self, time: float) -> list[Depth]:
         driven, (z, v) = self._path.at(time), self._free.after(time)
+        # nothing damps the train in flight: z'' = -r^2 z of its free motion
         place, rate, bend = driven.place + z, driven.rate + v, driven.bend - self._free.oscillator.square * z
         lower = Depth(-place, -rate, -bend)
         if self._gap is None:

@@ -164,9 +164,12 @@ class _Course:
         return bool(math.hypot(state.z - other.z, (state.v - other.v) / natural) <= _SETTLED * size)
 
     def _turn(self, state: ContactState, log: Log) -> ContactState:
+        """Follow one turn, from contact to contact: the state at its end from that at its start.
+
+        Both are before the jump of the face's velocity there. Raises SpentError for too many changes or places.
+        """
         contact, place, time = state.contact, 0, 0.0
         current = np.array([state.z, state.v - self.responses[contact].drive.jumps[0]])
-        # a state that has just begun may not end at once by rounding, but a jump may end it
         while True:
             event = self._run_on(contact, place, time, current, log)
             if not isinstance(event, tuple):

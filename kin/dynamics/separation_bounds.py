@@ -298,7 +298,7 @@ class Range:
 
     @cached_property
     def detuning(self) -> float:
-        """Least |1 - w| over the range, w = exp(lambda 2 pi) the factor of a turn, for a train that swings."""
+        """Lower bound of |1 - w| over the range, w = exp(lambda 2 pi) the factor of a turn, for a train that swings."""
         low, high = self.low.oscillator, self.high.oscillator
         sine = 0.0
         if math.floor(low.split) < high.split:

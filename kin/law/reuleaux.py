@@ -27,7 +27,7 @@ FREE = 3  # number of angles that follow from the others
 LEAST = math.radians(0.1)  # of an angle: on a cam of 50 mm an arc of 0.09 mm
 _HALVINGS = 50  # of the way to the regular polygon
 _DIGITS = 3  # after the point, degrees, of angles that an error suggests
-_ROOM = 1e-9  # least size of the difference D: below, its direction is rounding
+_ROOM = 1e-9  # least size of the gap that two diagonals close: below, its direction is rounding
 
 
 def closed_angles(sides: int, chosen: Sequence[float]) -> tuple[float, ...]:
@@ -74,6 +74,7 @@ def _last_three(chosen: Sequence[float]) -> tuple[float, float, float]:
     apart, size = -total, abs(total)
     if not _ROOM < size < 2.0:
         return (-1.0, -1.0, -1.0)
+    # two unit diagonals v - u = `apart` close the star; their mean, `height`, is at right angles to it
     height = -1j * apart / size * math.sqrt(1.0 - 0.25 * size * size)
     first = cmath.phase((height - 0.5 * apart) * cmath.rect(1.0, -direction))
     second = cmath.phase((height + 0.5 * apart) / (height - 0.5 * apart))

@@ -93,6 +93,7 @@ def from_delta(lam: int, mu: int, arm: float, cos: Mapping[int, float], sin: Map
         at, reached = highest(Piecewise(knots, (wave,), period), [1.0], 0)
         if reached < square and most < square:
             raise too_wide(law, at, math.asin(reached / square), "delta")
+        # phi = t + (psi + alpha)/2 where D would be l^2, so psi = -pi/2
         degrees = math.degrees(at + offset - math.pi / 4) % 360
         close = f", {square - reached:.3g} below it, which rounding does not tell apart" if reached < square else ""
         message = f"|D| must stay below l^2 = {square:.9g} mm^2; it reaches {reached:.9g}{close}"

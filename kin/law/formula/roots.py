@@ -168,7 +168,8 @@ def _multiple(
         return [], settled
     certain = _sign(g.ball(low, high, _MOST_MULTIPLE).rows) != 0
     for i in np.flatnonzero(certain[2:].any(axis=0)):
-        # the least order whose derivative keeps its sign; the derivative below it has at most one zero
+        # the least order whose derivative keeps its sign is the multiplicity of a multiple zero here; the derivative
+        # below it has at most one zero
         order = 2 + int(np.argmax(certain[2:, i]))
         a, b = low[i : i + 1], high[i : i + 1]
         signs_at_ends = [_sign(g.ball(x, x, order - 1).rows[order - 1])[0] for x in (a, b)]
