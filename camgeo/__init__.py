@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from kin.judge.verify import UnitsError
     from kin.numeric.errors import CamgeoError
 
-    __all__ = [  # noqa: RUF022 - a list of literals, for whoever reads this file without running it
+    __all__ = [  # noqa: RUF022 - a list of literals, for tools that read this file without running it
         "__version__",
         "Arc",
         "BusyError",

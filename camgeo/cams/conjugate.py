@@ -221,7 +221,7 @@ class SecondAdvice(RoundAdvice):
         """Radius of the roller on disc 2, mm."""
         return self.roller
 
-    def same_pitch(self, mm: float) -> str:  # noqa: ARG002
+    def same_pitch(self, mm: float) -> str:  # noqa: ARG002 - the protocol's
         """Empty: the pitch curve depends on the distance, not on the roller."""
         return ""
 

@@ -156,7 +156,7 @@ def check(cam: Values, reader: Reader) -> None:
     check_half_turn(cam, reader, "two parallel faces")
 
 
-def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
+def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001 - as all cams' build
     """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     undercut: Undercut = cam.get("undercut", "refuse")
     motion = cam["swing" if "swing" in cam else "motion"]

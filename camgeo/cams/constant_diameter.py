@@ -60,7 +60,7 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
 
         return moving_frame.Translating(self.base_radius + self.roller_radius)
 
-    def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
+    def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002 - the protocol's
         """The cam with the displacement of the first roller over a whole turn, and its preload.
 
         Raises IntentError for a motion whose velocities do not meet, and for a preload that leaves nothing of the
@@ -81,8 +81,8 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
     def resized(  # it has no arm
         self,
         base: float,
-        pivot: float | None = None,  # noqa: ARG002
-        holding: Holding | None = None,  # noqa: ARG002
+        pivot: float | None = None,  # noqa: ARG002 - the protocol's
+        holding: Holding | None = None,  # noqa: ARG002 - the protocol's
     ) -> ConstantDiameterCam:
         """Copy with the base radius `base`, mm; pivot and holding are of no effect."""
         return replace(self, base_radius=base)
@@ -114,7 +114,7 @@ def check(cam: Values, reader: Reader) -> None:
     check_half_turn(cam, reader, "two opposite rollers")
 
 
-def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
+def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001 - as all cams' build
     """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     undercut, preload = cam.get("undercut", "refuse"), build_preload(cam)
     return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut, preload)

@@ -191,7 +191,7 @@ def _with_pivot(follower: Values) -> Values:
     return follower if arm is None else {**follower, "arm": {"pivot": arm.get("length", 1.0), **arm}}
 
 
-def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
+def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001 - as all cams' build
     """Build the cam from values of a recipe in which no fault was noted; `mm` is the recipe's unit of length, mm."""
     if "sized" in cam:
         sized: DiscCam = cam["sized"]

@@ -63,7 +63,7 @@ class DiscCam(GuidedCam):
         """The cam of the same size and follower for another motion."""
         return replace(self, motion=motion)
 
-    def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
+    def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002 - the protocol's
         """The cam with its displacement over a whole turn, 0 where it is lowest, and its preload.
 
         Raises IntentError for a motion that does not join or that the guide cannot follow, and for a preload of a

@@ -38,7 +38,7 @@ class RollerPairAdvice(PairAdvice):
             return "no roller radius is proved to have no undercut"
         return f"a roller radius below {downward(free_at / mm)} would have no undercut"
 
-    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
+    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002 - the protocol's
         """Words for a roller radius below `value`, the pitch curve's least; empty unless it is above 0."""
         return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
 
@@ -88,7 +88,7 @@ class DoubleRollerCam(PairCam):
         """Advice, with the pressure angle of a cam without swing: 90 degrees less alpha/2, alpha = 180 mu/lambda."""
         return RollerPairAdvice(self, least_pressure_angle=90.0 * (1.0 - self.mu / self.lam))
 
-    def follower(self, law: Transmission, out: float) -> Follower:  # noqa: ARG002
+    def follower(self, law: Transmission, out: float) -> Follower:  # noqa: ARG002 - the protocol's
         """The follower: two rollers on one arm, its pivot as far from the shaft as from the rollers."""
         checks = (*self.law_checks, "pressure-angle")
         contacts = on_one_arm(self.arm, self.arm, self.touch, math.pi, law.alpha)

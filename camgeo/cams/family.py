@@ -129,7 +129,7 @@ class Advice(ABC):
         curve has the roller's radius as its limit: a roller with a radius below `value` keeps it.
         """
 
-    def same_pitch(self, mm: float) -> str:  # noqa: ARG002
+    def same_pitch(self, mm: float) -> str:  # noqa: ARG002 - the protocol's
         """Words for what must change with the roller's radius to keep the pitch curve; empty where nothing must."""
         return ""
 
@@ -138,7 +138,7 @@ class Advice(ABC):
         """Least radius of a touch, mm, at which the same pitch curve has no base circle; infinite without one."""
         return math.inf
 
-    def chosen_size(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002
+    def chosen_size(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002 - the protocol's
         """Words for the size that was chosen, and what bounds it; empty where the recipe gives the size."""
         return ""
 
@@ -328,7 +328,7 @@ class ExactCam(ABC):
         """
         return None
 
-    def rounder_pitch(self, surface: str, mm: float) -> str:  # noqa: ARG002
+    def rounder_pitch(self, surface: str, mm: float) -> str:  # noqa: ARG002 - the protocol's
         """Words for the size at which a surface's roller is half the pitch curve's least convex radius; else empty."""
         return ""
 
@@ -433,7 +433,7 @@ class Cam(ABC):
         """Whether the lengths of the linkage shape the cam."""
         return False
 
-    def in_frame(self, ground: float, rocker: float, side: float) -> Cam:  # noqa: ARG002
+    def in_frame(self, ground: float, rocker: float, side: float) -> Cam:  # noqa: ARG002 - the protocol's
         """The cam with the links on which its square frame slides; the cam itself where they do not shape it.
 
         `ground` is the distance of the fixed pivots and `rocker` the rocker's length less the offset of the slide's

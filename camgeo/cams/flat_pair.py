@@ -27,11 +27,11 @@ ARRANGEMENT = Arrangement(Oscillating, Flat, 2)
 class FacePairAdvice(PairAdvice):
     """Advice for two faces: a smaller swing, as no pair fits a cam with all radii enlarged alike."""
 
-    def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002
+    def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002 - the protocol's
         """Words for a smaller swing, without undercut."""
         return f"{self.less_swing(mm)} would have no undercut"
 
-    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
+    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002 - the protocol's
         """Empty: no remedy is known that gives a larger radius of curvature."""
         return ""
 

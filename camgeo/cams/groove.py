@@ -46,7 +46,7 @@ class Groove(Holding):
         flanks = self.flanks(first.touch, 1)
         return tuple(replace(first, touch=Roller(flank.radius), surface=flank.name) for flank in flanks)
 
-    def grow(self, out: float, scale: float, *, flat: bool) -> Groove:  # noqa: ARG002
+    def grow(self, out: float, scale: float, *, flat: bool) -> Groove:  # noqa: ARG002 - the protocol's
         """Copy of the groove with clearance and depth times `scale`; growth of the metal leaves both as they are."""
         return Groove(clearance=scale * self.clearance, depth=None if self.depth is None else scale * self.depth)
 

@@ -53,7 +53,7 @@ class RoundAdvice(Advice):
             return f"no {self.radius_field} is proved to be free of it"
         return f"a {self.radius_field} below {downward(free_at / mm)}{self.same_pitch(mm)} would be free of it"
 
-    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
+    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002 - the protocol's
         """Words for a radius below `value`, the pitch curve's least, on that curve; empty unless it is above 0."""
         mm = 25.4 if unit == "in" else 1.0
         return f"a {self.radius_field} below {downward(value)} {unit}{self.same_pitch(mm)}" if value > 0.0 else ""
@@ -127,18 +127,18 @@ class Holding:
     def demand(self, first: Contact[Guide, Touch], greatest: float) -> None:
         """Raise IntentError where a second contact cannot follow to the greatest displacement, mm or rad."""
 
-    def grow(self, out: float, scale: float, *, flat: bool) -> Holding:  # noqa: ARG002
+    def grow(self, out: float, scale: float, *, flat: bool) -> Holding:  # noqa: ARG002 - the protocol's
         """The holding for metal grown by `out` mm, then all lengths times `scale`; `flat` for flat faces.
 
         Raises GrownError where nothing of a second touch is left.
         """
         return self
 
-    def advice(self, cam: GuidedCam, own: Advice) -> Advice:  # noqa: ARG002
+    def advice(self, cam: GuidedCam, own: Advice) -> Advice:  # noqa: ARG002 - the protocol's
         """Advice for all surfaces; `own` is the advice for a cam with one contact."""
         return own
 
-    def circles(self, surface: str, own: tuple[Circle, ...]) -> tuple[Circle, ...]:  # noqa: ARG002
+    def circles(self, surface: str, own: tuple[Circle, ...]) -> tuple[Circle, ...]:  # noqa: ARG002 - the protocol's
         """Reference circles of the disc with the surface of this name; `own` are the circles for one contact."""
         return own
 
@@ -173,7 +173,7 @@ class Holding:
             return None
         return base_size(cam, arm.prime, mm, arm.pivot)
 
-    def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:  # noqa: ARG002
+    def rounder(self, surface: str, exact: ExactGuided, mm: float) -> str:  # noqa: ARG002 - the protocol's
         """Words for the base radius at which the roller is half the pitch curve's least convex radius; else empty."""
         cam, roller = exact.cam, exact.cam.touch.radius
         prime = least_prime_for_roller(exact.law, cam.centre_guide, roller)

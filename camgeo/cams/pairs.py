@@ -159,7 +159,7 @@ class PairCam(Cam):
     route: Route
     preload: Preload | None
 
-    def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
+    def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002 - the protocol's
         """The cam with Wunderlich's law of transmission, and its preload.
 
         Raises IntentError where the route gives no law, and for a preload that leaves nothing of the rollers.

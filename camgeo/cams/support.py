@@ -128,7 +128,7 @@ class SupportCam(FlatFacedCam):
         """The cam as a linear function of its harmonics and its shaft's place."""
         return LinearSupport(self)
 
-    def grow(self, out: float, scale: float) -> SupportCam:  # noqa: ARG002
+    def grow(self, out: float, scale: float) -> SupportCam:  # noqa: ARG002 - the protocol's
         """The cam itself, as drawings show none of its own lengths."""
         return self
 

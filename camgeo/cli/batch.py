@@ -7,7 +7,7 @@ from dataclasses import asdict
 from functools import partial
 from typing import TYPE_CHECKING
 
-from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
+from camgeo.cli.exit_status import SURROUNDINGS, WRONG, of_run
 from camgeo.cli.progress import Progress
 from camgeo.common import workers
 from camgeo.common.terminal import escaped
@@ -114,7 +114,7 @@ def result(recipe: Order, task: BatchTask, progress: Progress | None = None) -> 
         if progress is not None:
             progress.clear()
     left_out = "\n".join(f"camgeo: {recipe.name}: {name} is left out: {why}" for name, why in report.missing.items())
-    return Result(report, left_out, FAILED if not report.ok else SURROUNDINGS if left_out else OK)
+    return Result(report, left_out, of_run(ok=report.ok, left_out=bool(left_out)))
 
 
 def folder_conflicts(recipes: Sequence[Order]) -> list[str]:

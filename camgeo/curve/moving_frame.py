@@ -157,7 +157,7 @@ class Translating:
         """Position on the line at S = 0, mm from the foot of the shaft."""
         return self.foot
 
-    def demand(self, least: float, greatest: float) -> None:  # noqa: ARG002
+    def demand(self, least: float, greatest: float) -> None:  # noqa: ARG002 - the protocol's
         """Raise IntentError where the centre would come down to the shaft at the least displacement, mm."""
         if not self.foot + least > 0.0:
             raise IntentError(

@@ -51,15 +51,15 @@ class _Swing:
     title: ClassVar[str] = "swing"
     unit: ClassVar[str] = "deg"
 
-    def column(self, units: str) -> str:  # noqa: ARG002
+    def column(self, units: str) -> str:  # noqa: ARG002 - the protocol's
         """Heading of the column of positions in a table."""
         return "follower_deg"
 
-    def factor(self, mm: float) -> float:  # noqa: ARG002
+    def factor(self, mm: float) -> float:  # noqa: ARG002 - the protocol's
         """Factor from rad to degrees."""
         return math.degrees(1.0)
 
-    def convert(self, value: Array, mm: float) -> Array:  # noqa: ARG002
+    def convert(self, value: Array, mm: float) -> Array:  # noqa: ARG002 - the protocol's
         """Positions (n,), rad, in degrees."""
         return np.degrees(value)
 
@@ -98,7 +98,7 @@ class LiftPosition(_Turn):
         """The law's position, not less the datum, mm or rad, and derivatives at shaft angles (n,): (order + 1, n)."""
         return self.law.derivatives(shaft, order)
 
-    def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
+    def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002 - the protocol's
         """Parameter of the contour, rad (n,), of each contact, by the prefix of the contact's columns in tables.
 
         A lift has one entry, that of the first contact, with an empty prefix. `relative` is the cam's angle, rad (n,),
@@ -148,7 +148,7 @@ class SwingPosition(_Swing, _Turn):
         """Swing, rad, and its derivatives by the shaft angle, (order + 1, n), at shaft angles (n,)."""
         return self.rows(shaft, order)
 
-    def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
+    def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002 - the protocol's
         """Parameters of the contour, rad (n,), at contacts A and B, by the prefixes of their columns, `a_` and `b_`.
 
         The law repeats itself with phi - psi + delta for phi and -psi for psi (W 1984, 4.9). Repeated mu times, mu odd,

@@ -143,15 +143,7 @@ def judge_and_show(
     units: float | None = None,
     gap: float | None = None,
 ) -> tuple[dict[str, Any], str]:
-    """Report on files of any origin, judged by a recipe's motion, and the HTML of the page that shows them.
-
-    `tolerance`, mm, is by default that of the recipe's file of the same name, or of its export. `units` is the unit in
-    mm of files that state none, by default the recipe's. Ends in drawings within `gap`, mm, are joined. Raises
-    RecipeErrors where there is no such motion or curve, or the recipe lacks what such a file shows; CallError for a gap
-    above the tolerance of a drawing, UnitsError where a file states another unit than `units`, ValueError for an
-    unknown suffix, OSError where a file cannot be read, SurroundingsError where a package of a capability that the
-    recipe uses is missing.
-    """
+    """Report of `judge_files`, and the HTML of the page that shows the files; arguments and errors are the same."""
     from camgeo.report.page.page import page
 
     clock = Clock()

@@ -159,7 +159,7 @@ class Follower(ABC):
         ContactError where contact 1 finds no contact.
         """
 
-    def contact_travel(self, contour: Contour) -> tuple[float, float] | None:  # noqa: ARG002
+    def contact_travel(self, contour: Contour) -> tuple[float, float] | None:  # noqa: ARG002 - the protocol's
         """Least and greatest place of contact 1 along a flat face over the turn, mm.
 
         None for round touches and for two faces on one arm. On a line of travel the place counts from the stem's axis,

@@ -65,7 +65,7 @@ class Arm:
         """Greatest length, mm, that rounding may feign, whatever the cam's extent."""
         return SLACK * (self.length + self.pivot)
 
-    def step(self, extent: float) -> float:  # noqa: ARG002
+    def step(self, extent: float) -> float:  # noqa: ARG002 - the protocol's
         """Greatest length, mm, of the pieces in which a cam is searched, whatever its extent."""
         return MOST_SHARE * self.length
 

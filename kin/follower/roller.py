@@ -332,7 +332,7 @@ class RollerYoke(_Guided):
         )
         return sampled_play(far - near, angle)
 
-    def _gaps(self, paths: Sequence[SplinePath], phi: Array, place: Array) -> Array:  # noqa: ARG002
+    def _gaps(self, paths: Sequence[SplinePath], phi: Array, place: Array) -> Array:  # noqa: ARG002 - the protocol's
         gaps: Array = place[1] - place[0]
         return gaps
 

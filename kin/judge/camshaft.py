@@ -23,7 +23,7 @@ from kin.judge.verdict import SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
 from kin.numeric.lengths import UNIT, length_words, span_words
 from kin.numeric.records import dataclass
-from kin.read.errors import ReadError
+from kin.read.errors import NOT_READ, ReadError
 from kin.read.files import kind_of, read_solid
 from kin.read.nesting import scaled
 
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 COARSE = 720  # shaft angles at which the search for a lobe's phase begins
 STEPS = 20  # of Newton's method
 MOST_NAMED = 5  # faults named in a message
-NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range", "height"})
 
 
 @dataclass(frozen=True)

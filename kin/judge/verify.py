@@ -23,7 +23,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.errors import CamgeoError
 from kin.numeric.lengths import UNIT, file_place_words, length_words, marked, place_words, shown, span_words
 from kin.read.bodies import Sought
-from kin.read.errors import ReadError
+from kin.read.errors import NOT_READ, ReadError
 from kin.read.files import read_bodies, read_drawing, read_solid
 from kin.read.formats import FORMATS, format_of
 from kin.read.nesting import ClosedContour, scaled
@@ -43,7 +43,6 @@ SIZE_SHARE = (
     0.05  # a drawing that comes out by another unit's factor too large or small, within this, misstates its own
 )
 NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
-NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range", "height"})  # of solids
 MOST_NAMED = 5  # faults named in a message
 WIDE = 1.5  # of a gap within which ends are joined, which is measured along x and along y: how long a line may be
 OTHERS = (
@@ -279,7 +278,7 @@ def _closed_check(drawing: Drawing, scale: float, parts: SortedChains, limits: L
     `scale` is mm in a unit of the drawing as it was read.
     """
     faults = list(drawing.openings)
-    faults += [_fault_words(fault, scale) for fault in drawing.faults]
+    faults += [f"{fault.kind} {_entity_words(fault, scale)}" for fault in drawing.faults]
     faults += _crossing_places(parts, joined)
     check = _count_check("closed", faults)
     if drawing.openings:
@@ -287,15 +286,15 @@ def _closed_check(drawing: Drawing, scale: float, parts: SortedChains, limits: L
         detail = f"the rest is judged with {joined:.3g} mm counted; {remedy}" if joined else "the rest is judged"
         return replace(check, detail=f"{marked(check.detail)}; {detail}")
     if limits.gap is not None:
-        short = [_fault_words(piece, scale).removeprefix(f"{piece.kind} ") for piece in drawing.short]
+        short = [_entity_words(piece, scale) for piece in drawing.short]
         detail = f"ends up to {limits.gap:.6g} mm apart are joined, which is counted; {len(short)} pieces are no longer"
         named = f"{detail}: {_listed(short)}" if short else detail
         return replace(check, detail=f"{marked(check.detail)}; {named}".removeprefix("; "))
     return check
 
 
-def _fault_words(fault: Fault, scale: float) -> str:
-    return f"{fault.kind} {fault.entity} at {file_place_words(scale * fault.x, scale * fault.y)}"
+def _entity_words(fault: Fault, scale: float) -> str:
+    return f"{fault.entity} at {file_place_words(scale * fault.x, scale * fault.y)}"
 
 
 def _crossing_places(parts: SortedChains, joined: float = 0.0) -> list[str]:

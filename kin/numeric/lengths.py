@@ -45,14 +45,17 @@ def span_words(low: float, high: float, form: str = ".9g") -> str:
 
 def place_words(x: float, y: float, digits: int = 6) -> str:
     """Text of a place, mm, in brackets, marked so that `mirrored` changes the sign of y; a size below ROUNDING is 0."""
-    x, y = (0.0 if abs(c) < ROUNDING else c for c in (x, y))
-    return f"({_mark(x, f'.{digits}g', '1')}, {_mark(y, f'.{digits}g', 'y')})"
+    return _place(x, y, digits, "y")
 
 
 def file_place_words(x: float, y: float, digits: int = 6) -> str:
     """Text of a place, mm, in brackets, in the axes of the file itself: `mirrored` leaves it."""
-    x, y = (0.0 if abs(c) < ROUNDING else c for c in (x, y))
-    return f"({length_words(x, f'.{digits}g')}, {length_words(y, f'.{digits}g')})"
+    return _place(x, y, digits, "1")
+
+
+def _place(x: float, y: float, digits: int, kind_of_y: str) -> str:
+    form, (x, y) = f".{digits}g", (0.0 if abs(c) < ROUNDING else c for c in (x, y))
+    return f"({_mark(x, form, '1')}, {_mark(y, form, kind_of_y)})"
 
 
 def turn_words(degrees: float, form: str = ".9g") -> str:

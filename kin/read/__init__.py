@@ -1,1 +1,1 @@
-"""Files as numbers, whoever wrote them."""
+"""Files as numbers, of any origin."""

@@ -24,6 +24,9 @@ REASONS = {
     "island": "a contour lies inside a hole",
 }
 
+NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range", "height"})
+"""Reasons for which a solid counts as not readable; for the others it is not watertight."""
+
 
 class ReadError(CamgeoError, ValueError):
     """A file from which no contour can be read.

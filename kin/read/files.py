@@ -1,4 +1,4 @@
-"""Drawings and solids of a part, whoever wrote them, read by the suffix of their file."""
+"""Drawings and solids of a part, of any origin, read by the suffix of their file."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ class Running(ABC):
         """Shaft angle in degrees at which a stem jams in its guide, None where none does."""
         return None
 
-    def mean_force(self, index: int) -> tuple[float, float] | None:  # noqa: ARG002
+    def mean_force(self, index: int) -> tuple[float, float] | None:  # noqa: ARG002 - the protocol's
         """Mean force, N, on the roller of contact `index` over its own turns, and its turns per turn of the shaft.
 
         None without a roller.

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.cli.arguments import add_out, decimal
-from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS
+from camgeo.cli.exit_status import SURROUNDINGS, of_run
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
 from camgeo.files.errors import install
@@ -83,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         say(f"{recipe.name}\n{table(study)}")
     left_out = any(entry.get("missing") for entry in study["skipped"])
-    return FAILED if not ok else SURROUNDINGS if left_out else OK
+    return of_run(ok=ok, left_out=left_out)
 
 
 def _climb_all(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | End]:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.cli.arguments import add_out, name_of, processes
-from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS
+from camgeo.cli.exit_status import INTERRUPTED, SURROUNDINGS, of_run
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
 from camgeo.files.errors import install
@@ -97,7 +97,7 @@ def _search(task: SweepTask, arguments: argparse.Namespace) -> tuple[SweepOutcom
     finally:
         progress.clear()
     left_out = any(entry.get("missing") for entry in outcome.report["skipped"])
-    return outcome, "", FAILED if not outcome.report["ok"] else SURROUNDINGS if left_out else OK
+    return outcome, "", of_run(ok=outcome.report["ok"], left_out=left_out)
 
 
 def missing_package(error: ModuleNotFoundError) -> str:
