@@ -14,7 +14,7 @@ unset PYTHONPATH
 "$work/build/bin/python" -m build --outdir "$work/dist" . >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
 wheel=$work/dist/camgeo-$version-py3-none-any.whl
 tar -tzf "$work/dist/camgeo-$version.tar.gz" >"$work/sdist.txt"
-for name in CITATION.cff CHANGELOG.md LICENSE recipes/shu-wu.yaml tests/conftest.py docs/recipe.md benchmarks/speed.py; do
+for name in CITATION.cff CHANGELOG.md LICENSE recipes/shu-wu.yaml tests/conftest.py docs/recipe.md benchmarks/speed.py tools/docs/make_gallery.py; do
     grep -qx "camgeo-$version/$name" "$work/sdist.txt" || { echo "the sdist lacks $name"; exit 1; }
 done
 

@@ -1,11 +1,13 @@
-"""Where cost might outgrow the work, and warm runs: `python benchmarks/growth.py [growth] [warm] [unseen] [--small]`.
+"""Where cost might outgrow the work, and warm runs: `python benchmarks/growth.py [growth] [scale] [warm] [unseen]`.
 
 `growth` prints milliseconds over the size of the work, and the exponent of one by the other, by least squares over the
-last two decades of the size that were measured, or over all where they are fewer; aim: 1.1. `warm` prints milliseconds
+last two decades of the size that were measured, or over all where they are fewer; aim: 1.1. `scale` does so for what
+users bring in great numbers, up to the most that is taken, each size in a process of its own, with the greatest memory
+and what the last decade costs beyond ten times: aim 1.15. `warm` prints milliseconds
 from a recipe object to its exact design without part and limits, as shipped, and with every figure that may be asked;
 then with arcs at 0.001 mm and their verdict at 3600 angles in memory, of a whole export of a DXF, and of the scene of a
 finished design, which is all that a page draws. `unseen` prints those of a whole export of a DXF of recipes that the
-process has not seen, one number changed each time; with `--docs` it writes them into docs/performance.md.
+process has not seen, one number changed each time. With `--docs` each writes its table into docs/performance.md.
 
 All of it is processor time with one BLAS thread, the least of several repeats. `--small` takes little of everything, to
 see that it works: its figures say nothing. `--only REGEX` takes the rows whose names match.
@@ -18,24 +20,31 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy
 
 import argparse
+import contextlib
 import gc
 import math
 import re
+import subprocess
 import sys
 import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import yaml
+from counted import peak_mb
 from pages import rewrite
 from peer import COLLECT_AFTER
 from speed import compiled, spent
 
+import camgeo
 from camgeo.api.design import Design
 from camgeo.api.loading import load
+from camgeo.cli.batch import folder_conflicts
+from camgeo.cli.main import main
 from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import extruded_mesh
@@ -100,10 +109,13 @@ def exponent(sizes: list[float], seconds: list[float]) -> float:
     return float(np.polyfit(x[last], y[last], 1)[0])
 
 
-def growth(rows: list[Row], *, small: bool) -> dict[str, float]:
+GROWTH_HEADING = "| what grows | size: ms | exponent |\n| --- | --- | --- |\n"
+
+
+def growth(rows: list[Row], *, small: bool, docs: bool = False) -> dict[str, float]:
     """Print a line for each row, and give its exponent."""
-    exponents = {}
-    print("\n| what grows | size: ms | exponent |\n| --- | --- | --- |")
+    exponents, lines = {}, []
+    print(f"\n{GROWTH_HEADING}", end="")
     for row in rows:
         sizes, seconds = [], []
         for size in row.sizes[:2] if small else row.sizes:
@@ -113,7 +125,10 @@ def growth(rows: list[Row], *, small: bool) -> dict[str, float]:
             seconds.append(least(work, 1 if small else 7))
         told = ", ".join(f"{size:.7g}: {1e3 * spent:.3g}" for size, spent in zip(sizes, seconds, strict=True))
         exponents[row.name] = exponent(sizes, seconds)
-        print(f"| {row.name} | {told} | {exponents[row.name]:.2f} |", flush=True)
+        lines.append(f"| {row.name} | {told} | {exponents[row.name]:.2f} |")
+        print(lines[-1], flush=True)
+    if docs and not small:
+        rewrite(GROWTH_HEADING, lines)
     return exponents
 
 
@@ -258,6 +273,121 @@ def growing() -> Iterator[Row]:
             yield Row(f"harmonics, {name}, {form or 'design'}", sizes, made(make, form))
 
 
+# --- scale ------------------------------------------------------------------------------------------------------------
+
+
+# needs: made
+def measured_points(count: int, folder: Path) -> Callable[[], object]:
+    """Judge so many points, measured on a cam."""
+    cam = load({**SCALED, "made": {"profile": 0.05}})
+    t = np.arange(count) * (2.0 * np.pi / count)
+    ((surface, *_), *_) = (intent.surfaces for intent in intents(cam, designed(cam)))
+    frame = surface.gauge.envelope.frames(t)
+    off = 0.01 * np.cos(9.0 * t) + 0.002 * np.random.default_rng(1).normal(size=count)
+    path = folder / f"{count}.csv"
+    np.savetxt(path, frame.points + off[:, None] * frame.normals, "%.6f", ",", header="x_mm,y_mm", comments="")
+    return lambda: camgeo.verify(cam, path)
+
+
+def table_rows(count: int, folder: Path) -> Callable[[], object]:
+    """Read and design a motion from a table of so many rows."""
+    theta = np.arange(count) * (2.0 * np.pi / count)
+    path = folder / f"{count}.csv"
+    lift = designed(load(SCALED)).motion.rows(theta, 0)[0]
+    np.savetxt(path, np.column_stack([np.degrees(theta), lift]), "%.6f", ",", header="theta_deg,s_mm", comments="")
+    recipe = folder / "cam.yaml"
+    recipe.write_text(yaml.safe_dump({"cam": SCALED["cam"] | {"motion": {"table": path.name}}}), encoding="utf-8")
+    return lambda: designed(load(recipe)).checks
+
+
+# needs: budget
+def simulated_parts(count: int, _folder: Path) -> Callable[[], object]:
+    """Simulate so many parts within a budget."""
+    from camgeo.capabilities.budget.library import budget
+
+    tolerances = {"profile": 0.01, "follower.radius": 0.005, "shaft": 0.01}
+    recipe = load({**SCALED, "budget": {"permitted": 0.05, "tolerances": tolerances, "runs": count}})
+    return lambda: budget(recipe)
+
+
+def recipes_of_a_call(count: int, folder: Path) -> Callable[[], object]:
+    """Look for recipes of one call that would write into the same folder."""
+    orders = [SimpleNamespace(path=folder / f"{k}.yaml", name=f"cam {k}") for k in range(count)]
+    return lambda: folder_conflicts(orders)
+
+
+# needs: sweep
+def designs_of_a_sweep(count: int, folder: Path) -> Callable[[], object]:
+    """Search so many designs in one process, by the command."""
+    text = (RECIPES / "sweep-four-bar.yaml").read_text(encoding="utf-8")
+    recipe = yaml.safe_load(text)
+    vary = {key: {name: span[name] for name in ("from", "to")} for key, span in recipe["sweep"]["vary"].items()}
+    recipe["sweep"] |= {"vary": vary, "method": "random", "count": count}
+    path = folder / f"{count}.yaml"
+    path.write_text(yaml.safe_dump(recipe), encoding="utf-8")
+
+    def work() -> None:
+        with contextlib.redirect_stdout(None), contextlib.redirect_stderr(None):
+            main(["sweep", str(path), "--out", str(folder / "out"), "--jobs", "1"])
+
+    return work
+
+
+SCALED = {
+    "cam": {
+        "kind": "disc",
+        "base_radius": 36,
+        "follower": {"kind": "roller", "radius": 9, "offset": 10},
+        "motion": [
+            {"rise": 24, "over": 100, "law": "modified-sine"},
+            {"dwell": 40},
+            {"return": 24, "over": 140, "law": "modified-trapezoid"},
+            {"dwell": 80},
+        ],
+    },
+    "part": {"bore": 12},
+}
+SCALES: dict[str, tuple[Callable[[int, Path], Callable[[], object]], tuple[int, ...]]] = {
+    "measured points": (measured_points, (10_000, 100_000, 1_000_000)),  # needs: made
+    "rows of a table": (table_rows, (2_000, 20_000, 200_000)),
+    "simulated parts of a budget": (simulated_parts, (10_000, 100_000, 1_000_000)),  # needs: budget
+    "recipes of a call": (recipes_of_a_call, (1_000, 10_000, 100_000)),
+    "designs of a sweep": (designs_of_a_sweep, (10_000, 100_000, 1_000_000)),  # needs: sweep
+}
+SCALE_HEADING = "| what grows | size: s | beyond ten times | MB |\n| --- | --- | --- | --- |\n"
+
+
+def scale(pattern: str, *, small: bool, docs: bool) -> None:
+    """Print a line for each row of `SCALES`."""
+    print(f"\n{SCALE_HEADING}", end="")
+    rows = []
+    for name, (_, sizes) in SCALES.items():
+        if not re.search(pattern, name):
+            continue
+        command = [sys.executable, __file__, "--row", name, "--size"]
+        told = []
+        for size in (sizes[0] // 100, sizes[0] // 10) if small else sizes:
+            done = subprocess.run([*command, str(size)], capture_output=True, text=True, check=True)
+            told.append((size, *map(float, done.stdout.split()[-2:])))
+        last = told[-1][1] / told[-2][1] / (told[-1][0] / told[-2][0])
+        cells = ", ".join(f"{size:,}: {seconds:.3g}" for size, seconds, _ in told)
+        rows.append(f"| {name} | {cells} | {last:.2f} | {', '.join(f'{mb:.0f}' for *_, mb in told)} |")
+        print(rows[-1], flush=True)
+    if docs and not small:
+        rewrite(SCALE_HEADING, rows)
+
+
+def one_size(name: str, size: int) -> None:
+    """Print the processor seconds of one size, after a small one that imports, and the greatest memory, MB."""
+    make, sizes = SCALES[name]
+    with tempfile.TemporaryDirectory() as folder:
+        make(max(sizes[0] // 10, 100), Path(folder))()
+        work = make(size, Path(folder))
+        start = time.process_time()
+        work()
+        print(time.process_time() - start, peak_mb())
+
+
 # --- warm -------------------------------------------------------------------------------------------------------------
 
 
@@ -277,11 +407,16 @@ def in_memory(recipe: Recipe) -> None:
         judge_contour(ClosedContour(Contour.from_bulges(arcs.points, arcs.bulges)), surface, phi, limits)
 
 
-def warm(pattern: str, *, small: bool) -> dict[Path, list[float]]:
+WARM_HEADING = (
+    "| recipe | plain | as shipped | times | all figures | times | arcs and verdict | DXF | scene |\n"
+    "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n"
+)
+
+
+def warm(pattern: str, *, small: bool, docs: bool = False) -> dict[Path, list[float]]:
     """Print a line for each shipped recipe, and give its milliseconds."""
-    found = {}
-    print("\n| recipe | plain | as shipped | times | all figures | times | arcs and verdict | DXF | scene |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    found, lines = {}, []
+    print(f"\n{WARM_HEADING}", end="")
     for path in sorted(RECIPES.glob("*.yaml"))[:: 12 if small else 1]:
         if not re.search(pattern, path.stem):
             continue
@@ -302,10 +437,11 @@ def warm(pattern: str, *, small: bool) -> dict[Path, list[float]]:
             spent.append(1e3 * least(call, 1 if small else 7))
         found[path] = spent
         a, b, c, d, e, f = spent
-        print(
-            f"| {path.stem} | {a:.1f} | {b:.1f} | {b / a:.2f} | {c:.1f} | {c / a:.2f} | {d:.1f} | {e:.1f} | {f:.1f} |",
-            flush=True,
-        )
+        times = f"{b:.1f} | {b / a:.2f} | {c:.1f} | {c / a:.2f} | {d:.1f} | {e:.1f} | {f:.1f}"
+        lines.append(f"| {path.stem} | {a:.1f} | {times} |")
+        print(lines[-1], flush=True)
+    if docs and not small:
+        rewrite(WARM_HEADING, lines)
     return found
 
 
@@ -353,15 +489,22 @@ def unseen(*, small: bool, docs: bool) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("part", nargs="*", choices=["growth", "warm", "unseen", []], help="default: all")
+    parser.add_argument("part", nargs="*", choices=["growth", "scale", "warm", "unseen", []], help="default: all")
     parser.add_argument("--only", default="", metavar="REGEX", help="the rows whose names match")
     parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
-    parser.add_argument("--docs", action="store_true", help="write the table of unseen recipes in docs/performance.md")
+    parser.add_argument("--docs", action="store_true", help="write its tables in docs/performance.md")
+    parser.add_argument("--row", choices=list(SCALES), help=argparse.SUPPRESS)
+    parser.add_argument("--size", type=int, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    if arguments.row:
+        one_size(arguments.row, arguments.size)
+        sys.exit()
     if not arguments.part or "growth" in arguments.part:
         rows = [row for row in growing() if re.search(arguments.only, row.name)]
-        growth(rows[:: 12 if arguments.small else 1], small=arguments.small)
+        growth(rows[:: 12 if arguments.small else 1], small=arguments.small, docs=arguments.docs)
+    if not arguments.part or "scale" in arguments.part:
+        scale(arguments.only, small=arguments.small, docs=arguments.docs)
     if not arguments.part or "warm" in arguments.part:
-        warm(arguments.only, small=arguments.small)
+        warm(arguments.only, small=arguments.small, docs=arguments.docs)
     if not arguments.part or "unseen" in arguments.part:
         unseen(small=arguments.small, docs=arguments.docs)

@@ -27,6 +27,7 @@ FAMILIES = [*FACES, *YOKES, *PAIRS]
 LINKED = ["four-bar", "inverted-slider-crank", "slider-crank", "rrr", "rrp", "rpr", "linkage-set"]
 TOPICS = ["part", "milling", "set", "dynamics", "compensation", "inspection", "page", "trim", "limits"]
 TOPICS += [*LINKED, "solids", "fault"]
+TOPICS.append("plate")  # needs: linear
 STEP = importlib.util.find_spec("OCP") is not None
 
 
@@ -52,6 +53,10 @@ def made(seed: int, slot: int, attempt: int = 0) -> Made:
     name = f"r{slot:03}-{attempt}-{family}-{topic}"
     units = draw.rng.choice(["mm", "mm", "inch"])
     draw.unit = INCH if units == "inch" else 1.0
+    # needs: linear
+    if topic == "plate":
+        text = yaml.safe_dump({"units": units, **draw.plate()}, sort_keys=False, width=1000)
+        return Made(f"r{slot:03}-{attempt}-{topic}", family, topic, text)
     recipe: Fields = {"units": units, "rotation": draw.rng.choice(["cw", "ccw"])}
     recipe["cam"], room = draw.cam(family, linked=linked)
     if topic == "trim":
@@ -350,6 +355,46 @@ class Draw:
             if self.some():
                 given["dwell"] |= {"at_least": 20, "over": self.rng.choice(["shaft", "relative"])}
         return given
+
+    # needs: linear
+    def plate(self, *, groove: bool | None = None) -> Fields:
+        """Give a linear cam: on a stem or an arm, with ends, in a groove, or endless; a few of them undercut."""
+        rng = self.rng
+        arm, endless = self.some(0.35), self.some(0.2)
+        groove = not endless and self.some(0.3) if groove is None else groove
+        radius, base = self.mm(3, 10), self.mm(15, 40)
+        stroke = rng.uniform(8, 28) if arm else self.mm(4, 22)
+        over = [self.mm(35, 80) for _ in range(2)]
+        law = rng.choice(["cycloidal", "modified-sine", "polynomial-345", "polynomial-4567", "modified-trapezoid"])
+        rests = [{"dwell": self.mm(4, 15)} for _ in range(2)]
+        motion: list[Fields] = [{"rise": stroke, "over": over[0], "law": law}, rests[0]]
+        if endless or self.some(0.7):
+            motion += [{"return": stroke, "over": over[1], "law": rng.choice(["cycloidal", "modified-sine"])}, rests[1]]
+        cam: Fields = {"kind": "linear", "base": base, "follower": {"kind": "roller", "radius": radius}}
+        cam["travel"] = rng.choice(["left", "right"])
+        if arm:
+            length = self.mm(60, 110)
+            pivot = float(f"{base + radius + length * math.sin(math.radians(0.5 * stroke)):.6g}")
+            side = rng.choice(["trailing", "leading"])
+            cam["follower"]["arm"] = {"length": length, "pivot": pivot, "side": side}
+        elif self.some(0.6):
+            cam["follower"]["lean"] = rng.choice([rng.randrange(-30, 31), 5, 10])
+        if not endless:
+            cam["ends"] = {"overrun": [self.mm(2, 9), self.mm(2, 9)], "as": rng.choice(["tangent", "dwell"])}
+        cam["motion"] = {"repeat": rng.randrange(1, 4), "segments": motion} if endless else motion
+        cam |= {"endless": True} if endless else {}
+        part: Fields = {"thickness": self.mm(8, 16)}
+        if groove:
+            cam["track"] = {"groove": {"clearance": self.fixed(rng.choice([0.02, 0.05])), "depth": self.mm(4, 7)}}
+            reach = length * math.sin(math.radians(stroke)) if arm else stroke
+            part["height"] = float(f"{base + 2 * radius + reach + self.mm(8, 15):.6g}")
+        elif self.some(0.5):
+            cam["undercut"] = "trim"
+        if self.some() and not arm:
+            part["holes"] = [{"at": [self.mm(18), float(f"{0.4 * base:.6g}")], "diameter": self.mm(4, 6)}]
+        files: list[object] = rng.sample(["dxf", "svg", "stl", "3mf", "csv", {"csv": {"as": "inspection"}}, "html"], 3)
+        tolerance = self.fixed(rng.choice([0.001, 0.002, 0.01]))
+        return {"cam": cam, "part": part, "export": {"tolerance": tolerance, "files": files}}
 
     def spoilt(self, text: str) -> str:
         """Plant one fault, so that what is said of it, where, is compared too."""

@@ -2,10 +2,10 @@
 
 Milliseconds, from a local server and with nothing kept by the browser: the first picture, which stands in the page;
 Python and camgeo ready; from a slider's movement to the next frame with the new picture, and to the verdict on it with
-all curves; a second export, and how many times that is the native one of the same recipe. They are of the clock, and
-behind them of the processor: of the thread in which Python runs, and of the native process. Aimed at are a median of
-100 ms from number to picture, 60 at best, and 2.5 times: the last lines say whether they are met. Without a browser or
-Pyodide nothing is measured, and that is said.
+all curves; the same from a joint of the drawn motion; a second export, and how many times that is the native one of the
+same recipe. They are of the clock, and behind them of the processor: of the thread in which Python runs, and of the
+native process. Aimed at are a median of 100 ms from number to picture, 60 at best, and 2.5 times: the last lines say
+whether they are met. Without a browser or Pyodide nothing is measured, and that is said.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ WORKER = "DedicatedWorker"  # as Chromium names its threads
 RECIPES = ("valve-lobe", "six-bar")
 ROOT = Path(__file__).parents[1]
 MOVES = """(async () => {
-  const slider = document.querySelector('#form [type=range]');
+  const moved = document.querySelector("WHAT");
   const shown = () =>
     new Promise((done) => new MutationObserver(done).observe(document.body, { attributeFilter: ["data-shown"] }));
   const judged = () => document.body.dataset.answered === String(changeCount);
@@ -42,8 +42,7 @@ MOVES = """(async () => {
   for (let i = 1; i <= COUNT; i++) {
     const before = document.body.dataset.shown;
     const begun = performance.now();
-    slider.value = Number(slider.value) + Number(slider.step) * (i % 2 ? 1 : -1);
-    slider.dispatchEvent(new Event("input"));
+    HOW
     while (document.body.dataset.shown === before) await shown();
     await new Promise(requestAnimationFrame);
     const seen = performance.now() - begun;
@@ -52,6 +51,21 @@ MOVES = """(async () => {
   }
   return taken;
 })()"""
+
+
+SLIDER = (
+    "#form [type=range]",
+    "moved.value = +moved.value + (i % 2 ? 1 : -1) * moved.step; moved.dispatchEvent(new Event('input'));",
+)
+JOINT = (
+    ".joint",
+    "moved.dispatchEvent(new KeyboardEvent('keydown', { key: i % 2 ? 'ArrowUp' : 'ArrowDown', repeat: i > 1 }));",
+)
+
+
+def movement(count: int, what: str, how: str) -> str:
+    """The script that moves an element so many times; its value has the ms to each picture and to each verdict."""
+    return MOVES.replace("COUNT", str(count)).replace("WHAT", what).replace("HOW", how)
 
 
 def native(text: str) -> tuple[float, float]:
@@ -138,7 +152,7 @@ def main() -> None:
             text = starter(name) if name in STARTERS else shipped.read_text("utf-8")
             page.load(name, text)
             before = spent(browser)
-            seen, judged = zip(*page.ask(MOVES.replace("COUNT", str(count))), strict=True)
+            seen, judged = zip(*page.ask(movement(count, *SLIDER)), strict=True)
             each = (spent(browser) - before) / count
             page.load(name, text)
             page.judged("make")
@@ -156,6 +170,12 @@ def main() -> None:
                 shares.append(there[1] / here[1])
         if pictures:
             print(aims(pictures, shares))
+        page.load(STARTERS[0], starter(STARTERS[0]))
+        for name, how in (("slider", SLIDER), ("joint of the motion", JOINT)):
+            page.settle()
+            seen, judged = zip(*page.ask(movement(count, *how)), strict=True)
+            taken = f"{statistics.median(seen):.0f}, {min(seen):.0f} ms; to verdict {statistics.median(judged):.0f} ms"
+            print(f"{STARTERS[0]}, {name} to picture: median, least {taken}")
 
 
 if __name__ == "__main__":

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from camgeo.fit.nodes import ToleranceError
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
-    from kin.judge.verify import UnitsError
     from kin.numeric.errors import CamgeoError
+    from kin.read.checks import UnitsError
 
     __all__ = [  # noqa: RUF022 - a list of literals, for tools that read this file without running it
         "__version__",
@@ -77,7 +77,7 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
         "Spline": "camgeo.api.edges",
         "SurroundingsError": "camgeo.common.errors",
         "ToleranceError": "camgeo.fit.nodes",
-        "UnitsError": "kin.judge.verify",
+        "UnitsError": "kin.read.checks",
         "check": "camgeo.api.run",
         "design": "camgeo.api.designing",
         "export": "camgeo.api.run",

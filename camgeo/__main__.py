@@ -59,6 +59,7 @@ class _Interrupts:
             self.report()
             os._exit(130)  # what is raised in the interpreter's own way out is printed and lost
         elif now - self.first > _IMPATIENT:
+            self.report()
             os._exit(130)
 
     def report(self) -> None:
@@ -135,8 +136,8 @@ def _say(text: str) -> None:
     try:
         sys.stderr.write(text)
         sys.stderr.flush()
-    except (OSError, ValueError, AttributeError):
-        return  # there is nobody to tell
+    except (OSError, ValueError, AttributeError, RuntimeError):
+        return  # there is nobody to tell, or an interrupt came while it was told
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from _pytest._code.code import TerminalRepr, TracebackStyle
 
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
     from camgeo.recipe.recipe import Order
     from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.expected_checks import Foreseen
@@ -160,11 +160,13 @@ class Recipes:
         Raises UsageError for a recipe that is not among those found, a file that does not exist, and a line without
         files.
         """
+        from camgeo.schema.file_bytes import path_fault
+
         words = shlex.split(line)
         options = {name: _value(text) for name, text in (word.split("=", 1) for word in words[1:] if "=" in word)}
         files = [self.base / word for word in words[1:] if "=" not in word]
         run = self.runs.get((self.base / words[0]).resolve())
-        missing = [str(file) for file in files if not file.is_file()]
+        missing = [str(file) for file in files if path_fault(file)]
         if run is None:
             raise pytest.UsageError(f"{VERIFIED}: {words[0]!r} is not among the recipes of {INI}")
         if missing or not files:
@@ -292,8 +294,8 @@ def _expected_checks(recipe: Order, options: Iterable[str]) -> tuple[Foreseen, .
 
     The item of the recipe as a whole has all other checks.
     """
+    from camgeo.api.root import root_of
     from camgeo.common.errors import CallError
-    from camgeo.registry.root import root_of
 
     try:
         return tuple(root_of(recipe).foresee(recipe.using(*options)))
@@ -401,7 +403,8 @@ class CheckItem(RecipeItem):
     def _one(self, foreseen: Foreseen, report: Entry) -> None:
         checks = [check for check in report["checks"] if (check["name"], check.get("file")) == foreseen]
         if checks:
-            self.user_properties += [(key, checks[0][key]) for key in ("value", "limit", "unit", "at_deg")]
+            place = ("at_deg",) if "at_deg" in checks[0] else ("at", "at_unit")
+            self.user_properties += [(key, checks[0][key]) for key in ("value", "limit", "unit", *place)]
             self._hold(checks, report)
             return
         self._missing(foreseen, report)

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     from camgeo.api.loading import OrderSource, RecipeSource
     from camgeo.api.report import Report
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
     from camgeo.recipe.recipe import Order
     from kin.contour.contour import Contour
     from kin.read.drawing.drawing import Drawing
@@ -86,8 +86,8 @@ class Motion:
     """A follower's motion error over one turn, measured less intended, in `unit`.
 
     `rms` is taken over the recipe's `verify.angles` steps, `max` over the whole turn; it is at the shaft angle
-    `at_deg`, degrees. `dwell_flatness` is the range of the measured position over a dwell, None where the motion has
-    none.
+    `at_deg`, degrees, of a plate at that place of its travel. `dwell_flatness` is the range of the measured position
+    over a dwell, None where the motion has none.
     """
 
     max: float
@@ -226,7 +226,8 @@ def assert_motion(
     if any(row["motion"] is None for row in rows):
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
     motion = max((row["motion"] for row in rows), key=lambda error: float(error["max"]))
-    return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
+    place = motion.get("at_deg", motion.get("at"))
+    return Motion(motion["max"], motion["rms"], motion["unit"], place, motion.get("dwell_flatness"))
 
 
 @_ends_traceback

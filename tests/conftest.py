@@ -26,12 +26,15 @@ import mpmath
 import pytest
 from hypothesis import HealthCheck, settings
 from support.cases import FULL, thinned_out
+from support.designs import share
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from xdist.remote import Producer
     from xdist.scheduler import LoadFileScheduling
 
-pytest_plugins = ["pytester"]
+pytest_plugins = ["pytester", "support.work"]
 
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -66,9 +69,19 @@ def pytest_runtest_teardown() -> None:
     assert not left
 
 
+@pytest.fixture(autouse=True)
+def patient() -> Iterator[None]:
+    """On a busy machine any command takes long: what is said of that is of the tests that ask for it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("camgeo.cli.progress.LONG", 3600.0)
+        yield
+
+
 def pytest_configure(config: pytest.Config) -> None:
     usual = "quick" if config.getoption("markexpr") == QUICK else "repeat"
     settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", usual))
+    if usual == "quick":
+        config.pluginmanager.register(share(), "designs")
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -1,10 +1,10 @@
-"""Imports: the contracts of pyproject.toml catch what they are for, and heavy libraries are imported where called."""
+"""Imports: the contracts of pyproject.toml catch what they are for."""
 
 from __future__ import annotations
 
-import ast
 import importlib.util
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -13,48 +13,38 @@ from typing import TYPE_CHECKING
 import pytest
 from support.places import ROOT
 
+from camgeo.registry import registry
+
 if TYPE_CHECKING:
     from pathlib import Path
 
-HEAVY = {
-    *("ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis", "lib3mf"),
-    *("pyarrow", "dask", "distributed", "OCP", "fpdf"),
-}
 LINTED = importlib.util.find_spec("importlinter") is not None
 PLANTED = {
     "the core knows no capability": ("camgeo/output/skipped.py", "from camgeo.capabilities.sweep import keys"),
     "kin judges without camgeo": ("kin/judge/verify.py", "from camgeo.version import __version__"),
     "Layers of kin": ("kin/numeric/angles.py", "from kin.law import contacts"),
-    "in a circle": ("kin/judge/check.py", "from kin.judge import closure"),
+    "in a circle": ("kin/judge/limits.py", "from kin.judge import closure"),
     "know no other": ("camgeo/capabilities/study/margins.py", "from camgeo.capabilities.sweep import keys"),
 }
 
 
-def at_top(path: Path) -> set[str]:
-    """Names of the packages that a file imports as it is itself imported."""
-    found: set[str] = set()
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.Import):
-            found.update(alias.name.split(".")[0] for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}: imports are absolute"
-            found.add(str(node.module).split(".")[0])
-    return found
-
-
-@pytest.mark.parametrize("package", ["kin", "camgeo"])
-def test_heavy_libraries_are_imported_where_they_are_called(package: str) -> None:
-    paths = sorted((ROOT / package).rglob("*.py"))
-    assert len(paths) >= 100
-    offenders = {str(path): heavy for path in paths if (heavy := at_top(path) & HEAVY)}
-    assert not offenders
-
-
 def test_the_core_names_no_capability_for_types_either() -> None:
-    """The contracts leave out what is imported for type checkers alone; only the library's names are those of all."""
+    """Only the library's names are those of all."""
     paths = [path for path in (ROOT / "camgeo").rglob("*.py") if "capabilities" not in path.parts]
     named = {path.relative_to(ROOT) for path in paths if "from camgeo.capabilities" in path.read_text(encoding="utf-8")}
     assert {str(path) for path in named} <= {"camgeo/__init__.py"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name, label in registry.labels().items() if label.kin])
+def test_the_judging_half_of_a_capability_is_imported_by_it_alone(name: str) -> None:
+    halves = registry.labels()[name].kin
+    own = [ROOT / "camgeo" / "capabilities" / name, *(ROOT / "kin" / half for half in halves)]
+    imports = re.compile(rf"^\s*(?:from|import) kin\.(?:{'|'.join(halves)})\b", re.MULTILINE)
+    paths = [path for top in ("camgeo", "kin") for path in (ROOT / top).rglob("*.py")]
+    importing = [path for path in paths if imports.search(path.read_text(encoding="utf-8"))]
+    assert importing
+    assert [str(path) for path in importing if not any(folder in path.parents for folder in own)] == []
 
 
 def linted(folder: Path) -> subprocess.CompletedProcess[str]:

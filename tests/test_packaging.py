@@ -42,7 +42,8 @@ def test_the_version_stands_in_one_place():
 
 IN_THE_ROOT = {
     *(".ci", ".gitignore", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "MANIFEST.in", "README.md"),
-    *("benchmarks", "camgeo", "docs", "examples", "kin", "out", "pyproject.toml", "recipes", "tests", "web"),
+    *("benchmarks", "camgeo", "docs", "examples", "kin", "out", "pyproject.toml", "recipes", "tests"),
+    *("tools", "web"),
 }
 
 
@@ -80,7 +81,7 @@ def test_the_citation_is_of_this_version():
     )
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "status", "shown"),
     [
@@ -106,6 +107,7 @@ def test_readme_has_two_lines_to_begin_with() -> None:
     assert f"\n```sh\n{test}\n```\n" in readme
 
 
+@pytest.mark.slow  # it reads all tests, and nothing of the product runs
 def test_what_tests_import_the_line_in_readme_installs() -> None:
     paths = [*(ROOT / "tests").rglob("*.py"), *(ROOT / "benchmarks").glob("*.py")]
     own = {"camgeo", "kin", *(path.stem for path in paths), *(path.parent.name for path in paths)}

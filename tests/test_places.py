@@ -9,21 +9,27 @@ from functools import cache
 import pytest
 from support.places import ROOT
 
+from camgeo.registry import registry
+
 PRODUCT = sorted(path.relative_to(ROOT) for top in ("camgeo", "kin") for path in (ROOT / top).rglob("*.py"))
 TESTS = sorted((ROOT / "tests").rglob("*.py"))
+HALVES = {half: name for name, label in registry.labels().items() for half in label.kin}
 HOLDS = re.compile(r"Holds:\s*((?:(?:camgeo|kin)[\w.]*\w,?\s*)+)\.")
 
 
+@pytest.mark.slow  # it reads all tests, and nothing of the product runs
 def test_every_module_is_named_where_it_is_tested():
+    """But for answers of capabilities, all of which `tests/registry/test_slot.py` reads."""
     named, stated = imported(), {name for names in held().values() for name in names}
     lost = [
         str(path)
         for path in PRODUCT
-        if defines(path) and not has_its_stem(path) and dotted(path) not in named and dotted(path) not in stated
+        if not has_its_stem(path) and dotted(path) not in named and dotted(path) not in stated and defines(path)
     ]
     assert not lost, f"say in the docstring of a test module which of these it holds: {', '.join(lost)}"
 
 
+@pytest.mark.slow  # likewise
 def test_what_tests_say_they_hold_is_there():
     modules = {dotted(path) for path in PRODUCT}
     assert {str(path): strays for path, names in held().items() if (strays := names - modules)} == {}
@@ -49,12 +55,18 @@ def defines(path) -> bool:
     kinds = ast.FunctionDef | ast.ClassDef
     if path.stem != "__init__":
         kinds |= ast.Assign | ast.AnnAssign
-    return any(isinstance(node, kinds) for node in ast.parse((ROOT / path).read_text(encoding="utf-8")).body)
+    body = ast.parse((ROOT / path).read_text(encoding="utf-8")).body
+    return any(isinstance(node, kinds) and not ast.unparse(node).startswith("ANSWERS = ") for node in body)
 
 
 def has_its_stem(path) -> bool:
-    """Whether the tree of tests has a file, or a folder, of the module's name: kin/law/x.py, tests/law/test_x.py."""
+    """Whether the tree of tests has a file, or a folder, of the module's name: kin/law/x.py, tests/law/test_x.py.
+
+    Tests of a capability's half in kin lie in the folder `kin` of the capability's own.
+    """
     place = ROOT / "tests" / path.parent.relative_to(path.parts[0])
+    if path.parts[:1] == ("kin",) and path.parts[1] in HALVES:
+        place = ROOT / "tests" / "capabilities" / HALVES[path.parts[1]] / "kin"
     stem = path.stem.lstrip("_")
     return (place / f"test_{stem}.py").exists() or (place / stem).is_dir()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -11,6 +12,7 @@ from support.places import RECIPES
 from camgeo import testing
 from camgeo.capabilities.second_opinion import opinion as second_opinion  # needs: second_opinion
 from camgeo.output import pipeline
+from camgeo.pytest_plugin import CheckItem
 from camgeo.recipe.loading import load
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 
@@ -111,6 +113,7 @@ SHAFT = "camshaft: {shaft: {diameter: 22, to: 30}, lobes: [{recipe: ../lobe.yaml
 
 
 # needs: camshaft
+@pytest.mark.slow
 def test_each_check_of_a_camshaft_is_an_item(project: Pytester) -> None:
     """One for all lobes; what fails is told by the lobe, and placed at it in the recipe of the shaft."""
     add(project, "lobe", LOBE, ".")
@@ -154,7 +157,7 @@ export: {tolerance: 0.01, files: [{dxf: {as: spline}}, {dxf: {as: polyline}}, st
 """
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["shu-wu", "rabinowitz", "reuleaux-nine", "w-booth", "w-ellipse", None])
 def test_the_checks_of_a_run_are_foreseen(name: str | None, tmp_path: Path) -> None:
     path = RECIPES / f"{name}.yaml" if name else tmp_path / "flat.yaml"
@@ -176,7 +179,7 @@ manufacture: {{cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 5
 
 
 # needs: milling
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("holes", ["holes: true", "holes: false"])
 @pytest.mark.parametrize(
     "part",
@@ -198,6 +201,7 @@ def test_the_checks_of_a_milled_part_are_foreseen(part: str, holes: str, tmp_pat
     assert sorted(map(str, foreseen(recipe))) == sorted(map(str, made))
 
 
+@pytest.mark.slow
 def test_a_recipe_runs_once_and_not_before_its_first_item(project: Pytester, counted: list[str]) -> None:
     add(project, "tiny", SMALL)
     assert len(collected(project)) == 2 * len(ITEMS)
@@ -226,6 +230,7 @@ def test_the_line_may_stand_in_any_configuration(pytester: Pytester, file: str, 
     assert collected(pytester) == [f"cams/small.yaml::{name}" for name in ITEMS]
 
 
+@pytest.mark.slow
 def test_paths_are_relative_to_the_configuration_wherever_root_and_call_are(
     pytester: Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -251,6 +256,7 @@ def test_recipes_may_lie_outside_the_root(pytester: Pytester, monkeypatch: pytes
     run(pytester).assert_outcomes(passed=len(ITEMS))
 
 
+@pytest.mark.slow
 def test_recipes_count_with_the_tests_where_testpaths_names_others(pytester: Pytester) -> None:
     pytester.makeini(INI + "testpaths = tests\n")
     add(pytester, "small", SMALL)
@@ -264,6 +270,7 @@ def test_recipes_count_with_the_tests_where_testpaths_names_others(pytester: Pyt
     assert len(collected(pytester, "-o", "camgeo_recipes=cams/small.yaml .cams/hidden.yaml")) == 2 * len(ITEMS) + 1
 
 
+@pytest.mark.slow
 def test_selection_works_as_anywhere(project: Pytester) -> None:
     motion = "cams/small.yaml::motion[small.dxf]"
     assert collected(project, motion) == [motion]
@@ -344,6 +351,7 @@ def test_a_motion_that_cannot_be_is_one_item(project: Pytester) -> None:
     result.stdout.fnmatch_lines(["cams/small.yaml:1:*: cam.p: *"])
 
 
+@pytest.mark.slow
 def test_a_fault_found_on_the_way_fails_once_but_never_passes(project: Pytester) -> None:
     add(project, "small", SMALL.replace("0.01", "1.0e-14"))
     result = run(project, "-rs")
@@ -354,6 +362,7 @@ def test_a_fault_found_on_the_way_fails_once_but_never_passes(project: Pytester)
     alone.stdout.fnmatch_lines([r"motion*: not judged: cams/small.yaml:2:*: export.tolerance: *"])
 
 
+@pytest.mark.slow
 def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> None:
     add(project, "small", UNDERCUT)
     result = run(project)
@@ -405,6 +414,7 @@ def test_a_file_that_cannot_be_read_fails_once(project: Pytester, monkeypatch: p
     result.stdout.fnmatch_lines(["closed of small.dxf: a gap at (1, 2)"])
 
 
+@pytest.mark.slow
 def test_an_error_of_the_program_is_met_once_and_told_with_its_own_traceback(
     project: Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -434,6 +444,7 @@ def test_a_disk_that_refuses_is_no_traceback(project: Pytester, monkeypatch: pyt
     result.stdout.no_fnmatch_line("*pytest_plugin.py*")
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("line", "message"),
     [
@@ -460,6 +471,7 @@ def test_the_figures_are_in_the_junit_file(project: Pytester) -> None:
 # --- files that are kept ----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_files_can_be_kept(project: Pytester) -> None:
     add(project, "poor", SMALL + "verify: {motion_error: 0.001}\n")
     run(project, "--camgeo-out", "kept").assert_outcomes(passed=2 * len(ITEMS) - 1, failed=1)
@@ -529,6 +541,7 @@ def test_modules(request):
 """
 
 
+@pytest.mark.slow
 def test_nothing_happens_where_nobody_asks(pytester: Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     # other people's plugins may import what they like
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
@@ -539,11 +552,13 @@ def test_nothing_happens_where_nobody_asks(pytester: Pytester, monkeypatch: pyte
     result.stdout.no_fnmatch_line("camgeo:*")
 
 
+@pytest.mark.slow
 def test_installed_it_is_there_by_its_name(pytester: Pytester) -> None:
     pytester.makepyfile("def test_it(pytestconfig): assert pytestconfig.pluginmanager.has_plugin('camgeo')")
     pytester.runpytest_subprocess().assert_outcomes(passed=1)
 
 
+@pytest.mark.slow
 def test_it_can_be_switched_off(project: Pytester) -> None:
     project.makepyfile("def test_own(): pass")
     result = project.runpytest_subprocess("-p", "no:camgeo")
@@ -569,6 +584,7 @@ def test_files_of_any_origin_are_verified_beside_their_recipe(project: Pytester)
     result.stdout.fnmatch_lines(["*verify[[]back.dxf tolerance=0.0001]*", "*contour of back.dxf: 0.00*"])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("line", "told"),
     [
@@ -582,3 +598,32 @@ def test_a_line_of_files_that_leads_nowhere_is_a_usage_error(project: Pytester, 
     result = run(project)
     assert result.ret == pytest.ExitCode.USAGE_ERROR
     result.stderr.fnmatch_lines([f"*camgeo_verify: *{told}*"])
+
+
+DXF, STL = Foreseen("motion", "c.dxf"), Foreseen("motion", "c.stl")
+BLAMED = {"value": 2.0, "limit": 1.0, "unit": "mm", "sense": "at_most"}
+
+
+@pytest.mark.parametrize(
+    ("skipped", "checks", "told"),
+    [
+        ([{"what": "c.dxf", "why": "no package", "missing": True}], [], "motion[c.dxf]: not judged: no package"),
+        # another file's, and one that is left out for no lack, are no reason
+        ([{"what": "c.stl", "why": "no package", "missing": True}], [], "motion[c.dxf] is not among the checks"),
+        ([{"what": "c.dxf", "why": "as asked"}], [], "motion[c.dxf] is not among the checks"),
+        ([], [{"name": "readable", "ok": False, "file": "c.dxf", **BLAMED}], "not judged: readable"),
+        ([], [{"name": "size", "ok": False, **BLAMED}], "not judged: size"),
+        ([], [{"name": "readable", "ok": False, "file": "c.stl", **BLAMED}], "motion[c.dxf] is not among the checks"),
+        ([], [{"name": "readable", "ok": True, "file": "c.dxf", **BLAMED}], "motion[c.dxf] is not among the checks"),
+    ],
+)
+def test_the_reason_of_a_check_that_was_not_made(
+    skipped: list[dict[str, Any]], checks: list[dict[str, Any]], told: str
+) -> None:
+    item = CheckItem.__new__(CheckItem)
+    item.name, item.known = str(DXF), frozenset({DXF, STL})
+    run: Any = SimpleNamespace(recipe=SimpleNamespace(trims=False), shown="c.yaml", selected=(), options=())
+    item.run = run
+    with pytest.raises(pytest.fail.Exception) as failed:
+        item._missing(DXF, {"skipped": skipped, "checks": checks})
+    assert told in str(failed.value)

@@ -25,6 +25,8 @@ from camgeo import testing
 from camgeo.common.errors import CallError
 from camgeo.recipe.loading import load
 from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.fields import either
+from kin.read.formats import FORMATS
 
 COUNT = 720
 TOP = 4 * COUNT + 3  # a triangle of the upper face
@@ -133,6 +135,7 @@ def test_breadth_minds_the_unit(tmp_path, vertices):
 # --- closed and watertight --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_closed(tmp_path, vertices):
     assert testing.assert_closed(dxf(tmp_path, vertices)) == 0.0
     assert testing.assert_closed(write_lines(tmp_path / "lines.dxf", vertices, backwards=(3, 7))) == 0.0
@@ -207,7 +210,8 @@ def test_an_stl_cut_short(tmp_path, vertices):
 
 
 def test_calls_that_are_wrong_are_no_verdict(tmp_path, vertices):
-    with pytest.raises(ValueError, match=r"cam\.dxf: not a \.stl, \.ply, \.3mf or \.step file"):
+    solids = either([record.suffixes[0] for record in FORMATS.values() if record.contents == "solid"])
+    with pytest.raises(ValueError, match=re.escape(f"cam.dxf: not a {solids} file")):
         testing.assert_watertight(dxf(tmp_path, vertices))
     for judge in (testing.assert_closed, testing.assert_watertight, testing.assert_constant_breadth):
         for name in ("cam.iges", "cam", "cam.csv", "cam.ngc"):
@@ -220,6 +224,7 @@ def test_calls_that_are_wrong_are_no_verdict(tmp_path, vertices):
 # --- against a recipe -------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("write", [dxf, stl])
 def test_motion_and_contour_of_good_files(tmp_path, vertices, recipe, write):
     path = write(tmp_path, vertices)
@@ -231,7 +236,7 @@ def test_motion_and_contour_of_good_files(tmp_path, vertices, recipe, write):
     assert testing.assert_contour(load(recipe), str(path)) < 5e-4
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("write", [dxf, stl])
 def test_motion_of_spoilt_files(tmp_path, vertices, recipe, write):
     cosine, sine = np.cos(np.radians(0.2)), np.sin(np.radians(0.2))
@@ -245,6 +250,7 @@ def test_motion_of_spoilt_files(tmp_path, vertices, recipe, write):
         testing.assert_motion(recipe, write(tmp_path, turned))
 
 
+@pytest.mark.slow
 def test_what_contact_cannot_feel_is_felt_by_the_contour(tmp_path, vertices, recipe):
     dented = dxf(tmp_path, moved(vertices, -0.02))
     with pytest.raises(AssertionError, match=r"contour of cam\.dxf: 0\.0\d+ mm, at most 0\.002 mm allowed, at "):
@@ -260,6 +266,7 @@ def test_the_limit_of_the_motion_is_held_and_no_more(tmp_path, vertices, recipe)
         testing.assert_motion(recipe, path, limit=0.99 * reached)
 
 
+@pytest.mark.slow
 def test_lengths_are_in_the_recipes_units(tmp_path, vertices, recipe):
     path = dxf(tmp_path, vertices)
     error = testing.assert_contour(recipe, path)
@@ -276,6 +283,7 @@ def test_lengths_are_in_the_recipes_units(tmp_path, vertices, recipe):
         testing.assert_motion(inch, inches, limit=1e-5)
 
 
+@pytest.mark.slow
 def test_a_file_has_the_tolerance_its_name_has_in_the_recipe(tmp_path, vertices, recipe):
     recipe.write_text(CAM.replace("[dxf, stl]", "[{dxf: {tolerance: 0.05}}, stl]"))
     path = dxf(tmp_path, moved(vertices, -0.02))
@@ -286,6 +294,7 @@ def test_a_file_has_the_tolerance_its_name_has_in_the_recipe(tmp_path, vertices,
         testing.assert_contour(recipe, path.rename(tmp_path / "other.dxf"))
 
 
+@pytest.mark.slow
 def test_a_file_that_is_no_contour_fails_both(tmp_path, vertices, recipe):
     path = write_lines(tmp_path / "cam.dxf", vertices, leave_out=(5,))
     for judge in (testing.assert_motion, testing.assert_contour):
@@ -293,6 +302,7 @@ def test_a_file_that_is_no_contour_fails_both(tmp_path, vertices, recipe):
             judge(recipe, path)
 
 
+@pytest.mark.slow
 def test_a_double_roller_swings(tmp_path):
     recipe = tmp_path / "booth.yaml"
     recipe.write_text(BOOTH)
@@ -368,6 +378,7 @@ def test_h(): testing.assert_constant_breadth("none.svg")
 """
 
 
+@pytest.mark.slow
 def test_a_failure_ends_at_the_line_of_the_test(pytester: pytest.Pytester) -> None:
     """Whatever is raised: of the library's own source nothing is shown."""
     (pytester.path / "cams").mkdir()

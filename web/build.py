@@ -30,10 +30,32 @@ DISTRIBUTION = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"
 RUNTIME = ("pyodide.mjs", "pyodide.asm.js", "pyodide.asm.wasm", "pyodide-lock.json")
 LIBRARY = "python_stdlib.zip"
 OTHERS = ("yaml", "ezdxf", "fontTools", "pyparsing", "typing_extensions")  # what camgeo needs besides numpy
+FIRST_PACKAGES = ("yaml", "camgeo", "kin")  # what designs need of it; the others come when a file is made or read
 UNUSED: tuple[str, ...] = ("*.so", "*.pyd", "__pycache__", "*.pyx", "*.pxd", "*.c", "*.cpp", "*.pyi")
 # parts of ezdxf and fontTools that draw, convert and compile fonts, a third of both: nothing here imports them
 UNUSED += ("addons", "varLib", "feaLib", "otlLib", "voltLib", "ufoLib", "cffLib", "designspaceLib", "subset", "merge")
+UNUSED += ("tests", "conftest.py", "pytest_plugin.py", "__main__.py", "f2py", "_pyinstaller", "include", "*.a", "*.h")
+# modules of Python and of numpy that no design imports: they come with those others
+RARE: tuple[str, ...] = ("multiprocessing", "unittest", "xmlrpc", "pydoc", "mailbox", "tarfile", "http", "email", "xml")
+RARE += ("_pyio", "imaplib", "ftplib", "smtplib", "poplib", "nntplib", "cgi", "doctest", "pdb", "optparse", "plistlib")
+RARE_OF_NUMPY = ("numpy.random", "numpy.polynomial", "numpy.fft", "numpy.testing", "numpy.ctypeslib", "numpy.matlib")
+DESIGNED: tuple[str, ...] = (
+    "disc-roller",
+    "disc-arm",
+    "disc-flat",
+    "disc-shoe",
+    "disc-lobe",
+    "disc-groove",
+    "disc-conjugate",
+    "support",
+)
+DESIGNED += ("constant-breadth", "constant-diameter", "double-roller", "flat-pair", "four-bar", "slider-crank")
 MINOR = (3, 12)  # of Pyodide's Python, whose compiled modules it reads
+# in the order in which they run
+SCRIPTS: tuple[str, ...] = ("state.js", "view.js", "form.js", "joints.js", "draw.js", "compare.js", "files.js")
+SCRIPTS += ("hand.js", "gif.js", "film.js", "solid.js")
+LAST = "start.js"  # runs behind those of capabilities
+PAPER = r"[A-Z]+ \d{4}"  # at the start of what a recipe says of itself, where it is a figure of a paper
 FIRST = "disc-roller"  # the starter that stands there while the page loads
 SITE = WEB / "site"
 
@@ -132,23 +154,84 @@ def python_of_pyodide() -> str | None:
     )
 
 
-def packed() -> bytes:
-    """A zip of camgeo and what it imports; the source of each `__init__` stays, as capabilities are listed by them."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        gather(folder, (*OTHERS, "camgeo", "kin"))
-        shutil.copy(WEB / "live.py", folder)
-        return compiled(folder, kept="__init__.py")
+def imported() -> set[str]:
+    """Names of the modules that designs of many kinds import, with all that the page asks before a file is made."""
+    program = """
+import json, sys
+sys.path.insert(0, sys.argv[1])
+import live
+from camgeo.recipe.starter import starter
+for name in sys.argv[2:]:
+    for call in ("picture", "design", "more", "absent"):
+        live.answer(call, json.dumps({"name": name, "text": starter(name)}))
+print(*sys.modules)
+"""
+    command = [sys.executable, "-c", program, str(WEB), *DESIGNED]
+    return set(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split())
 
 
-def repacked(archive: Path, level: int = 0) -> bytes:
-    """An archive of Python's or of a package's modules, such as a wheel, as a zip of compiled ones."""
+def packed() -> tuple[bytes, bytes]:
+    """Zips of camgeo: with what designs import, and with its other modules, which come when they are imported.
+
+    The source of each `__init__` stays in the first, and what capabilities answer, as these are listed by their files.
+    """
+    needed = imported()
     with tempfile.TemporaryDirectory() as name:
+        folder, late = Path(name) / "first", Path(name) / "late"
+        gather(folder, FIRST_PACKAGES)
+        names = [*(other for other in OTHERS if other not in FIRST_PACKAGES), *RARE, *RARE_OF_NUMPY]
+        for path in sorted(path for package in ("camgeo", "kin") for path in (folder / package).rglob("*.py")):
+            place = path.relative_to(folder)
+            module = ".".join(place.with_suffix("").parts)
+            if (
+                path.name == "__init__.py"
+                or module in needed
+                or re.search(r"(?m)^(ANSWERS|ROOT)\b", path.read_text("utf-8"))
+            ):
+                continue
+            (late / place).parent.mkdir(parents=True, exist_ok=True)
+            shutil.move(path, late / place)
+            names.append(module)
+        for script in ("live.py", "segments.py", "paper.py", "later.py"):
+            shutil.copy(WEB / script, folder)
+        (folder / "later.txt").write_text("\n".join(names), "utf-8")
+        return compiled(folder, kept="__init__.py", level=2), compiled(late, level=2)
+
+
+def repacked(archive: Path, rare: tuple[str, ...], level: int = 0) -> tuple[bytes, bytes]:
+    """An archive of Python's or of a package's modules, such as a wheel, as two zips of compiled ones.
+
+    The second has the modules and packages of the names `rare`, such as `numpy.fft`.
+    """
+    with tempfile.TemporaryDirectory() as name:
+        folder, late = Path(name) / "first", Path(name) / "late"
         with ZipFile(archive) as held:
-            held.extractall(name)
-        for path in Path(name).rglob("*.pyi"):
-            path.unlink()
-        return compiled(Path(name), level=level)
+            held.extractall(Path(name) / "all")
+        shutil.copytree(Path(name) / "all", folder, ignore=shutil.ignore_patterns(*set(UNUSED) - {"*.so"}))
+        for one in rare:
+            path = folder / one.replace(".", "/")
+            there = path if path.is_dir() else path.with_suffix(".py")
+            (late / there.relative_to(folder)).parent.mkdir(parents=True, exist_ok=True)
+            shutil.move(there, late / there.relative_to(folder))
+        return compiled(folder, level=level), compiled(late)
+
+
+def others() -> bytes:
+    """A zip of the packages with which files are made and read."""
+    with tempfile.TemporaryDirectory() as name:
+        gather(Path(name), tuple(other for other in OTHERS if other not in FIRST_PACKAGES))
+        return compiled(Path(name))
+
+
+def joined(parts: list[bytes]) -> bytes:
+    """A zip with the contents of several."""
+    target = io.BytesIO()
+    with ZipFile(target, "w", ZIP_DEFLATED, compresslevel=9) as archive:
+        for part in parts:
+            with ZipFile(io.BytesIO(part)) as held:
+                for entry in held.namelist():
+                    archive.writestr(entry_of(entry), held.read(entry), ZIP_DEFLATED)
+    return target.getvalue()
 
 
 def compiled(folder: Path, kept: str = "", level: int = 0) -> bytes:
@@ -195,7 +278,7 @@ def entry_of(name: str) -> ZipInfo:
 
 
 def starters() -> list[dict[str, object]]:
-    """Starters and shipped recipes of single cams: name, title, text, tables that it names, and the picture."""
+    """Starters and shipped recipes of single cams: name, task, title, text, tables that it names, and the picture."""
     import camgeo
     from camgeo.api.notebook import drawing
     from camgeo.recipe.starter import STARTERS, starter
@@ -207,15 +290,25 @@ def starters() -> list[dict[str, object]]:
             text = starter(name)
             design = camgeo.design(camgeo.load(text))
             picture = drawing(design.recipe, design.exact)
-            entries.append({"name": name, "title": entry.title, "text": text, "tables": {}, "picture": picture})
-    for path in sorted((ROOT / "recipes").glob("*.yaml")):
-        recipe = camgeo.load(path)
+            words = {"title": entry.title, "task": entry.task or name, "also": entry.also}
+            entries.append({"name": name, **words, "text": text, "tables": {}, "picture": picture})
+    recipes = [(path, camgeo.load(path)) for path in sorted((ROOT / "recipes").glob("*.yaml"))]
+    recipes.sort(key=lambda pair: re.match(PAPER, pair[1].about or "") is not None)  # figures of papers come last
+    for path, recipe in recipes:
         text = path.read_text("utf-8")
         named = {name: (path.parent / name).read_text("utf-8") for name in re.findall(r"[\w.-]+\.csv\b", text)}
         picture = (ROOT / "docs" / "gallery" / f"{path.stem}.svg").read_text("utf-8")
-        shipped = {"name": path.stem, "title": recipe.about, "text": text, "tables": named, "picture": picture}
+        words = {"title": recipe.about, "task": path.stem, "also": ""}
+        shipped = {"name": path.stem, **words, "text": text, "tables": named, "picture": picture}
         entries.append({**shipped, "shipped": True})
     return entries
+
+
+def kinds(*contents: str) -> list[str]:
+    """Ends of the names of files with such contents, drawings or solids, that a browser can read."""
+    from kin.read.formats import FORMATS, suffixes
+
+    return [end.lstrip(".") for end, kind in suffixes().items() if FORMATS[kind].contents in contents]
 
 
 def with_parts() -> list[str]:
@@ -226,8 +319,8 @@ def with_parts() -> list[str]:
 
 
 def scripts_of(names: list[str]) -> list[str]:
-    """Scripts of the parts of these capabilities."""
-    return [f"{name}.js" for name in names]
+    """Scripts of the page with the parts of these capabilities, in the order in which they run."""
+    return [*SCRIPTS, *(f"{name}.js" for name in names), LAST]
 
 
 def first_page(text: str) -> str:
@@ -256,7 +349,10 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     (target / "pictures").mkdir()
     for name in RUNTIME:
         shutil.copyfile(pyodide / "node_modules" / "pyodide" / name, target / "pyodide" / name)
-    (target / "pyodide" / LIBRARY).write_bytes(repacked(pyodide / "node_modules" / "pyodide" / LIBRARY, 2))
+    library, rare = repacked(pyodide / "node_modules" / "pyodide" / LIBRARY, RARE, 2)
+    (target / "pyodide" / LIBRARY).write_bytes(library)
+    numpy, rare_of_numpy = repacked(wheel, RARE_OF_NUMPY)
+    code, late = packed()
     shown = starters()
     for entry in shown:
         (target / "pictures" / f"{entry['name']}{'-shipped' if 'shipped' in entry else ''}.svg").write_text(
@@ -270,13 +366,14 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     here = with_parts()
     style = asset("drawing.css") + looks.rules() + asset("page.css") + (WEB / "tab.css").read_text("utf-8")
     files = {
-        "camgeo.zip": packed(),
-        "numpy.zip": repacked(wheel),
+        "camgeo.zip": code,
+        "numpy.zip": numpy,
+        "later.zip": joined([others(), late, rare, rare_of_numpy]),
         "tab.css": style.encode(),
         "page.js": asset("page.js").encode(),
         "licences.txt": licences().encode(),
         "starters.json": json.dumps(shown, ensure_ascii=False).encode(),
-        **{name: (WEB / name).read_bytes() for name in ("tab.js", "worker.js", *scripts_of(here))},
+        **{name: (WEB / name).read_bytes() for name in ("worker.js", *scripts_of(here))},
     }
     for name, data in files.items():
         (target / name).write_bytes(data)
@@ -291,6 +388,8 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         "recipe": escaped(text),
         "scene": page.script_json(scene),
         "version": camgeo.__version__,
+        "kinds": " ".join(kinds("drawing", "solid")),
+        "drawings": " ".join(kinds("drawing")),
         **{f"stamp:{name}": hashlib.sha256(data).hexdigest()[:10] for name, data in files.items()},
     }
     (target / "index.html").write_text(filled((WEB / "index.html").read_text("utf-8"), parts), "utf-8")

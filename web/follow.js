@@ -6,6 +6,7 @@ function boxesOf(touch, arm, yoke) {
   const round = touch !== "flat";
   return {
     radius: touch === "roller" || touch === "shoe",
+    size: touch === "roller",
     width: !round && !arm,
     offset: !arm && !yoke,
     pivot: arm,
@@ -13,6 +14,7 @@ function boxesOf(touch, arm, yoke) {
     side: arm,
     yoke: !arm,
     track: touch === "roller" && !yoke,
+    across: isDrawing(),
   };
 }
 
@@ -22,6 +24,8 @@ function followerBoxes() {
 
 function showFollower() {
   for (const [id, there] of Object.entries(followerBoxes())) byId(id).labels[0].hidden = !there;
+  const size = byId("touch").value === "roller" ? byId("size").value : "radius";
+  byId("radius").labels[0].firstChild.data = `${size} `;
 }
 
 function follower() {
@@ -29,6 +33,7 @@ function follower() {
   const touch = byId("touch").value;
   const length = (id) => (boxes[id] ?? true ? pointed(byId(id).value) : "");
   return {
+    diameter: boxes.size && byId("size").value === "diameter",
     roller: touch === "knife" ? "0" : touch === "roller" ? length("radius") : "",
     shoe: touch === "shoe" ? length("radius") : "",
     flat: touch === "flat",
@@ -44,22 +49,25 @@ function follower() {
     rotation: byId("rotation").value,
     reading: length("reading"),
     units: byId("units").value,
+    gap: givenGap(),
+    across: boxes.across ? byId("across").value : "",
   };
 }
 
+tab.addEventListener("chosen", showFollower);
 byId("follow-form").addEventListener("submit", async (event) => {
   event.preventDefault();
-  const answer = await onForeign("following…", "follow", { file: somebodys.name, follower: follower() });
+  const answer = await onForeign(byId("follow"), "following", "follow", { file: somebodys.name, follower: follower() });
   if (!answer) return;
   showJudged(answer, `What ${somebodys.name} does`);
   if (!answer.recipe) return;
-  const button = element("button", { type: "button" }, "Make it the recipe");
+  const button = element("button", { type: "button", className: "main" }, "Make it the recipe");
   button.addEventListener("click", () => {
     beginRecipe({ name: answer.name, text: answer.recipe, tables: answer.tables });
     byId("main").scrollIntoView();
   });
-  byId("files").append(element("li", {}, button));
+  byId("next").replaceChildren(button, " Then its motion is smooth, and every number of it can be changed.");
 });
 
-for (const id of ["touch", "led", "yoke"]) byId(id).addEventListener("change", showFollower);
+for (const id of ["touch", "size", "led", "yoke"]) byId(id).addEventListener("change", showFollower);
 showFollower();

@@ -3,35 +3,44 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import shutil
 import tempfile
 import traceback
+from bisect import bisect_left
 from collections import Counter
 from contextlib import suppress
+from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import numpy as np
 import yaml
+from paper import TooManySheetsError, pdf
+from segments import changed, drawn
 
 import camgeo
 from camgeo.api.report import explanation
 from camgeo.capabilities.follow.command import summary  # needs: follow
-from camgeo.capabilities.follow.library import judged_by_recipe  # needs: follow
+from camgeo.capabilities.follow.library import READING, judged_by_recipe  # needs: follow
 from camgeo.checks.declared import declaration
+from camgeo.common.rounding import upward  # needs: follow
 from camgeo.files.errors import MissingExtraError
 from camgeo.output.dispatch import foresee
 from camgeo.output.job import Job
 from camgeo.output.pipeline import REPORT
 from camgeo.recipe.export import FileRequest
+from camgeo.recipe.extension import KEYS
 from camgeo.recipe.keys import UNITS, read_values, recipe_table
 from camgeo.recipe.recipe import of_source, root_key
+from camgeo.recipe.starter import starter
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
-from camgeo.registry.root import CAM, root
+from camgeo.registry.root import CAM, reading
 from camgeo.report.page import page as pages
 from camgeo.report.page import tables
 from camgeo.report.page.content import mechanism
@@ -43,7 +52,7 @@ from camgeo.schema.quantity import read_quantity, split_unit, units_for
 from camgeo.schema.reader import Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import Complaint, read_number
-from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, entries, join, keys, scalars
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, comments, entries, join, keys, scalars
 from camgeo.synthesis.design import sketched
 from kin.numeric.records import replace
 
@@ -55,15 +64,22 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.fields import Field, FieldTable, OwnForm
+    from camgeo.schema.yaml_source import Node
     from kin.numeric.arrays import Array
 
 FOLDER = tempfile.mkdtemp()  # for the recipe, its tables, a file to judge; in the browser's own file system
 OUT = f"{FOLDER}/out"
 PAGE = FileRequest("html")
+ON_PAPER = 0.004  # mm: most distance of a printed contour from the exact one
 ALIKE = 1e-6  # of its size: what a recipe in another unit may differ by
-LENGTHS = ("roller", "shoe", "width", "offset", "pivot", "arm", "x", "y", "reading")  # of a follower
+LENGTHS = ("roller", "shoe", "width", "offset", "pivot", "arm", "x", "y", "reading", "gap")  # of a follower
 WRITTEN = {Kind.TEXT, Kind.NAME, Kind.FORMULA, Kind.RATIO}  # fields that hold a text
+NUMBERS = {Kind.LENGTH, Kind.ANGLE, Kind.NUMBER, Kind.INTEGER, Kind.STROKE}  # whose boxes stay where they hold none
 _WORDS: dict[OwnForm[Any], list[str]] = {}  # of forms of their own, whose schemas are large
+
+
+def say(stage: str) -> None:
+    """Say at which stage a long call is; the worker puts what tells the page in its place."""
 
 
 def answer(call: str, text: str) -> str:
@@ -74,6 +90,8 @@ def answer(call: str, text: str) -> str:
         output = {"faults": [_fault(error) for error in errors.errors]}
     except camgeo.CamgeoError as error:
         output = {"faults": [_sentence(line) for line in str(error).splitlines()]}
+    except ConnectionError as error:  # of a module that is fetched when it is imported
+        output = {"faults": [_sentence(f"a part of this page could not be loaded: {error}; try again, or reload it")]}
     except MemoryError:
         output = {"faults": [_sentence("there is not enough memory for this: close other tabs, or make it smaller")]}
     except Exception:  # noqa: BLE001 - the page tells it, and goes on
@@ -82,15 +100,55 @@ def answer(call: str, text: str) -> str:
 
 
 def _sentence(text: str) -> dict[str, Any]:
-    return {"line": 0, "column": 0, "path": "", "text": text.replace(f"{FOLDER}/", "")}
+    told = in_words_of_the_page(text)
+    return {"line": 0, "column": 0, "path": "", "text": told, "told": told}
+
+
+ON_THE_PAGE = (
+    ("`camgeo new` writes one to start from", "begin with another cam, above"),
+    (r"\bS\(([^()]*)\)", r"the lift at \1"),
+    (r"\bS[']{3}", "the jerk"),
+    (r"\bS''", "the acceleration"),
+    (r"\bS'", "the velocity"),
+    (r"\bS\b", "the lift"),
+    (r"give it by --units, such as --units (\w+)", r"choose the unit of the file, such as \1"),
+    ("another is given by --units", "another can be chosen as the unit of the file"),
+    (r"--gap (\S+) joins what lies so near", r"let ends of its lines meet within \1 mm"),
+    (r"give gap (\S+) to join (?:them|its ends)", r"let ends of its lines meet within \1 mm"),
+    ("give across arc or chord to close (?:it|the contour) there", "choose how the contour goes on where it is open"),
+    ("leave across out", "let an open contour be refused"),
+    ("a follower has a roller, of radius 0 .*", "say how large the touch is: its box is empty"),
+    ("the drawing states no unit: give units", "the drawing states no unit: choose the unit of the file"),
+    ("leave units out", "choose none given as the unit of the file"),
+    ("give at, such as the middle", "give the place of the shaft in the file, such as the middle"),
+    ("; give at$", "; give the place of the shaft in the file"),
+    ("of a ring's opening give track internal, of a groove track groove", "let it run in the ring, or in the groove"),
+    ("of a groove give track groove", "of a groove, let it run in a groove"),
+    ("leave track out", "let it run outside"),
+    ("leave width out", "leave the width empty"),
+    ("leave it out", "leave it empty"),
+    ("or leave yoke out", "or take the second contact away"),
+    (r"give reading (\S+) or more", r"let a dwell rest within \1 mm or more"),
+    ("give arm as pivot distance and length, 80,65", "give pivot and length"),
+    ("give arm as the pivot's distance alone", "leave the length empty"),
+)
+"""Words of commands and of formulas, as patterns, and what the page says for them."""
+
+
+def in_words_of_the_page(text: str) -> str:
+    """A sentence for somebody who sees boxes: no option of a command, no symbol of a formula, no folder of Python's."""
+    text = text.replace(f"{FOLDER}/", "")
+    for pattern, words in ON_THE_PAGE:
+        text = re.sub(pattern, words, text)
+    return text
 
 
 def _fault(error: RecipeError) -> dict[str, Any]:
     value = f", given {error.value}" if error.value is not None else ""
     remedy = f"; {error.remedy}" if error.remedy else ""
     place = f"{error.path}: " if error.path else ""
-    text = f"{place}{error.problem}{value}{remedy}".replace(f"{FOLDER}/", "")
-    return {"line": error.line, "column": error.column, "path": error.path, "text": text}
+    told = in_words_of_the_page(f"{error.problem}{value}{remedy}")
+    return {"line": error.line, "column": error.column, "path": error.path, "text": f"{place}{told}", "told": told}
 
 
 # --- design -----------------------------------------------------------------------------------------------------------
@@ -102,18 +160,24 @@ def picture(name: str, text: str) -> dict[str, Any]:
     if recipe.linkage is not None:
         return {}
     drawn, _, relative = mechanism(recipe, sketched(recipe))
-    return pages.picture(recipe, drawn, relative)
+    return pages.picture(recipe, drawn, relative, -1 if recipe.rotation == "cw" else 1)
 
 
-def design(name: str, text: str) -> dict[str, Any]:
-    """Everything that the page draws of a recipe, its fields, and its faults, each with line and column."""
+def design(name: str, text: str, *, figures: bool = False) -> dict[str, Any]:
+    """Everything that the page draws of a recipe, its fields, and its faults, each with line and column.
+
+    With `figures` those of the design too, which are compared with a kept one's.
+    """
     output: dict[str, Any] = {"fields": [], "faults": []}
     try:
         source = Source.of(text, f"{FOLDER}/{name}.yaml")
         output["fields"] = fields(source)
+        output["bare"] = bare(source)
         recipe = _recipe(name, source)
         exact = camgeo.design(recipe)
         scene = dict(exact.scene())
+        output["motion"] = drawn(source, exact)
+        output["figures"] = _figures(exact) if figures else []
     except RecipeErrors as errors:
         return {**output, "faults": [_fault(error) for error in errors.errors]}
     except camgeo.CamgeoError as error:
@@ -129,10 +193,34 @@ def design(name: str, text: str) -> dict[str, Any]:
         "scene": scene,
         "ok": exact.ok,
         "name": recipe.name,
-        "verdict": "every check of the design holds" if exact.ok else tables.failing_count(report["checks"]),
+        "verdict": _verdict(exact.ok, report),
         "checks": tables.checks({**report, "checks": held}),
         "failed": [_explained(check, report, recipe) for check in failed],
     }
+
+
+def beside(name: str, text: str) -> dict[str, Any]:
+    """What the page shows of a design that is kept beside others: its scene and its figures."""
+    exact = camgeo.design(_recipe(name, text))
+    return {"scene": dict(exact.scene()), "figures": _figures(exact)}
+
+
+def _figures(exact: Design) -> list[dict[str, Any]]:
+    """Figures of a design by name, each with its value, None where it is not finite, as text, and with its unit."""
+    rows = []
+    for name, figure in exact.figures.items():
+        there = figure.value is not None
+        value = figure.value if figure.value is not None and math.isfinite(figure.value) else None
+        text = f"{value:.5g}" if value is not None else "∞" if there else "–"
+        rows.append({"name": name, "value": value, "text": text, "unit": figure.unit if there else ""})
+    return rows
+
+
+def _verdict(ok: bool, report: dict[str, Any]) -> str:
+    """What the pill says: whether checks hold, and how many remarks there are besides."""
+    count = len(report["remarks"])
+    remarks = f", {count} remark{'s' if count > 1 else ''}" if count else ""
+    return f"{'every check of the design holds' if ok else tables.failing_count(report['checks'])}{remarks}"
 
 
 def _recipe(name: str, text: str | Source) -> Recipe:
@@ -140,9 +228,16 @@ def _recipe(name: str, text: str | Source) -> Recipe:
     path = Path(FOLDER) / f"{name}.yaml"
     source = text if isinstance(text, Source) else Source.of(text, str(path))
     if (key := root_key(source)) != CAM and isinstance(source.root, Mapping):
-        problem = f"this page makes no {key}, which the command `camgeo export {name}.yaml` does on a machine"
-        remedy = f"keep the recipe beside the files that it names and give that command; here give {root(key).instead}"
-        raise RecipeErrors([RecipeError(str(path), *keys(source.root)[key].mark, key, problem, None, remedy)])
+        problem = (
+            f"this page makes no {reading(key).noun}, which the command `camgeo export {name}.yaml` does on a machine"
+        )
+        remedy = (
+            f"keep the recipe beside the files that it names and give that command; here give {reading(key).instead}"
+        )
+        # its name is a key of the top level, or the kind of the cam
+        top, cam = keys(source.root), entries(source.root).get(CAM)
+        mark, place = (top[key].mark, key) if key in top else (entries(cam)["kind"].mark, f"{CAM}.kind")
+        raise RecipeErrors([RecipeError(str(path), *mark, place, problem, None, remedy)])
     return of_source(source, path)
 
 
@@ -172,16 +267,30 @@ def fields(source: Source) -> list[dict[str, Any]]:
     reader = _read(source, source.root)
     nodes = list(scalars(source.root))
     shared = Counter(id(node) for _, node in nodes)
-    entries = [
+    known = [
         entry
         for path, node in nodes
         if shared[id(node)] == 1 and node.tag is None
         for entry in _entry(reader, path, node)
     ]
+    known += _laws(reader)
     lists = list(_files(reader))
     whole = {entry["path"] for entry in lists}  # their words are ticked, and are no fields besides
-    single = [entry for entry in entries if entry["path"].partition("[")[0] not in whole]
+    single = [entry for entry in known if entry["path"].partition("[")[0] not in whole]
     return sorted([*single, *lists], key=lambda entry: entry["start"])
+
+
+def bare(source: Source) -> str:
+    """The text of a recipe without its comments, and without the lines that hold nothing else."""
+    marks = [first for first, _ in comments(source)]
+    kept = list[str]()
+    for start, end in pairwise([*source.starts, len(source.text)]):
+        line, place = source.text[start:end], bisect_left(marks, start)
+        if place == len(marks) or marks[place] >= end:
+            kept.append(line)
+        elif said := source.text[start : marks[place]].rstrip():
+            kept.append(said + line[len(line.rstrip("\r\n")) :])
+    return "".join(kept)
 
 
 def _read(source: Source, root: Mapping) -> Reader:
@@ -209,6 +318,33 @@ def _files(reader: Reader) -> Iterator[dict[str, Any]]:
     words = [item.text for item in node.items if isinstance(item, Scalar)]
     about = {"path": "export.files", "about": field.about, "text": raw, "kind": "list"}
     yield {**about, **place, "choices": choices, "words": words}
+
+
+def _laws(reader: Reader) -> Iterator[dict[str, Any]]:
+    """The laws of segments that give none: the default, and what stands before a law where one is put in."""
+    for path, node in _mappings(reader.source.root):
+        given = entries(node)
+        if "law" in given or {"rise", "return", "to"}.isdisjoint(given):
+            continue
+        field = field_at(reader.root, f"{path}.law", reader.kinds)
+        if field is None or not field.default:
+            continue
+        key, value = node.entries[-1]
+        place = _utf16(reader.source.text, reader.source.index(value.end))
+        before = ", law: " if node.flow else f"\n{' ' * (key.mark[1] - 1)}law: "
+        about = {"path": f"{path}.law", "about": field.about, "text": field.default, "start": place, "end": place}
+        yield {**about, "kind": "choice", "choices": _words(field), "before": before}
+
+
+def _mappings(node: Node, path: str = "") -> Iterator[tuple[str, Mapping]]:
+    """Every mapping of a tree with its path."""
+    if isinstance(node, Sequence):
+        for i, item in enumerate(node.items):
+            yield from _mappings(item, join(path, i))
+    elif isinstance(node, Mapping):
+        yield path, node
+        for key, value in entries(node).items():
+            yield from _mappings(value, join(path, key))
 
 
 def _words(field: Field) -> list[str]:
@@ -248,12 +384,15 @@ def _entry(reader: Reader, path: str, node: Scalar) -> Iterator[dict[str, Any]]:
 
 
 def _number(reader: Reader, field: Field, node: Scalar, shown: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """A field of a number: its value, unit and bounds; the place is that of the number without the unit."""
+    """A field of a number: its value, None where it is none, unit and bounds; its place is without the unit."""
     number, unit = split_unit(node.text)
+    value: float | None
     try:
         value = read_number(number)
-    except Complaint:
-        return
+    except Complaint:  # a word that stands in its place, such as rest, or a fault, whose box stays
+        if field.kind not in NUMBERS:
+            return
+        number, unit, value = node.text, None, None
     if not node.plain:
         shown = {**shown, "start": shown["start"] + 1}
     own = reader.unit(field.unit or field.kind)
@@ -264,13 +403,19 @@ def _number(reader: Reader, field: Field, node: Scalar, shown: dict[str, Any]) -
         "end": shown["start"] + len(number),
         "value": value,
         "unit": unit or own,
-        "units": list(units_for(own)),
+        "units": _sizes(own),
         "whole": field.kind is Kind.INTEGER,
         "odd": field.odd,
         "least": field.at_least if field.above is None else field.above,
         "most": field.at_most,
         "open": field.above is not None,
     }
+
+
+@cache
+def _sizes(own: str) -> dict[str, float]:
+    """The units that a number may carry, each in the unit of its field."""
+    return {own: 1.0} | {unit: read_quantity(f"1 {unit}", own) for unit in units_for(own)}
 
 
 def _utf16(text: str, index: int) -> int:
@@ -284,7 +429,7 @@ def more(name: str, text: str) -> dict[str, Any]:
         return {"more": []}
     table = recipe_table()
     reader = Reader(source, READERS, table)
-    read_values(reader, registry.names_with_record())
+    read_values(reader, KEYS.answering())
     return {"more": list(_absent(reader, source.root, table))}
 
 
@@ -313,6 +458,22 @@ def added(name: str, text: str, path: str, value: str) -> dict[str, Any]:
     except yaml.YAMLError:
         return {"faults": [_sentence(f"{path}: {value} is no value of YAML: check quotes and brackets")]}
     return {"text": set_value(Source.of(text, name), path, plain)}
+
+
+def with_segments(name: str, text: str, change: str, index: int, at: float) -> dict[str, Any]:
+    """The text of a recipe with its segments changed as `segments.CHANGES` tells, and the segment chosen then."""
+    source = Source.of(text, f"{FOLDER}/{name}.yaml")
+    new, chosen = changed(source, camgeo.design(_recipe(name, source)), change, index, at)
+    return {"text": new, "chosen": chosen}
+
+
+def with_table(name: str, text: str, table: str) -> dict[str, Any]:
+    """The text of a recipe whose motion is a table; of a cam without a motion that of a disc cam with a roller."""
+    source = Source.of(text, name)
+    cam = entries(source.root).get("cam") if isinstance(source.root, Mapping) else None
+    if not isinstance(cam, Mapping) or "motion" not in entries(cam):
+        source = Source.of(starter("disc-roller"), name)
+    return {"text": set_value(source, "cam.motion", {"table": table})}
 
 
 def converted(name: str, text: str, units: Length) -> dict[str, Any]:
@@ -382,7 +543,7 @@ def make(name: str, text: str) -> dict[str, Any]:
     if PAGE.kind not in {request.kind for request in recipe.export.files}:
         recipe = replace(recipe, export=replace(recipe.export, files=(*recipe.export.files, PAGE)))
     shutil.rmtree(OUT, ignore_errors=True)
-    report = camgeo.export(recipe, OUT)
+    report = camgeo.export(recipe, OUT, progress=lambda stage: say(stage))  # noqa: PLW0108 - it is replaced
     folder = report.path
     if folder is None:
         raise AssertionError(report)
@@ -390,12 +551,65 @@ def make(name: str, text: str) -> dict[str, Any]:
     page = next(path for path in files if path.suffix == ".html")
     output = _judged(report, page.read_text("utf-8"))
     kept = files if report.ok else [path for path in files if path.suffix in {".html", ".json"}]
-    bundle = Path(OUT) / f"{recipe.name}.zip"
+    return {**output, "files": [{"name": path.name, "path": str(path)} for path in kept]}
+
+
+def zipped(name: str, text: str, files: list[str]) -> dict[str, Any]:
+    """Files that lie in the folder, and the recipe, as a zip."""
+    say("the files")
+    bundle = Path(OUT) / f"{name}.zip"
+    bundle.parent.mkdir(parents=True, exist_ok=True)
     with ZipFile(bundle, "w", ZIP_DEFLATED) as archive:
-        for path in kept:
-            archive.writestr(ZipInfo(f"{recipe.name}/{path.name}"), path.read_bytes(), ZIP_DEFLATED)
-        archive.writestr(ZipInfo(f"{recipe.name}/{name}.yaml"), text, ZIP_DEFLATED)
-    return {**output, "files": [{"name": path.name, "path": str(path)} for path in (*kept, bundle)]}
+        for file in files:
+            archive.writestr(ZipInfo(f"{name}/{file}"), (Path(FOLDER) / file).read_bytes(), ZIP_DEFLATED)
+        archive.writestr(ZipInfo(f"{name}/{name}.yaml"), text, ZIP_DEFLATED)
+    return {"files": [{"name": bundle.name, "path": str(bundle)}]}
+
+
+def paper(name: str, text: str) -> dict[str, Any]:
+    """The contours of each disc of a recipe's cam, with its openings, as a PDF at true size."""
+    from camgeo.output.part_geometry import contours_of, openings_of, rim_of
+
+    say("the contour")
+    recipe = _recipe(name, text)
+    job = _job(recipe)
+    drawings = []
+    for disc, single in zip(job.design.discs, job.single, strict=True):
+        with job.refusals(FileRequest("dxf")):
+            contours = single.outlines("arcs", min(recipe.export.tolerance, ON_PAPER))
+        outlines = [*contours_of(single.design, contours), *rim_of(single.body), *openings_of(single.body)]
+        drawings.append((f"{recipe.name} {disc.name}".strip(), outlines))
+    say("the sheets")
+    path = Path(OUT) / f"{name}.pdf"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        path.write_bytes(pdf(drawings))
+    except TooManySheetsError as error:
+        raise camgeo.CallError(f"{error}; take the DXF to somebody who plots on rolls") from None
+    return {"files": [{"name": path.name, "path": str(path)}]}
+
+
+def solid(name: str, text: str) -> dict[str, Any]:
+    """The corners of the triangles of a recipe's solid, mm: nine numbers of single precision for each triangle."""
+    from camgeo.output.solid import cam_meshes, foresee
+
+    say("the triangles")
+    job, request = _job(_recipe(name, text)), FileRequest("stl")
+    with job.refusals(request):
+        foresee(job, request)
+    corners = [np.take(disc.standing.points, disc.mesh.triangles, axis=0) for disc in cam_meshes(job, request)]
+    path = Path(OUT) / "triangles"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(np.concatenate(corners).astype("<f4").tobytes())
+    return {"files": [{"name": path.name, "path": str(path)}]}
+
+
+def _job(recipe: Recipe) -> Job:
+    """What the files of a recipe are made from; raises CallError where a failed check leaves no contour."""
+    design = camgeo.design(recipe)
+    if not design.exact.contours:
+        raise camgeo.CallError("there is no contour: a check fails")
+    return Job.of(recipe, design.exact)
 
 
 def absent(name: str, text: str) -> dict[str, Any]:
@@ -429,10 +643,13 @@ def _judged(report: Report, page: str) -> dict[str, Any]:
 # --- files of others --------------------------------------------------------------------------------------------------
 
 
-def verify(name: str, text: str, file: str, units: str) -> dict[str, Any]:
-    """Judge somebody's file by the recipe: its page, and the report."""
+def verify(name: str, text: str, file: str, units: str, gap: str = "") -> dict[str, Any]:
+    """Judge somebody's file by the recipe: its page, and the report. `gap` is a length as for a follower's."""
+    say("the recipe")
     recipe = _recipe(name, text)
-    report = camgeo.verify(recipe, Path(FOLDER) / file, units=units or None, page=True)
+    say("the file and the motion on it")
+    within = _length("gap", gap) / recipe.mm if gap else None
+    report = camgeo.verify(recipe, Path(FOLDER) / file, units=units or None, gap=within, page=True)
     path = Path(OUT) / "report.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(report.to_json(), "utf-8")
@@ -443,9 +660,13 @@ def verify(name: str, text: str, file: str, units: str) -> dict[str, Any]:
 def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     """The motion that somebody's file gives a follower: in words, its table, its recipe and the page of that.
 
-    Lengths are texts, mm or with their unit; an empty one is none.
+    Lengths are texts, mm or with their unit; an empty one is none. A roller's is its diameter where `diameter` is true.
+    Without a reading it is what the file allows.
     """
     mm = {name: _length(name, text) for name in LENGTHS if (text := follower.pop(name))}
+    if follower.pop("diameter") and "roller" in mm:
+        mm["roller"] *= 0.5
+    say("the file and the motion on it")
     followed = camgeo.follow(
         Path(FOLDER) / file,
         roller=mm.get("roller"),
@@ -454,10 +675,14 @@ def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
         offset=mm.get("offset", 0.0),
         arm=tuple(mm[name] for name in ("pivot", "arm") if name in mm) or None,
         at=(mm.get("x", 0.0), mm.get("y", 0.0)),
-        reading=mm.get("reading", 0.01),
+        reading=mm.get("reading", READING),
         units=follower.pop("units") or None,
+        gap=mm.get("gap"),
+        across=follower.pop("across") or None,
         **follower,
     )
+    if "reading" not in mm:  # a motion no nearer than the facets of a polygon are
+        followed = replace(followed, reading=float(upward(max(READING, followed.facets or 0.0), 2)))
     stem = re.sub(r"[^A-Za-z0-9_-]", "-", Path(file).stem)
     folder = Path(OUT)
     folder.mkdir(parents=True, exist_ok=True)
@@ -465,20 +690,29 @@ def follow(file: str, follower: dict[str, Any]) -> dict[str, Any]:
     output: dict[str, Any] = {"verdict": summary(followed), "page": "", "ok": True}
     output["files"] = [{"name": f"{stem}-motion.csv", "path": str(folder / f"{stem}-motion.csv")}]
     table = f"{stem}-lifts.csv"
+    say("a recipe of this motion, and the file by it")
     try:
         recipe = followed.recipe(table)
     except camgeo.CallError as error:
         return {**output, "verdict": f"{output['verdict']}\nNo recipe is made of it: {error}"}
     (Path(FOLDER) / table).write_text(followed.lifts(), "utf-8")
     output |= {"name": stem, "recipe": recipe, "tables": {table: followed.lifts()}}
-    if followed.at == (0.0, 0.0):
-        report = judged_by_recipe(followed)
-        verdict = f"{output['verdict']}\nThe file by the recipe of this motion: {report}"
-        output |= {"page": report.page or "", "ok": report.ok, "verdict": verdict}
-    return output
+    if followed.unjudged:  # the curves of its motion then stand on the page of that recipe's own cam
+        shown = _recipe(stem, recipe)
+        made = camgeo.export(replace(shown, export=replace(shown.export, files=(PAGE,))), OUT).path
+        told = f"The page is of the cam by the recipe of this motion. Not judged is the file: {_why(followed.unjudged)}"
+        page = "" if made is None else next(made.glob("*.html")).read_text("utf-8")
+        return {**output, "page": page, "verdict": f"{output['verdict']}\n{told}"}
+    report = judged_by_recipe(followed)
+    verdict = f"{output['verdict']}\nThe file by the recipe of this motion: {report}"
+    return {**output, "page": report.page or "", "ok": report.ok, "verdict": verdict}
 
 
-# needs: follow
+def _why(unjudged: str) -> str:
+    """Why a file is not judged, without what a caller could leave out."""
+    return unjudged.rpartition(": ")[0]
+
+
 def _length(name: str, text: str) -> float:
     """A length as it stands in a box, mm."""
     try:
@@ -490,10 +724,16 @@ def _length(name: str, text: str) -> float:
 CALLS: dict[str, Callable[..., dict[str, Any]]] = {
     "picture": picture,
     "design": design,
+    "beside": beside,
     "more": more,
     "added": added,
+    "with_segments": with_segments,
+    "with_table": with_table,
     "converted": converted,
     "make": make,
+    "zipped": zipped,
+    "paper": paper,
+    "solid": solid,
     "absent": absent,
     "verify": verify,
     "follow": follow,  # needs: follow

@@ -1,5 +1,5 @@
 // The one worker: Python with camgeo. A message { id, call, input, files } is answered by { id, output, files } or
-// { id, error }; while it begins it says how far it is.
+// { id, error }; while it begins it says how far it is, and a long call at which stage, { say }.
 import { loadPyodide } from "./pyodide/pyodide.mjs";
 
 const parameters = new URL(import.meta.url).searchParams;
@@ -8,6 +8,16 @@ async function bytes(name) {
   const answer = await fetch(new URL(name, import.meta.url));
   if (!answer.ok) throw new Error(`${name}: the server answers ${answer.status}`);
   return answer.arrayBuffer();
+}
+
+// a file while Python waits for it
+function bytesNow(name) {
+  const request = new XMLHttpRequest();
+  request.open("GET", new URL(name, import.meta.url), false);
+  request.responseType = "arraybuffer";
+  request.send();
+  if (request.status !== 200) throw new Error(`${name.split("?")[0]}: the server answers ${request.status}`);
+  return request.response;
 }
 
 async function begin() {
@@ -21,7 +31,12 @@ async function begin() {
   say("camgeo is coming", 0.65);
   python.unpackArchive(await code, "zip", { extractDir: packages });
   say("camgeo is starting", 0.8);
+  python.pyimport("later").install(() => {
+    postMessage({ say: "what reads and writes files is coming" });
+    python.unpackArchive(bytesNow(parameters.get("later")), "zip", { extractDir: packages });
+  });
   const live = python.pyimport("live");
+  live.say = (words) => postMessage({ say: words });
   const gc = python.pyimport("gc");
   gc.collect();
   gc.freeze(); // what is loaded stays: no collection looks at it again

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from camgeo.api.root import Root
 from camgeo.output import pipeline
-from camgeo.recipe.keys import recipe_table
-from camgeo.recipe.recipe import of_source
-from camgeo.registry.root import Root
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,12 +15,6 @@ if TYPE_CHECKING:
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.expected_checks import Foreseen
-
-
-def _settle(recipe: Recipe) -> Recipe:
-    from camgeo.measures.least_angle import with_least_angle
-
-    return with_least_angle(recipe)
 
 
 def _design(recipe: Recipe) -> Design:
@@ -51,7 +43,7 @@ def _explain(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, file
 def _foresee(recipe: Recipe) -> tuple[Foreseen, ...]:
     """Checks that a run of the recipe will make; empty where its motion does not exist."""
     from camgeo.synthesis.expected_checks import foreseen
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     try:
         return foreseen(recipe)
@@ -60,15 +52,12 @@ def _foresee(recipe: Recipe) -> tuple[Foreseen, ...]:
 
 
 ROOT = Root(
-    table=recipe_table,
-    read=of_source,
     design=_design,
     export=_export,
     check=_check,
     judge=pipeline.judge_files,
     claimed=pipeline.judge_claimed,
     show=pipeline.judge_and_show,
-    settle=_settle,
     explain=_explain,
     foresee=_foresee,
 )

@@ -7,9 +7,9 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from camgeo.measures.units import in_units
-from camgeo.report.bound import sign, title, words
 from camgeo.report.document import BELOW, value_text
-from kin.judge import check as judge
+from camgeo.report.limit_words import sign, title, words
+from kin.numeric import check as judge
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -22,9 +22,9 @@ class Check(judge.Check):
     """A figure held against its limit, both in `unit`: a length in the recipe's unit, an angle in degrees.
 
     `sense` is whether the value has to be `at_least` or `at_most` the limit. `value` is None where nothing could be
-    measured, as `detail` explains; such a check does not hold. `at_deg` is the shaft angle of the worst place, None
-    where there is none; `file` is the name of the checked file, None for a check of the design. `surface` names the
-    surface of a cam with several.
+    measured, as `detail` explains; such a check does not hold. `at` is the input at the worst place in `at_unit`, such
+    as the shaft angle, None where there is none; `file` is the name of the checked file, None for a check of the
+    design. `surface` names the surface of a cam with several.
     """
 
     @staticmethod
@@ -32,7 +32,8 @@ class Check(judge.Check):
         """Check in the recipe's units, made from a check in mm."""
         value, unit = in_units(recipe, check.value, check.unit)
         limit, _ = in_units(recipe, check.limit, check.unit)
-        return Check(**vars(check) | {"value": value, "limit": limit, "unit": unit})
+        at, at_unit = in_units(recipe, check.at, check.at_unit)
+        return Check(**vars(check) | {"value": value, "limit": limit, "unit": unit, "at": at, "at_unit": at_unit})
 
     @property
     def title(self) -> str:
@@ -62,8 +63,8 @@ class Check(judge.Check):
             text += f", {self.figure}"
         if self.limit is not None:
             text += f", {words(self._entry())} {self.limit:.6g}"
-        if self.at_deg is not None:
-            text += f", at {self.at_deg:.2f} deg"
+        if self.at is not None:
+            text += f", at {self.at:.2f} {self.at_unit}"
         return f"{text}: {self.detail}" if self.detail else text
 
     def _repr_html_(self) -> str:
@@ -76,25 +77,32 @@ class Check(judge.Check):
 class Figure:
     """A figure of a design in `unit`; `value` is None where it has none, as `detail` explains.
 
-    `at_deg` is the shaft angle of its place, degrees, None without one.
+    `at` is the input at its place in `at_unit`, such as the shaft angle, None without one.
     """
 
     value: float | None
     unit: str
-    at_deg: float | None = None
+    at: float | None = None
     detail: str = ""
+    at_unit: str = "deg"
+
+    @property
+    def at_deg(self) -> float | None:
+        """Shaft angle of its place, degrees; None without one, or where the input is no angle."""
+        return self.at if self.at_unit == "deg" else None
 
     @staticmethod
     def of(recipe: Recipe, measured: Measured) -> Figure:
         """Figure in the recipe's units, made from a figure in mm."""
         value, unit = in_units(recipe, measured.value, measured.unit)
-        return Figure(value, unit, measured.at_deg, measured.detail)
+        at, at_unit = in_units(recipe, measured.at, measured.at_unit)
+        return Figure(value, unit, at, measured.detail, at_unit)
 
     def __str__(self) -> str:
         """Text of the figure with its unit and its place; `none` and the reason without a value."""
         if self.value is None:
             return f"none: {self.detail}" if self.detail else "none"
-        place = "" if self.at_deg is None else f" at {self.at_deg:.2f} deg"
+        place = "" if self.at is None else f" at {self.at:.2f} {self.at_unit}"
         return f"{self.value:.6g} {self.unit}".rstrip() + place
 
 

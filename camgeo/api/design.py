@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design as Exact
-    from kin.judge.check import Check as Checked
     from kin.numeric.arrays import Array
+    from kin.numeric.check import Check as Checked
 
 MOST_POINTS = 1_000_000  # of a contour: more than any file has, and quickly made
 MOST_DERIVATIVE = 6  # greatest order of a derivative of the motion by the shaft angle

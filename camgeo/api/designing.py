@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 from camgeo.api.loading import order_of
 from camgeo.api.log import log_failures
+from camgeo.api.root import root_of
 from camgeo.common.errors import with_packages
-from camgeo.registry.root import root_of
 
 if TYPE_CHECKING:
     from os import PathLike

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, overload
 from camgeo.common.arguments import numbers_of, short_repr, whole_of
 from camgeo.common.errors import CallError
 from kin.law.sources.laws import NAMES, formula, named
+from kin.law.sources.peaks import peaks
 from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from kin.law.programme import Law as Motion
+    from kin.law.normalised import Law as Motion
     from kin.numeric.arrays import Array
 
 MOST_DERIVATIVE = 3  # the jerk
@@ -59,7 +60,7 @@ class Law:
 
 def laws() -> Mapping[str, Law]:
     """Motion laws by their names in recipes, in the order of `camgeo laws`."""
+    pairs = ((law, peaks(law.motion)) for law in map(named, NAMES))
     return {
-        law.name: Law(law.name, formula(law.name), law.peaks.velocity, law.peaks.acceleration, law.peaks.jerk, law)
-        for law in map(named, NAMES)
+        law.name: Law(law.name, formula(law.name), top.velocity, top.acceleration, top.jerk, law) for law, top in pairs
     }

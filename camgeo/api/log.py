@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from camgeo.recipe.recipe import Order
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 
 def library_log() -> logging.Logger | None:

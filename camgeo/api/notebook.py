@@ -57,6 +57,6 @@ def _row(check: Check) -> tuple[str, ...]:
         "ok" if check.ok else "FAILED",
         check.figure,
         check.bound,
-        "" if check.at_deg is None else f"{check.at_deg:.2f}°",
+        "" if check.at is None else f"{check.at:.2f}{'°' if check.at_unit == 'deg' else f' {check.at_unit}'}",
         check.file or "",
     )

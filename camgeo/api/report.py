@@ -26,30 +26,42 @@ if TYPE_CHECKING:
 class Remark:
     """A figure beyond a rule of thumb, which no check limits: value and `rule` in `unit`, and a sentence on it.
 
-    `at_deg` is the shaft angle of its place, degrees, None without one.
+    `at` is the input at its place in `at_unit`, such as the shaft angle, None without one.
     """
 
     name: str
     value: float | None
     rule: float | None
     unit: str
-    at_deg: float | None
+    at: float | None
     sentence: str
+    at_unit: str = "deg"
+
+    @property
+    def at_deg(self) -> float | None:
+        """Shaft angle of its place, degrees; None without one, or where the input is no angle."""
+        return self.at if self.at_unit == "deg" else None
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A follower's motion error over one turn, measured less intended, in `unit`: greatest and rms.
+    """A follower's motion error over its whole input, measured less intended, in `unit`: greatest and rms.
 
-    `at_deg` is the shaft angle of the greatest error, degrees. `dwell_flatness` is the range of the measured position
-    over a dwell, None where the motion has none. Figures that are not finite are None.
+    `at` is the input of the greatest error in `at_unit`, such as the shaft angle. `dwell_flatness` is the range of the
+    measured position over a dwell, None where the motion has none. Figures that are not finite are None.
     """
 
     max: float | None
     rms: float | None
     unit: str
-    at_deg: float | None
+    at: float | None
     dwell_flatness: float | None
+    at_unit: str = "deg"
+
+    @property
+    def at_deg(self) -> float | None:
+        """Shaft angle of the greatest error, degrees; None without one, or where the input is no angle."""
+        return self.at if self.at_unit == "deg" else None
 
 
 @dataclass(frozen=True)
@@ -122,7 +134,7 @@ class Report(Mapping[str, JSON]):
         path = self._paths[index] if self._paths else None if self.path is None else self.path / name
         motion = entry.get("motion")
         names = ("kind", "pieces", "tolerance", "geometry_error", "measured_error", "perimeter", "area")
-        motion_error = None if motion is None else Motion(*(motion[name] for name in Motion.__dataclass_fields__))
+        motion_error = None if motion is None else Motion(**_fields_of(Motion, {"dwell_flatness": None, **motion}))
         return File(name, path, **{name: entry.get(name) for name in names}, motion=motion_error)
 
     @cached_property
@@ -213,9 +225,10 @@ class Report(Mapping[str, JSON]):
         )
 
 
-def _fields_of(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
+def _fields_of(kind: type[Check | Remark | Motion], entry: dict[str, Any]) -> dict[str, Any]:
     """Values of an entry of the report for the fields of its class."""
-    return {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}
+    place = {"at": entry["at_deg"]} if "at_deg" in entry else {}
+    return place | {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}
 
 
 def explanation(check: dict[str, Any], report: dict[str, Any], recipe: Order, file_name: str | None = None) -> str:
@@ -223,6 +236,6 @@ def explanation(check: dict[str, Any], report: dict[str, Any], recipe: Order, fi
 
     `file_name` replaces the path of the recipe's file in the text.
     """
-    from camgeo.registry.root import root_of
+    from camgeo.api.root import root_of
 
     return root_of(recipe).explain(check, report, recipe, file_name)

@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING
 from camgeo.api.loading import order_of
 from camgeo.api.log import library_log, log_failures, stage_reporter
 from camgeo.api.report import Report
+from camgeo.api.root import root_of
 from camgeo.common.arguments import demand_callable, demand_type, number_of, path_of, short_repr, texts_of
 from camgeo.common.errors import CallError, SurroundingsError, with_packages
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
+from camgeo.output import claims
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
-from camgeo.registry.root import root_of
+from camgeo.registry.root import reading
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST
+from camgeo.schema.file_bytes import FOLDER, path_fault
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -93,10 +96,11 @@ def verify(
 
     `recipe` is a recipe or the path of its file. `tolerance`, in the recipe's unit, is by default that of the recipe's
     file of the same name, or of its export. `units` is the unit of files that state none. Ends in drawings within `gap`
-    of one other, in the recipe's unit and at most the tolerance, are joined by a line; the gap is added to the errors
-    of contour and motion. With `page` the report has the page that shows the files, `Report.page`. `options` are those
-    of capabilities, as `camgeo verify --help` lists them: further checks, and how files that a capability judges are to
-    be read, such as points. A file whose content is faulty raises nothing: the check `readable` fails.
+    of one other, in the recipe's unit, are joined; the gap is added to the errors of contour and motion, which one
+    above the tolerance fails, with its figure. With `page` the report has the page that shows the files, `Report.page`.
+    `options` are those of capabilities, as `camgeo verify --help` lists them: further checks, and how files that a
+    capability judges are to be read, such as points. A file whose content is faulty raises nothing: the check
+    `readable` fails.
 
     Raises RecipeErrors where there is no such cam, CallError for a path that is no file of a known kind, for a file
     given twice, points that cannot be judged, and a tolerance, gap or unit that makes no sense; UnitsError where a file
@@ -110,7 +114,7 @@ def verify(
     if units is not None:
         demand_type("units", units, str, "a str")
     demand_type("page", page, bool, "a bool")
-    known_options = {name for judge in registry.judges().values() for name in judge.options}
+    known_options = claims.options()
     judge_options = {name: value for name, value in options.items() if name in known_options}
     used = _with_options(
         "verify", recipe, {name: value for name, value in options.items() if name not in judge_options}
@@ -139,13 +143,14 @@ def _verify(
     from kin.read.formats import suffixes
 
     # files that a capability claims, such as measured points, are judged by it in a call of their own
-    path_faults = {path: _path_fault(path) for path in paths}
-    claimed = [path for path in paths if not path_faults[path] and registry.judge_of(path, judge_options)]
+    path_faults = {path: path_fault(path) for path in paths}
+    claimed = [path for path in paths if not path_faults[path] and claims.judge_of(path, judge_options)]
     if claimed:
         has_file_bounds = within is not None or gap_width is not None or page
         return _judge_claimed(recipe, paths, claimed, units, judge_options, has_file_bounds=has_file_bounds)
     # all faults of the call are collected, and raised together
     path_faults |= {path: _size_fault(path) for path in paths if not path_faults[path]}
+    path_faults |= {path: f"{FOLDER}; name the files in it" for path in paths if path_faults[path] == FOLDER}
     readable = [path for path in paths if not path_faults[path]]
     faults = [f"{escaped(str(path))}: {path_faults[path]}" for path in paths if path_faults[path]]
     repeated = [path for path in dict.fromkeys(readable) if readable.count(path) > 1]
@@ -161,7 +166,7 @@ def _verify(
     if within is not None and not 0.0 < within <= MOST:
         faults.append(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {within!r}")
     if gap_width is not None and not 0.0 < gap_width <= MOST:
-        faults.append(f"a gap is a length above 0 and at most the tolerance, not {gap_width!r}")
+        faults.append(f"a gap is a length above 0, not {gap_width!r}")
     if gap_width is not None and not any(_is_drawing(path) for path in paths):
         faults.append("a gap is one between ends in a drawing: leave it out, as none of the files is one")
     if units is not None and units not in UNIT_MM:
@@ -175,7 +180,9 @@ def _verify(
     if not page:
         return Report(recipe, kind.judge(used, paths, within, unit, gap_width), None, tuple(paths))
     if kind.show is None:
-        raise CallError(f"{recipe.name}: a page shows the files of one cam; give {kind.instead}, or leave page out")
+        raise CallError(
+            f"{recipe.name}: a page shows the files of one cam; give {reading(used.root).instead}, or leave page out"
+        )
     report, text = kind.show(used, paths, within, unit, gap_width)
     return Report(recipe, report, None, tuple(paths), page=text)
 
@@ -193,7 +200,7 @@ def _judge_claimed(
 
     `has_file_bounds` is whether the call gives a tolerance, a gap or a page.
     """
-    from camgeo.registry.capability import FileCall
+    from camgeo.output.extension import FileCall
 
     faults = [f"{escaped(str(path))}: give it in a call of its own" for path in paths if path not in claimed]
     repeated = [path for path in dict.fromkeys(paths) if paths.count(path) > 1]
@@ -206,7 +213,7 @@ def _judge_claimed(
     if faults:
         raise CallError(*faults)
     unit = None if units is None else UNIT_MM[units]
-    judge = registry.judge_of(claimed[0], options)
+    judge = claims.judge_of(claimed[0], options)
     report = root_of(recipe).claimed(recipe, judge, FileCall(paths, unit, options))
     return Report(recipe, report, None, tuple(paths))
 
@@ -256,18 +263,6 @@ def _is_drawing(path: Path) -> bool:
 
     name = suffixes().get(path.suffix.lower())
     return name is not None and READ[name].contents == "drawing"
-
-
-def _path_fault(path: Path) -> str:
-    """Reason why a path leads to no file; empty where it does."""
-    try:
-        if path.is_file():
-            return ""
-        if path.is_dir():
-            return "a folder; name the files in it"
-        return "not a regular file" if path.exists() else "the file does not exist"
-    except OSError as error:  # a name too long, a folder without permission
-        return f"cannot be read: {error.strerror or error}"
 
 
 def _size_fault(path: Path) -> str:

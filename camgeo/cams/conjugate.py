@@ -29,7 +29,7 @@ from camgeo.cams.guided import (
 from camgeo.common.rounding import upward
 from camgeo.schema.fields import MOST, Field, Kind, length, mapping
 from kin.law.contacts import LEADING, TRAILING, Contact, Flat, Oscillating, Translating
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from camgeo.cams.guided import Holding
 from camgeo.cams.preload import PRELOAD, build_preload
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, find_size
 from camgeo.motions.by_motion import ByMotion
+from camgeo.motions.inputs import TURN
 from camgeo.motions.motion import check_whole_turn, motion_field
 from camgeo.motions.segments import LEAST
 from camgeo.schema.fields import Field, FieldTable, Kind, coordinate, length
@@ -95,7 +96,7 @@ TABLE = FieldTable(
         Field("follower", Kind.OWN, "what follows the cam, on a stem or an arm", required=True, form=FOLLOWER),
         TRACK,
         CONJUGATE,
-        motion_field("motion", Kind.STROKE, "motion over one turn, 360 degrees", whole_turn=True, required=True),
+        motion_field("motion", Kind.STROKE, "motion over one turn, 360 degrees", over=TURN, required=True),
         PRELOAD,
         UNDERCUT,
     ),
@@ -165,7 +166,7 @@ def _check_open(cam: Values, reader: Reader) -> None:
 
 def _size(cam: Values, reader: Reader) -> None:
     """Find the least size and put its cam among the values; note a fault where there is none."""
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     follower = cam["follower"]
     sizing = Sizing.of(cam["sizing"], follower)

@@ -147,7 +147,7 @@ class DiscCam(GuidedCam):
     @property
     def prime(self) -> float:
         """Radius of the prime circle, mm; raises IntentError where the roller does not fit the opening."""
-        from kin.law.programme import IntentError
+        from kin.law.normalised import IntentError
 
         prime = self.base_radius + self.side * self.touch.radius
         if not prime > 0.0:

@@ -17,7 +17,7 @@ from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.motions.position import ArmPosition, LiftPosition, Position
 from kin.law.contacts import KnifeEdge, Roller, Shoe, Translating
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:

@@ -28,7 +28,7 @@ from camgeo.curve.disc import SwingingFace, face_shape
 from camgeo.curve.extremes import greatest, least, subdivide
 from camgeo.curve.moving_frame import CentreShape, Oscillating, Translating
 from camgeo.curve.rates import cut, stretches
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.numeric import elementary
 from kin.numeric.elementary import Jet
 

@@ -123,7 +123,7 @@ def _nearest(
 
 def _greatest_share(law: Callable[[float], Transmission]) -> float:
     """Greatest share of the swing, below 1 and to a thousandth, with which a law is possible; 0 if none is found."""
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     low, high = 0.0, 1.0
     # a possible share first, then halving between it and the least impossible one
@@ -193,7 +193,7 @@ class PairCam(Cam):
 
         For routes by D or by a swing its message has the share of D or swing with which a law is possible.
         """
-        from kin.law.programme import IntentError
+        from kin.law.normalised import IntentError
 
         try:
             return self._law()
@@ -207,7 +207,7 @@ class PairCam(Cam):
             message = (
                 f"{error.message}; with each {factor} multiplied by {downward(share, 3)} such a motion is possible"
             )
-            raise IntentError(message, error.field, error.at_deg) from error
+            raise IntentError(message, error.field, error.at, error.at_unit) from error
 
     def _law(self, share: float = 1.0) -> Transmission:
         """The law with this share of the recipe's D or strokes."""

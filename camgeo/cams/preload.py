@@ -113,7 +113,7 @@ def with_preload(nominal: ExactCam, preload: Preload | None) -> ExactCam:
     """
     if preload is None:
         return nominal
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     if not nominal.follower.closure:
         raise IntentError(

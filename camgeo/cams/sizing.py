@@ -130,7 +130,7 @@ class SizedAdvice(Advice):
 
         Where a limit on the return below 45 degrees bounds the size, the base radius for 45 follows if much smaller.
         """
-        from kin.law.programme import IntentError
+        from kin.law.normalised import IntentError
 
         cam, limits, bounding = self.cam, self.cam.sizing, _binding_limits(self.cam, exact)
         # sizes other than the base radius, by the last part of their keys; what only rounding left of an offset is 0
@@ -190,7 +190,7 @@ def find_size(cam: SizedDiscCam) -> SizedDiscCam:
 
     Raises IntentError where no size keeps them, and TypeError for a round touch on an arm without a length.
     """
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     match cam.guide, cam.nominal():
         case Translating(), ExactGuided(law=law):
@@ -226,7 +226,7 @@ def _arm(cam: SizedDiscCam, motion: Displacement, length: float, side: Side) -> 
     """
     from camgeo.cams.least_size import least_arm
     from camgeo.curve import moving_frame
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     limits = cam.sizing
     pivot = limits.place
@@ -248,7 +248,7 @@ def _face(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
     Raises IntentError for limits of the pressure angle, and where every base radius keeps the radius of curvature.
     """
     from camgeo.cams.least_size import least_face, least_swing
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     limits = cam.sizing
     if limits.angles is not None or limits.radius is None:
@@ -269,7 +269,7 @@ def _face(cam: SizedDiscCam, motion: Displacement) -> SizedDiscCam:
 
 def _demand_kept(cam: SizedDiscCam) -> None:
     """Raise IntentError where the exact figures of a cam break the limits of its `sizing`."""
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     limits = cam.sizing
     exact = cam.exact()
@@ -340,7 +340,7 @@ def _keep_outer_radius(cam: SizedDiscCam, motion: Displacement, guide: _GuideT) 
 
 
 def _base(cam: DiscCam, prime: float) -> float:
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     base = prime - cam.side * cam.touch.radius
     if not base > 0.0:

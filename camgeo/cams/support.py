@@ -202,7 +202,7 @@ def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
     2 pi times the mean radius is the perimeter, wherever the shaft is. Otherwise raises IntentError for a field, with
     lengths in a unit of `scale` mm.
     """
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     p = lift.derivatives(np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False), 0)[0]
     mean, farthest = float(np.mean(p)), float(np.abs(p).max())
@@ -225,7 +225,7 @@ def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
 def _formula(shape: FormulaShape, shaft: tuple[float, float]) -> Lift:
     from kin.law.formula.formula import Formula
     from kin.law.from_formula import lift_from_formula
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     lift = lift_from_formula(Formula(shape.text), shaft, shape.scale)
     t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
@@ -326,7 +326,7 @@ def check(cam: Values, reader: Reader) -> None:
 
 def _least_angle(sides: int, angles: tuple[float, ...] = (), **_: float) -> float:
     """Least angle, rad, by which the cam turns about a corner; the regular polygon's where no polygon has `angles`."""
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
     from kin.law.reuleaux import closed_angles
 
     try:

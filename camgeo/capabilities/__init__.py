@@ -1,4 +1,4 @@
-"""What stands beside the core: each folder one capability, which registers itself by a record.
+"""What stands beside the core: each folder one capability, which registers itself by a label.
 
 The names below are what type checkers are told of `import camgeo`; when it runs, it asks the labels for them.
 """

@@ -8,9 +8,11 @@ from here. The judge (kin) knows nothing of recipes: the checks of files that it
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 from camgeo.checks import remedies
+from camgeo.checks.declaration import Declared
+from camgeo.checks.extension import CHECKING, HOLES_OF, Checks
 from camgeo.part.features import FEATURES
 from camgeo.recipe.figures import (
     BACKLASH,
@@ -26,103 +28,18 @@ from camgeo.recipe.figures import (
 )
 from camgeo.recipe.figures import DWELL as LONGEST_DWELL
 from camgeo.recipe.figures import FACE_WIDTH as WIDTH
-from camgeo.registry.capability import always
 from camgeo.registry.gathered import Gathered
-from kin.numeric.records import dataclass
+from camgeo.registry.slot import always
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from camgeo.cams.follower import Follower
+    from camgeo.checks.declaration import CheckFacts, Entry, Exact, OfFile
     from camgeo.part.feature import Feature, FeatureCheck
+    from camgeo.recipe.design_figure import DesignFigure
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.figures import DesignFigure
     from camgeo.recipe.recipe import Recipe
 
 STANDS = "the mechanism does not make a full turn: it has no motion over the shaft angle"
 LIMIT = "limit:"  # before the name of the figure that a recipe limits
-
-
-@dataclass(frozen=True)
-class CheckFacts:
-    """Facts that decide which checks are made: the recipe and the follower of its motion.
-
-    In a run `trimmed` is whether an undercut of the contour is trimmed, `turns` whether the linkage turns right round,
-    True without one.
-    """
-
-    recipe: Recipe
-    follower: Follower
-    trimmed: bool = False
-    turns: bool = True
-
-    @property
-    def roller(self) -> bool:
-        """Whether the follower touches the cam with a radius: a roller or a curved shoe."""
-        return self.recipe.cam.touch.radius > 0.0
-
-    @property
-    def yoke(self) -> bool:
-        """Whether two parallel faces hold the cam."""
-        return self.follower.breadth is not None
-
-    @property
-    def swings(self) -> bool:
-        """Whether the follower swings: its position is an angle, not a length."""
-        return self.recipe.cam.arrangement.unit == "deg"
-
-    @property
-    def linked(self) -> bool:
-        """Whether the recipe has a linkage."""
-        return self.recipe.linkage is not None
-
-
-Exact: TypeAlias = "Callable[[CheckFacts], bool]"
-OfFile: TypeAlias = "Callable[[CheckFacts, FileRequest], bool]"
-
-
-@dataclass(frozen=True)
-class Declared:
-    """Declaration of one check.
-
-    units      units that it may have, lengths as mm
-    exact      whether it is made for the exact cam, its motion and mechanism; None: never
-    of_file    whether it is made for a file; None: never
-    why_not    reason why it is not made, for the report; empty where it is made or no reason is reported
-    field      path of the recipe's field that influences it most; `own_field` replaces it where the recipe has that
-    remedy     sentence on a change that would let it hold, empty where none is known; None: there is none, or the
-               detail of the check has it
-    backlash   whether it concerns the play between contour and follower
-    between    whether it is made once for a pair of discs, with the last of their files
-    in_frame   whether with a linkage it concerns the cam in its frame, so that its place is the relative angle
-    strict     whether a figure equal to its limit fails; `strict_at` are the limits at which it fails in any case
-    after      check behind which the check of a capability or of a feature stands
-    """
-
-    name: str
-    units: tuple[str, ...]
-    exact: Exact | None = None
-    of_file: OfFile | None = None
-    why_not: Callable[[CheckFacts], str] | None = None
-    field: str = ""
-    own_field: str = ""
-    remedy: remedies.Remedy | None = None
-    backlash: bool = False
-    between: bool = False
-    in_frame: bool = False
-    strict: bool = False
-    strict_at: tuple[float, ...] = ()
-    after: str = ""
-
-    def place(self, recipe: Recipe, file: str | None) -> str:
-        """Path of the recipe's field that influences the check most.
-
-        `file` is the name of the checked file, None for a check of the exact cam.
-        """
-        section, _, name = self.own_field.partition(".")
-        if name and getattr(getattr(recipe, section), name) is not None:
-            return self.own_field
-        return self.field or ("export.files" if file else "cam")
 
 
 # --- conditions -------------------------------------------------------------------------------------------------------
@@ -130,127 +47,139 @@ class Declared:
 
 def _named(name: str) -> Exact:
     """Condition that the follower makes a check of this name on its intended motion."""
-    return lambda scene: name in scene.follower.checks
+    return lambda facts: name in facts.follower.checks
 
 
-def _dwells(scene: CheckFacts) -> bool:
-    dwell = scene.recipe.dwell
-    return scene.linked and dwell is not None and dwell.at_least is not None
+def _dwells(facts: CheckFacts) -> bool:
+    dwell = facts.recipe.dwell
+    return facts.linked and dwell is not None and dwell.at_least is not None
 
 
 def _contour(_: CheckFacts, file: FileRequest) -> bool:
     return file.format.contour
 
 
-def _ground_or_drawn(scene: CheckFacts, file: FileRequest) -> bool:
-    return file.form.ground or file.form.curve or _contour(scene, file)
+def _ground_or_drawn(facts: CheckFacts, file: FileRequest) -> bool:
+    return file.form.ground or file.form.curve or _contour(facts, file)
 
 
-def _of_a_drive(_: CheckFacts, file: FileRequest) -> bool:
-    return file.as_ == "controller"
+def of_a_drive(file: FileRequest) -> tuple[str, ...]:
+    """Names of the checks of a table for a drive, by what its controller makes of the rows; none of other files."""
+    from camgeo.files.controllers import CONTROLLERS
+
+    if not file.form.drive:
+        return ()
+    controller = CONTROLLERS[file.own["for"]]
+    rate = "velocity-step" if controller.join == "line" else "interpolation-acceleration"
+    stated = ("stated-error",) if controller.stated else ()
+    return ("interpolation", "interpolation-velocity", rate, *stated)
 
 
-def _stated(scene: CheckFacts, file: FileRequest) -> bool:
-    return file.form.ground or _of_a_drive(scene, file)
+def _of_a_drive(name: str) -> OfFile:
+    return lambda _, file: name in of_a_drive(file)
+
+
+def _stated(_: CheckFacts, file: FileRequest) -> bool:
+    return file.form.ground or "stated-error" in of_a_drive(file)
 
 
 def _drawing(_: CheckFacts, file: FileRequest) -> bool:
     return file.format.contour and not file.format.solid
 
 
-def _solid(scene: CheckFacts, file: FileRequest) -> bool:
-    return _contour(scene, file) and file.format.solid
+def _solid(facts: CheckFacts, file: FileRequest) -> bool:
+    return _contour(facts, file) and file.format.solid
 
 
-def _reached(scene: CheckFacts, file: FileRequest) -> bool:
-    manufacture = scene.recipe.manufacture
+def _reached(facts: CheckFacts, file: FileRequest) -> bool:
+    manufacture = facts.recipe.manufacture
     is_drawn = file.format.path and file.compensation is None and manufacture is not None and manufacture.layer
     return is_drawn or file.format.program
 
 
-def _ringed(scene: CheckFacts, file: FileRequest) -> bool:
-    return scene.recipe.part.outer is not None and _contour(scene, file) and not file.format.program
+def _ringed(facts: CheckFacts, file: FileRequest) -> bool:
+    return facts.recipe.part.outer is not None and _contour(facts, file) and not file.format.program
 
 
-def _bored(scene: CheckFacts, file: FileRequest) -> bool:
-    return scene.recipe.part.bore is not None and _contour(scene, file) and file.format.bored(scene.recipe)
+def _bored(facts: CheckFacts, file: FileRequest) -> bool:
+    return facts.recipe.part.bore is not None and _contour(facts, file) and HOLES_OF[file.kind].bored(facts.recipe)
 
 
-def _drilled(scene: CheckFacts, file: FileRequest) -> bool:
-    return _contour(scene, file) and file.format.drilled(scene.recipe)
+def _drilled(facts: CheckFacts, file: FileRequest) -> bool:
+    return _contour(facts, file) and HOLES_OF[file.kind].drilled(facts.recipe)
 
 
-def _shaped(scene: CheckFacts, file: FileRequest) -> bool:
-    return _contour(scene, file) and not file.format.program
+def _shaped(facts: CheckFacts, file: FileRequest) -> bool:
+    return _contour(facts, file) and not file.format.program
 
 
-def _in_a_yoke(scene: CheckFacts, file: FileRequest) -> bool:
-    return scene.yoke and scene.follower.closure != "form-closure" and _contour(scene, file)
+def _in_a_yoke(facts: CheckFacts, file: FileRequest) -> bool:
+    return facts.yoke and facts.follower.closure != "form-closure" and _contour(facts, file)
 
 
-def _form_closed(scene: CheckFacts, file: FileRequest) -> bool:
-    return scene.follower.closure == "form-closure" and _contour(scene, file)
+def _form_closed(facts: CheckFacts, file: FileRequest) -> bool:
+    return facts.follower.closure == "form-closure" and _contour(facts, file)
 
 
-def _driven(scene: CheckFacts, file: FileRequest) -> bool:
-    return scene.linked and _contour(scene, file) and file.compensation is None
+def _driven(facts: CheckFacts, file: FileRequest) -> bool:
+    return facts.linked and _contour(facts, file) and file.compensation is None
 
 
-def _dwelling(scene: CheckFacts, file: FileRequest) -> bool:
-    return _dwells(scene) and _driven(scene, file)
+def _dwelling(facts: CheckFacts, file: FileRequest) -> bool:
+    return _dwells(facts) and _driven(facts, file)
 
 
-def run_with(scene: CheckFacts, file: FileRequest) -> bool:
+def run_with(facts: CheckFacts, file: FileRequest) -> bool:
     """Whether the motion of a file drives a computed run, as of dynamics.
 
     It does where the file shows the part itself, uncompensated, and the recipe has no linkage.
     """
-    return not scene.linked and file.format.part and file.compensation is None
+    return not facts.linked and file.format.part and file.compensation is None
 
 
 # --- why a check is not made ------------------------------------------------------------------------------------------
 
 
-def _no_swing(scene: CheckFacts) -> str:
-    return "" if scene.swings else "the follower does not oscillate"
+def _no_swing(facts: CheckFacts) -> str:
+    return "" if facts.swings else "the follower does not oscillate"
 
 
-def _no_roller(scene: CheckFacts) -> str:
-    return "" if scene.roller else "a flat face is pushed along its normal"
+def _no_roller(facts: CheckFacts) -> str:
+    return "" if facts.roller else "a flat face is pushed along its normal"
 
 
-def _one_face(scene: CheckFacts) -> str:
-    single = not (scene.yoke or scene.swings or scene.follower.closure)  # the others have a check of their play
+def _one_face(facts: CheckFacts) -> str:
+    single = not (facts.yoke or facts.swings or facts.follower.closure)  # the others have a check of their play
     return "the breadth is not constant: a single flat face follows" if single else ""
 
 
-def _no_dwell(scene: CheckFacts) -> str:
-    return "dwell is not given" if scene.linked and scene.turns and scene.recipe.dwell is None else ""
+def _no_dwell(facts: CheckFacts) -> str:
+    return "dwell is not given" if facts.linked and facts.turns and facts.recipe.dwell is None else ""
 
 
-def _output_lost(scene: CheckFacts) -> str:
-    if scene.linked and not scene.turns:
+def _output_lost(facts: CheckFacts) -> str:
+    if facts.linked and not facts.turns:
         return STANDS
-    lost = scene.linked and scene.trimmed and scene.recipe.verify.output_error is None
+    lost = facts.linked and facts.trimmed and facts.recipe.verify.output_error is None
     return "the contour is trimmed and verify.output_error is not given: reported, not judged" if lost else ""
 
 
-def _motion_lost(scene: CheckFacts) -> str:
-    lost = scene.trimmed and scene.recipe.verify.motion_error is None
+def _motion_lost(facts: CheckFacts) -> str:
+    lost = facts.trimmed and facts.recipe.verify.motion_error is None
     return "the contour is trimmed and verify.motion_error is not given: reported, not judged" if lost else ""
 
 
 # --- the checks: of the motion and the curve --------------------------------------------------------------------------
 
-CURVATURE = Declared(RADIUS, ("mm",), lambda scene: not scene.roller, remedy=remedies.rounder, strict=True)
-PITCH = Declared(PITCH_RADIUS, ("mm",), lambda scene: scene.roller, remedy=remedies.rounder, strict=True)
+CURVATURE = Declared(RADIUS, ("mm",), lambda facts: not facts.roller, remedy=remedies.rounder, strict=True)
+PITCH = Declared(PITCH_RADIUS, ("mm",), lambda facts: facts.roller, remedy=remedies.rounder, strict=True)
 BENT = frozenset({CURVATURE.name, PITCH.name})  # a cam has either: it checks the curve whose curvature causes undercut
 UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), always(True))
 UNDERCUT_GLOBAL = Declared(
     "undercut-global",
     ("mm",),
-    lambda scene: scene.roller,
-    why_not=lambda scene: "" if scene.roller else "a convex profile does not intersect itself",
+    lambda facts: facts.roller,
+    why_not=lambda facts: "" if facts.roller else "a convex profile does not intersect itself",
     field="cam.roller_radius",
 )
 CLOSING = Declared("closing-equation", ("mm",), _named("closing-equation"), why_not=_no_swing)
@@ -285,18 +214,18 @@ TRAVEL = Declared(
     CONTACT_TRAVEL,
     ("mm",),
     _named(CONTACT_TRAVEL),
-    why_not=lambda scene: "the follower has no plate that moves along its normal" if scene.swings else "",
+    why_not=lambda facts: "the follower has no plate that moves along its normal" if facts.swings else "",
 )
 FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width", remedy=remedies.wider_face)
 WHEEL = Declared(
     "grinding-wheel",
     ("mm",),
-    lambda scene: scene.recipe.wheel is not None,
+    lambda facts: facts.recipe.wheel is not None,
     field="manufacture.wheel",
     remedy=remedies.smaller_wheel,
 )
-MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage", strict_at=(0.0,))
-REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage", strict_at=(0.0,))
+MOBILITY = Declared("mobility", ("mm",), lambda facts: facts.linked, field="linkage", strict_at=(0.0,))
+REVERSAL = Declared("reversal", ("",), lambda facts: facts.linked, field="linkage", strict_at=(0.0,))
 DWELL = Declared(
     LONGEST_DWELL,
     ("deg",),
@@ -309,7 +238,7 @@ DWELL = Declared(
 WALL = Declared(
     LEAST_WALL,
     ("mm",),
-    lambda scene: scene.recipe.part.walled,
+    lambda facts: facts.recipe.part.walled,
     field="part.bore",
     own_field="part.outer",
     remedy=remedies.smaller_bore,
@@ -327,7 +256,7 @@ BORE = Declared(
     "bore",
     ("mm",),
     of_file=_bored,
-    why_not=lambda scene: "part.bore is not given" if scene.recipe.part.bore is None else "",
+    why_not=lambda facts: "part.bore is not given" if facts.recipe.part.bore is None else "",
     field="part.bore",
 )
 OUTER = Declared("outer", ("mm",), of_file=_ringed, field="part.outer")
@@ -343,9 +272,27 @@ STATED_ERROR = Declared("stated-error", ("mm", "deg"), of_file=_stated)
 INTERPOLATION = Declared(
     "interpolation",
     ("mm", "deg"),
-    of_file=_of_a_drive,
+    of_file=_of_a_drive("interpolation"),
     field="export.tolerance",
     own_field="verify.motion_error",
+)
+INTERPOLATED_VELOCITY = Declared(
+    "interpolation-velocity",
+    ("mm/deg", "deg/deg"),
+    of_file=_of_a_drive("interpolation-velocity"),
+    field="export.tolerance",
+)
+INTERPOLATED_ACCELERATION = Declared(
+    "interpolation-acceleration",
+    ("mm/deg^2", "deg/deg^2"),
+    of_file=_of_a_drive("interpolation-acceleration"),
+    field="export.tolerance",
+)
+VELOCITY_STEP = Declared(
+    "velocity-step",
+    ("mm/deg", "deg/deg"),
+    of_file=_of_a_drive("velocity-step"),
+    field="export.tolerance",
 )
 MOTION = Declared(
     "motion",
@@ -389,11 +336,14 @@ def _of_feature(feature: Feature[Any], check: FeatureCheck) -> Declared:
     """Declaration of the check of a feature, which is made where the part has the feature."""
     condition, after = _FILES[check.files]
 
-    def exact(scene: CheckFacts) -> bool:
-        return scene.recipe.part.of(feature.kind) is not None
+    def exact(facts: CheckFacts) -> bool:
+        return facts.recipe.part.of(feature.kind) is not None
 
-    def of_file(scene: CheckFacts, file: FileRequest) -> bool:
-        return condition is not None and condition(scene, file) and exact(scene)
+    def of_file(facts: CheckFacts, file: FileRequest) -> bool:
+        return condition is not None and condition(facts, file) and exact(facts)
+
+    def remedy(entry: Entry, _report: Entry, _recipe: Recipe) -> str:
+        return "" if check.remedy is None else check.remedy(entry)
 
     return Declared(
         check.name,
@@ -401,7 +351,7 @@ def _of_feature(feature: Feature[Any], check: FeatureCheck) -> Declared:
         exact if check.exact else None,
         None if condition is None else of_file,
         field=f"part.{feature.name}",
-        remedy=check.remedy,
+        remedy=None if check.remedy is None else remedy,
         strict=check.strict,
         after=after,
     )
@@ -416,7 +366,9 @@ _CORE = {
 }
 LAST_EXACT = list(_CORE)[list(_CORE).index(READABLE.name) - 1]
 """Name of the core's last check of the exact cam."""
-CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {check.name: check for check in capability.checks()})
+CHECKS: Gathered[Checks, Declared] = Gathered(
+    _CORE, CHECKING, lambda answers: {check.name: check for check in answers.checks}
+)
 """Every check but the limits of a recipe's own, by name, in the order in which they are foreseen."""
 
 
@@ -427,16 +379,16 @@ CHECKS: Gathered[Declared] = Gathered(_CORE, lambda capability: {check.name: che
 def _of_figure(name: str, figure: DesignFigure) -> Declared:
     """Declaration of the limit of a figure, which applies where the recipe gives the limit."""
 
-    def of_design(scene: CheckFacts) -> bool:
-        return figure.of != "file" and any(limit.figure == name for limit in scene.recipe.limits)
+    def of_design(facts: CheckFacts) -> bool:
+        return figure.of != "file" and any(limit.figure == name for limit in facts.recipe.limits)
 
-    def of_file(scene: CheckFacts, file: FileRequest) -> bool:
-        if not any(limit.figure == name for limit in scene.recipe.limits):
+    def of_file(facts: CheckFacts, file: FileRequest) -> bool:
+        if not any(limit.figure == name for limit in facts.recipe.limits):
             return False
         if figure.of == "run":
-            return run_with(scene, file)
+            return run_with(facts, file)
         if figure.of == "file":
-            return _driven(scene, file) if figure.needs is OF_LINKAGE else _contour(scene, file)
+            return _driven(facts, file) if figure.needs is OF_LINKAGE else _contour(facts, file)
         return False
 
     # without a remedy: the detail of the check has it

@@ -7,26 +7,21 @@ the side on which the text is true.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.cams.family import SMALLER_SWING
+from camgeo.checks.extension import CHECKING
 from camgeo.common.rounding import downward, upward
 from camgeo.part.features import FEATURES
 from camgeo.recipe import figures
-from camgeo.registry import registry
-from camgeo.registry.capability import always
+from camgeo.registry.slot import always
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
+    from camgeo.checks.declaration import Entry, Remedy
     from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
 
 MORE_HARMONICS = "a higher delta.harmonics, up to 31, or the same motion as cam.law"
-Entry: TypeAlias = dict[str, Any]
-"""A check as a report has it, or the report itself: plain JSON."""
-Remedy: TypeAlias = "Callable[[Entry, Entry, Recipe], str]"
-
 
 smaller_swing: Remedy = always(SMALLER_SWING)
 """Remedy for a motion that is too steep."""
@@ -49,8 +44,14 @@ def smaller_wheel(check: Entry, _report: Entry, _recipe: Recipe) -> str:
 
 
 def wider_face(check: Entry, _report: Entry, recipe: Recipe) -> str:
-    """Remedy for a contact that leaves a flat face: the least width of a face that the contact does not leave."""
-    return f"{recipe.cam.advice.wider_face(check['value'], recipe.mm)} {check['unit']} or more"
+    """Remedy for a contact that leaves a flat face: the least width of a face that the contact does not leave.
+
+    The contact runs out by the velocity, of which a lobe by its cam card may have less.
+    """
+    wider = f"{recipe.cam.advice.wider_face(check['value'], recipe.mm)} {check['unit']} or more"
+    marks, lobe = recipe.marks, "cam.motion.lobe"
+    by_card = any(f"{side}.duration" in marks for side in (lobe, f"{lobe}.opening", f"{lobe}.closing"))
+    return f"{wider}, or {lobe}.least: face" if by_card and f"{lobe}.least" not in marks else wider
 
 
 def shorter_dwell(check: Entry, report: Entry, _recipe: Recipe) -> str:
@@ -161,7 +162,7 @@ def limit_remedy(recipe: Recipe, limit: Limit, missed: Missed) -> str:
     figure = limit.figure
     geometry = _to_lower(recipe, figure, missed) if lower else _to_raise(recipe, figure, missed)
     owner = figures.FIGURES.owner(figure)
-    own_remedy = registry.capability(owner).remedy(recipe, figure, value, bound) if owner else ""
+    own_remedy = CHECKING[owner].remedy(recipe, figure, value, bound) if owner else ""
     other_remedies = (own_remedy, _of_preload(figure, value, bound), _of_lobe(recipe, limit, value, bound))
     places = (_of_place(recipe, figure, value, bound), _of_files(recipe, figure, missed))
     if remedy := next(filter(None, (geometry, *other_remedies, *places)), ""):

@@ -33,3 +33,16 @@ def decimal(text: str) -> float:
         return read_number(text)
     except Complaint as complaint:
         raise ValueError(complaint.problem) from None
+
+
+def length(text: str) -> float:
+    """Length of a text, mm; raises ArgumentTypeError for what is no number."""
+    try:
+        return decimal(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"a length in mm is expected, not {text}") from None
+
+
+def lengths(text: str) -> tuple[float, ...]:
+    """Lengths, mm, of a text such as `80,65`; raises ArgumentTypeError for another."""
+    return tuple(length(part) for part in text.split(","))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
+from contextlib import closing, suppress
 from dataclasses import asdict
 from functools import partial
 from typing import TYPE_CHECKING
@@ -72,24 +74,41 @@ def results(recipes: Sequence[Order], task: BatchTask, jobs: int | None) -> Iter
 
 def _in_parallel(recipes: Sequence[Order], task: BatchTask, count: int, *, fork: bool) -> Iterator[Result]:
     """Result of each recipe, in order, from `count` processes."""
-    from concurrent.futures.process import BrokenProcessPool
-
     progress = Progress(f"{len(recipes)} recipes")
-    with workers.pool(count, fork=fork) as pool:
+
+    def waiting(number: int) -> None:
+        progress(f"{number} of {len(recipes)} done")
+
+    made: dict[int, Result] = {}
+    due = 0
+    with closing(
+        workers.at_once(partial(_numbered, task), enumerate(recipes), count, fork=fork, waiting=waiting)
+    ) as ends:
         try:
-            futures = [pool.submit(partial(result, task=task), recipe) for recipe in recipes]
-            for number, future in enumerate(futures):
-                progress(f"{number} of {len(futures)} done")
-                try:
-                    outcome = future.result()
-                except BrokenProcessPool:
-                    # one process was killed, and the work of the others is lost with it
-                    text = f"camgeo: {recipes[number].name}: {workers.KILLED.format('this recipe')}"
-                    outcome = Result(None, text, SURROUNDINGS)
+            for (number, recipe), outcome in ends:
+                made[number] = _killed(recipe, task) if isinstance(outcome, workers.Killed) else outcome
                 progress.clear()
-                yield outcome
+                while due in made:
+                    yield made.pop(due)
+                    due += 1
         finally:
             progress.clear()
+
+
+def _numbered(task: BatchTask, numbered: tuple[int, Order]) -> Result:
+    """Result of one recipe, which comes with its number."""
+    return result(numbered[1], task)
+
+
+def _killed(recipe: Order, task: BatchTask) -> Result:
+    """Result of a recipe whose process was killed; what the process left in the output folder is cleared away."""
+    from camgeo.common.errors import SurroundingsError
+    from camgeo.output.output_folder import RunFolder
+
+    if task.out is not None:
+        with suppress(SurroundingsError), RunFolder(task.out, recipe.name):
+            pass
+    return Result(None, f"camgeo: {recipe.name}: {workers.KILLED.format('this recipe')}", SURROUNDINGS)
 
 
 def result(recipe: Order, task: BatchTask, progress: Progress | None = None) -> Result:
@@ -123,12 +142,13 @@ def folder_conflicts(recipes: Sequence[Order]) -> list[str]:
     Empty without such recipes.
     """
     paths = [recipe.path.resolve() for recipe in recipes]
-    repeated = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]
+    first = {path: i for i, path in reversed(list(enumerate(paths)))}
+    repeated = [recipe for i, recipe in enumerate(recipes) if first[paths[i]] != i]
     if repeated:
         text = "the same recipe is named twice in this call; name it once"
         return [f"{escaped(str(recipe.path))}: {text}" for recipe in repeated]
-    names = [recipe.name.casefold() for recipe in recipes]
-    twice = [recipe for recipe in recipes if names.count(recipe.name.casefold()) > 1]
+    uses = Counter(recipe.name.casefold() for recipe in recipes)
+    twice = [recipe for recipe in recipes if uses[recipe.name.casefold()] > 1]
     text = "the name {} is used by several recipes of this call; give each its own `name:`"
     return [f"{escaped(str(recipe.path))}: {text.format(recipe.name)}" for recipe in twice]
 

@@ -15,11 +15,12 @@ import numpy as np
 from camgeo.cli.arguments import name_of
 from camgeo.cli.exit_status import OK, SURROUNDINGS, WRONG
 from camgeo.files.errors import install
+from kin.law.sources.peaks import peaks
 
 if TYPE_CHECKING:
     import argparse
 
-    from kin.law.programme import Law
+    from kin.law.normalised import Law
     from kin.numeric.arrays import Array
 
 
@@ -40,7 +41,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the laws' peaks for unit stroke over unit time, draw the laws with `--picture`, return the exit status."""
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
     from kin.law.sources.laws import NAMES, named
 
     try:
@@ -61,12 +62,12 @@ def _json(laws: list[Law]) -> str:
     rows: list[dict[str, Any]] = [
         {
             "law": law.name,
-            "velocity": law.peaks.velocity,
-            "acceleration": law.peaks.acceleration,
-            "jerk": law.peaks.jerk,
+            "velocity": top.velocity,
+            "acceleration": top.acceleration,
+            "jerk": top.jerk,
             "formula": formula(law.name),
         }
-        for law in laws
+        for law, top in ((law, peaks(law.motion)) for law in laws)
     ]
     return json.dumps(finite(rows), indent=2)
 
@@ -79,7 +80,7 @@ def _table(laws: list[Law]) -> str:
         f"{'law'.ljust(width)}  velocity  acceleration      jerk  displacement (peaks for unit stroke over unit time)"
     ]
     for law in laws:
-        p = law.peaks
+        p = peaks(law.motion)
         figures = f"{p.velocity:8.6f}  {p.acceleration:12.6f}  {p.jerk:8.6g}"
         lines.append(f"{law.name.ljust(width)}  {figures}  {formula(law.name)}")
     return "\n".join([*lines, "", "also: {polynomial: [c0, c1, ...]} in u, from 0 to 1"])
@@ -141,7 +142,7 @@ def _svg(laws: list[Law]) -> str:
 
 def _frame(law: Law) -> str:
     """SVG group of one law: its name, its peaks, and its four curves, each drawn within its own peak."""
-    curves, p = _curves(law), law.peaks
+    curves, p = _curves(law), peaks(law.motion)
     scales = _scales(curves)
     figures = ", ".join(f"{value:.5g}" for value in (p.velocity, p.acceleration, p.jerk))
     middle = _HEAD + _HEIGHT / 2
@@ -169,7 +170,7 @@ def _png(laws: list[Law]) -> bytes:
         figure = Figure(figsize=(2.8 * columns, 2.1 * rows + 0.4), layout="constrained")
         axes = np.atleast_1d(figure.subplots(rows, columns, sharex=True, sharey=True)).ravel()
         for axis, law in zip(axes, laws, strict=False):
-            curves, p = _curves(law), law.peaks
+            curves, p = _curves(law), peaks(law.motion)
             for k, scale in enumerate(_scales(curves)):
                 for i, (u, values) in enumerate(curves):
                     label = _CURVES[k] if i == 0 else None

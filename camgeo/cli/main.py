@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from camgeo.cli.arguments import add_out, name_of, processes
 from camgeo.cli.batch import BatchTask, failed_entry, folder_conflicts, result, results
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
+from camgeo.cli.extension import TERMINAL
 from camgeo.common.terminal import complain, escaped, open_streams, say, say_json, silence
 from camgeo.common.units import UNIT_MM
+from camgeo.output import claims
 from camgeo.output.mixture import mixtures
 from camgeo.registry import registry, root
 from camgeo.registry.formats import FORMATS
@@ -26,7 +28,7 @@ from kin.numeric.errors import CamgeoError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
     from camgeo.recipe.recipe import Order
 
 O = TypeVar("O", bound="Order")
@@ -146,18 +148,17 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     verify.add_argument("files", nargs="+", type=name_of, metavar="FILE")
     _add_options(verify, "for all the files, in the recipe's unit or with its own: 0.0005in")
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
-    text = "join ends of a drawing this near, at most the tolerance; added to the errors of contour and motion"
+    text = "join ends of a drawing this near; added to the errors of contour and motion"
     verify.add_argument("--gap", type=_length, metavar="G", help=text)
     text = "a new file for the page that shows the files, with their errors round the contour"
     verify.add_argument("--page", type=name_of, metavar="HTML", help=text)
     for name, text in registry.options().items():
         verify.add_argument(f"--{name.replace('_', '-')}", action="store_true", help=text)
     if "verify" in words:
-        for judge in registry.judges().values():
-            for name, option in judge.options.items():
-                choices, value = option.choices or None, option.metavar or None
-                flag = f"--{name.replace('_', '-')}"
-                verify.add_argument(flag, dest=name, choices=choices, metavar=value, help=option.about)
+        for name, option in claims.options().items():
+            choices, value = option.choices or None, option.metavar or None
+            flag = f"--{name.replace('_', '-')}"
+            verify.add_argument(flag, dest=name, choices=choices, metavar=value, help=option.about)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND", help="what to start from, or a kind of cam: lists its starters")
     new.add_argument("file", nargs="?", type=name_of, metavar="FILE", help="a new file (default, and -: the terminal)")
@@ -381,7 +382,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo.cli.progress import Progress
     from camgeo.recipe.loading import load_order
     from camgeo.report.document import as_json
-    from kin.judge.verify import UnitsError
+    from kin.read.checks import UnitsError
 
     try:
         recipe = _with_tolerance(load_order(arguments.recipe), arguments.tolerance)
@@ -389,9 +390,9 @@ def _verify(arguments: argparse.Namespace) -> int:
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
         gap = None if arguments.gap is None else read_quantity(arguments.gap, recipe.units)
         options: dict[str, Any] = {name: getattr(arguments, name) for name in registry.options()}
-        judge_options = [name for judge in registry.judges().values() for name in judge.options]
-        options |= {name: getattr(arguments, name) for name in judge_options if getattr(arguments, name) is not None}
-        demand_new(arguments.page)
+        own = {name: getattr(arguments, name) for name in claims.options()}
+        options |= {name: value for name, value in own.items() if value is not None}
+        demand_new({"--page": arguments.page})
         with_page = arguments.page is not None
         progress = Progress(recipe.name)
         progress("judge")
@@ -411,8 +412,8 @@ def _verify(arguments: argparse.Namespace) -> int:
         return WRONG
     if arguments.json:
         say_json(as_json(report))
-    elif name := registry.judge_of(paths[0], options):
-        say(registry.judges()[name].shown(report, arguments.verbose))
+    elif name := claims.judge_of(paths[0], options):
+        say(TERMINAL[name].shown(report, arguments.verbose))
     else:
         _show(report, verbose=arguments.verbose)
     return OK if report["ok"] else FAILED
@@ -447,19 +448,28 @@ def _new(arguments: argparse.Namespace) -> int:
 def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str | None) -> int:
     """Write a recipe made of files and of another recipe; return the exit status.
 
-    The function `started` of the module `start` in the capability's folder makes it.
+    The capability of this folder makes it.
     """
     from camgeo.cli.new_file import demand_new, write_new
+    from camgeo.cli.progress import Progress
     from camgeo.common.errors import CallError
     from camgeo.schema.errors import RecipeErrors
 
     if recipe is None or name is None or name == "-":
-        _complain("give a recipe that says what follows the cam, and a new file: camgeo new --from FILE RECIPE FILE")
+        call = f"camgeo new --{next(iter(registry.labels()[folder].sources))} FILE RECIPE FILE"
+        _complain(f"give a recipe that says what follows the cam, and a new file: {call}")
         return WRONG
     try:
-        demand_new(name)
-        start = import_module(f"{registry.PACKAGE}.{folder}.start").started
-        starter = start([Path(source) for source in sources], Path(recipe), name)
+        demand_new({"the recipe": name})
+        start = TERMINAL[folder].started
+        if start is None:
+            raise KeyError(folder)
+        progress = Progress(Path(name).name)
+        progress("make the recipe")
+        try:
+            starter = start([Path(source) for source in sources], Path(recipe), name)
+        finally:
+            progress.clear()
         write_new(
             {
                 name: starter.text,
@@ -469,9 +479,6 @@ def _new_from(folder: str, sources: Sequence[str], recipe: str | None, name: str
     except (CallError, RecipeErrors) as error:
         for line in str(error).splitlines():
             _complain(line)
-        return WRONG
-    except FileNotFoundError as error:
-        _complain(f"{escaped(str(error.filename))}: the file does not exist")
         return WRONG
     except OSError as error:
         _complain(f"{escaped(str(error.filename))}: {error.strerror}")
@@ -485,7 +492,7 @@ def _schema(arguments: argparse.Namespace) -> int:
     from camgeo.report.document import as_json
     from camgeo.schema.json_schema import json_schema
 
-    say_json(as_json(json_schema(root.root(arguments.order).table())))
+    say_json(as_json(json_schema(root.reading(arguments.order).table())))
     return OK
 
 

@@ -12,16 +12,23 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 
-def demand_new(*names: str | None) -> None:
-    """Raise CallError for names of files that exist already or are given twice; a name of None is left out."""
-    file_names = [name for name in names if name is not None]
+def demand_new(names: Mapping[str, str | None]) -> None:
+    """Raise CallError for names of files that exist already or are given twice; a name of None is left out.
+
+    Names are by what writes the file, such as `--page`.
+    """
+    writers = {writer: name for writer, name in names.items() if name is not None}
+    file_names = [*writers.values()]
     existing = [name for name in file_names if Path(name).exists()]
     if existing:
         raise CallError(*(f"{escaped(name)} exists already and is left as it is" for name in existing))
-    paths = [Path(name).resolve() for name in file_names]
-    for name, path in zip(file_names, paths, strict=True):
-        if paths.count(path) > 1:
-            raise CallError(f"{escaped(name)} would be written twice: give each file a name of its own")
+    by_path: dict[Path, list[str]] = {}
+    for writer, name in writers.items():
+        by_path.setdefault(Path(name).resolve(), []).append(writer)
+    for both in by_path.values():
+        if len(both) > 1:
+            problem = f"{escaped(writers[both[0]])} would be written twice, by {' and by '.join(both)}"
+            raise CallError(f"{problem}: give each file a name of its own")
 
 
 def write_new(texts: Mapping[str, str]) -> None:

@@ -14,7 +14,7 @@ from camgeo.files.errors import install
 if TYPE_CHECKING:
     import argparse
 
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.content import Content
     from camgeo.schema.errors import RecipeErrors

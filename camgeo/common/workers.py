@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import contextmanager
+from collections import deque
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar, cast
@@ -28,7 +29,14 @@ AHEAD = 2  # items submitted for each worker: one at work, one waiting
 MOST_ON_WINDOWS = 61  # processes that one wait of Windows can wait for, less two
 _TO_CLEAR_UP = 2.0  # seconds after which a worker whose run is over ends in any case
 FORKS = sys.platform == "linux"  # macOS forks too, but its libraries fail in a forked process
-KILLED = "a process was killed before {} was done, perhaps for lack of memory; see --jobs"
+KILLED = (
+    "a process was killed before {} was done, and another as it worked on it alone, perhaps for lack of memory; "
+    "free some and call again"
+)
+
+
+class Killed:
+    """In place of a result: a process was killed before it was done, and another one that worked on it alone."""
 
 
 class _OverError(BaseException):
@@ -76,7 +84,8 @@ def needed(processes: int, items: int) -> int:
 def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
     """Context of worker processes for a run; left by an exception, it abandons work in progress.
 
-    With `fork` the workers begin with all that this process has imported, on a system that forks safely.
+    With `fork` the workers begin with all that this process has imported, on a system that forks safely. Temporary
+    folders of workers are removed in the end, also of those that were killed.
     """
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
@@ -92,7 +101,12 @@ def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
         _start_server()
     theirs, ours = context.Pipe(duplex=False)
     inherited = ours if method == "fork" else None
-    with theirs, ours, ProcessPoolExecutor(workers, context, _be_a_worker, (theirs, inherited)) as executor:
+    with (
+        _folder() as folder,
+        theirs,
+        ours,
+        ProcessPoolExecutor(workers, context, _be_a_worker, (theirs, inherited, folder)) as executor,
+    ):
         try:
             yield Pool(executor)
         except BaseException:
@@ -103,25 +117,75 @@ def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
             executor.shutdown(cancel_futures=True)
 
 
-def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Generator[tuple[T, R], None, None]:
+@contextmanager
+def _folder() -> Iterator[str | None]:
+    """Context of a temporary folder that is removed in the end; None where none can be made."""
+    import shutil
+    import tempfile
+
+    try:
+        folder = tempfile.mkdtemp(prefix="camgeo-")
+    except OSError:
+        yield None  # who needs one says so
+        return
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def at_once(
+    function: Callable[[T], R],
+    items: Iterable[T],
+    workers: int,
+    *,
+    fork: bool = False,
+    waiting: Callable[[int], None] = lambda _: None,
+) -> Generator[tuple[T, R | Killed], None, None]:
     """Pairs of an item and the function's result, in the order in which they end.
 
-    At most `workers` processes work at once; the function has to stand in a module. Raises BrokenProcessPool where a
-    process was killed, and what the function raises.
+    At most `workers` processes work at once; the function has to stand in a module. Where a process is killed, the
+    items that were at work are tried again, each alone, and the others go on in new processes. `fork` is that of
+    `pool`, as long as this process may be forked; `waiting` is called with the number of items done before each wait.
+    Raises what the function raises.
     """
     from concurrent.futures import FIRST_COMPLETED, wait
+    from concurrent.futures.process import BrokenProcessPool
 
-    waiting = list(items)[::-1]
-    workers = needed(workers, len(waiting))
-    with pool(workers) as processes:
+    left, due, done = deque(items), deque[T](), 0
+    while left or due:
+        alone = bool(due)
+        queue = deque([due.popleft()]) if alone else left
+        count = needed(workers, len(queue))
         running: dict[Future[R], T] = {}
-        while waiting or running:
-            while waiting and len(running) < AHEAD * workers:
-                item = waiting.pop()
-                running[processes.submit(function, item)] = item
-            finished, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in finished:
-                yield running.pop(future), future.result()
+        try:
+            with pool(count, fork=fork and may_fork()) as processes:
+                while queue or running:
+                    while queue and len(running) < AHEAD * count:
+                        running[processes.submit(function, queue[0])] = queue[0]
+                        queue.popleft()
+                    waiting(done)
+                    for future in wait(running, return_when=FIRST_COMPLETED).done:
+                        result = future.result()
+                        done += 1
+                        yield running.pop(future), result
+            continue
+        except BrokenProcessPool:
+            lost = []
+        for future, item in running.items():
+            if future.cancelled() or isinstance(future.exception(), BrokenProcessPool):
+                lost.append(item)
+            else:
+                done += 1
+                yield item, future.result()
+        if not lost and queue:  # processes that do not even start
+            lost = [queue.popleft()]
+        if alone:
+            done += len(lost)
+            yield from ((item, Killed()) for item in lost)
+        else:  # processes take items in their order: the first ones were at work
+            due.extend(lost[:count])
+            left.extendleft(reversed(lost[count:]))
 
 
 def _start_server() -> None:
@@ -133,13 +197,14 @@ def _start_server() -> None:
         forkserver.ensure_running()
 
 
-def _be_a_worker(run: Connection, inherited: Connection | None) -> None:
+def _be_a_worker(run: Connection, inherited: Connection | None, folder: str | None) -> None:
     """Let this process ignore interrupts, and end with the run that started it.
 
     `run` is a pipe that is closed when the run ends or abandons its workers; `inherited` is its other end, which a
-    forked process has too.
+    forked process has too. Temporary folders are made in `folder`, which the run removes; None for the system's.
     """
     import signal
+    import tempfile
     import threading
     import time
     from _thread import interrupt_main
@@ -149,12 +214,16 @@ def _be_a_worker(run: Connection, inherited: Connection | None) -> None:
         inherited.close()
     signal.signal(signal.SIGINT, _interrupt)
     sys.unraisablehook = _stop_again
+    tempfile.tempdir = folder or tempfile.tempdir
 
     def watch() -> None:
         wait([run])
         _State.over = True
         interrupt_main()
         time.sleep(_TO_CLEAR_UP)
+        with suppress(OSError):
+            if folder is not None:  # the run may have been killed
+                Path(folder).rmdir()
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

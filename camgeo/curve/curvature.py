@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Mask
 
 ROUNDING = 64.0 * float(np.finfo(np.float64).eps)  # of the curve's size: what sampled speeds and points may be off
-SHARPNESS = 1e-12  # of the curve's size: how far a proved least radius may lie below the one found
+SHARPNESS = 1e-12  # of the curve's size, or the radius if larger: how far a proved one may lie below the one found
 SPLITS = 8  # parts into which an undecided interval is divided
 LOOSE = 1e-9  # of the curve's size: this sharpness for curves that hardly differ from a circle over long stretches
 MANY = 2_000  # intervals left undecided by `SHARPNESS` show such a curve
@@ -61,9 +61,10 @@ class Least:
 def least_radius(curve: Curve) -> tuple[float, float]:
     """Least radius of curvature of the convex stretches, in mm, and its parameter; negative where it undercuts.
 
-    One-sided limits at breaks count. No radius lies below the result by more than `SHARPNESS` of the curve's size
-    (up to rounding of the samples); where it is proved less sharply, the result is its lower bound. A curve without a
-    convex stretch has (inf, its first parameter). Raises CurveError where the proof does not end.
+    One-sided limits at breaks count. No radius lies below the result by more than `SHARPNESS` of the curve's size, or
+    of a larger radius itself (up to rounding of the samples); where it is proved less sharply, the result is its lower
+    bound. A curve without a convex stretch has (inf, its first parameter). Raises CurveError where the proof does not
+    end.
     """
     least = enclosed_least_radius(curve)
     return least.radius - least.excess, least.at
@@ -93,13 +94,20 @@ def enclosed_least_radius(curve: Curve) -> Least:
         curve, cells.low[possible], cells.high[possible], cells.rows[6, possible], cells.rows[7, possible]
     )
     extent = _extent(state.at_low)
-    tolerance, excess, loose = SHARPNESS * extent, 0.0, LOOSE * curve.size
+    excess, loose = 0.0, LOOSE * curve.size
+    # a turn that rounding alone lifts above 0, as where a hollow ends straight, is not convex
+    straight = ROUNDING * float(np.abs(cells.rows[2:4]).max())
+
+    def may_be_below(intervals: _Intervals) -> Mask:
+        return intervals.floor(best - tolerance) < (-straight if math.isinf(best) else 0.0)
+
     least, worst = _least_end(state)
     if least < best:
         best, place = least, worst
     for _ in range(LEVELS):
+        tolerance = excess or SHARPNESS * (max(extent, best) if math.isfinite(best) else extent)
         # minima inside intervals where the radius falls and rises
-        dips = state.part(state.dips & (state.floor(best - tolerance) < 0.0))
+        dips = state.part(state.dips & may_be_below(state))
         ends = _radius_slope(dips.at_low), _radius_slope(dips.at_high)
         bottoms = roots(lambda t: _radius_slope(curve.sample(t)), dips.low, dips.high, ends, 1e-7)
         if bottoms.size:
@@ -107,10 +115,10 @@ def enclosed_least_radius(curve: Curve) -> Least:
             if radius.min() < best:
                 best, place = float(radius.min()), float(bottoms[np.argmin(radius)])
         # intervals that may hold a smaller radius; of a near circle they are too many for the full sharpness
-        state = state.part(state.floor(best - tolerance) < 0.0)
+        state = state.part(may_be_below(state))
         if not excess and state.low.size > MANY and not 0.0 <= best <= loose:
             tolerance = excess = max(loose, tolerance)
-            state = state.part(state.floor(best - tolerance) < 0.0)
+            state = state.part(may_be_below(state))
         if state.low.size == 0:
             return Least(best, place, excess)
         if state.low.size > MOST_INTERVALS:

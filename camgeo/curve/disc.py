@@ -20,7 +20,7 @@ import numpy as np
 from camgeo.curve.extremes import least, surely_positive
 from camgeo.curve.face import FaceShape
 from camgeo.curve.rates import cut, stretches
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.numeric import elementary
 from kin.numeric.elementary import Jet
 from kin.numeric.records import dataclass
@@ -102,7 +102,7 @@ class StraightFace(_Face):
         p = self.motion.derivatives(tau, order, side) * math.cos(self.tilt)
         p[0] += self.base
         t = np.zeros_like(p)
-        t[0], t[1] = tau + (self.tilt + self.turned), 1.0
+        t[0], t[1:2] = tau + (self.tilt + self.turned), 1.0
         return p, t
 
     @property

@@ -22,8 +22,8 @@ import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
 from camgeo.curve.rates import MotionShape, SourceT, cut
+from kin.law.normalised import IntentError, first_harmonic
 from kin.law.piecewise import Piecewise
-from kin.law.programme import IntentError, first_harmonic
 from kin.law.segment import AffineStretch, Constant
 from kin.numeric import elementary
 from kin.numeric.elementary import Jet

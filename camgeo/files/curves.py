@@ -115,9 +115,10 @@ def _demand_long(length: Array) -> None:
 
 
 def inset(outline: ArcSpline, distance: float) -> ArcSpline:
-    """Parallel `distance` mm inside a smooth outline: of each arc an arc about the same centre.
+    """Parallel `distance` mm inside an outline: of each arc an arc about the same centre; lines may meet in corners.
 
-    Raises RegionError where pieces meet at an angle, or the radius of a convex arc is not above the distance.
+    Raises RegionError where an arc meets another piece at an angle, the radius of a convex arc is not above the
+    distance, or nothing is left of a line between corners.
     """
     length, radius, flat = measures(outline)
     half = 2.0 * np.arctan(np.where(flat, 0.0, outline.bulges))
@@ -126,17 +127,29 @@ def inset(outline: ArcSpline, distance: float) -> ArcSpline:
     along = outline.chords / length[:, None]
     first = np.column_stack([along[:, 0] * c + along[:, 1] * s, along[:, 1] * c - along[:, 0] * s])
     last = np.column_stack([along[:, 0] * c - along[:, 1] * s, along[:, 1] * c + along[:, 0] * s])
-    corner = np.hypot(*(first - np.roll(last, 1, axis=0)).T)
-    if distance * float(corner.max()) > 0.1 * CONFUSION:
+    before = np.roll(last, 1, axis=0)
+    corner = np.hypot(*(first - before).T)
+    turned = distance * corner > 0.1 * CONFUSION
+    bent = turned & ~(flat & np.roll(flat, 1))
+    if bool(bent.any()):
         raise RegionError(
-            f"the arcs meet at {math.degrees(float(corner.max())):.3g} degrees, where no chamfer runs: leave it out"
+            f"the arcs meet at {math.degrees(float(corner[bent].max())):.3g} degrees, where no chamfer runs: "
+            "leave it out"
         )
     sharp = (outline.bulges > 0.0) & ~flat & (radius <= distance)
     if bool(sharp.any()):
         least = float(radius[sharp].min())
         raise RegionError(f"an arc is sharper than the chamfer of {distance:.6g} mm: give less than {least:.6g} mm")
     inward = np.column_stack([-first[:, 1], first[:, 0]])
-    return ArcSpline(outline.points + distance * inward, outline.bulges, outline.bound)
+    # between two lines the parallels meet on the bisector of their corner
+    other = np.column_stack([-before[:, 1], before[:, 0]])
+    share = 1.0 + np.sum(inward * other, axis=1)
+    meeting = (inward + other) / np.where(turned, share, 2.0)[:, None]
+    points = outline.points + distance * np.where(turned[:, None], meeting, inward)
+    left = np.sum((np.roll(points, -1, axis=0) - points) * along, axis=1)
+    if bool((flat & (left <= SHORTEST)).any()):
+        raise RegionError(f"nothing is left of an edge within a chamfer of {distance:.6g} mm")
+    return ArcSpline(points, outline.bulges, outline.bound)
 
 
 def measures(outline: ArcSpline) -> tuple[Array, Array, Any]:

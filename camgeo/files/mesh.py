@@ -51,21 +51,14 @@ class Item:
 
 @dataclass(frozen=True)
 class MeshFacts:
-    """Counts of a solid's mesh, and its distances from the exact part.
+    """What a solid's mesh is of its contours: their number of `vertices`, and how far they are from the exact ones.
 
-    `vertices` counts the corners of the contours, `bore_vertices` those of the second outline of a prism, 0 without
-    one; `dropped` counts the vertices of contours that rounding made one with their neighbours, which leaves the drawn
-    line as it is. `displacement` is the farthest, mm, that rounding moved a vertex. `bound` is the contours' bound,
-    `bore_bound` that of openings and other edges, None without any, both with the displacement.
+    `displacement` is the farthest, mm, that rounding moved a vertex of any outline; the `bound` of the contours has it.
     """
 
-    triangles: int
     vertices: int
-    bore_vertices: int
-    dropped: int
     displacement: float
     bound: Bound
-    bore_bound: Bound | None
 
 
 def closed_mesh(points: Array, triangles: Triangles, precision: Precision) -> Mesh:

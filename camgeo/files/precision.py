@@ -79,7 +79,7 @@ class Precision:
             # a tolerance of the refused size no longer widens the contour, the least one does
             least = _LEAST * self.bound(size + 2.0 * _LEAST * self.bound(size))
             raise ToleranceError(
-                f"{self.file} of a contour that reaches {size:.6g} mm from the shaft cannot hold {tolerance:.3g} mm: "
+                f"{self.file} of a contour that reaches {size:.6g} mm from the origin cannot hold {tolerance:.3g} mm: "
                 f"rounding to {self.name} alone moves points by {moved:.3g} mm; at least {upward(least, 3)} mm",
                 least,
             )

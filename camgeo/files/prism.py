@@ -6,7 +6,6 @@ Each vertex moves when it is written (`camgeo.files.precision`), and the fit mus
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,7 @@ from camgeo.curve.ring import radius_of, steps_along
 from camgeo.files.mesh import Mesh, MeshFacts
 from camgeo.files.triangulate import region
 from camgeo.fit.bound import EXACT
-from camgeo.fit.pieces import ArcSpline, Bound, Polygon
+from camgeo.fit.pieces import ArcSpline, Polygon
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,8 +45,7 @@ def extruded_mesh(
         raise ValueError(f"thickness must be > 0, not {thickness!r}")
     precision.within("the thickness", abs(precision.number(thickness) - thickness), tolerance)
     loops, facts = _round_all(outlines, tolerance, precision)
-    mesh = _wall(*_turned(loops), precision.number(thickness))
-    return mesh, replace(facts, triangles=len(mesh.triangles))
+    return _wall(*_turned(loops), precision.number(thickness)), facts
 
 
 def pocketed_mesh(
@@ -106,7 +104,7 @@ def pocketed_mesh(
             *(wall(k) for k in range(len(loops))),
         ]
     )
-    return Mesh(points, triangles), replace(facts, triangles=len(triangles))
+    return Mesh(points, triangles), facts
 
 
 def _encloses(loop: Array, point: Array) -> bool:
@@ -123,31 +121,26 @@ def _round_all(
 
     Raises ToleranceError where a loop is not within the tolerance after rounding, TypeError for a spline.
     """
-    loops, moved, vertices, dropped = [], 0.0, 0, 0
-    bound, opening_errors = EXACT, []
+    loops, moved, vertices, bound = [], 0.0, 0, EXACT
     for layer, outline, _ in outlines:
         if isinstance(outline, Polygon):
-            loop, shift, fallen = rounded_contour(outline, precision)
+            loop, shift = rounded_contour(outline, precision)
             bound = bound.wider(outline.bound.widened(shift))
             precision.within("the contour", bound.worst, tolerance)
-            vertices, dropped = vertices + len(loop), dropped + fallen
+            vertices += len(loop)
         elif isinstance(outline, ArcSpline):
-            loop, error, shift = rounded_loop(outline, tolerance, precision, _WORDS.get(layer, "a hole"))
-            opening_errors.append(error)
+            loop, _, shift = rounded_loop(outline, tolerance, precision, _WORDS.get(layer, "a hole"))
         else:
             raise TypeError("a prism has no splines")
         loops.append(loop)
         moved = max(moved, shift)
-    inner_count = len(loops[1]) if len(loops) > 1 else 0
-    besides = Bound(max(opening_errors), max(opening_errors)) if opening_errors else None
-    return loops, MeshFacts(0, vertices, inner_count, dropped, moved, bound, besides)
+    return loops, MeshFacts(vertices, moved, bound)
 
 
-def rounded_contour(polygon: Polygon, precision: Precision) -> tuple[Array, float, int]:
-    """Vertices (n, 2) of a polygon as written, without repetitions; greatest shift, mm; number of dropped vertices."""
+def rounded_contour(polygon: Polygon, precision: Precision) -> tuple[Array, float]:
+    """Vertices (n, 2) of a polygon as written, without repetitions, and their greatest shift, mm."""
     outer, moved = precision.rounded(polygon.vertices)
-    is_kept = np.any(outer != np.roll(outer, 1, axis=0), axis=1)
-    return outer[is_kept], moved, int(np.count_nonzero(~is_kept))
+    return outer[np.any(outer != np.roll(outer, 1, axis=0), axis=1)], moved
 
 
 def _turned(loops: list[Array]) -> tuple[list[Array], Triangles]:

@@ -16,7 +16,6 @@ from camgeo.files.errors import RegionError, demand_package
 from camgeo.files.mesh import MeshFacts, closed_mesh
 from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
 from camgeo.files.triangulate import disc
-from camgeo.fit.pieces import Bound, Polygon
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
     from camgeo.files.triangulate import Triangles
-    from camgeo.fit.pieces import ArcSpline
+    from camgeo.fit.pieces import ArcSpline, Polygon
     from kin.numeric.arrays import Array
 
 BEYOND = 1.0  # mm by which a cutting prism reaches out of the body, so that no two faces lie on each other
@@ -83,11 +82,11 @@ def joined_mesh(polygon: Polygon, solid: Solid, *, tolerance: float, precision: 
     ToleranceError where the tolerance cannot be held in the precision, RegionError where an outline is not simple or
     the chamfer too wide for the contour.
     """
-    outer, moved, dropped = rounded_contour(polygon, precision)
+    outer, moved = rounded_contour(polygon, precision)
     bound = polygon.bound.widened(moved)
     precision.within("the contour", bound.worst, tolerance)
     part = manifold(*_disc(outer, solid.thickness, solid.chamfer, precision))
-    facts = MeshFacts(0, len(outer), 0, dropped, moved, bound, None)
+    facts = MeshFacts(len(outer), moved, bound)
     return completed_mesh(part, facts, solid, tolerance=tolerance, precision=precision)
 
 
@@ -110,31 +109,28 @@ def completed_mesh(
 
     # a corner between two walls that are off by e each is off by up to 2 e over the sine of its angle
     fine = min((0.5 * tolerance * drill.slope for drill in solid.drills), default=tolerance)
-    off = 0.0
     if solid.boss is not None:
-        circle, straddle = bore_polygon(solid.boss, precision.fit_tolerance(fine, 0.5 * solid.boss))
+        circle, _ = bore_polygon(solid.boss, precision.fit_tolerance(fine, 0.5 * solid.boss))
         ring, ring_moved = precision.rounded(circle)
-        off, moved = max(off, straddle + ring_moved), max(moved, ring_moved)
+        moved = max(moved, ring_moved)
         # the boss begins inside the disc, so that no two faces lie on each other
         low = solid.low if solid.low < 0.0 else 0.5 * solid.thickness
         high = solid.high if solid.high > solid.thickness else 0.5 * solid.thickness
         part += manifold(*prism(ring, low, high, precision))
     for cut in solid.cuts:
-        loop, loop_off, loop_moved = rounded_loop(
+        loop, _, loop_moved = rounded_loop(
             cut.outline, fine if cut.high > solid.thickness or cut.low < 0.0 else tolerance, precision
         )
-        off, moved = max(off, loop_off), max(moved, loop_moved)
+        moved = max(moved, loop_moved)
         low = cut.low - BEYOND if cut.low <= solid.low else cut.low
         part -= manifold(*prism(loop, low, cut.high + BEYOND, precision))
     for drill in solid.drills:
         part -= manifold(*_drill(drill, fine, precision))
     # slivers that had to be closed move walls of the contour and of openings alike
     mesh, merged = mesh_of_body(part, precision)
-    bound, off, moved = bound.widened(merged), off + merged, moved + merged
+    bound = bound.widened(merged)
     precision.within("the contour", bound.worst, tolerance)
-    besides = Bound(off, off)
-    triangles = len(mesh.triangles)
-    return mesh, replace(facts, triangles=triangles, displacement=moved, bound=bound, bore_bound=besides)
+    return mesh, replace(facts, displacement=moved + merged, bound=bound)
 
 
 def need_booleans() -> None:

@@ -1,4 +1,4 @@
-"""Tables as text: a header, then a row a line, each number with at most 12 digits; CSV."""
+"""Tables as text: a header, then a row a line, each number with at most 12 digits, or fewer; CSV."""
 
 from __future__ import annotations
 
@@ -17,9 +17,15 @@ DIGITS = 12
 
 
 def write_table(
-    path: Path, columns: Sequence[str], rows: NDArray[np.float64], *, gaps: bool = False, head: Sequence[str] = ()
+    path: Path,
+    columns: Sequence[str],
+    rows: NDArray[np.float64],
+    *,
+    gaps: bool = False,
+    head: Sequence[str] = (),
+    digits: int = DIGITS,
 ) -> None:
-    """Write rows (n, k) under k column names; lines end in a line feed on every system.
+    """Write rows (n, k) under k column names, numbers with that many digits; lines end in a line feed on every system.
 
     Lines of the `head` stand first, behind a #. With `gaps` a nan becomes an empty cell. Raises ValueError where the
     shapes disagree, a name would need quoting or a number is not finite; OSError where the file cannot
@@ -35,7 +41,7 @@ def write_table(
         row, column = np.argwhere(bad)[0].tolist()
         raise ValueError(f"table: {columns[column]} is not finite in row {row}")
     # one format for the whole table: a tenth of the time of a csv writer
-    line = ",".join([f"%.{DIGITS}g"] * len(columns)) + "\n"
+    line = ",".join([f"%.{digits}g"] * len(columns)) + "\n"
     numbers = (rows + 0.0).ravel().tolist()  # + 0.0 makes -0.0 a plain zero
     text = (line * len(rows)) % tuple(numbers)
     if gaps:

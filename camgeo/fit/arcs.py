@@ -17,9 +17,9 @@ from camgeo.common.rounding import upward
 from camgeo.fit import free_arcs
 from camgeo.fit.deviation import Chain, Deviation, chain_deviation, foot, sampled_deviation
 from camgeo.fit.free_arcs import FittedArcs, cross
+from camgeo.fit.monotone_parts import CONSTANT as FREE
+from camgeo.fit.monotone_parts import MonotonePart
 from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshare, rounding
-from camgeo.fit.parts import CONSTANT as FREE
-from camgeo.fit.parts import MonotonePart
 from camgeo.fit.pieces import ArcSpline, Bound
 from kin.numeric.records import dataclass
 

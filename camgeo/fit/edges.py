@@ -136,8 +136,8 @@ def sagittas(curve: Curve, edges: PlacedEdges, sides: Array, tolerance: float) -
     frame = curve.sample(edges.low + 0.5 * width)
     # one sample is enough where the curve is nearly a circle over the edge
     with np.errstate(divide="ignore", invalid="ignore"):
-        change = np.abs(frame.speed_slope / frame.speed) + np.abs(frame.turn_slope / frame.turn)
-    uneven = np.flatnonzero(~(change * width < EVEN))
+        change = width * (np.abs(frame.speed_slope / frame.speed) + np.abs(frame.turn_slope / frame.turn))
+    uneven = np.flatnonzero(~(change < EVEN))
     piece, reach = np.arange(width.size), 0.5 * width
     if uneven.size:
         piece = np.append(piece, np.repeat(uneven, len(LOOKS)))

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.fit.deviation import Chain, chain_deviation, radial
-from camgeo.fit.parts import ENDS, refine
+from camgeo.fit.monotone_parts import ENDS, refine
 from camgeo.fit.staircase import solve_chains
 from kin.numeric.records import dataclass
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from camgeo.curve.curve import Curve, Frame
-    from camgeo.fit.parts import MonotonePart
+    from camgeo.fit.monotone_parts import MonotonePart
     from kin.numeric.arrays import Array
 
 LEVEL = 1.02  # times the level foreseen: a part so near to it has settled

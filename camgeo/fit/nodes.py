@@ -46,7 +46,7 @@ def check_precision(size: float, tolerance: float, times: float = 1.0) -> None:
     if not tolerance >= least:
         raise ToleranceError(
             f"a tolerance of {tolerance:.3g} mm is below what double precision holds on a contour that reaches "
-            f"{size:.6g} mm from the shaft: at least {upward(least, 3)} mm",
+            f"{size:.6g} mm from the origin: at least {upward(least, 3)} mm",
             least,
         )
 

@@ -34,6 +34,7 @@ FREE_TRIES = 4  # counts tried with edges across the breaks
 LEVELLINGS = 16  # steps for each count
 FULL = 0.93  # of the tolerance: where less is used, fewer edges across the breaks are sought
 SLIGHT = 1.0  # shares: a shorter stretch between two inflections is not worth two crossings
+STRAIGHT = 1e-3  # shares: an end of a run that bends less is as good as straight
 CROSSING = 0.9995  # of the tolerance: aim of an edge across an inflection; the rest covers its proof
 GRID = 2.0  # times the reach by the density: an edge across an inflection that reaches farther begins with its cubic
 CROSSING_SHARE = 0.45  # of a part between two inflections that one crossing may take
@@ -197,10 +198,17 @@ def _parts(
 def _worthwhile_bends(bends: Array, sense: float, whole: Density, root: float, *, closed: bool) -> tuple[Array, float]:
     """Inflections without the pairs that enclose less than `SLIGHT` shares, and the sense before the first.
 
-    `root` is the square root of the tolerance.
+    Those between which and an end of an open run the curve is straight go too. `root` is the square root of the
+    tolerance.
     """
     share = [whole.share(float(bend)) / root for bend in bends]
     remaining = [float(bend) for bend in bends]
+    if not closed:
+        while remaining and share[0] < STRAIGHT:
+            del remaining[0], share[0]
+            sense = -sense
+        while remaining and whole.total / root - share[-1] < STRAIGHT:
+            del remaining[-1], share[-1]
     while len(remaining) > 1:
         between = np.diff(share)
         least = int(np.argmin(between))

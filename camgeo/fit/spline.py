@@ -11,7 +11,7 @@ spaced so that the spline is C1 in its own parameter.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -31,24 +31,61 @@ if TYPE_CHECKING:
 
 FLOOR = 4.0  # times the least tolerance of points and distances: below it a spline's handles are lost in rounding
 USABLE = 0.985  # of the limit, that sampled errors may use; the rest is left to the proof
-OFFSET = 0.92  # of the aim: offset of joints from the curve, less than 1 for middles that do not quite touch
-NEAR_CENTRE = 0.25  # of the least radius of curvature: joints that would lie farther off lie on the curve
 ON_CURVE = 604.39  # the error of a span of length h with its ends on the curve is c h^6/604.4 (docs/theory.md 3)
-GROWN = 4  # times that nodes were added, after which spans that fail are halved, as sharing does not settle
-SETTLING = 2  # sharings after which spans that fail are halved if they are few:
-HALVED = 0.02  # of all, or the share by which nodes would grow
-LESS = 0.95  # of the least of the greatest loads: a load above it has not fallen;
-PATIENCE = 3  # such loads in turn show that more spans are needed
-MARGIN = 1.05  # times the load of spans that fail, where sharing among all has stalled: they become shorter
-SHARINGS = 10  # of the nodes before nodes are added,
-FULL = 0.97  # of the tolerance: with a greater mean load sharing is of no use
-GROWTH = 0.01  # share of the nodes that is added at least,
-FASTER = 1.6  # times as many with each addition
-TRIES = 40  # of placing nodes
-LAST_TRIES = 8  # of these, in which all spans that fail are halved
 NOTHING = 4e-9  # of the size: readers of files reject a shorter span
 UNEVEN = 1e-7  # of a run's length of parameter: least length of a span
-DAMPED = 12.0  # power for the error where nodes were shared before, so that they come to rest
+
+
+class _Joints(NamedTuple):
+    """Offset of the joints from a curve that all cubics miss to one side."""
+
+    share: float = 0.92
+    """Share of the tolerance; less than 1 for middles that do not quite touch."""
+    near_centre: float = 0.25
+    """Share of the least radius of curvature: joints that would lie farther off lie on the curve."""
+
+
+class _Sharing(NamedTuple):
+    """Sharing of the nodes among all spans so that their errors become alike, and when it is of no use any more."""
+
+    most: int = 10
+    """Sharings before nodes are added."""
+    full: float = 0.97
+    """Share of the tolerance; a greater mean error shows that more spans are needed."""
+    less: float = 0.95
+    """Share of the least of the greatest errors; one above it has not fallen."""
+    patience: int = 3
+    """Errors in turn that have not fallen, after which more spans are needed."""
+    margin: float = 1.05
+    """Factor of the errors of spans that fail, once one has not fallen: these spans become shorter."""
+    damped: float = 12.0
+    """Order taken for the error where nodes were shared before, so that they come to rest."""
+
+
+class _Adding(NamedTuple):
+    """Nodes added where sharing does not do: to all spans in equal parts, or by halving those that fail."""
+
+    tries: int = 40
+    """Tries of placing nodes in all."""
+    last: int = 8
+    """Tries at their end in which all spans that fail are halved."""
+    growth: float = 0.01
+    """Least share by which the number of spans grows at first."""
+    faster: float = 1.6
+    """Factor of that share with each growth."""
+    grown: int = 4
+    """Growths after which spans that fail are halved, as sharing does not settle."""
+    settling: int = 2
+    """Sharings after which spans that fail are halved if they are few."""
+    few: float = 0.02
+    """Share of all spans that is few, where the number of spans would not grow by more."""
+
+    def share(self, grown: int) -> float:
+        """Least share by which the number of spans grows after so many growths."""
+        return self.growth * self.faster**grown
+
+
+JOINTS, SHARING, ADDING = _Joints(), _Sharing(), _Adding()
 
 
 def fit_spline(curve: Curve, tolerance: float) -> BSpline:
@@ -149,7 +186,7 @@ def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: floa
     states = [_State()] * len(nodes)
     spans, best = _Spans.none(), math.inf
     # fit and prove all stretches that do not hold yet, then give each of them better nodes
-    for attempt in range(TRIES):
+    for attempt in range(ADDING.tries):
         todo = [i for i in range(len(nodes)) if i not in done]
         if not todo:
             return [done[i] for i in range(len(nodes))]
@@ -169,7 +206,7 @@ def _fit_stretches(curve: Curve, stretches: Array, tolerance: float, limit: floa
                 outward, inward = (float(row[own].max()) for row in (spans.outward, spans.inward))
                 done[i] = spans.control[own], max(outward, 0.0), max(inward, 0.0)
             else:
-                last = attempt >= TRIES - LAST_TRIES
+                last = attempt >= ADDING.tries - ADDING.last
                 nodes[i], states[i] = _denser(nodes[i], reached[own], tolerance, states[i], last=last)
     raise ToleranceError(f"a spline within {tolerance:.3g} mm was not reached; the best was {upward(best, 3)} mm", best)
 
@@ -181,7 +218,7 @@ def _joint_offset(curve: Curve, side: float, tolerance: float) -> float:
     rows = curve.cells.rows
     # lower bound of speed over turn
     tightest = float(rows[0].min() / np.maximum(np.abs(rows[2]), np.abs(rows[3])).max())
-    return -side * OFFSET * tolerance if OFFSET * tolerance < NEAR_CENTRE * tightest else 0.0
+    return -side * JOINTS.share * tolerance if JOINTS.share * tolerance < JOINTS.near_centre * tightest else 0.0
 
 
 @dataclass(frozen=True)
@@ -267,12 +304,12 @@ def _denser(nodes: Array, load: Array, tolerance: float, state: _State, *, last:
         return _halve(nodes, ~np.isfinite(load)), _State(grown=state.grown, best=state.best)
     halved = _halve(nodes, failing)
     best = halved if state.best is None or halved.size < state.best.size else state.best
-    growth = GROWTH * FASTER**state.grown
-    few = state.shared >= SETTLING and np.count_nonzero(failing) <= max(growth, HALVED) * count
-    if few or last or state.grown >= GROWN:
+    growth = ADDING.share(state.grown)
+    few = state.shared >= ADDING.settling and np.count_nonzero(failing) <= max(growth, ADDING.few) * count
+    if few or last or state.grown >= ADDING.grown:
         return halved, _State(grown=state.grown, best=best)
     moved, after = _reshare(nodes, load, tolerance, state)
-    if moved.size > nodes.size and state.shared and (state.grown + 1 >= GROWN or best.size <= moved.size):
+    if moved.size > nodes.size and state.shared and (state.grown + 1 >= ADDING.grown or best.size <= moved.size):
         # spans at places where the nearest cubic ceases to exist move about as nodes are shared: take the best nodes
         return best, _State(grown=state.grown + 1)
     return moved, replace(after, best=best)
@@ -289,18 +326,18 @@ def _reshare(nodes: Array, load: Array, tolerance: float, state: _State) -> tupl
     # the load of every span if all were alike
     mean = float(np.mean(load ** (1.0 / ORDER))) ** ORDER
     worst = float(load.max())
-    stalled = 0 if worst < LESS * state.least else state.stalled + 1
-    if state.shared < SHARINGS and stalled < PATIENCE and mean < FULL * tolerance:
+    stalled = 0 if worst < SHARING.less * state.least else state.stalled + 1
+    if state.shared < SHARING.most and stalled < SHARING.patience and mean < SHARING.full * tolerance:
         if stalled:
-            moved = reshare(nodes, np.maximum(MARGIN * load, tolerance), ORDER)
+            moved = reshare(nodes, np.maximum(SHARING.margin * load, tolerance), ORDER)
         else:
-            moved = reshare(nodes, load, DAMPED if state.shared else ORDER)
+            moved = reshare(nodes, load, SHARING.damped if state.shared else ORDER)
         return moved, _State(state.shared + 1, state.grown, min(worst, state.least), stalled)
     # as many more as that load foresees or, where sharing has been tried in vain, a small share, greater each time
     count = nodes.size - 1
     if state.shared:
-        share, grown = GROWTH * FASTER**state.grown, state.grown + 1
+        share, grown = ADDING.share(state.grown), state.grown + 1
     else:
         share, grown = (mean / tolerance) ** (1.0 / ORDER) - 1.0, state.grown
     more = max(count + 1, math.ceil(count * (1.0 + share)))
-    return reshare(nodes, load, DAMPED if state.shared else ORDER, more), _State(grown=grown)
+    return reshare(nodes, load, SHARING.damped if state.shared else ORDER, more), _State(grown=grown)

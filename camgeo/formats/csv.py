@@ -6,11 +6,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from camgeo.common.on_demand import OnDemand
+from camgeo.formats.extension import TABLES, Table, Tables
 from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
+from camgeo.output.extension import Making
 from camgeo.recipe.machining import COARSEST, FINEST
-from camgeo.registry.formats import Form, Format
+from camgeo.registry.formats import Format
 from camgeo.registry.gathered import Gathered
 from camgeo.schema.fields import Field, FieldTable, Kind, either, length
+from camgeo.synthesis.intent import FileIntent, intended
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -28,17 +31,22 @@ MODULES = {
     for name in ("motion", "contacts", "polar", "inspection", "grinding", "lift", "trace", "controller", "points")
 }
 """Module of each of the core's tables by its word."""
-OF_SOME = ("step", "tolerance", "roller", "for", "suffix")
+OF_SOME = ("step", "tolerance", "roller", "for", "joints", "velocity_error", "acceleration_error", "suffix")
 """Options that some tables have and others have not; `takes` of a form names those that it has."""
 
 
-def _form(name: str) -> Form:
-    record: Form = import_module(MODULES[name]).FORM
+def _form(name: str) -> Table:
+    record: Table = import_module(MODULES[name]).FORM
     return record
 
 
-FORMS = Gathered(OnDemand(MODULES, _form), lambda capability: capability.tables())
+FORMS: Gathered[Tables, Table] = Gathered(OnDemand(MODULES, _form), TABLES, lambda answers: answers.tables)
 """Record of each table by its word."""
+
+
+def _percent(name: str, of: str) -> Field:
+    about = f"of controller, greatest error of the {of}, percent of the greatest {of}"
+    return Field(name, Kind.NUMBER, about, default="reported", above=0, at_most=100)
 
 
 def _check(file: Values, _: Values, reader: Reader) -> None:
@@ -51,14 +59,11 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
 
 
 def _make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    if request.form.make is None:
-        raise ValueError(f"nothing makes {request.word}")
-    return request.form.make(job, request, path)
+    return FORMS[request.form.name].make(job, request, path)
 
 
 def _intent(recipe: Recipe, design: Design) -> PartIntent:
     from camgeo.machining.grinding import grinding_intent
-    from camgeo.synthesis.intent import intended
 
     return replace(intended(recipe, design), grinding=grinding_intent(recipe, design))
 
@@ -81,8 +86,14 @@ FORMAT = Format(
                 Kind.CHOICE,
                 "of controller, whose table it is",
                 default="required for it",
-                choices=("codesys", "codesys-table", "sew", "plain"),
+                choices=(
+                    *("codesys", "codesys-table", "twincat", "twincat-table", "rockwell", "rockwell-linear"),
+                    *("siemens", "sew", "plain"),
+                ),
             ),
+            Field("joints", Kind.TRUTH, "of controller, rows also where segments join", default="false"),
+            _percent("velocity_error", "velocity"),
+            _percent("acceleration_error", "acceleration"),
             Field(
                 "suffix",
                 Kind.CHOICE,
@@ -96,10 +107,11 @@ FORMAT = Format(
         )
     ),
     forms=FORMS,
+    named=("for",),
     check=_check,
     contour=False,
     part=False,
     turning=True,
-    make=_make,
-    intent=_intent,
 )
+INTENT = FileIntent(_intent)
+MAKING = Making(make=_make)

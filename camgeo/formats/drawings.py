@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.formats.options import OF_DRAWING
-from camgeo.registry.capability import NO_CHECK
+from camgeo.output.extension import Making
 from camgeo.registry.formats import Form, Format
+from camgeo.registry.slot import NO_CHECK
 from camgeo.schema.fields import Field, FieldTable, Kind
 
 if TYPE_CHECKING:
@@ -25,26 +26,16 @@ _AS = Field("as", Kind.CHOICE, "what the contour is made of", default="arcs", ch
 
 def drawing_format(
     name: str,
-    draw: Draw,
     *more: Field,
     path: bool = False,
     check: Callable[[Values, Values, Reader], None] = NO_CHECK,
-    foresee: Callable[[Job, FileRequest], None] = NO_CHECK,
 ) -> Format:
-    """Record of a format of drawings.
+    """Facts of a format of drawings.
 
-    `draw`, (job, request, path, outlines on layers, remarks), writes one file and returns the checks of all else that
-    the file has. `more` are options of the format, which stand in the names of its files and in reports; `path` is
-    whether it shows the path of the cutter. `check`, (values of the file, values of the recipe, reader), notes faults
-    of the options; `foresee` refuses a file before anything is fitted.
+    `more` are options of the format, which stand in the names of its files and in reports; `path` is whether it shows
+    the path of the cutter. `check`, (values of the file, values of the recipe, reader), notes faults of the options.
     """
     named = tuple(item.name for item in more)
-
-    def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-        from camgeo.output.drawing import make_drawing
-
-        return make_drawing(job, request, path, draw)
-
     return Format(
         name=name,
         options=FieldTable((_AS, *more, *OF_DRAWING)),
@@ -56,6 +47,19 @@ def drawing_format(
         check=check,
         by_disc=True,
         path=path,
-        make=make,
-        foresee=foresee,
     )
+
+
+def drawing_making(draw: Draw, foresee: Callable[[Job, FileRequest], None] = NO_CHECK) -> Making:
+    """What makes the files of a format of drawings.
+
+    `draw`, (job, request, path, outlines on layers, remarks), writes one file and returns the checks of all else that
+    the file has; `foresee` refuses a file before anything is fitted.
+    """
+
+    def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
+        from camgeo.output.drawing import make_drawing
+
+        return make_drawing(job, request, path, draw)
+
+    return Making(make=make, foresee=foresee)

@@ -15,7 +15,7 @@ import numpy as np
 
 from camgeo.files.errors import demand_package
 from camgeo.fit.pieces import BSpline, Outline, Polygon
-from camgeo.formats.drawings import drawing_format
+from camgeo.formats.drawings import drawing_format, drawing_making
 from camgeo.schema.fields import Field, Kind
 from kin.numeric.records import dataclass
 from kin.read.home import prepare_home
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.reader import Reader, Values
-    from kin.judge.check import Check
     from kin.numeric.arrays import Array
+    from kin.numeric.check import Check
 
 VERSION = "R2010"  # unless a recipe gives another
 VERSIONS = {"R12": "AC1009", "R2000": "AC1015", "R2010": "AC1024", "R2013": "AC1027"}
@@ -51,6 +51,7 @@ _MORE_COLOURS = {
     "TOOLPATH": 4,
     "GROOVE_INNER": 7,
     "GROOVE_OUTER": 7,
+    "GROOVE": 7,
 }  # of layers that are only there when something is on them
 _CENTRE_LINE = (22.0, 14.0, -3.0, 2.0, -3.0)  # mm: length of the pattern, then dash, gap, dash, gap
 _DATE = 2451544.5  # 2000-01-01 as a Julian date, in place of the times of writing
@@ -379,7 +380,6 @@ def _check(file: Values, _: Values, reader: Reader) -> None:
 
 FORMAT = drawing_format(
     "dxf",
-    _draw,
     Field(
         "version",
         Kind.CHOICE,
@@ -389,5 +389,5 @@ FORMAT = drawing_format(
     ),
     path=True,
     check=_check,
-    foresee=_foresee,
 )
+MAKING = drawing_making(_draw, _foresee)

@@ -15,6 +15,7 @@ import numpy as np
 from camgeo.common.units import UNIT_MM
 from camgeo.formats.meshes import foresee_mesh
 from camgeo.formats.options import TOLERANCE
+from camgeo.output.extension import Making
 from camgeo.registry.formats import Format
 from camgeo.schema.fields import FieldTable
 from kin.numeric.records import dataclass
@@ -209,7 +210,6 @@ FORMAT = Format(
     contour=False,
     part=False,
     solid=True,
-    make=make_view,
-    foresee=foresee_mesh,
-    numbers=_single,
+    mesh=True,
 )
+MAKING = Making(make=make_view, foresee=foresee_mesh, numbers=_single)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.output.extension import Making
 from camgeo.registry.formats import Format
 from camgeo.schema.errors import quote, suggestion
 from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, either
@@ -12,9 +13,9 @@ from camgeo.schema.yaml_source import Scalar, describe, join
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from camgeo.output.extension import RunResults
     from camgeo.output.job import MadeFiles
     from camgeo.recipe.export import FileRequest
-    from camgeo.registry.formats import RunResults
     from camgeo.schema.reader import Reader
     from camgeo.schema.yaml_source import Node
 
@@ -30,8 +31,9 @@ OVERLAYS = {
 
 def _read_overlays(reader: Reader, field: Field, node: Node, path: str) -> tuple[str, ...]:
     """Names of the overlays listed that the cam's family has, each once; the faults of others are noted."""
-    linked = bool(reader.kinds["linkage"])
-    available = [name for name, need in OVERLAYS.items() if not need or (need in reader.offers and not linked)]
+    linked, unknown = bool(reader.kinds["linkage"]), not reader.kinds["cam"]  # whose fault is noted already
+    offers = frozenset(OVERLAYS.values()) if unknown else reader.offers
+    available = [name for name, need in OVERLAYS.items() if not need or (need in offers and not linked)]
     names: list[str] = []
     for i, item in enumerate(reader.items(field, node, path, len(OVERLAYS))):
         word = item.text if isinstance(item, Scalar) else ""
@@ -88,5 +90,6 @@ FORMAT = Format(
     options=FieldTable((_OVERLAYS,)),
     contour=False,
     part=False,
-    summarise=_summarise,
+    summary=True,
 )
+MAKING = Making(summarise=_summarise)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.formats.options import OF_SOLID
+from camgeo.output.extension import Making
 from camgeo.registry.formats import Form, Format
 from camgeo.schema.fields import FieldTable
 
@@ -21,32 +22,20 @@ OPTIONS = FieldTable(OF_SOLID)
 EDGES = {"": Form(surfaces=2, discs=2, pieces="edges")}
 
 
-def mesh_format(
-    name: str,
-    *,
-    numbers: Callable[[], Precision],
-    write: Callable[[Path, Sequence[Item], str, float, str], None],
-    units: bool,
-) -> Format:
-    """Record of a format whose files hold one mesh each.
+def mesh_format(name: str, *, units: bool) -> Format:
+    """Facts of a format whose files hold one mesh each; `units` is whether a file states its unit."""
+    return Format(name=name, options=OPTIONS, forms=EDGES, solid=True, by_disc=True, units=units, mesh=True)
 
-    numbers  gives the precision of the numbers of a file
-    write    writes one mesh, whose points have that precision: (path, [mesh], title, mm of the unit, `about` of the
-             recipe)
-    units    whether a file states its unit
+
+def mesh_making(
+    numbers: Callable[[], Precision], write: Callable[[Path, Sequence[Item], str, float, str], None]
+) -> Making:
+    """What makes the files of a format of meshes.
+
+    `numbers` gives the precision of the numbers of a file; `write` writes meshes, whose points have that precision:
+    (path, meshes, title, mm of the unit, `about` of the recipe).
     """
-    return Format(
-        name=name,
-        options=OPTIONS,
-        forms=EDGES,
-        solid=True,
-        by_disc=True,
-        units=units,
-        make=make_mesh,
-        foresee=foresee_mesh,
-        numbers=numbers,
-        write=write,
-    )
+    return Making(make=make_mesh, foresee=foresee_mesh, numbers=numbers, write=write)
 
 
 def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:

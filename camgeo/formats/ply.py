@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.common.units import INCH
-from camgeo.formats.meshes import mesh_format
+from camgeo.formats.meshes import mesh_format, mesh_making
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,4 +55,5 @@ def _numbers() -> Precision:
     return DOUBLE
 
 
-FORMAT = mesh_format("ply", numbers=_numbers, write=write_ply, units=False)
+FORMAT = mesh_format("ply", units=False)
+MAKING = mesh_making(_numbers, write_ply)

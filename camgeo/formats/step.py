@@ -17,6 +17,7 @@ from camgeo.files.precision import conversion_error
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 from camgeo.formats.options import OF_SOLID
+from camgeo.output.extension import Making
 from camgeo.part.features import EDGE_KEYS
 from camgeo.registry.formats import Form, Format
 from camgeo.schema.fields import Field, FieldTable, Kind
@@ -282,7 +283,6 @@ FORMAT = Format(
         for name, pieces in (("arcs", "arcs"), ("spline", "spans"))
     },
     check=_check,
-    foresee=_foresee,
     solid=True,
-    make=make_step,
 )
+MAKING = Making(make=make_step, foresee=_foresee)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.common.units import INCH
-from camgeo.formats.meshes import mesh_format
+from camgeo.formats.meshes import mesh_format, mesh_making
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,4 +49,5 @@ def _single() -> Precision:
     return SINGLE
 
 
-FORMAT = mesh_format("stl", numbers=_single, write=_write, units=False)
+FORMAT = mesh_format("stl", units=False)
+MAKING = mesh_making(_single, _write)

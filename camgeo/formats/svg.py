@@ -19,7 +19,7 @@ import numpy as np
 from camgeo.curve.ring import ArcChain, radius_of, steps_along
 from camgeo.files.markup import number, one_line
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
-from camgeo.formats.drawings import drawing_format
+from camgeo.formats.drawings import drawing_format, drawing_making
 from camgeo.formats.dxf import UNITS
 
 if TYPE_CHECKING:
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from camgeo.fit.bound import Box
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
-    from kin.judge.check import Check
     from kin.numeric.arrays import Array
+    from kin.numeric.check import Check
 
 _PAGE_UNIT = {"mm": "mm", "inch": "in"}
 _COLOURS = {"CUT": "#000000", "BORE": "#0000ff", "HOLES": "#0000ff", "MARK": "#ff0000", "ENGRAVE": "#00aa00"}
-_COLOURS |= dict.fromkeys(("GROOVE_INNER", "GROOVE_OUTER"), _COLOURS["CUT"])
+_COLOURS |= dict.fromkeys(("GROOVE_INNER", "GROOVE_OUTER", "GROOVE"), _COLOURS["CUT"])
 _MARGIN = 1.0  # mm round what is drawn
 _PLACES = 100  # the page's corners lie on whole hundredths of a drawing unit
 _HAIRLINE = 0.1  # mm
@@ -164,4 +164,5 @@ def _draw(
     return ()
 
 
-FORMAT = drawing_format("svg", _draw)
+FORMAT = drawing_format("svg")
+MAKING = drawing_making(_draw)

@@ -12,7 +12,7 @@ import numpy as np
 
 from camgeo.common.units import INCH
 from camgeo.files.markup import number, one_line
-from camgeo.formats.meshes import EDGES, OPTIONS, foresee_mesh, make_mesh
+from camgeo.formats.meshes import EDGES, OPTIONS, mesh_making
 from camgeo.registry.formats import Format
 
 if TYPE_CHECKING:
@@ -97,13 +97,5 @@ def _decimals() -> Precision:
     return DECIMALS
 
 
-FORMAT = Format(
-    name="3mf",
-    options=OPTIONS,
-    forms=EDGES,
-    solid=True,
-    make=make_mesh,
-    foresee=foresee_mesh,
-    numbers=_decimals,
-    write=_written,
-)
+FORMAT = Format(name="3mf", options=OPTIONS, forms=EDGES, solid=True, mesh=True)
+MAKING = mesh_making(_decimals, _written)

@@ -17,9 +17,9 @@ from camgeo.common.errors import CallError
 from camgeo.curve.curvature import least_radius
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
+from camgeo.measures.extension import MEASURES
 from camgeo.part.feature import NothingLeftError, narrowed
 from camgeo.part.features import with_records
-from camgeo.registry.formats import alteration
 from camgeo.synthesis.design import SurfaceDesign, discs_of, sound
 from kin.contour.offset import TightError, chain_of, parallel
 from kin.numeric.records import dataclass, replace
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.machining import Compensation
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, Disc
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 FINE = 1e-9  # mm: pieces of an opening's parallel no longer than this are rounding, and left out
 
@@ -74,7 +74,10 @@ def compensate(recipe: Recipe, design: Design, compensation: Compensation, field
         raise recipe.error(field, f"an opening cannot be made smaller by {growth / recipe.mm:.6g}: {error}") from error
     try:
         for altered in compensation.altered:
-            exact = alteration(altered.capability).alter(recipe, design, exact, altered.value, scale)
+            alter = MEASURES[altered.capability].alter
+            if alter is None:
+                raise ValueError(f"nothing alters a part by {altered.key}")
+            exact = alter(recipe, design, exact, altered, scale)
     except CallError as error:
         raise recipe.error(field, str(error)) from error
     name = f"{recipe.name}, {compensation.words(recipe.mm)}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from camgeo.curve.undercut.causes import UndercutError
 from camgeo.fit.arcs import fit_arcs
 from camgeo.machining.cutter import cutter_path, no_hollow
 from camgeo.synthesis.checks import hollow_radius
-from kin.judge.check import Check, failed
+from kin.numeric.check import Check, failed
 from kin.numeric.lengths import amount_words
 
 if TYPE_CHECKING:
@@ -72,9 +73,10 @@ def reach_checks(recipe: Recipe, design: Design) -> list[tuple[Check, CutterPath
 def _reach_check(
     manufacture: Manufacture, design: Design, surface: Surface, contour: Curve
 ) -> tuple[Check, CutterPath | None]:
-    hollow = "no hollow"
+    hollow, radius = "no hollow", math.inf
     if not no_hollow(contour):
         radius, parameter = hollow_radius(surface.side, contour)
+    if math.isfinite(radius):
         hollow = f"least hollow radius {amount_words(radius, 'mm')} at {design.motion.shaft_deg(parameter):.6g} deg"
     try:
         path = cutter_path(contour, manufacture.radius)

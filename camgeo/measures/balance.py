@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from camgeo.part.body import Body
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, Disc
-    from kin.judge.layers import Layer
     from kin.numeric.arrays import Array
+    from kin.read.layers import Layer
 
 KG = 1e-9  # m^3 in a mm^3: from kg/m^3 to kg/mm^3
 NODES, WEIGHTS = gauss(3)

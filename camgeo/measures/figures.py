@@ -8,10 +8,11 @@ from itertools import starmap
 from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import CHECKS, LAW, PRESSURE, RATIO, STANDS, TRAVEL, WALL
+from camgeo.measures.extension import MEASURES
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.recipe import figures
+from camgeo.recipe.design_figure import NOTHING
 from camgeo.recipe.figures import FIGURES
-from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius, needed_width
 from kin.judge.verdict import UNREAD
 from kin.numeric.angles import TURN, degrees
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design, SurfaceDesign
     from camgeo.synthesis.linkage import DesignedLinkage
     from kin.follower.motion_error import Play
-    from kin.judge.check import Check
     from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import ExtremePlace
+    from kin.numeric.check import Check
 
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 ORDERS = {"swing": 0, **{name: k for k, name in enumerate(figures.PEAKS, 1)}}
@@ -68,7 +69,7 @@ def design_figures(
         if owner := FIGURES.owner(name):
             owned.setdefault(owner, []).append(name)
     for owner, own in owned.items():
-        measured |= registry.capability(owner).measure(recipe, design, own, speeds or {})
+        measured |= MEASURES[owner].measure(recipe, design, own, speeds or {})
     motion = [name for name in wanted if name in ORDERS]
     if design.driven is not None:
         measured |= _linkage_figures(design.driven, wanted)
@@ -96,7 +97,7 @@ def _nearness(check: Check) -> float:
 def figure_of_check(check: Check) -> Measured:
     """The figure that a check compares with its limit; without a value it has the check's detail as reason."""
     detail = "" if check.value is not None else check.detail
-    return Measured(check.value, check.unit, check.at_deg, detail, check.surface)
+    return Measured(check.value, check.unit, check.at, detail, check.surface, check.at_unit)
 
 
 # --- of the curve -----------------------------------------------------------------------------------------------------
@@ -289,7 +290,7 @@ def _linkage_figures(driven: DesignedLinkage, names: Iterable[str]) -> dict[str,
         ),
     }
     if driven.figures is None:
-        needs = (figures.NOTHING, figures.OF_DWELL, figures.OF_LINKAGE)
+        needs = (NOTHING, figures.OF_DWELL, figures.OF_LINKAGE)
         standing = (name for name in names if FIGURES[name].needs in needs and name not in {*measured, *_OF_CURVE})
         return measured | {name: Measured(None, "", detail=STANDS) for name in standing}
 

@@ -23,8 +23,8 @@ class FileResult(OfSurfaces):
     tolerance, pieces, bound  of the fit: mm, number of pieces, proved bound; None where there is none
     body      name of the body that the file shows
     units     length of the file's unit, mm; None where its numbers have no unit or nothing was read
-    surfaces, closures, bodies, uneven  of the judge's verdict, `bodies` with every closed contour as read; empty, or 0,
-              for a file that is not judged as the cam
+    surfaces, closures, bodies, uneven, passed  of the judge's verdict, `bodies` with every closed contour as read;
+              empty, or 0, for a file that is not judged as the cam
     disc      number of the disc that the file holds, from 0; None for all discs
     """
 
@@ -40,6 +40,7 @@ class FileResult(OfSurfaces):
     bodies: tuple[tuple[Contour, ...], ...] = ()
     disc: int | None = None
     uneven: float = 0.0
+    passed: tuple[str, ...] = ()
 
     @staticmethod
     def of(
@@ -51,7 +52,8 @@ class FileResult(OfSurfaces):
         """
         pieces, bound = (verdict.pieces, None) if fit is None else fit
         read = verdict.surfaces, verdict.closures, verdict.bodies
-        return FileResult(path, request, tolerance, pieces, bound, "cam", verdict.units, *read, uneven=verdict.uneven)
+        units, uneven, passed = verdict.units, verdict.uneven, verdict.passed
+        return FileResult(path, request, tolerance, pieces, bound, "cam", units, *read, uneven=uneven, passed=passed)
 
     @property
     def shows_cam(self) -> bool:

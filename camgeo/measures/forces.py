@@ -22,12 +22,13 @@ if TYPE_CHECKING:
     from camgeo.cams.family import Preload
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.dynamics.contact_forces import Elastic
+    from kin.follower.contact_forces import Elastic
     from kin.follower.contact_lines import ContactLine
     from kin.numeric.arrays import Array
     from kin.numeric.monotone import MonotonePieces
 
 SHARE = 1e-12  # of the greatest value, within which a force is approximated over the turn
+ROUNDING = 1e-12  # rad, within which two places of the turn are one
 PER_MM = 1e-3  # from N/m to N/mm, and from N mm to N m
 
 
@@ -78,31 +79,48 @@ class Turn(ABC):
         """Unit of forces along the travel, as reported."""
         return "N m" if self.swings else "N"
 
-    def pieces(self, values: Callable[[Array], Array]) -> list[MonotonePieces]:
-        """Monotone pieces of r functions of the parameter; `values` maps t (n,) to (r, n).
+    def pieces(
+        self, values: Callable[[Array], Array], stretch: tuple[float, float] = (0.0, TURN)
+    ) -> list[MonotonePieces]:
+        """Monotone pieces of r functions of the parameter over a stretch of it; `values` maps t (n,) to (r, n).
 
-        Raises RoughError where a function changes too abruptly.
+        A stretch, rad, may go on into the next turn. Raises RoughError where a function changes too abruptly.
         """
-        from kin.numeric.monotone import between, cells, pieces
+        from kin.numeric.monotone import between
 
-        corners = self.parameter(np.array(self.corners)) if self.corners else ()
-        functions = cells(values, between(0.0, TURN, [*self.places, *corners]), share=SHARE)
+        corners = self.parameter(np.array(self.corners))
+        # no sliver of rounding between a corner and a place that are one, nor at an end of the stretch
+        apart = np.abs(corners[:, None] - self.places).min(axis=1, initial=TURN) > ROUNDING
+        places = np.concatenate([self.places, corners[apart]])
+        if stretch == (0.0, TURN):
+            return self._pieces(values, between(0.0, TURN, places.tolist()))
+        turned = np.concatenate([places - TURN, places, places + TURN])
+        inside = turned[(turned > stretch[0] + ROUNDING) & (turned < stretch[1] - ROUNDING)]
+        return self._pieces(lambda t: values(np.mod(t, TURN)), between(*stretch, inside.tolist()))
+
+    @staticmethod
+    def _pieces(values: Callable[[Array], Array], places: Array) -> list[MonotonePieces]:
+        from kin.numeric.monotone import cells, pieces
+
+        functions = cells(values, places, share=SHARE)
         return [pieces(functions, row) for row in range(len(functions.coefficients))]
 
     def degrees(self, t: float) -> float:
         """Shaft angle, degrees from 0 to less than 360, at a parameter t, rad."""
         return degrees(float(self.shaft(np.array([t]))[0]))
 
-    def extremes(self, values: Callable[[Array], Array]) -> list[tuple[ExtremeAtAngle, ExtremeAtAngle]]:
-        """Least and greatest value over the turn of r functions of the parameter; `values` maps t (n,) to (r, n).
+    def extremes(
+        self, values: Callable[[Array], Array], stretch: tuple[float, float] = (0.0, TURN)
+    ) -> list[tuple[ExtremeAtAngle, ExtremeAtAngle]]:
+        """Least and greatest value of r functions of the parameter over a stretch of it, a turn unless it is given.
 
-        Raises RoughError where a function changes too abruptly.
+        `values` maps t (n,) to (r, n). Raises RoughError where a function changes too abruptly.
         """
 
         def placed(extreme: tuple[float, float]) -> ExtremeAtAngle:
             return ExtremeAtAngle(extreme[0], self.degrees(extreme[1]))
 
-        return [(placed(piece.least()), placed(piece.greatest())) for piece in self.pieces(values)]
+        return [(placed(piece.least()), placed(piece.greatest())) for piece in self.pieces(values, stretch)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +175,7 @@ def elastic_contacts(turn: FollowerTurn, preload: Preload, rows: Array) -> Elast
     `rows` (3, n) are position and two derivatives, mm or rad. Raises ValueError for a preload without stiffness, and
     for a follower without two contacts.
     """
-    from kin.dynamics.contact_forces import preloaded
+    from kin.follower.contact_forces import preloaded
 
     if preload.stiffness is None:
         raise ValueError("a preload without stiffness has no force")

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import PRESSURE
 from camgeo.common.clock import Clock
+from camgeo.measures.extension import MEASURES
 from camgeo.measures.figures import ORDERS
 from camgeo.measures.limits import limit_checks
 from camgeo.motions.segments import LEAST, REST
 from camgeo.recipe.figures import FIGURES, ON_RETURN, ON_RISE
 from camgeo.recipe.recipe import Angle, ChosenAngles
-from camgeo.registry import registry
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.checks import motion_checks
 from camgeo.synthesis.design import Design, designed
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.numeric.records import dataclass, field, replace
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from camgeo.measures.measured import Measured
     from camgeo.motions.motion import Open
     from camgeo.recipe.recipe import Recipe
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 STEPS = 100  # of a degree: every angle that is tried is a whole number of them
 RATIO = 1.2  # of neighbours on the ladder, whose lowest rung is above a degree
@@ -144,8 +144,8 @@ def _checks(recipe: Recipe) -> Sequence[Check]:
     runs: dict[str, Mapping[str | None, Measured]] = {}
     if all(check.ok for check in checks):  # runs take the most time
         owners = {FIGURES.owner(limit.figure) for limit in recipe.limits if FIGURES[limit.figure].of == "run"}
-        for capability in registry.in_order(filter(None, owners)):
-            results = capability.examine(recipe, design, (), Clock())
+        for answers in MEASURES.of(owners):
+            results = answers.examine(recipe, design, (), Clock())
             checks += results.checks
             runs |= results.runs
     return [*checks, *limit_checks(recipe, design, checks, (), runs)]

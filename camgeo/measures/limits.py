@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.checks.declared import LIMIT, CheckFacts, declaration
+from camgeo.checks.declaration import CheckFacts
+from camgeo.checks.declared import LIMIT, declaration
 from camgeo.checks.remedies import Missed, limit_remedy
 from camgeo.measures.figures import design_figures, file_figure
 from camgeo.recipe.figures import FIGURES
-from kin.judge.check import Check
+from kin.numeric.check import Check
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.limits import Limit
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.judge.check import Sense
+    from kin.numeric.check import Sense
 
 ROUNDING = 1e-9  # share of a limit by which a figure that just reaches it may miss it
 
@@ -90,7 +91,6 @@ def _bound_checks(
             lift = f"at a lift of {limit.lift / recipe.mm:.9g} {'in' if recipe.units == 'inch' else 'mm'}"
             detail = f"{lift}: {detail}" if detail else lift
         name = LIMIT + limit.figure
-        checks.append(
-            Check(name, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail, measured.surface)
-        )
+        unit, place, surface = measured.unit, measured.at, measured.surface
+        checks.append(Check(name, ok, value, bound, unit, place, sense, file, detail, surface, measured.at_unit))
     return checks

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.measures.extension import MEASURES
 from camgeo.measures.measured import Measured
 from camgeo.recipe.figures import DURATION, FIGURES, LIFT_AREA, LOBE_CENTRE, RAMP_VELOCITY
-from camgeo.registry import registry
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import CamgeoError
 from kin.numeric.monotone import RoughError, between, cells, pieces
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.cams.family import ExactCam
+    from camgeo.measures.extension import MovedBody
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import MovedBody
     from camgeo.synthesis.design import Design
     from kin.numeric.arrays import Array
     from kin.numeric.monotone import MonotonePieces
@@ -66,32 +67,52 @@ def event_of(exact: ExactCam, lift: float) -> LobeEvent:
 
     Raises EventError unless the lobe crosses it once upwards and once downwards, and for too abrupt a motion.
     """
-    pieces = lift_pieces(exact)
-    datum, _ = pieces.least()
-    crossings = _crossings(pieces, datum + lift)
-    if len(crossings) != 2:
+    crossings = _crossings(lift_pieces(exact), lift)
+    events = events_of(exact, lift)
+    if len(crossings) != _TWO or len(events) != 1:
         raise EventError(f"the lift passes {lift:.6g} mm {len(crossings)} times in a turn")
-    first, last = crossings.tolist()
-    above = float(exact.motion.by_parameter(np.array([0.5 * (first + last)]), 0)[0, 0]) > datum + lift
-    event = LobeEvent(lift, first, last) if above else LobeEvent(lift, last, first + TURN)
-    return _off_rest(event, exact) if lift == 0.0 else event
+    return events[0]
 
 
-def _off_rest(event: LobeEvent, exact: ExactCam) -> LobeEvent:
-    """The event at lift 0, with its ends moved to the ends of the lowest dwell, near which the lift is rounding."""
+@lru_cache(maxsize=16)
+def events_of(exact: ExactCam, lift: float) -> tuple[LobeEvent, ...]:
+    """Every stretch of a turn above a `lift`, mm above the lowest position; in order, none or any number.
+
+    A motion that only touches the lift has two stretches there. Raises EventError for too abrupt a motion.
+    """
+    pieces = lift_pieces(exact)
+    level = pieces.least()[0] + lift
+    crossings = _crossings(pieces, lift).tolist()
+    if not crossings:
+        return ()
+    events = []
+    for begin, end in pairwise([*crossings, crossings[0] + TURN]):
+        middle = np.array([0.5 * (begin + end) % TURN])
+        if float(exact.motion.by_parameter(middle, 0)[0, 0]) > level + (pieces.noise if lift == 0.0 else 0.0):
+            events.append(LobeEvent(lift, begin, end))
+    return _off_rests(events, exact) if lift == 0.0 else tuple(events)
+
+
+def _off_rests(events: list[LobeEvent], exact: ExactCam) -> tuple[LobeEvent, ...]:
+    """Events at lift 0, with their ends moved to the ends of the lowest dwells, near which the lift is rounding."""
     breaks = np.concatenate([exact.breaks + turns * TURN for turns in (0.0, 1.0, 2.0)])
-    rest = breaks[(breaks >= event.closing - ROUNDING) & (breaks <= event.opening + TURN + ROUNDING)]
-    if len(rest) < _TWO or np.ptp(rest) <= ROUNDING:
-        return event
-    return LobeEvent(event.lift, float(rest.max()) - TURN, float(rest.min()))
+    openings, closings = ([getattr(event, end) for event in events] for end in ("opening", "closing"))
+    for k, closing in enumerate(closings):
+        following = (k + 1) % len(events)
+        turned = TURN if following == 0 else 0.0
+        rest = breaks[(breaks >= closing - ROUNDING) & (breaks <= events[following].opening + turned + ROUNDING)]
+        if len(rest) >= _TWO and np.ptp(rest) > ROUNDING:
+            closings[k], openings[following] = float(rest.min()), float(rest.max()) - turned
+    return tuple(LobeEvent(0.0, *ends) for ends in zip(openings, closings, strict=True))
 
 
-def _crossings(pieces: MonotonePieces, level: float) -> Array:
-    """Places at which a level is crossed, rad, ascending; of a dwell on it both ends.
+def _crossings(pieces: MonotonePieces, lift: float) -> Array:
+    """Places at which a `lift` above the lowest position is crossed, rad, ascending; of a dwell on it both ends.
 
     0 and the whole turn are one place, given once: as the whole turn where a dwell on the level begins there, not at
     all within such a dwell, else as 0.
     """
+    level = pieces.least()[0] + lift
     places = pieces.crossings(level)
     if len(places) < _TWO or places[0] > 0.0 or places[-1] < TURN:
         return places
@@ -178,7 +199,7 @@ def figure_at(recipe: Recipe, design: Design, name: str, lift: float) -> Measure
     """
     owner = FIGURES.owner(name)
     if owner:
-        return registry.capability(owner).measure_at(recipe, design, name, lift)
+        return MEASURES[owner].measure_at(recipe, design, name, lift)
     return lobe_figure(name, design.exact, lift)
 
 
@@ -188,5 +209,5 @@ def moved_by(recipe: Recipe, design: Design) -> MovedBody | None:
     Raises RecipeErrors where the follower cannot move it, as by a table of ratios that ends below its lift, EventError
     where the follower's motion is too rough to tell.
     """
-    motions = (capability.moved(recipe, design) for capability in registry.in_order(recipe.uses))
+    motions = (answers.moved(recipe, design) for answers in MEASURES.of(recipe.uses))
     return next((moved for moved in motions if moved is not None), None)

@@ -8,19 +8,21 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.checks.declared import LAW, MOTION, PRESSURE
+from camgeo.checks.declared import CLOSED, LAW, MOTION, PRESSURE
 from camgeo.checks.remedies import MORE_HARMONICS
 from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
+from camgeo.measures.extension import MEASURES
 from camgeo.measures.figures import design_figures
+from camgeo.measures.rule_remark import RuleRemark
 from camgeo.measures.units import UNIT_NAMES, displacement_unit
 from camgeo.part.features import with_records
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
-from camgeo.registry import registry
 from camgeo.synthesis.checks import hollow_radius
 from kin.law.joints import DerivativeJump
 from kin.numeric.angles import degrees
-from kin.numeric.records import dataclass, replace
+from kin.numeric.records import replace
+from kin.read.formats import FORMATS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import DesignedLinkage
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 PRESSURE_RULE = {"oscillating": 45.0, "translating": 30.0}  # degrees: cam handbooks' rule of thumb for rollers
 RETURN_RULE = 45.0  # degrees, where a spring holds the follower
@@ -52,7 +54,9 @@ RemarkName = Literal[
     "acceleration-jump",
     "cam-card",
     "coarse-tolerance",
+    "contour",
     "dwell-shorter",
+    "joined",
     "large-cutter",
     "large-roller",
     "least-angle",
@@ -79,21 +83,6 @@ RemarkName = Literal[
 """Names of the core's remarks."""
 
 
-@dataclass(frozen=True)
-class RuleRemark:
-    """A remark: a figure's `value` beside the usual `rule`, both in `unit`, and a `sentence` in the recipe's unit.
-
-    `value` and `rule` are None for a remark without figures; `at_deg` is the shaft angle, degrees, if there is one.
-    """
-
-    name: str
-    value: float | None
-    rule: float | None
-    unit: str
-    sentence: str
-    at_deg: float | None = None
-
-
 def remarks_of(
     recipe: Recipe, design: Design, checks: Sequence[Check] = (), files: Sequence[FileResult] = ()
 ) -> tuple[RuleRemark, ...]:
@@ -113,6 +102,7 @@ def remarks_of(
         "wanted-law": [_law_error(recipe, design)],
         "loose-motion-error": [_implied(recipe, design, checks, files)],
         "no-play": [_stuck(recipe, design, files)],
+        "joined": _joined(recipe, checks, files),
         "openings": [_openings(recipe, files)],
         "acceleration-jump": [_acceleration(recipe, design.exact.joints)],
         "output": _output(recipe, design),
@@ -120,8 +110,8 @@ def remarks_of(
         "metric-keyway": _metric(recipe),
         "thickness": [_thickness(recipe, design)],
     }
-    for capability in registry.in_order(recipe.uses):
-        for after, more in capability.remarks.items():
+    for answers in MEASURES.of(recipe.uses):
+        for after, more in answers.remarks.items():
             remarks[after] = [*remarks[after], *more(recipe, design)]
     return tuple(remark for group in remarks.values() for remark in group if remark is not None)
 
@@ -197,7 +187,7 @@ def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
     from camgeo.curve.curve import CurveError
     from camgeo.curve.measures import farthest, nearest
     from camgeo.synthesis.design import sound
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     cam = cam.refusing_undercut()
     try:
@@ -309,14 +299,30 @@ def _stuck(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> RuleR
     return RuleRemark("no-play", play.least, 0.0, play.unit, sentence, play.least_at_deg)
 
 
+def _joined(recipe: Recipe, checks: Sequence[Check], files: Sequence[FileResult]) -> list[RuleRemark]:
+    """Remarks on ends of drawings that were joined though they do not quite meet; none where `closed` fails."""
+    whole = {check.file for check in checks if check.name == CLOSED.name and check.ok}
+    remarks = []
+    for file in files:
+        if not file.uneven or file.path.name not in whole or FORMATS[file.request.kind].contents != "drawing":
+            continue
+        counted = "are joined, and that is counted into its errors"
+        sentence = f"ends of {file.path.name} up to {_length(recipe, file.uneven)} apart {counted}"
+        remarks.append(RuleRemark("joined", None, None, "", sentence))
+    return remarks
+
+
 def _openings(recipe: Recipe, files: Sequence[FileResult]) -> RuleRemark | None:
-    """Remark that openings of files are not judged, as the recipe asks for; None where there are none."""
-    names = [file.path.name for file in files if any(len(body) > len(file.surfaces) for body in file.bodies)]
-    if recipe.verify.openings == "judge" or not names:
+    """Remark on what of files is not judged, as the recipe asks for; None where all is."""
+    if recipe.verify.openings == "judge":
         return None
-    sentence = (
-        f"openings of {' and '.join(names)} that the part does not name are not judged, as verify.openings has it"
-    )
+    names = [file.path.name for file in files if any(len(body) > len(file.surfaces) for body in file.bodies)]
+    told = [f"openings of {' and '.join(names)} that the part does not name are not judged"] if names else []
+    passed = [(file.path.name, ", ".join(file.passed)) for file in files if file.passed]
+    told += [f"what is no part of the cam in {name} is passed over, {words}" for name, words in passed]
+    if not told:
+        return None
+    sentence = f"{'; '.join(told)}, as verify.openings has it"
     return RuleRemark("openings", None, None, "", sentence)
 
 
@@ -351,7 +357,8 @@ def _law_error(recipe: Recipe, design: Design) -> RuleRemark | None:
 
 def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> RuleRemark | None:
     """A limit of motion error implied by a file's tolerance that is a good part of the stroke or of the rollers."""
-    from kin.judge.limits import direct_play, is_loose, stroke_of
+    from kin.judge.limits import direct_play, stroke_of
+    from kin.numeric.limits import is_loose
 
     if recipe.verify.motion_error is not None or not files:
         return None
@@ -394,7 +401,7 @@ def _stroke(design: Design) -> tuple[float, float]:
 
 
 def _table(design: Design) -> list[RuleRemark]:
-    """Remarks that the rows of a table gave when they were read, in the table's units."""
+    """Remarks that the rows of a table gave when they were read, in the table's units, or a contour."""
     kept = design.exact.kept
     return [] if kept is None else [RuleRemark(name, None, None, "", sentence) for name, sentence in kept.remarks]
 

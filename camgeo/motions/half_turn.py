@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from camgeo.motions.by_motion import ByMotion
+from camgeo.motions.inputs import WHOLE_PART
 from camgeo.motions.motion import MotionSource, check_filled, motion_field
 from camgeo.schema.fields import Kind
 
@@ -25,7 +26,7 @@ SWING = motion_field(
     "swing",
     Kind.ANGLE,
     "swing of the frame over the shaft angle, in its sense, under a linkage of kind inverted-slider-crank",
-    longest=360,
+    over=WHOLE_PART,
 )
 BY_MOTION = ByMotion(
     motion="motion",

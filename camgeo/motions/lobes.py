@@ -15,13 +15,15 @@ if TYPE_CHECKING:
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
-    from kin.law.sources.cam_card import SideCard
-    from kin.law.sources.lobe import LobeSide
+    from kin.law.sources.cam_card import Mixture, SideCard
     from kin.law.sources.motion import Motion
 
 MOST_DURATIONS = 3
 _BOTH, _ALONE = 4.0, 2.0  # degrees of the crank by degrees of the cam from the nose, of both sides together or one
 _SIDES = ("opening", "closing")
+ACCELERATION, VELOCITY, FACE = "acceleration", "velocity", "face"
+ORDERS = {ACCELERATION: 2, VELOCITY: 1, FACE: 1}
+"""Order of the derivative whose peak is least: on a flat face the contact runs out by the velocity."""
 
 
 @dataclass(frozen=True)
@@ -43,14 +45,22 @@ class SideShape:
 
 
 def lobe_motion(
-    lift: float, sides: tuple[SideShape, SideShape], total: float, *, nose: float, around: int | None, field: str
+    lift: float,
+    sides: tuple[SideShape, SideShape],
+    total: float,
+    *,
+    nose: float,
+    around: int | None,
+    order: int,
+    field: str,
 ) -> Motion:
     """Motion of a lobe of a lift, mm or rad, over `total` rad, with the sides `sides`, opening and closing.
 
     `nose` is the angle of its greatest lift, rad. `around`, 1, -1 or None, is how the motion goes on beyond `total`, as
-    in `camgeo.motions.motion`. Raises IntentError, at `field` or a path below it, where no such lobe exists.
+    in `camgeo.motions.motion`. Of the lobes that meet a card the one is taken whose derivative of `order`, 1 or 2, has
+    the least peak. Raises IntentError, at `field` or a path below it, where no such lobe exists.
     """
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
     from kin.law.sources.cam_card import sides_of_card
     from kin.law.sources.lobe import demand_lift, lobe_of
     from kin.law.sources.motion import Kept, TableRemark
@@ -62,14 +72,15 @@ def lobe_motion(
         return lobe_of(opening.known, closing.known, total, nose=nose, around=around, field=field)
     if around != 1 and nose != 0.0:
         raise IntentError("the nose stands in the middle where the motion does not repeat each turn", f"{field}.nose")
-    first, second = sides_of_card(lift, opening, closing, 0.5 * total)
+    first, second = sides_of_card(lift, opening, closing, 0.5 * total, order=order)
     motion = lobe_of(first.side, second.side, total, nose=nose, around=around, field=field)
     mixtures = {
-        name: _mixture_words(*mixture) for name, mixture in zip(_SIDES, (first, second), strict=True) if mixture.members
+        name: _mixture_words(mixture) for name, mixture in zip(_SIDES, (first, second), strict=True) if mixture.members
     }
     if first == second:
         mixtures = {"either": mixtures["opening"]}
     sentence = "; ".join(f"{words} on the {name} side" for name, words in mixtures.items())
+    sentence += "" if order == ORDERS[ACCELERATION] else ", of least peak velocity"
     return replace(motion, kept=Kept(None, 0, (TableRemark("cam-card", sentence.replace("the either", "either")),)))
 
 
@@ -88,10 +99,11 @@ def _side_card(lift: float, side: SideShape, total: float, field: str) -> SideCa
     return SideCard(crossings, side.half, ramp, crank=side.crank, field=field)
 
 
-def _mixture_words(members: tuple[tuple[tuple[int, ...], float], ...], side: LobeSide) -> str:
-    """Words for a side found from its card: its polynomials' weights and powers, and its angle."""
-    shares = " + ".join(f"{weight:.4g} x {'-'.join(map(str, powers))}" for powers, weight in members)
-    return f"the card is met by {shares} over {math.degrees(side.half):.6g} degrees of the cam"
+def _mixture_words(mixture: Mixture) -> str:
+    """Words for a side found from its card: its polynomials' weights and powers, its angle, and what it misses."""
+    shares = " + ".join(f"{weight:.4g} x {'-'.join(map(str, powers))}" for powers, weight in mixture.members)
+    within = f" within {mixture.off:.2g} degrees" if mixture.off else ""
+    return f"the card is met{within} by {shares} over {math.degrees(mixture.side.half):.6g} degrees of the cam"
 
 
 # --- in a recipe ------------------------------------------------------------------------------------------------------
@@ -109,9 +121,16 @@ def lobe_field(stroke: Kind, most: float) -> Field:
     )
     lift = Field("lift", stroke, "greatest displacement, its ramp included", required=True, above=0, at_most=most)
     alone = "what its side has of its own, a duration from the crossing to the nose"
+    least = Field(
+        "least",
+        Kind.CHOICE,
+        "what is least of all lobes that meet a card; face, the width of a flat face on a stem, goes by velocity",
+        default=ACCELERATION,
+        choices=tuple(ORDERS),
+    )
     both = _side_fields(stroke, most)
     sides = tuple(mapping(name, alone, *both) for name in _SIDES)
-    return mapping("lobe", "the lobe of valve trains, by its powers or its cam card", lift, *both, nose, *sides)
+    return mapping("lobe", "the lobe of valve trains, by its powers or its cam card", lift, *both, nose, least, *sides)
 
 
 def _side_fields(stroke: Kind, most: float) -> tuple[Field, ...]:
@@ -171,6 +190,18 @@ def _read_durations(
         rows = [reader.mapping(row, item, join(path, i)) for i, item in enumerate(items)]
     whole = [(values["at_lift"], values["degrees"]) for values in rows if values is not None and len(values) == 2]
     return tuple(whole) if rows and len(whole) == len(rows) else None
+
+
+def read_least(values: Values, path: str, reader: Reader) -> str:
+    """What is to be least of a lobe by its card; notes a face of a follower without one, and a lobe without a card."""
+    least: str = values.get("least", ACCELERATION)
+    place = join(path, "least")
+    if "least" in values and not any("duration" in side for side in (values, *(values.get(k, {}) for k in _SIDES))):
+        reader.fault_at(place, "belongs to a lobe by its durations", None, "leave it out, or give duration")
+    elif least == FACE and "stem-face" not in reader.offers:
+        remedy = f"give {VELOCITY} or {ACCELERATION}"
+        reader.fault_at(place, "the follower has no flat face on a stem", f"'{FACE}'", remedy)
+    return least
 
 
 def read_sides(values: Values, path: str, reader: Reader) -> tuple[SideShape, SideShape] | None:

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import math
 from functools import cache, lru_cache, partial
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
+from camgeo.motions.inputs import PART
 from camgeo.motions.lift_table import COLUMNS, TABLE, read_rows
 from camgeo.schema.errors import quote, suggestion
 from camgeo.schema.fields import MOST, MOST_SEGMENTS, Field, FieldTable, Kind, OwnForm, mapping
 from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Scalar, Sequence, describe, join
+from kin.numeric.lengths import input_number, input_words
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from camgeo.motions.inputs import Axes, Input
     from camgeo.motions.lift_table import Rows
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
-    from kin.law.programme import Law
+    from kin.law.normalised import Law
     from kin.law.sources.programme import Step
 
 
@@ -42,19 +45,21 @@ class SccaLaw:
 
 @dataclass(frozen=True)
 class UniformLaw:
-    """Constant velocity between two blends, at the begin and the end, with angles in rad."""
+    """Constant velocity between two blends, at the begin and the end, rad or mm of the input."""
 
     blend: tuple[float, float]
 
     def law(self, over: float, field: str) -> Law:
-        """The law of a segment `over` rad long; raises IntentError, below `field`, for blends longer than that."""
-        from kin.law.programme import IntentError
+        """The law of a segment over `over`, rad or mm; raises IntentError, below `field`, for longer blends."""
+        from kin.law.normalised import IntentError
         from kin.law.sources.laws import blended
 
         whole, both = (round(math.degrees(angle), _PLACES) for angle in (over, sum(self.blend)))
         if both > whole:
+            whole_words = input_number(over, "g")
             raise IntentError(
-                f"both blends together take {both:g} degrees, their segment {whole:g}; give blends of up to {whole:g}",
+                f"both blends together take {input_words(sum(self.blend), 'g')}, their segment {whole_words}; "
+                f"give blends of up to {whole_words}",
                 f"{field}.uniform.blend",
             )
         first, last = (angle / over for angle in self.blend)
@@ -76,11 +81,14 @@ class PointsLaw:
 
 @dataclass(frozen=True)
 class TableLaw:
-    """Rows (u, s) of a table, shares of the segment's angle and stroke, each kept within `reading`, a share of s."""
+    """Rows (u, s) of a table, shares of the segment's angle and stroke, each kept within `reading`, a share of s.
+
+    A `reading` of None is each row's own rounding.
+    """
 
     file: str
     rows: Rows
-    reading: float
+    reading: float | None
 
     def law(self, over: float, field: str) -> Law:  # noqa: ARG002 - u is a share of any angle
         """Law through the rows, within the reading; raises IntentError for rows from which no law follows."""
@@ -89,7 +97,7 @@ class TableLaw:
 
 @lru_cache(maxsize=8)
 def _law_of_rows(table: TableLaw, field: str) -> Law:
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
     from kin.law.sources.laws import from_rows
 
     try:
@@ -100,6 +108,7 @@ def _law_of_rows(table: TableLaw, field: str) -> Law:
 
 OwnLaw: TypeAlias = SccaLaw | UniformLaw | PointsLaw | TableLaw
 _PLACES = 9  # decimals of a degree: more are rounding of sums of angles
+DEFAULT_LAW = "modified-sine"  # of a segment without one
 MATCH = "match"  # the law that takes its neighbours' velocity and acceleration
 
 
@@ -107,12 +116,12 @@ MATCH = "match"  # the law that takes its neighbours' velocity and acceleration
 class MotionSegment:
     """One segment of a motion programme.
 
-    over     its angle, rad; 0 while a word stands in its place
+    over     its extent, rad or mm of the input; 0 while a word stands in its place
     stroke   mm, or rad for a follower that swings: height of a rise, return or rise_fall, displacement at the end for
              `to`, 0 for a dwell
     law      a name, the coefficients c0, c1, ... of a polynomial in u, or a law of the recipe's own
     split    share of the segment that accelerates; None for the law's own
-    at_end   velocity and acceleration at the end of a matched segment, per rad and rad^2; None for rest
+    at_end   velocity and acceleration at the end of a matched segment, by the input; None for rest
     formula  displacement in u from 0 to 1; its values times `scale` are mm or rad
     free     the word in place of its angle: least for the least that the limits allow, rest for the rest of the turn
     """
@@ -133,7 +142,7 @@ class MotionSegment:
         Raises kin's IntentError, at a path below `field`, where a split or a state at the end does not go with the law,
         and where the law cannot be made.
         """
-        from kin.law.programme import IntentError
+        from kin.law.normalised import IntentError
         from kin.law.sources.laws import split
         from kin.law.sources.programme import Dwell, Given, JointState, Matched, Move, RiseAndFall
 
@@ -158,7 +167,7 @@ class MotionSegment:
         return Move(self.over, law if self.split is None else split(law, self.split, field), by, to)
 
     def _law(self, field: str) -> Law:
-        from kin.law.programme import polynomial_law
+        from kin.law.normalised import polynomial_law
         from kin.law.sources.laws import named
 
         if isinstance(self.law, str):
@@ -170,7 +179,6 @@ class MotionSegment:
 
 LEAST: Literal["least"] = "least"  # in place of the angle of a segment: the least that the recipe's limits allow
 REST: Literal["rest"] = "rest"  # in place of the angle of a dwell: what the other segments leave of the turn
-_ANGLE = Field("", Kind.ANGLE, "", at_least=0, at_most=360)
 
 
 def _angle_or(word: str, about: str, field: Field) -> Field:
@@ -190,31 +198,35 @@ def _angle_or_schema(word: str, field: Field) -> Schema:
     return {"anyOf": [*number_schema(replace(field, form=None))["anyOf"], {"const": word}]}
 
 
-def _read_blend(reader: Reader, field: Field, node: Node, path: str) -> tuple[float, float] | None:
-    """Read the angles of two blends, or one angle for both, rad; None after a fault."""
+def _read_blend(part: Field, reader: Reader, field: Field, node: Node, path: str) -> tuple[float, float] | None:
+    """Read the extents of two blends, each of the field `part`, or one for both, rad or mm; None after a fault."""
     if isinstance(node, Scalar):
-        angle: float | None = reader.field(_ANGLE, node, path)
-        return None if angle is None else (angle, angle)
+        extent: float | None = reader.field(part, node, path)
+        return None if extent is None else (extent, extent)
     items = reader.items(field, node, path, 2)
-    angles = [reader.field(_ANGLE, item, join(path, i)) for i, item in enumerate(items)]
-    if len(angles) == 1:
-        reader.fault(node.mark, path, "not two angles", None, reader.wanted(field))
-    return None if len(angles) < 2 or None in angles else (angles[0], angles[1])
+    extents = [reader.field(part, item, join(path, i)) for i, item in enumerate(items)]
+    if len(extents) == 1:
+        reader.fault(node.mark, path, f"not two {_plural(part)}", None, reader.wanted(field))
+    return None if len(extents) < 2 or None in extents else (extents[0], extents[1])
 
 
-_BLEND = OwnForm(
-    "angles of blends",
-    "an angle from 0 to 360, or two, such as [10, 20]",
-    _read_blend,
-    lambda _: {
-        "anyOf": [
-            number_schema(_ANGLE),
-            {"type": "array", "items": number_schema(_ANGLE), "minItems": 2, "maxItems": 2},
-        ]
-    },
-)
+def _blend(over: Input) -> OwnForm[Any]:
+    """Form of the extents of two blends."""
+    part = Field("", over.kind, "", at_least=0, at_most=360 if over.kind is Kind.ANGLE else over.most)
+
+    def schema(_: Field) -> Schema:
+        pair = {"type": "array", "items": number_schema(part), "minItems": 2, "maxItems": 2}
+        return {"anyOf": [number_schema(part), pair]}
+
+    wanted = f"{part.wanted()}, or two, such as [10, 20]"
+    return OwnForm(f"{_plural(part)} of blends", wanted, partial(_read_blend, part), schema)
+
+
+def _plural(field: Field) -> str:
+    return f"{field.kind.value.partition(' ')[2]}s"
+
+
 MOST_LAW_POINTS = 200
-LEAST_READING = 1e-9  # of a law whose table shows every digit of its computer
 
 
 def read_pairs(
@@ -252,37 +264,56 @@ _POINTS = OwnForm(
         "maxItems": MOST_LAW_POINTS,
     },
 )
-_LAW = FieldTable(
-    (
-        Field("polynomial", Kind.NUMBERS, "coefficients c0, c1, ... of u, from 0 to 1 as u does"),
-        mapping(
-            "scca",
-            "sine, constant and cosine acceleration by their shares, and constant velocity",
-            Field("sine", Kind.NUMBER, "share of sine in the accelerating half", default="0", at_least=0, at_most=1),
-            Field("constant", Kind.NUMBER, "share of constant acceleration", default="0", at_least=0, at_most=1),
+
+
+@cache
+def _law_table(over: Input) -> FieldTable:
+    """Table of the keys of a law of the recipe's own."""
+    blend = _blend(over)
+    return FieldTable(
+        (
+            Field("polynomial", Kind.NUMBERS, "coefficients c0, c1, ... of u, from 0 to 1 as u does"),
+            mapping(
+                "scca",
+                "sine, constant and cosine acceleration by their shares, and constant velocity",
+                Field(
+                    "sine", Kind.NUMBER, "share of sine in the accelerating half", default="0", at_least=0, at_most=1
+                ),
+                Field("constant", Kind.NUMBER, "share of constant acceleration", default="0", at_least=0, at_most=1),
+                Field(
+                    "velocity",
+                    Kind.NUMBER,
+                    "share of the segment at constant velocity",
+                    default="0",
+                    at_least=0,
+                    at_most=1,
+                ),
+            ),
+            mapping(
+                "uniform",
+                "constant velocity between two blends",
+                Field(
+                    "blend",
+                    Kind.OWN,
+                    "over which it comes to that velocity and to rest; 0 of none",
+                    True,
+                    form=blend,
+                ),
+            ),
+            Field("points", Kind.OWN, "points [u, s] from [0, 0] to [1, 1] for a spline to go through", form=_POINTS),
+            Field("table", Kind.OWN, "file with a row for each u and its s, from 0;0 to 1;1, or rows", form=TABLE),
+            COLUMNS,
             Field(
-                "velocity", Kind.NUMBER, "share of the segment at constant velocity", default="0", at_least=0, at_most=1
+                "reading",
+                Kind.NUMBER,
+                "greatest distance of the law from a row of the table",
+                default="half the last digit",
+                above=0,
+                at_most=1,
             ),
         ),
-        mapping(
-            "uniform",
-            "constant velocity between two blends",
-            Field("blend", Kind.OWN, "over which it comes to that velocity and to rest; 0 of none", True, form=_BLEND),
-        ),
-        Field("points", Kind.OWN, "points [u, s] from [0, 0] to [1, 1] for a spline to go through", form=_POINTS),
-        Field("table", Kind.OWN, "file with a row for each u and its s, from 0;0 to 1;1, or rows", form=TABLE),
-        COLUMNS,
-        Field(
-            "reading",
-            Kind.NUMBER,
-            "greatest distance of the law from a row of the table",
-            default="half the last digit",
-            above=0,
-            at_most=1,
-        ),
-    ),
-    alternatives=(("polynomial", ()), ("scca", ()), ("uniform", ()), ("points", ()), ("table", ())),
-)
+        alternatives=(("polynomial", ()), ("scca", ()), ("uniform", ()), ("points", ()), ("table", ())),
+    )
 
 
 def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple[float, ...] | OwnLaw | None:
@@ -290,7 +321,7 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
 
     None after a fault.
     """
-    from kin.law.programme import IntentError, polynomial_law
+    from kin.law.normalised import IntentError, polynomial_law
     from kin.law.sources.laws import NAMES, scca
 
     names = (*NAMES, MATCH)
@@ -337,7 +368,7 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
 
 def _check_law(reader: Reader, node: Node, path: str, law: OwnLaw) -> OwnLaw | None:
     """The law; where it cannot be made, note the fault and return None."""
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     try:
         law.law(1.0, "law")
@@ -350,24 +381,17 @@ def _check_law(reader: Reader, node: Node, path: str, law: OwnLaw) -> OwnLaw | N
 def _table_law(reader: Reader, node: Node, path: str, values: Values) -> OwnLaw | None:
     """Read the rows of a law now, so that the recipe needs no file any more."""
     raw = {**values, "angle": "radians"}
-    table = read_rows(reader, raw, path, quantity="share", instead="")
-    if table is None:
+    rows = read_rows(reader, raw, path, quantity="share", instead="")
+    if rows is None:
         return None
-    rows, digit = table
     if values["table"].text is not None and "reading" not in values:
         reader.fault_at(path, "rows in a recipe show no last digit", None, "give reading beside them")
         return None
-    reading = values.get("reading", max(0.5 * digit, LEAST_READING))
-    return _check_law(reader, node, path, TableLaw(values["table"].name, rows, reading))
+    return _check_law(reader, node, path, TableLaw(values["table"].name, rows, values.get("reading")))
 
 
-def read_segments(
-    reader: Reader, field: Field, node: Node, path: str, stroke: Kind = Kind.LENGTH
-) -> tuple[MotionSegment, ...] | None:
-    """Read the segments of a motion; None where a segment is faulty.
-
-    `field` has the table of a segment, `stroke` is the kind of displacements, lengths or angles.
-    """
+def read_segments(reader: Reader, field: Field, node: Node, path: str, axes: Axes) -> tuple[MotionSegment, ...] | None:
+    """Read the segments of a motion; None where a segment is faulty. `field` has the table of a segment."""
     faults = len(reader.errors)
     items = reader.items(field, node, path, MOST_SEGMENTS)
     segment = Field("", Kind.TABLE, "", table=field.table)
@@ -379,7 +403,11 @@ def read_segments(
             if key in value and "law" not in value:
                 reader.fault_at(f"{path}[{i}].{key}", "needs a law", None, "leave it out")
     _check_free(reader, values, path)
-    return None if len(reader.errors) > faults else tuple(_segment(value, reader.scale(stroke)) for value in values)
+    if len(reader.errors) > faults:
+        return None
+    # derivatives are per rad, or per unit of length
+    unit = 1.0 if axes.over.kind is Kind.ANGLE else reader.scale(axes.over.kind)
+    return tuple(_segment(value, reader.scale(axes.stroke), unit) for value in values)
 
 
 def _check_free(reader: Reader, values: list[Values], path: str) -> None:
@@ -411,16 +439,20 @@ LAW = OwnForm("a motion law", "a motion law", read_law, _law_schema)
 
 
 @cache
-def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> FieldTable:
-    """Table of a segment at most `over` degrees long; `stroke` is the kind of its stroke, a length or an angle.
+def segment_table(stroke: Kind, over: Input = PART) -> FieldTable:
+    """Table of a segment over an input; `stroke` is the kind of its stroke, a length or an angle.
 
-    With `free` a word may stand in place of its angle.
+    In a whole turn a word may stand in place of its angle.
     """
     most = 180 if stroke is Kind.ANGLE else MOST
-    strokes = [Field(key, stroke, f"stroke of the {key}", above=0, at_most=most) for key in ("rise", "return")]
-    angle = Field("over", Kind.ANGLE, "shaft angle of the segment", above=0, at_most=over)
-    dwell = replace(angle, name="dwell", about="shaft angle of a rest")
-    if free:
+    strokes = [
+        Field(key, stroke, f"stroke of the {key}", above=0, at_most=most, slips=slips)
+        for key, slips in (("rise", ("raise",)), ("return", ("fall", "drop", "lower")))
+    ]
+    angle = Field("over", over.kind, f"{over.noun} of the segment", above=0, at_most=over.most)
+    dwell = replace(angle, name="dwell", about=f"{over.noun} of a rest", slips=("rest", "hold", "pause"))
+    per = "radian" if over.kind is Kind.ANGLE else "unit of length"
+    if over.turn:
         angle = _angle_or(LEAST, "the quickest that all limits allow", angle)
         dwell = _angle_or(REST, "what the others leave of the turn", dwell)
     return FieldTable(
@@ -437,7 +469,14 @@ def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> Field
             ),
             dwell,
             angle,
-            Field("law", Kind.OWN, "motion law by name, match, or one of its own", table=_LAW, form=LAW),
+            Field(
+                "law",
+                Kind.OWN,
+                "motion law by name, match, or one of its own",
+                default=DEFAULT_LAW,
+                table=_law_table(over),
+                form=LAW,
+            ),
             Field(
                 "split",
                 Kind.NUMBER,
@@ -449,8 +488,8 @@ def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> Field
             mapping(
                 "at_end",
                 "state at the end of a segment with law match",
-                Field("v", stroke, "velocity there, per radian", default="0", at_least=-MOST, at_most=MOST),
-                Field("a", stroke, "acceleration there, per radian²", default="0", at_least=-MOST, at_most=MOST),
+                Field("v", stroke, f"velocity there, per {per}", default="0", at_least=-MOST, at_most=MOST),
+                Field("a", stroke, f"acceleration there, per {per}²", default="0", at_least=-MOST, at_most=MOST),
             ),
         ),
         alternatives=(
@@ -462,7 +501,8 @@ def segment_table(stroke: Kind, over: int = 180, *, free: bool = False) -> Field
     )
 
 
-def _segment(segment: Values, scale: float) -> MotionSegment:
+def _segment(segment: Values, scale: float, unit: float) -> MotionSegment:
+    """Segment of its values; `unit` is the unit of input, rad or mm, over which a state at the end is stated."""
     angle = segment["dwell" if "dwell" in segment else "over"]
     free: Literal["", "least", "rest"] = angle if angle in {LEAST, REST} else ""
     over = 0.0 if free else angle
@@ -473,5 +513,6 @@ def _segment(segment: Values, scale: float) -> MotionSegment:
     kinds: tuple[Literal["rise", "return", "to", "rise_fall"], ...] = ("rise", "return", "to", "rise_fall")
     kind = next(kind for kind in kinds if kind in segment)
     end = segment.get("at_end")
-    state = None if end is None else (end.get("v", 0.0), end.get("a", 0.0))
-    return MotionSegment(kind, over, segment[kind], segment.get("law"), segment.get("split"), state, free=free)
+    state = None if end is None else (end.get("v", 0.0) / unit, end.get("a", 0.0) / unit**2)
+    law = None if kind == "rise_fall" else segment.get("law", DEFAULT_LAW)
+    return MotionSegment(kind, over, segment[kind], law, segment.get("split"), state, free=free)

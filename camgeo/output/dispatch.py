@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.output.extension import MAKING, OUTPUTS
 from camgeo.output.job import MadeFiles
 from camgeo.recipe.export import disc_filename
-from camgeo.registry.formats import FORMATS, variant
-from kin.judge.check import about
+from camgeo.registry.formats import FORMATS
+from kin.numeric.check import about
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,7 +32,10 @@ def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     if failed:
         return MadeFiles((), tuple(about(check, path.name) for check in failed))
     if request.variant:
-        return variant(request.variant).make(job, request, path)
+        make_variant = OUTPUTS[request.variant].make
+        if make_variant is None:
+            raise ValueError(f"nothing makes the files of {request.variant}")
+        return make_variant(job, request, path)
     driven = job.design.driven
     if request.format.turning and driven is not None and not driven.turns:
         return MadeFiles(())
@@ -48,9 +52,10 @@ def make(job: Job, request: FileRequest, path: Path) -> MadeFiles:
 
 
 def _make_file(job: Job, request: FileRequest, path: Path) -> MadeFiles:
-    if request.format.make is None:
+    make_file = MAKING[request.kind].make
+    if make_file is None:
         raise ValueError(f"nothing makes {request.kind} alone")
-    return request.format.make(job, request, path)
+    return make_file(job, request, path)
 
 
 def demand_capacity(recipe: Recipe, design: Design, request: FileRequest) -> None:
@@ -79,7 +84,7 @@ def foresee(job: Job, request: FileRequest) -> None:
     """
     demand_capacity(job.recipe, job.design, request)
     if request.variant:
-        variant(request.variant).foresee(job, request)
+        OUTPUTS[request.variant].foresee(job, request)
     job, failed = job.of_file(request)
     if not failed:
-        request.format.foresee(job, request)
+        MAKING[request.kind].foresee(job, request)

@@ -10,7 +10,7 @@ from camgeo.fit.bound import Bound
 from camgeo.output import part_geometry
 from camgeo.output.job import MadeFiles
 from camgeo.output.part_geometry import contours_of, openings_of, rim_of
-from kin.judge.check import about
+from kin.numeric.check import about
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Outline
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
     Draw = Callable[[Job, FileRequest, Path, list[LayerOutline], list[str]], Sequence[Check]]
 

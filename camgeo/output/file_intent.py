@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curve import CurveError
-from camgeo.registry.formats import FORMATS
-from camgeo.synthesis.intent import closures_between
+from camgeo.synthesis.intent import INTENTS, closures_between
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -52,4 +51,4 @@ def intent_of_file(recipe: Recipe, design: Design, kind: str) -> PartIntent:
     Raises ValueError for a design of several discs, RecipeErrors for an entry that the recipe lacks, KeyError for an
     unknown format.
     """
-    return FORMATS[kind].intent(recipe, design)
+    return INTENTS[kind].of(recipe, design)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.design import Design
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 STEEP = 0.999  # psi'(phi), 1 for a follower that moves along the contour: the roller may miss one within tolerance
 

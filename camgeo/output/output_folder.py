@@ -175,11 +175,27 @@ class RunFolder:
     def commit(self, names: Iterable[str], *, keep: Iterable[str] = ()) -> Path:
         """Put the files `names` and the report of `folder` in the place of the last set; returns their new folder.
 
-        Files of the last set are removed, unless `keep` has them; files that are not of the last set stay. Raises
+        Files of the last set are removed, unless `keep` has them; files that are not of the last set stay. A set in
+        ``<name>.rejected`` goes, unless only a part of the set is new, which `keep` says. Raises
         ValueError for a name that is not one of this recipe's files, and for a file not written; SurroundingsError, the
         last set as it was, where the disk refuses or a file of the user's is in the way.
         """
-        return self._replace(self._name, names, keep)
+        kept = tuple(keep)
+        folder = self._replace(self._name, names, kept)
+        if not kept:
+            self._drop_rejected()
+        return folder
+
+    def _drop_rejected(self) -> None:
+        """Remove the failed set of this name, the report last, and its folder if no other file is in it.
+
+        The good set is in place: what the disk does not let go stays, and the next good set tries again.
+        """
+        rejected = self._out / (self._name + REJECTED)
+        with suppress(OSError, SurroundingsError):
+            for name in self._last_set(rejected):
+                _remove(rejected / name)
+            rejected.rmdir()
 
     def reject(self, names: Iterable[str] | None = None) -> Path:
         """Put the set into ``<name>.rejected`` in the place of the last set there; returns that folder.

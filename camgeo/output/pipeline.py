@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 from camgeo.common.clock import Clock
 from camgeo.common.errors import SurroundingsError
 from camgeo.files.errors import MissingExtraError
+from camgeo.measures.extension import MEASURES
 from camgeo.measures.file_result import FileResult
+from camgeo.output.extension import MAKING, OUTPUTS, RunResults
 from camgeo.output.file_intent import shaft_of_file
-from camgeo.registry import registry
-from camgeo.registry.formats import RunResults
 from camgeo.report.document import Findings, as_json, document
 from camgeo.synthesis.design import Design, designed
 from camgeo.synthesis.intent import permitted
@@ -27,14 +27,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.measures.balance import Balance
+    from camgeo.measures.extension import Results
+    from camgeo.output.extension import FileCall
     from camgeo.output.sets import FileSet
     from camgeo.output.skipped import Skipped
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import FileCall, Results
     from camgeo.report.page.content import Content
-    from kin.judge.check import Check
     from kin.judge.intent import ShaftIntent
+    from kin.numeric.check import Check
 
 REPORT = "report.json"
 
@@ -158,14 +159,11 @@ def _judge(
     """Design and findings on files of any origin.
 
     `bounds` are the tolerance, the unit of files that state none, and the gap over which ends are joined, all in mm;
-    None for the recipe's tolerance, the recipe's unit, no gap. Raises CallError for a gap above the tolerance of a
-    drawing.
+    None for the recipe's tolerance, the recipe's unit, no gap.
     """
-    from camgeo.common.errors import CallError
     from camgeo.output.sets import sets_of
     from camgeo.recipe.export import FileRequest
     from kin.judge.together import DiscFile, verify_set
-    from kin.read.formats import FORMATS
 
     tolerance, units, gap = bounds
     _demand(recipe)
@@ -179,11 +177,6 @@ def _judge(
             file_set.requirement.request,
             file_set.requirement.tolerance,
         )
-        if gap is not None and gap > within and FORMATS[kind].contents == "drawing":
-            message = (
-                f"a gap of {gap / recipe.mm:.9g} {recipe.units} is more than the tolerance, {within / recipe.mm:.9g}"
-            )
-            raise CallError(f"{message}, of {file_set.files[0][1].name}: give at most that")
         # a file that the recipe lists is judged as that request says, any other as the nominal part
         with clock.stage("judge"):
             request = FileRequest(kind) if request_listed is None else request_listed
@@ -212,7 +205,9 @@ def judge_claimed(recipe: Recipe, name: str, call: FileCall) -> dict[str, Any]:
     """
     from camgeo.measures.units import displacement_unit
 
-    judge = registry.judges()[name].judge
+    judge = OUTPUTS[name].judge
+    if judge is None:
+        raise KeyError(name)
     clock = Clock()
     design = designed(recipe, clock)
     with clock.stage(name):
@@ -239,16 +234,15 @@ def _lacking_discs(files: FileSet, intent: ShaftIntent) -> list[Skipped]:
 
 def _demand(recipe: Recipe) -> None:
     """Raise SurroundingsError where a capability that the recipe uses lacks a library."""
-    for capability in registry.in_order(recipe.uses):
-        capability.demand(recipe)
+    for answers in OUTPUTS.of(recipe.uses):
+        answers.demand(recipe)
 
 
 def _opinions(
     recipe: Recipe, design: Design, files: list[FileResult], checks: list[Check], clock: Clock
 ) -> list[Results]:
     """Results of the checks that capabilities make of files, beside the judge's; one for each capability used."""
-    capabilities = registry.in_order(recipe.uses)
-    return [capability.look(recipe, design, files, checks, clock) for capability in capabilities]
+    return [answers.look(recipe, design, files, checks, clock) for answers in OUTPUTS.of(recipe.uses)]
 
 
 def _produce(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> tuple[Design, Findings]:
@@ -286,9 +280,10 @@ def _produce(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, cl
     findings = replace(findings, missing=tuple((names[request], why) for request, why in missing.items()))
     # summaries come last: each shows the findings so far, of earlier summaries too
     for request in requests:
-        if request.format.summarise is not None and request not in missing:
+        summarise = MAKING[request.kind].summarise
+        if summarise is not None and request not in missing:
             path = folder / request.filename(recipe.name, recipe.export.files)
-            product = request.format.summarise(RunResults(recipe, design, findings, job, clock), request, path)
+            product = summarise(RunResults(recipe, design, findings, job, clock), request, path)
             findings = replace(
                 findings, files=(*findings.files, *product.files), checks=(*findings.checks, *product.checks)
             )
@@ -324,8 +319,8 @@ def _findings(
         with clock.stage("figures of the linkage"):
             linkage = linkage_section(recipe, design.driven, files)
     results = []
-    for capability in registry.in_order(recipe.uses):
-        result = capability.examine(recipe, design, [file for file in files if file.shows_cam], clock)
+    for answers in MEASURES.of(recipe.uses):
+        result = answers.examine(recipe, design, [file for file in files if file.shows_cam], clock)
         results.append(result)
         checks = [*checks, *result.checks]
     preload = None

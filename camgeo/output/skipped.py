@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.checks.declared import CHECKS, OUTPUT, STANDS, CheckFacts
+from camgeo.checks.declaration import CheckFacts
+from camgeo.checks.declared import CHECKS, OUTPUT, STANDS
+from camgeo.output.extension import MAKING, OUTPUTS
 from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 
@@ -21,8 +23,8 @@ def skipped_items(recipe: Recipe, requests: tuple[FileRequest, ...], design: Des
     skipped = _skipped_files(recipe, requests, design)
     absent = ((name, label.absent) for name, label in registry.labels().items() if name not in recipe.uses)
     skipped += [(name, why) for name, why in absent if why]
-    for capability in registry.in_order(recipe.uses):
-        skipped += capability.left_out(recipe, requests, design)
+    for answers in OUTPUTS.of(recipe.uses):
+        skipped += answers.left_out(recipe, requests, design)
     skipped += _skipped_of_linkage(recipe, design)
     scene = scene_of(recipe, design)
     checks = CHECKS.among(recipe.uses).values()
@@ -50,7 +52,7 @@ def _skipped_files(recipe: Recipe, requests: tuple[FileRequest, ...], design: De
         return skipped
     for kind in FORMATS:
         if kind in requested:
-            skipped += FORMATS[kind].unmade(recipe, design)
+            skipped += MAKING[kind].unmade(recipe, design)
     return skipped
 
 

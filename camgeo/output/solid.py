@@ -11,8 +11,8 @@ from camgeo.files.mesh import Item
 from camgeo.files.solid import need_booleans
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
+from camgeo.output.extension import MAKING, numbers_of
 from camgeo.output.part_geometry import contours_of, needs_booleans, openings_of, part_mesh, rim_of
-from camgeo.registry.formats import numbers_of
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def make_mesh(job: Job, request: FileRequest, path: Path) -> MadeFiles:
     `foresee` has to pass before. Raises RecipeErrors for a part without thickness, a tolerance that cannot be held, and
     outlines that make no sound solid; ValueError for a format without meshes, OSError where the file cannot be written.
     """
-    write, kind = request.format.write, request.kind
+    write, kind = MAKING[request.kind].write, request.kind
     if write is None:
         raise ValueError(f"{kind} holds no mesh")
     meshed = cam_meshes(job, request)
@@ -57,7 +57,7 @@ def foresee(job: Job, request: FileRequest) -> None:
 
 def numbers(job: Job, request: FileRequest) -> Precision:
     """Precision of the coordinates in a request's mesh file, in its unit; raises ValueError for one without meshes."""
-    return numbers_of(request.format, job.recipe.in_units_of(request).mm)
+    return numbers_of(request.kind, job.recipe.in_units_of(request).mm)
 
 
 def aim(job: Job, request: FileRequest) -> float:

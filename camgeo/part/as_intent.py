@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from kin.judge.holes import Hole, round_hole
-from kin.judge.layers import Layer
+from kin.contour.holes import Hole, round_hole
+from kin.read.layers import Layer
 
 if TYPE_CHECKING:
     from camgeo.part.body import Body

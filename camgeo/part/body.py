@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from camgeo.part.feature import Boss
     from camgeo.part.part import Part
     from camgeo.part.walls import Looks
-    from kin.judge.check import Check
-    from kin.judge.layers import CrossHole
+    from kin.numeric.check import Check
+    from kin.read.layers import CrossHole
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
     sharpest place of a contour that is to be chamfered cannot be proved.
     """
     # a feature is placed between the openings before it and the boss
-    openings = [*_bore(part), *part.openings]
+    openings = [*bore_of(part), *part.openings]
     checks: list[Check] = []
     standing = [] if part.boss is None else [part.boss.circle]
     for feature, value in with_records(part.features):
@@ -122,7 +122,7 @@ def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
     return Body(part.thickness, tuple(openings), part.bore, part.features, radius, part.outer, pocket, tuple(checks))
 
 
-def _bore(part: Part) -> list[Opening]:
+def bore_of(part: Part) -> list[Opening]:
     """The bore, shaped by a feature such as a keyway, alone in a list; empty for a part without one."""
     if part.bore is None:
         return []

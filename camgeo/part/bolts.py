@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.part.feature import Callout, Feature, angle, check_below, count, optional
+from camgeo.part.feature import Feature, angle, check_below, count, optional
 from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.part.feature import SheetView
+    from camgeo.part.feature import Callout, SheetView
     from camgeo.part.shapes import Opening
     from camgeo.schema.reader import Reader, Values
 
@@ -43,10 +43,8 @@ def _openings(bolts: Bolts) -> list[Opening]:
 
 
 def _callouts(bolts: Bolts, view: SheetView) -> tuple[Callout, ...]:
-    centre, radius = min(view.named("bolt hole"))
-    text, note = f"{bolts.count} × Ø{view.number(bolts.hole)}", f"first at {view.degrees(bolts.start)}"
-    hole = Callout(text, note, centre, radius, 0.75 * math.pi, bolts.hole)
-    return hole, view.circle("bolt circle", bolts.circle, 0.93)
+    first = f"first at {view.degrees(bolts.start)}"
+    return view.holes(view.named("bolt hole"), first), view.circle("bolt circle", bolts.circle)
 
 
 FEATURE = Feature(

@@ -81,7 +81,7 @@ def check_bore(part: Values, reader: Reader, shaping: list[str]) -> None:
     """
     bore = part.get("bore")
     if diameter_of(part) is None:
-        if bore is not None and "fit" not in bore:
+        if bore is not None and not {"part.bore.diameter", "part.bore.fit"} & reader.marks.keys():
             for name in shaping:
                 remedy = "give the bore's diameter, or leave it out"
                 reader.fault_at(f"part.{name}", "needs a round bore", None, remedy)

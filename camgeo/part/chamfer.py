@@ -13,11 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.curve.curve import Curve
-    from camgeo.recipe.recipe import Recipe
     from camgeo.schema.reader import Reader, Values
-    from kin.judge.check import Check
-
-    Entry = dict[str, Any]
+    from kin.numeric.check import Check
 
 NO_CHAMFER = "no chamfer, or a contour without corners"
 
@@ -33,7 +30,7 @@ def _check_contour(chamfer: Chamfer, contour: Curve, shaft_deg: Callable[[float]
     """Check that the contour is nowhere sharper than its chamfer: its parallel inside has no corners then."""
     from camgeo.curve.curvature import least_radius
     from camgeo.curve.support import is_sharp
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
     height = chamfer.height
     if not contour.closed:
@@ -52,7 +49,7 @@ def _check(part: Values, reader: Reader) -> None:
         check_below(reader, "part.chamfer", part.get("chamfer"), 0.5 * part["thickness"], "half the thickness")
 
 
-def _remedy(check: Entry, _report: Entry, _recipe: Recipe) -> str:
+def _remedy(check: dict[str, Any]) -> str:
     """Remedy for too wide a chamfer: the widest that the contour permits; empty for a check of a file."""
     value = check["value"]
     if value is None or check["limit"] is None or "file" in check:

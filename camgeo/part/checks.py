@@ -11,6 +11,7 @@ import numpy as np
 
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.measures import farthest
+from camgeo.part.bore import LEAST_SIZE
 from camgeo.part.feature import WALL
 from camgeo.part.features import FEATURES, with_records
 from camgeo.part.walls import (
@@ -25,13 +26,16 @@ from camgeo.part.walls import (
     outside_gap,
     to_surface,
 )
-from kin.judge.check import Check
+from kin.numeric.check import Check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
+    from typing import TypeAlias
 
     from camgeo.part.body import Body
     from camgeo.part.shapes import Opening
+
+    Circle: TypeAlias = tuple[tuple[float, float], float]
 
 MOST_NAMED = 6  # pairs named in a message
 ROUND = {"bore": "part.bore", **dict(feature.round for feature in FEATURES if feature.round is not None)}
@@ -86,10 +90,12 @@ def part_checks(
 def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
     """Remedy in words: diameters of round openings, and of the outline of a ring, with which every wall is kept.
 
-    Of two openings that of the later key is made smaller. Empty where another edge would have to move, or where an
-    opening would vanish.
+    Of two openings that of the later key is made smaller, and a hub that is too near the contour. Empty where another
+    edge would have to move, where an opening would vanish, or the hub's wall round the bore.
     """
     across = {opening.name: 2.0 * opening.circle[1] for opening in body.openings if opening.circle is not None}
+    boss = body.boss
+    across |= {} if boss is None else {boss.name: boss.diameter}
     most: dict[str, float] = {}
     outer = 0.0
     for pair in thin:
@@ -97,21 +103,33 @@ def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
         if pair.other == OUTLINE and pair.one.endswith(OPENING):
             outer = max(outer, lack)
             continue
+        circles = [cut.circle for cut in body.openings if cut.circle is not None and cut.name in pair[:2]]
+        if len(circles) == 2 and _one_in_another(*circles):
+            return ""  # one lies within the other, and a smaller one still does
         if pair.gap.wall < 0.0 and any(cut.circle is None and cut.name in pair[:2] for cut in body.openings):
             return ""  # how far a hole and a shape with corners overlap is no diameter
         keys = {name: key for name in (pair.one, pair.other) for word, key in ROUND.items() if name.startswith(word)}
+        if len(keys) > 1 and boss is not None:  # a wall between the hub and an opening, which is made smaller
+            keys.pop(boss.name, None)
         own = sorted((list(ROUND.values()).index(key), key, name) for name, key in keys.items() if name in across)
         if not own:
             return ""
         _, key, name = own[-1]
         shared = len(own) == 2 and own[0][1] == key  # both are of one size
         most[key] = min(most.get(key, math.inf), across[name] - (0.5 * lack if shared else lack))
-    if not most or min(most.values()) <= 0.0:
+    # a hub keeps its wall round the bore
+    least = 2.0 * (max((cut.radius for cut in body.openings if cut.name == "bore"), default=0.0) + LEAST_SIZE)
+    if not most or min(most.values()) <= 0.0 or (boss is not None and most.get(ROUND[boss.name], math.inf) <= least):
         return ""
     remedies = [f"a {key} below {downward(size)} mm" for key, size in most.items()]
     if outer:
         remedies.append(f"a part.outer larger by more than {upward(outer)} mm")
     return f"; {' and '.join(remedies)} would do"
+
+
+def _one_in_another(one: Circle, other: Circle) -> bool:
+    """Whether the middle of one of two circles lies within the other: a smaller one of them does not part them."""
+    return math.dist(one[0], other[0]) <= max(one[1], other[1])
 
 
 def _holds(wall: float, least: float | None) -> bool:

@@ -2,7 +2,9 @@
 
 The hub's depth t2 leaves play at the key's back and is measured from the bore's circle to the keyway's floor: a hub's
 drawing shows d + t2. Figures as tabled in Siemens/Flender MD 31.1 (2016), page 7/3, and, for bores below 38 mm, in
-GB/T 1095-1979, whose other rows up to 230 mm are the same. JIS B 1301 has these rows too.
+GB/T 1095-1979, whose other rows up to 230 mm are the same. JIS B 1301 has these rows too. Both depths may be greater,
+by an amount that goes with the size of the key: 0.1 mm up to 6 x 6, 0.2 mm from 8 x 7 on, 0.3 mm from 36 x 20 on (the
+same standards; up to a bore of 44 mm as tabled in Ganter's catalogue, "DIN 6885 keyway, key details").
 """
 
 from __future__ import annotations
@@ -20,7 +22,13 @@ class Row(NamedTuple):
     shaft: float
     hub: float
 
+    @property
+    def deeper(self) -> float:
+        """Upper deviation of both depths, mm; the lower one is 0."""
+        return next(deviation for width, deviation in DEEPER if self.width <= width)
 
+
+DEEPER = ((6.0, 0.1), (32.0, 0.2), (100.0, 0.3))  # greatest width of a key, and the upper deviation of its depths, mm
 TABLE = (
     Row(6, 8, 2, 2, 1.2, 1.0),
     Row(8, 10, 3, 3, 1.8, 1.4),

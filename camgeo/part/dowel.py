@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.part.feature import Callout, Feature, angle, optional
+from camgeo.part.feature import Feature, angle, optional
 from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.part.feature import SheetView
+    from camgeo.part.feature import Callout, SheetView
     from camgeo.part.shapes import Opening
 
 
@@ -29,10 +29,8 @@ def _openings(dowel: Dowel) -> list[Opening]:
 
 
 def _callouts(dowel: Dowel, view: SheetView) -> tuple[Callout, ...]:
-    ((centre, radius),) = view.named("dowel hole")
     note = f"dowel at {view.degrees(dowel.at)}"
-    hole = Callout(f"Ø{view.number(dowel.hole)}", note, centre, radius, 2.9, dowel.hole)
-    return hole, view.circle("dowel circle", dowel.circle, 1.07)
+    return view.holes(view.named("dowel hole"), note), view.circle("dowel circle", dowel.circle)
 
 
 FEATURE = Feature(

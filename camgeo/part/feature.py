@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeAlias, TypeVar
 
-from camgeo.registry.capability import NO_CHECK
+from camgeo.registry.slot import NO_CHECK
 from camgeo.schema.fields import Field, FieldTable, Kind
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
@@ -19,12 +18,12 @@ if TYPE_CHECKING:
     from camgeo.part.part import Part
     from camgeo.part.shapes import Opening
     from camgeo.part.walls import Looks, Possible
-    from camgeo.recipe.recipe import Recipe
     from camgeo.schema.reader import Reader, Values
-    from kin.judge.check import Check
-    from kin.judge.layers import CrossHole
+    from kin.numeric.check import Check
+    from kin.read.layers import CrossHole
 
 T = TypeVar("T")
+Circle: TypeAlias = tuple[tuple[float, float], float]  # centre and radius, mm
 MOST_HOLES = 60
 WALL = "wall"  # name of the check on the least wall, and of the figure
 
@@ -89,8 +88,8 @@ class FeatureCheck(NamedTuple):
     """Check of a feature: its name in reports, its unit, and what is checked.
 
     `exact` is whether the exact cam is checked; `files` whether no file is, solids are, or all files with a contour but
-    programs. With `strict` a figure equal to its limit fails. `remedy`, (check, report, recipe), both as plain JSON,
-    gives a sentence on a change that lets the check hold.
+    programs. With `strict` a figure equal to its limit fails. `remedy` gives, from the check as plain JSON, a
+    sentence on a change that lets it hold.
     """
 
     name: str
@@ -98,21 +97,20 @@ class FeatureCheck(NamedTuple):
     exact: bool = False
     files: Literal["none", "solids", "all"] = "solids"
     strict: bool = False
-    remedy: Callable[[dict[str, Any], dict[str, Any], Recipe], str] | None = None
+    remedy: Callable[[dict[str, Any]], str] | None = None
 
 
 class Callout(NamedTuple):
-    """A size of a feature on a shop drawing: a text with a leader, and a note below it, empty for none.
+    """A size of a feature on a shop drawing: a text with a leader, and the lines of a note below it.
 
-    The leader ends on the circle of this centre and radius, mm, at `angle`, rad. `value` is the diameter, mm, where the
-    text is a dimension; None for other texts.
+    The leader ends on any of the `circles`, pairs of a centre and a radius, mm, or at any of the `points`, mm. `value`
+    is the diameter of the circles, mm, where the text is a dimension; None for other texts.
     """
 
     text: str
-    note: str
-    centre: tuple[float, float]
-    radius: float
-    angle: float
+    notes: tuple[str, ...]
+    circles: tuple[Circle, ...] = ()
+    points: tuple[tuple[float, float], ...] = ()
     value: float | None = None
 
 
@@ -129,12 +127,23 @@ class SheetView(NamedTuple):
     degrees: Callable[[float], str]
     direction: Callable[[float], float]
 
-    def circle(self, name: str, diameter: float, half_turns: float) -> Callout:
-        """Callout of a circle about the shaft of a diameter, mm, its leader at an angle of so many half turns."""
-        text = f"Ø{self.number(diameter)}"
-        return Callout(text, name, (0.0, 0.0), 0.5 * diameter, half_turns * math.pi, diameter)
+    def circle(self, name: str, diameter: float) -> Callout:
+        """Callout of a circle about the shaft of a diameter, mm."""
+        return Callout(f"Ø{self.number(diameter)}", (name,), (((0.0, 0.0), 0.5 * diameter),), value=diameter)
 
-    def named(self, word: str) -> list[tuple[tuple[float, float], float]]:
+    def holes(self, circles: Sequence[Circle], *notes: str) -> Callout:
+        """Callout of equal holes: their number and diameter stand once."""
+        count, diameter = len(circles), 2.0 * circles[0][1]
+        text = f"{f'{count} × ' if count > 1 else ''}Ø{self.number(diameter)}"
+        return Callout(text, notes, tuple(circles), value=diameter)
+
+    def edge(self, name: str) -> tuple[tuple[float, float], ...]:
+        """Middles (x, y), mm, of the straight pieces of an opening's outline."""
+        outline = self.openings[name].outline
+        starts, chords = outline.points, outline.chords
+        return tuple((x, y) for x, y in (starts + 0.5 * chords)[outline.bulges == 0.0].tolist())
+
+    def named(self, word: str) -> list[Circle]:
         """Centre (x, y) and radius, mm, of each round opening whose name begins with a word."""
         return [
             opening.circle

@@ -85,6 +85,7 @@ FEATURE = Feature(
     check=_check,
     boss=_boss,
     walls=_walls,
+    round=("hub", "part.hub.diameter"),
     judged=FeatureCheck("hub"),
     grown=_grown,
     steadies="a wider or a higher part.hub",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from camgeo.part.bore import diameter_of
 from camgeo.part.din6885 import LEAST, MOST, key_for
 from camgeo.part.feature import Feature, angle, check_below, size_words
+from camgeo.part.iso286 import KEYWAYS, deviations
 from camgeo.schema.errors import quote
 from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, length
 from camgeo.schema.json_schema import table_schema
@@ -25,23 +26,35 @@ STANDARDS = ("din6885", "jis-b1301")  # which have the same widths and depths
 class Keyway:
     """Keyway in a round bore, mm: `depth` is t2 of DIN 6885, from the bore's circle to the keyway's bottom.
 
-    `at` is the direction of its middle, rad. With `standard`, width and depth are those of DIN 6885 for the bore.
+    `at` is the direction of its middle, rad. With `standard`, width and depth are those of DIN 6885 for the bore, and
+    `fit` is the tolerance class of its width, empty where none is stated; `deeper` is then the upper deviation of
+    `depth`. Files have the nominal sizes.
     """
 
     width: float
     depth: float
     at: float = 0.0
     standard: bool = False
+    fit: str = ""
+    deeper: float = 0.0
+
+    @property
+    def wider(self) -> tuple[float, float]:
+        """Lower and upper deviation of its width by its tolerance class, mm; raises KeyError without a class."""
+        return deviations(KEYWAYS[self.fit], self.width)
 
 
 TABLE = FieldTable(
     (
         Field("standard", Kind.CHOICE, "width and depth by the bore, from DIN 6885-1 or JIS B 1301", choices=STANDARDS),
+        Field(
+            "fit", Kind.CHOICE, "tolerance class of the width, ISO 286", default="none stated", choices=tuple(KEYWAYS)
+        ),
         length("width", "width b of the key"),
         length("depth", "depth t2 into the hub, from the bore's circle to the floor"),
         angle("at", "direction of the keyway's middle"),
     ),
-    alternatives=(("standard", ()), ("width", ("depth",))),
+    alternatives=(("standard", ("fit",)), ("width", ("depth",))),
 )
 
 
@@ -79,7 +92,10 @@ def _make(values: Values, part: Values) -> Keyway | None:
         return Keyway(**values)
     bore = diameter_of(part)
     row = None if bore is None else key_for(bore)
-    return None if row is None else Keyway(row.width, row.hub, values.get("at", 0.0), standard=True)
+    if row is None:
+        return None
+    fit = values.get("fit", "")
+    return Keyway(row.width, row.hub, values.get("at", 0.0), standard=True, fit=fit, deeper=row.deeper if fit else 0.0)
 
 
 def _bore(keyway: Keyway, radius: float) -> ArcSpline:

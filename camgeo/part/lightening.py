@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.part.feature import Callout, Feature, FeatureCheck, Placed, angle, count, optional
+from camgeo.part.feature import Feature, FeatureCheck, Placed, angle, count, optional
 from camgeo.schema.fields import length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.part.feature import SheetView, Site
+    from camgeo.part.feature import Callout, Circle, SheetView, Site
     from camgeo.schema.reader import Reader, Values
 
 
@@ -39,7 +39,7 @@ def _place(lightening: Lightening, site: Site) -> Placed:
     """Holes between the contour and the openings that are there, and the check of their number."""
     from camgeo.part.largest_holes import Space, largest, ring
     from camgeo.part.shapes import disc
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
     from kin.numeric.lengths import UNIT, length_words
 
     space = Space(site.looks, site.openings, lightening.wall, site.edge)
@@ -64,16 +64,15 @@ def _place(lightening: Lightening, site: Site) -> Placed:
 def _callouts(lightening: Lightening, view: SheetView) -> list[Callout]:
     holes = view.named("lightening hole")
     if holes and lightening.ring is not None:
-        centre, radius = min(holes)
-        note = f"first at {view.degrees(lightening.start)}"
-        text = f"{len(holes)} × Ø{view.number(2.0 * radius)}"
-        hole = Callout(text, note, centre, radius, 0.8 * math.pi, 2.0 * radius)
-        return [hole, view.circle("hole circle", 2.0 * math.hypot(*centre), 1.13)]
-    callouts = []
-    for centre, radius in holes:
-        text, note = f"Ø{view.number(2.0 * radius)}", f"at X{view.number(centre[0])} Y{view.number(centre[1])}"
-        callouts.append(Callout(text, note, centre, radius, math.pi, 2.0 * radius))
-    return callouts
+        first = f"first at {view.degrees(lightening.start)}"
+        return [view.holes(holes, first), view.circle("hole circle", 2.0 * math.hypot(*holes[0][0]))]
+    equal: dict[str, list[Circle]] = {}
+    for hole in holes:
+        equal.setdefault(view.number(2.0 * hole[1]), []).append(hole)
+    return [
+        view.holes(group, *(f"at X{view.number(x)} Y{view.number(y)}" for (x, y), _ in group))
+        for group in equal.values()
+    ]
 
 
 FEATURE = Feature(

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from camgeo.part.feature import SheetView, Site
     from camgeo.part.shapes import Layer, Opening
     from camgeo.schema.reader import Reader, Values
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 STEP = 0.01  # mm: what is placed automatically is placed on whole steps
 TRIES = 200  # of moving the mark inward
@@ -121,7 +121,7 @@ def _opening(mark: Mark, site: Site, wall: float | None) -> Opening | None:
 def _no_room(mark: Mark, fits: Mark | None = None, wall: float = 0.0) -> Check:
     """Check that fails as there is no room; it names the mark `fits`, or the `wall`, mm, for which there is some."""
     from camgeo.common.rounding import downward
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
     from kin.numeric.lengths import amount_words
 
     width = 0.0 if fits is None else fits.width
@@ -142,7 +142,7 @@ def _callouts(mark: Mark, view: SheetView) -> list[Callout]:
     outer = opening.outline.box()[2]
     deep = "through" if opening.depth is None else f"{view.number(opening.depth)} deep"
     text = f"mark {view.number(mark.width)} × {view.number(mark.length)}"
-    return [Callout(text, f"R{view.number(outer)}, {deep}", (outer - mark.length, 0.0), 0.0, 0.0)]
+    return [Callout(text, (f"R{view.number(outer)}, {deep}",), points=view.edge("mark"))]
 
 
 FEATURE = Feature(

@@ -91,6 +91,14 @@ class Part:
         return [each for feature, value in features if feature.openings is not None for each in feature.openings(value)]
 
 
+DENSITY = Field(
+    "density",
+    Kind.NUMBER,
+    "density of the material, kg/m³, for mass, inertia and unbalance",
+    default="none",
+    above=0,
+    at_most=DENSEST,
+)
 PART = mapping(
     "part",
     "the part round the contour",
@@ -101,14 +109,7 @@ PART = mapping(
         "outer", "diameter of the outline of a ring, with `track: internal`, or of a groove's blank", default="none"
     ),
     length("wall", "least wall between any two edges", default="reported, and above 0"),
-    Field(
-        "density",
-        Kind.NUMBER,
-        "density of the material, kg/m³, for mass, inertia and unbalance",
-        default="none",
-        above=0,
-        at_most=DENSEST,
-    ),
+    DENSITY,
 )
 
 

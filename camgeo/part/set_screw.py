@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from camgeo.part.bore import width_of
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from camgeo.part.feature import Boss, SheetView
     from camgeo.part.walls import Looks, Possible
     from camgeo.schema.reader import Reader, Values
-    from kin.judge.layers import CrossHole
+    from kin.read.layers import CrossHole
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ def _check(part: Values, reader: Reader) -> None:
 
 def _cross(screw: SetScrew, boss: Boss, thickness: float) -> CrossHole:
     """Radial hole of the screw, in the boss above the disc, or in the boss below where there is none above."""
-    from kin.judge.layers import CrossHole
+    from kin.read.layers import CrossHole
 
     beyond = 0.5 * (boss.above or boss.below) if screw.height is None else screw.height
     return CrossHole("set screw", screw.at, screw.diameter, thickness + beyond if boss.above else -beyond)
@@ -78,8 +79,8 @@ def _callouts(screw: SetScrew, view: SheetView) -> tuple[Callout, ...]:
     if boss is None:
         return ()
     note = f"at {view.degrees(screw.at)}, {view.number(screw.height or 0.5 * (boss.above or boss.below))} up"
-    text = f"Ø{view.number(screw.diameter)} set screw"
-    return (Callout(text, note, (0.0, 0.0), 0.5 * boss.diameter, view.direction(screw.at)),)
+    text, radius, at = f"Ø{view.number(screw.diameter)} set screw", 0.5 * boss.diameter, view.direction(screw.at)
+    return (Callout(text, (note,), points=((radius * math.cos(at), radius * math.sin(at)),)),)
 
 
 FEATURE = Feature(

@@ -125,6 +125,13 @@ def slot_across(radius: float, length: float, width: float, angle: float) -> Arc
     return ArcSpline(_turned(points, angle), np.array([0.0, 1.0, 0.0, 1.0]), EXACT)
 
 
+def slot_at(middle: tuple[float, float], length: float, width: float, angle: float) -> ArcSpline:
+    """Slot with round ends about a middle (x, y), `length` over them, mm, its length in a direction, rad."""
+    half, end = 0.5 * width, 0.5 * (length - width)
+    points = np.array([[-end, -half], [end, -half], [end, half], [-end, half]])
+    return ArcSpline(_turned(points, angle) + np.array(middle), np.array([0.0, 1.0, 0.0, 1.0]), EXACT)
+
+
 def strip(reach: float, width: float, angle: float) -> ArcSpline:
     """Rectangle of this width, mm, along the ray at `angle`, rad, from the origin to the radius `reach`."""
     half = 0.5 * width

@@ -41,8 +41,8 @@ def _openings(slot: Slot) -> list[Opening]:
 
 def _callouts(slot: Slot, view: SheetView) -> tuple[Callout, ...]:
     text = f"slot {view.number(slot.width)} × {view.number(slot.length)}"
-    size = Callout(text, f"across {view.degrees(slot.at)}", view.openings["slot"].middle, 0.0, 0.0)
-    return size, view.circle("slot circle", slot.circle, 0.87)
+    size = Callout(text, (f"across {view.degrees(slot.at)}",), points=view.edge("slot"))
+    return size, view.circle("slot circle", slot.circle)
 
 
 FEATURE = Feature(

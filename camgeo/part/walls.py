@@ -94,15 +94,23 @@ class Looks(NamedTuple):
         high = np.where(last, cells.high[owner], np.append(low[1:], 0.0))
         return Looks(contour, low, high, *contour.span(low, high), side, name)
 
+    def nearest(self, first: Array, last: Array) -> Array:
+        """Lower bounds (n,), mm, of a distance over each interval, from those at its two ends, (n,) each.
+
+        The distance of a point of the contour changes by no more than the way along it.
+        """
+        bounds = self.contour.cells.over(self.low, self.high)
+        longest = np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high)) * (self.high - self.low)
+        nearest: Array = np.minimum(first, last) - 0.5 * longest
+        return nearest
+
     def wall_at_least(self, middle: tuple[float, float], reach: float) -> float:
         """Lower bound, mm, of the wall between the contour and anything within `reach`, mm, of `middle`.
 
         -inf where the ends of the intervals show no bound above 0, or `middle` does not lie on the metal's side.
         """
         first, last = (np.hypot(*(at.point - middle).T) for at in (self.first, self.last))
-        bounds = self.contour.cells.over(self.low, self.high)
-        longest = np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high)) * (self.high - self.low)
-        wall = float((np.minimum(first, last) - 0.5 * longest).min()) - reach
+        wall = float(self.nearest(first, last).min()) - reach
         return wall if wall > 0.0 and winds(self.first.point - middle) is (self.side > 0) else -np.inf
 
 
@@ -121,7 +129,8 @@ def distance_inside(looks: Looks, place: tuple[float, float]) -> tuple[float, fl
     contour, low, high, first, last, *_ = looks
     # between two nodes the nearest point is where the radius meets the tangent square: its product changes sign upwards
     falls, rises = _outward(first, origin), _outward(last, origin)
-    turning = (falls < 0.0) & (rises > 0.0)
+    first_away, last_away = (np.hypot(*(at.point - origin).T) for at in (first, last))
+    turning = (falls < 0.0) & (rises > 0.0) & ~(looks.nearest(first_away, last_away) > first_away.min())
     nearest_points = roots(
         lambda t: _outward(contour.sample(t), origin),
         low[turning],
@@ -148,7 +157,7 @@ def contour_gap(looks: Looks, chain: Arcs) -> Gap:
     out = np.sign(distance)
     falls = out[:-1] * dot(first.point - foot[:-1], first.tangent)
     rises = out[1:] * dot(last.point - foot[1:], last.tangent)
-    turning = (falls < 0.0) & (rises > 0.0)
+    turning = (falls < 0.0) & (rises > 0.0) & ~(looks.nearest(distance[:-1], distance[1:]) > distance.min())
 
     def product(t: Array) -> Array:
         at = contour.sample(t)

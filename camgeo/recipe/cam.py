@@ -7,26 +7,34 @@ from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
 from camgeo.common.on_demand import OnDemand
+from camgeo.registry.root import kinds
 from camgeo.schema.readers import form_of_kinds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from camgeo.cams.family import Cam
-    from camgeo.schema.fields import FieldTable
+    from camgeo.schema.fields import FieldTable, OwnForm
     from camgeo.schema.reader import Reader, Values
 
 CAMS: Mapping[str, FieldTable] = OnDemand(tuple(FAMILIES), lambda kind: FAMILIES[kind].table)
 MADE = (
-    "cams are made for one roller, also in a groove, for one knife edge, curved shoe or flat face on a stem or an arm, "
-    "or for two on conjugate discs (disc), for a yoke of two parallel faces (constant-breadth, support) or two "
+    "disc cams are made for one roller, also in a groove, for one knife edge, curved shoe or flat face on a stem or an "
+    "arm, or for two on conjugate discs (disc), for a yoke of two parallel faces (constant-breadth, support) or two "
     "opposite rollers (constant-diameter), for two rollers on one oscillating arm (double-roller) and for two faces on "
-    "one (flat-pair); cylindrical cams are not made"
+    "one (flat-pair)"
 )
-"""Followers that there are cams for, in the error of an unknown kind."""
+"""Followers that there are disc cams for, in the error of an unknown kind."""
 
 
-CAM = form_of_kinds("cam", CAMS, "cam of kind", MADE)
+def _form() -> OwnForm[Reader]:
+    """Form of the cam; the error of an unknown kind says what cams of other recipes are made for, and that is all."""
+    others = kinds()
+    made = [MADE, *(f"{words} ({kind})" for kind, words in others.items()), "other cams are not made"]
+    return form_of_kinds("cam", CAMS, "cam of kind", "; ".join(made), tuple(others))
+
+
+CAM = _form()
 
 
 def check_cam(cam: Values, reader: Reader) -> None:

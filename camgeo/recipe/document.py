@@ -60,6 +60,12 @@ class Document:
             path = path[: max(path.rfind("."), path.rfind("["), 0)]
         return self.marks.get(path, (1, 1))
 
+    def stated(self, path: str) -> str:
+        """Path of a field, or of its nearest parent that the recipe gives; `cam` without any."""
+        while path and path not in self.marks:
+            path = path.rpartition("[" if path.endswith("]") else ".")[0]
+        return path or "cam"
+
     def error(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
         """Error about the field `path`, with its line and column: what is wrong, the value as shown, and a remedy."""
         line, column = self.locate(path)

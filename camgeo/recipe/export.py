@@ -6,17 +6,18 @@ import collections.abc
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
+from camgeo.recipe.extension import KEYS
 from camgeo.recipe.machining import COMPENSATION, Compensation, alterations, build_compensation
-from camgeo.registry import registry
-from camgeo.registry.formats import FORMATS, variant
+from camgeo.registry.formats import FORMATS
 from camgeo.schema.errors import quote
 from camgeo.schema.fields import MOST_FILES, Field, FieldTable, Kind, OwnForm, either, length, mapping
 from camgeo.schema.yaml_source import Mapping, Scalar, describe, is_empty, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.registry.formats import Alteration, Format, Variant
+    from camgeo.recipe.extension import Alteration, Variant
     from camgeo.registry.formats import Form as FileForm
+    from camgeo.registry.formats import Format
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
@@ -87,7 +88,7 @@ class FileRequest:
         """
         earlier = requests[: requests.index(self)] if self in requests else requests
         same_kind = [request for request in earlier if request.kind == self.kind]
-        parts = [name, variant(self.variant).tag(self.format)] if self.variant else [name]
+        parts = [name, _variant(self.variant).tag(self.format)] if self.variant else [name]
         parts += [self.format.tail] if self.format.tail else []
         alike = [request for request in same_kind if request.as_ == self.as_]
         if same_kind and self.as_:
@@ -148,9 +149,8 @@ class Options(collections.abc.Mapping[str, FieldTable]):
     def __getitem__(self, name: str) -> FieldTable:
         """Table of the options of the format `name`; raises KeyError for an unknown format."""
         record = self._formats[name]
-        return FieldTable(
-            (*(extension.option for extension in self._more if extension.offered(record)), *record.options.fields)
-        )
+        own = [field for extension in self._more if extension.offered(record) for field in extension.options]
+        return FieldTable((*own, *record.options.fields))
 
     def __contains__(self, name: object) -> bool:
         """Whether a format is known; no table is made."""
@@ -178,7 +178,9 @@ def read_files(options: Options, reader: Reader, field: Field, node: Node, path:
             remedy = "give a format, or a mapping with one format such as {dxf: {as: spline}}"
             reader.fault(item.mark, below, "not a file", describe(item), remedy)
             continue
-        if kind.text not in options:
+        if kind.text not in options and reader.others.have(kind.text):
+            reader.fault(kind.mark, below, *reader.others.refusal(kind.text))
+        elif kind.text not in options:
             reader.fault(kind.mark, below, "unknown file format", quote(kind.text), f"give {either(tuple(options))}")
         elif options_node is None:
             files.append({"kind": kind.text, "path": below})
@@ -217,12 +219,10 @@ def export_of(
     default: str = "[dxf]",
     *,
     more: collections.abc.Sequence[Variant | Alteration] = (),
-    unfit: collections.abc.Collection[str] = (),
 ) -> Field:
     """Key `export` of recipes whose files are in these formats, with an `example` and a `default` list for texts.
 
-    `more` adds options of capabilities to the options of formats. `unfit` are formats that are read only so that an
-    error can advise about them; texts do not list them.
+    `more` adds options of capabilities to the options of formats.
     """
     options = Options(formats, more)
     form = OwnForm(
@@ -240,7 +240,7 @@ def export_of(
         Field(
             "files",
             Kind.OWN,
-            f"{', '.join(name for name in formats if name not in unfit)}, or mappings such as {example}",
+            f"{', '.join(formats)}, or mappings such as {example}",
             default=default,
             form=form,
         ),
@@ -250,28 +250,44 @@ def export_of(
 EXPORT = export_of(FORMATS)
 
 
+def _variant(capability: str) -> Variant:
+    """Option by which a capability makes files; raises KeyError for a capability without one."""
+    variant = KEYS[capability].variant
+    if variant is None:
+        raise KeyError(capability)
+    return variant
+
+
 def _variants() -> dict[str, Variant]:
     """Variants by their capability, of the loaded capabilities; a recipe that uses another would have loaded it."""
-    records = {name: registry.capability(name).variant for name in registry.names_loaded()}
-    return {name: record for name, record in records.items() if record is not None}
+    return {name: option for name in KEYS.loaded() if (option := KEYS[name].variant) is not None}
 
 
-def check_files(values: Values, reader: Reader) -> None:
-    """Note requested files that lack a field of the recipe, that their format refuses, or that share a name."""
+def check_files(values: Values, reader: Reader, formats: collections.abc.Mapping[str, Format] = FORMATS) -> None:
+    """Note requested files that lack a field of the recipe, that their format refuses, or that share a name.
+
+    `formats` are those that the recipe's kind takes.
+    """
     files: list[Values] = values.get("export", {}).get("files", [])
-    listed = requests(files)
+    listed = requests(files, formats)
     names = [request.filename("NAME", listed) for request in listed]
     for i, (file, request) in enumerate(zip(files, listed, strict=True)):
-        path = file["path"]
-        if request.format.solid and "part.thickness" not in reader.marks:
+        path, record = file["path"], formats[request.kind]
+        if record.solid and "part.thickness" not in reader.marks:
             remedy = f"give part.thickness, or leave {request.kind} out"
             reader.fault_at(path, f"{request.kind} needs a thickness", None, remedy)
         if request.variant:
-            variant(request.variant).check(request, values, reader, path)
+            _variant(request.variant).check(file, values, reader)
         for altered in request.compensation.altered if request.compensation else ():
-            alterations()[altered.capability].check(request, values, reader, path)
-        request.format.check(file, values, reader)
-        request.form.check(file, values, reader)
+            alterations()[altered.capability].check(file, values, reader)
+        for alteration in alterations().values():
+            beside = alteration.beside
+            if beside is not None and beside.name in file and alteration.chosen(file) is None:
+                remedy = f"give {alteration.option.name}, or leave it out"
+                place = f"{path}.{file['kind']}.{beside.name}"
+                reader.fault_at(place, f"goes with {alteration.option.name}, and there is none", None, remedy)
+        record.check(file, values, reader)
+        record.form(request.as_).check(file, values, reader)
         if request in listed[:i]:
             reader.fault_at(path, "the same file twice", None, "leave one out")
         elif names[i] in names[:i]:
@@ -285,13 +301,12 @@ SHARED = frozenset({"as", "tolerance", "units", *(item.name for item in COMPENSA
 """Options of files that are fields of a request."""
 
 
-def requests(files: list[Values]) -> tuple[FileRequest, ...]:
-    """Build the requests of files from values of a recipe without faults."""
-    return tuple(_request(file["kind"], file) for file in files)
+def requests(files: list[Values], formats: collections.abc.Mapping[str, Format] = FORMATS) -> tuple[FileRequest, ...]:
+    """Build the requests of files in these formats from values of a recipe without faults."""
+    return tuple(_request(file["kind"], formats[file["kind"]], file) for file in files)
 
 
-def _request(kind: str, file: Values) -> FileRequest:
-    record = FORMATS[kind]
+def _request(kind: str, record: Format, file: Values) -> FileRequest:
     values = {**record.chosen, **file}
     return FileRequest(
         kind,
@@ -304,9 +319,12 @@ def _request(kind: str, file: Values) -> FileRequest:
     )
 
 
-def build_export(values: Values) -> Export:
-    """Build the export from the values of `export`, in a recipe without faults; a single dxf where no files are given.
+def build_export(
+    values: Values, formats: collections.abc.Mapping[str, Format] = FORMATS, default: str = "dxf"
+) -> Export:
+    """Build the export from the values of `export`, in a recipe without faults; one file where none is given.
 
-    The tolerance is `TOLERANCE` unless given.
+    That is of the format `default`. The tolerance is `TOLERANCE` unless given; `formats` are those of the kind.
     """
-    return Export(values.get("tolerance", TOLERANCE), requests(values.get("files", [{"kind": "dxf"}])))
+    files = requests(values.get("files", [{"kind": default}]), formats)
+    return Export(values.get("tolerance", TOLERANCE), files)

@@ -2,34 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, TypeVar
+from typing import TYPE_CHECKING, Literal
 
 from camgeo.part.feature import WALL
 from camgeo.part.features import FEATURES
+from camgeo.recipe.design_figure import NOTHING, DesignFigure, Need
+from camgeo.recipe.extension import KEYS, Keys
 from camgeo.registry.gathered import Gathered
 from camgeo.schema.fields import MOST, Field, Kind
-from kin.numeric.records import KW_ONLY, dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Set as AbstractSet
-
-
-Value = TypeVar("Value")
-
-
-@dataclass(frozen=True, eq=False)
-class Need:
-    """Something that a recipe must have for a figure, named by `words` in errors.
-
-    `there` is given the offers of the cam, and the paths of the fields that the recipe gives with the words of its
-    files, such as `parts: all`; it returns whether the recipe has the need. `part` is whether the figure also depends
-    on the part, by its material or thickness.
-    """
-
-    words: str
-    there: Callable[[AbstractSet[str], AbstractSet[str]], bool]
-    part: bool = False
 
 
 def _offered(*names: str) -> Callable[[AbstractSet[str], AbstractSet[str]], bool]:
@@ -42,7 +26,6 @@ def _given(*paths: str) -> Callable[[AbstractSet[str], AbstractSet[str]], bool]:
     return lambda _, fields: not fields.isdisjoint(paths)
 
 
-NOTHING = Need("", lambda _offers, _paths: True)
 OF_LINKAGE = Need("a linkage", _given("linkage"))
 OF_DWELL = Need("dwell.band", _given("dwell"))
 OF_FOLLOWER = Need("a follower without a linkage", lambda _, paths: "linkage" not in paths)
@@ -98,41 +81,6 @@ def lift_key(usual: float) -> tuple[Field]:
     """The key `at_lift` of a limit, by which a figure is taken at another lift than its `usual` lift, mm."""
     about = "lift at which it is taken, from the lowest"
     return (Field("at_lift", Kind.LENGTH, about, default=f"{usual:g} mm", at_least=0, at_most=MOST),)
-
-
-@dataclass(frozen=True)
-class DesignFigure:
-    """One figure of a design.
-
-    about     what it is, in words
-    kind      kind of its values: degrees for an angle, the recipe's unit for a length; for a motion either, as the
-              follower or the last link swings or slides
-    best      which values a ranking puts first
-    needs     what a recipe must have for it
-    per       ending of its unit's name, such as /rad
-    of        whether the exact design has it, each file, or each run of a capability
-    swept     whether a sweep knows it
-    dear      whether it is costly, and so measured only where it ranks or limits
-    eased_by  what makes it less: a smaller `motion` alone, or a larger cam (`size`) too; empty: neither
-    keys      keys of its limits in a recipe besides the bounds
-    at_lift   lift, mm, at which it is taken unless a limit gives another; such limits may stand in a list; None for a
-              figure that belongs to no lift
-    after     name of the core's figure behind which it is listed
-    """
-
-    about: str
-    kind: Kind
-    best: Literal["most", "least"]
-    needs: Need = NOTHING
-    per: str = ""
-    _: KW_ONLY
-    of: Literal["design", "file", "run"] = "design"
-    swept: bool = True
-    dear: bool = False
-    eased_by: Literal["", "motion", "size"] = ""
-    keys: tuple[Field, ...] = ()
-    at_lift: float | None = None
-    after: str = ""
 
 
 def _of_lobe(about: str, kind: Kind, best: Literal["most", "least"], lift: float, per: str = "") -> DesignFigure:
@@ -258,5 +206,5 @@ _CORE: dict[str, DesignFigure] = {
 }
 
 
-FIGURES: Gathered[DesignFigure] = Gathered(_CORE, lambda capability: capability.figures)
+FIGURES: Gathered[Keys, DesignFigure] = Gathered(_CORE, KEYS, lambda answers: answers.figures)
 """Every figure by name, the core's and those of capabilities."""

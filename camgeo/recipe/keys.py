@@ -10,18 +10,17 @@ from camgeo.part.part import PART, check_part
 from camgeo.recipe.cam import CAM, CAMS, check_cam, check_tappet
 from camgeo.recipe.discs import check_discs
 from camgeo.recipe.export import EXPORT, check_files, export_of
+from camgeo.recipe.extension import KEYS, Keys
 from camgeo.recipe.limits import LIMITS, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, check_allowance, check_cutter
 from camgeo.recipe.preload import check_preload
 from camgeo.recipe.track import check_track
-from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.registry.gathered import Gathered
 from camgeo.schema.fields import MOST, Field, FieldTable, Kind, mapping
 from camgeo.schema.reader import kind_of
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, describe, entries
-from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -95,38 +94,34 @@ CORE = FieldTable(
 )
 
 
-_KEYS: Gathered[Field] = Gathered(
-    {field.name: field for field in CORE.fields},
-    lambda capability: {field.name: field for field in capability.fields()},
+_KEYS: Gathered[Keys, Field] = Gathered(
+    {field.name: field for field in CORE.fields}, KEYS, lambda keys: {field.name: field for field in keys.fields()}
 )
 
 
 def recipe_table(capabilities: Collection[str] | None = None) -> FieldTable:
     """Table of a recipe's keys: the core's, and the keys of the named capabilities, or of all for None."""
-    return _table(registry.names_with_record() if capabilities is None else tuple(capabilities))
+    return _table(KEYS.answering() if capabilities is None else tuple(capabilities))
 
 
 @cache
 def _table(capabilities: tuple[str, ...]) -> FieldTable:
-    used = registry.in_order(capabilities)
-    more = [option for record in used for option in (record.variant, record.alteration) if option is not None]
-    keys = _KEYS.among(capabilities)
+    more = [
+        option for keys in KEYS.of(capabilities) for option in (keys.variant, keys.alteration) if option is not None
+    ]
+    fields = _KEYS.among(capabilities)
     if more:
-        keys[EXPORT.name] = export_of(FORMATS, more=more)
-    table = FieldTable(tuple(keys.values()))
-    for capability in used:
-        for path, fields in capability.below.items():
-            table = _with_fields(table, path.split("."), fields)
-    return table
+        fields[EXPORT.name] = export_of(FORMATS, more=more)
+    return FieldTable(tuple(fields.values()))
 
 
-def _with_fields(table: FieldTable, path: list[str], more: Collection[Field]) -> FieldTable:
-    """The table with more fields in the mapping at a path below it."""
-    if not path:
-        return replace(table, fields=(*table.fields, *more))
-    first, *rest = path
-    changed = {first: replace(table.field(first), table=_with_fields(table.field(first).inner, rest, more))}
-    return replace(table, fields=tuple(changed.get(field.name, field) for field in table.fields))
+def read_units(reader: Reader) -> None:
+    """Set the reader's unit to that of its recipe, wherever it stands; survey the whole text first."""
+    root = reader.source.root
+    reader.survey(root, "")
+    units = entries(root).get("units") if isinstance(root, Mapping) else None
+    if isinstance(units, Scalar) and units.text in UNITS:
+        reader.units, reader.mm = units.text, UNITS[units.text]
 
 
 def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
@@ -136,15 +131,12 @@ def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
     empty for what is no mapping. Keys that decide how others are read come first, wherever they stand: the unit, and
     the kinds of cam and linkage, by which follower and output swing or slide.
     """
+    read_units(reader)
     root = reader.source.root
-    reader.survey(root, "")
     if not isinstance(root, Mapping):
         reader.fault(root.mark, "", "a recipe is a mapping", describe(root), "begin with the key `cam:`")
         return {}
     top = entries(root)
-    units = top.get("units")
-    if isinstance(units, Scalar) and units.text in UNITS:
-        reader.units, reader.mm = units.text, UNITS[units.text]
     # kinds of cam and linkage; the output of a linkage is that of its last dyad
     linkage = top.get("linkage")
     reader.kinds = {"cam": kind_of(top.get("cam"), CAMS), "linkage": kind_of(linkage, LINKAGES)}
@@ -168,8 +160,8 @@ def read_values(reader: Reader, capabilities: Collection[str]) -> Values:
         reader.angular |= {Kind.MOTION}
     values = {"mm": reader.mm, **reader.table(reader.root, root, "")}
     _check(values, reader)
-    for capability in registry.in_order(capabilities):
-        capability.check(values, reader)
+    for keys in KEYS.of(capabilities):
+        keys.check(values, reader)
     return values
 
 

@@ -15,7 +15,7 @@ from camgeo.schema.yaml_source import Mapping, Sequence, describe, entries, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.recipe.figures import DesignFigure
+    from camgeo.recipe.design_figure import DesignFigure
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node

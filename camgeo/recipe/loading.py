@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.recipe import file_bytes, intended_root, load_text, of_source, read, without_places
-from camgeo.registry.root import CAM, root
+from camgeo.registry.root import CAM, reading
 from camgeo.schema.yaml_source import read_source
 from kin.numeric.records import replace
 
@@ -46,5 +46,5 @@ def _order(data: bytes, path: str | PathLike[str]) -> Order:
     key = intended_root(source)
     if key == CAM:
         return of_source(source, path)
-    order: Order = root(key).read(source, Path(path))
+    order: Order = reading(key).read(source, Path(path))
     return order

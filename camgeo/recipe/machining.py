@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from camgeo.registry import registry
-from camgeo.registry.formats import Altered
+from camgeo.recipe.extension import KEYS
 from camgeo.schema.fields import Field, FieldTable, Kind, length
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.registry.formats import Alteration
+    from camgeo.recipe.extension import Alteration
     from camgeo.schema.reader import Reader, Values
 
 
@@ -57,6 +56,18 @@ class Manufacture:
         return self.radius if self.lead_in is None else self.lead_in
 
 
+class Altered(NamedTuple):
+    """A number other than its default that a file gives for the option `key` of a capability's `Alteration`.
+
+    `beside` is the key and the word of the choice that goes with it, where that is not its default.
+    """
+
+    capability: str
+    key: str
+    value: float
+    beside: tuple[str, str] | None = None
+
+
 @dataclass(frozen=True)
 class Compensation:
     """Compensation of a file's part: `kerf` (a cut's whole width) and `clearance` in mm, `shrinkage` as a share.
@@ -92,18 +103,22 @@ class Compensation:
         parts = [f"{name} {value / mm:.9g}" for name in ("kerf", "clearance") if (value := getattr(self, name))]
         if self.shrinkage:
             parts.append(f"shrinkage {100.0 * self.shrinkage:.9g} percent")
-        parts += [f"{altered.key} {altered.value:.9g}" for altered in self.altered]
+        for altered in self.altered:
+            parts += [f"{altered.key} {altered.value:.9g}", *([" ".join(altered.beside)] if altered.beside else ())]
         return ", ".join(parts)
 
-    def entry(self, mm: float) -> dict[str, float]:
+    def entry(self, mm: float) -> dict[str, float | str]:
         """Compensation for a report, by key: lengths in a unit of `mm` mm, the shrinkage in percent.
 
         Besides the given keys, `outward` is the movement of the edges and `scale` the factor of the drawing, if finite.
         """
-        amounts = {name: getattr(self, name) / mm for name in ("kerf", "clearance") if getattr(self, name)}
+        amounts: dict[str, float | str] = {
+            name: getattr(self, name) / mm for name in ("kerf", "clearance") if getattr(self, name)
+        }
         if self.shrinkage:
             amounts["shrinkage"] = 100.0 * self.shrinkage
-        amounts |= {altered.key: altered.value for altered in self.altered}
+        for altered in self.altered:
+            amounts |= {altered.key: altered.value, **dict([altered.beside] if altered.beside else ())}
         moved = {"outward": self.out / mm, "scale": self.scale}
         return {**amounts, **{key: value for key, value in moved.items() if math.isfinite(value)}}
 
@@ -199,11 +214,10 @@ def build_compensation(file: Values) -> Compensation | None:
     for name, alteration in alterations().items():
         value = alteration.chosen(file)
         if value is not None:
-            altered.append(Altered(name, alteration.option.name, value))
+            altered.append(Altered(name, alteration.option.name, value, alteration.word(file)))
     return Compensation(**own, altered=tuple(altered)) if own or altered else None
 
 
 def alterations() -> dict[str, Alteration]:
     """Alterations by their capability, of the loaded capabilities; a recipe that uses another would have loaded it."""
-    records = {name: registry.capability(name).alteration for name in registry.names_loaded()}
-    return {name: record for name, record in records.items() if record is not None}
+    return {name: option for name in KEYS.loaded() if (option := KEYS[name].alteration) is not None}

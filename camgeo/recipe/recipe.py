@@ -18,6 +18,7 @@ from camgeo.part.part import build_part
 from camgeo.recipe.cam import build_cam
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export
+from camgeo.recipe.extension import KEYS
 from camgeo.recipe.keys import UNITS, read_values, recipe_table
 from camgeo.recipe.limits import Limit, build_limits
 from camgeo.recipe.linkage import DwellLimits, build_linkage
@@ -25,13 +26,14 @@ from camgeo.recipe.machining import Manufacture, build_manufacture
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.registry import root as roots
-from camgeo.registry.root import CAM
+from camgeo.registry.formats import FORMATS
+from camgeo.registry.root import CAM, Reading
 from camgeo.schema.errors import RecipeError, RecipeErrors, suggestion
 from camgeo.schema.file_bytes import read_bytes
-from camgeo.schema.reader import Reader
+from camgeo.schema.reader import Others, Reader
 from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
-from camgeo.schema.yaml_source import MAX_BYTES, Mapping, entries, keys, read_source
+from camgeo.schema.yaml_source import MAX_BYTES, Mapping, Scalar, entries, keys, read_source
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -90,10 +92,7 @@ class ChosenAngles:
 
 @dataclass(frozen=True)
 class Order(Document):
-    """A recipe of any kind; `mm` is the length of its unit, mm, `root` the key that makes its kind, such as cam.
-
-    `rotation` is the sense in which the shaft turns, seen as drawn.
-    """
+    """A recipe of any kind; `mm` is the length of its unit, mm, `root` the key that makes its kind, such as cam."""
 
     root: ClassVar[str]
 
@@ -101,12 +100,21 @@ class Order(Document):
     about: str
     units: Length
     mm: float
-    rotation: Literal["cw", "ccw"]
     export: Export
     verify: Verify
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r}, {str(self.path)!r})"
+
+    @property
+    def input_entries(self) -> dict[str, str]:
+        """Entries of a report that say how the input runs, such as the `rotation` of a shaft."""
+        return {}
+
+    @property
+    def input_words(self) -> str:
+        """How the input runs, in words."""
+        return ""
 
     @property
     def parts(self) -> tuple[Path, ...]:
@@ -139,8 +147,25 @@ class Order(Document):
 
 
 @dataclass(frozen=True)
-class Recipe(Order):
-    """A recipe of a cam, checked as far as no geometry is needed.
+class ShaftOrder(Order):
+    """A recipe of what a shaft turns; `rotation` is the sense in which it turns, seen as drawn."""
+
+    rotation: Literal["cw", "ccw"]
+
+    @property
+    def input_entries(self) -> dict[str, str]:
+        """Sense of rotation of the shaft, for a report."""
+        return {"rotation": self.rotation}
+
+    @property
+    def input_words(self) -> str:
+        """Sense of rotation of the shaft, in words."""
+        return f"the shaft turns {'clockwise' if self.rotation == 'cw' else 'counter-clockwise'}"
+
+
+@dataclass(frozen=True)
+class Recipe(ShaftOrder):
+    """A recipe of a disc cam, checked as far as no geometry is needed.
 
     `wheel` is the radius of the grinding wheel, mm, None where none is given. `capabilities` has the names of the
     capabilities that the recipe uses, each with the value made of its keys, None without keys. `settled` has the angles
@@ -166,7 +191,7 @@ class Recipe(Order):
     @property
     def rpm(self) -> float | None:
         """Speed of the shaft, turns a minute; None where the recipe gives none."""
-        speeds = (capability.speed(self) for capability in registry.in_order(self.uses))
+        speeds = (KEYS[name].speed(value) for name, value in self.capabilities if value is not None)
         return next((rpm for rpm in speeds if rpm is not None), None)
 
     @property
@@ -176,9 +201,17 @@ class Recipe(Order):
 
     @property
     def zone(self) -> tuple[str, float] | None:
-        """Path of the field of the made contour's tolerance zone, and the zone's width, mm; None without a zone."""
-        zones = (capability.profile(self) for capability in registry.in_order(self.uses))
-        return next((zone for zone in zones if zone is not None), None)
+        """Path of the field of the made contour's tolerance zone, and the zone's width, mm; None without a zone.
+
+        Of several it is the one that counts: that of the capability of the highest rank.
+        """
+        return next(iter(self.zones), None)
+
+    @property
+    def zones(self) -> tuple[tuple[str, float], ...]:
+        """Every statement of the made contour's tolerance zone, as `zone` has it; the one that counts comes first."""
+        zones = [KEYS[name].profile(value) for name, value in reversed(self.capabilities) if value is not None]
+        return tuple(zone for zone in zones if zone is not None)
 
     def of(self, kind: type[T]) -> T | None:
         """The value of the class `kind` that a capability made of its keys; None where the recipe has none."""
@@ -299,13 +332,20 @@ def without_places(name: str) -> Iterator[None]:
 
 
 def root_key(source: Source) -> str:
-    """Top key that makes the kind of a recipe; `cam` where the text has no such key."""
+    """Key of the kind of a recipe: a key of its top level, or its `cam.kind`; `cam` for a disc cam.
+
+    A word that stands for a kind is that kind, whose own reading refuses the word.
+    """
     top = entries(source.root) if isinstance(source.root, Mapping) else {}
-    return next((key for key in roots.folders() if key in top), CAM)
+    cam = top.get(CAM)
+    kind = entries(cam).get("kind") if isinstance(cam, Mapping) else None
+    word = kind.text if isinstance(kind, Scalar) else ""
+    own = word if word in roots.kinds() else roots.slips().get(word, CAM)
+    return next((key for key in roots.top_keys() if key in top), own)
 
 
 def intended_root(source: Source) -> str:
-    """Top key that makes the kind of a recipe, also where it is misspelt in a text without a cam.
+    """Key of the kind of a recipe, also where it is a key of the top level, misspelt in a text without a cam.
 
     `cam` where no top key resembles the key of another kind.
     """
@@ -313,9 +353,9 @@ def intended_root(source: Source) -> str:
     key = root_key(source)
     if key != CAM or CAM in top:
         return key
-    words = (*roots.folders(), *recipe_table().keys)
+    words = (*roots.top_keys(), *recipe_table().keys)
     slips = (suggestion(word, words) for word in top)
-    return next((key for slip in slips for key in roots.folders() if key in slip), CAM)
+    return next((key for slip in slips for key in roots.top_keys() if key in slip), CAM)
 
 
 def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
@@ -324,24 +364,46 @@ def of_source(source: Source, path: str | PathLike[str]) -> Recipe:
     `path` names the recipe in errors and gives its default name.
     """
     if (key := root_key(source)) != CAM:
-        mark = keys(source.root)[key].mark if isinstance(source.root, Mapping) else source.root.mark
-        remedy = f"export, check and verify take it; give any other command {roots.root(key).instead}"
-        raise RecipeErrors([RecipeError(str(path), *mark, key, f"a {key} is no cam", None, remedy)])
+        raise RecipeErrors([_of_another_kind(source, path, key)])
     reader, values = _read(source, registry.by_words(words_of(source.root)))
     if reader.errors:  # read again with all capabilities: an unknown key may be one of theirs, or close to one
-        reader, values = _read(source, registry.names_with_record())
-    if "name" not in reader.marks:
-        stem = Path(path).stem
-        try:
-            values["name"] = read_name(stem)
-        except Complaint as complaint:
-            remedy = f"give `name:` with {NAME_RULE}"
-            reader.fault(source.root.mark, "name", f"the file's stem is {complaint.problem}", repr(stem), remedy)
+        reader, values = _read(source, KEYS.answering())
+    name_by_stem(values, reader, path)
     if reader.errors:
         raise RecipeErrors(reader.errors)
     document = Document(path=Path(path), text=source.text, marks=reader.marks, kinds=reader.kinds)
-    recipe = _build(values, document, words_of(source.root))
+    recipe = _build(values, document, registry.by_words(words_of(source.root)))
     return recipe if recipe.cam.open is None else roots.settle(recipe)
+
+
+def _of_another_kind(source: Source, path: str | PathLike[str], key: str) -> RecipeError:
+    """Fault of a text that is a recipe of another kind than a disc cam."""
+    top, other = keys(source.root) if isinstance(source.root, Mapping) else {}, roots.reading(key)
+    field, mark = (key, top[key].mark) if key in top else (f"{CAM}.kind", top[CAM].mark)
+    remedy = f"export, check and verify take it; give any other command {other.instead}"
+    return RecipeError(str(path), *mark, field, f"a {other.noun} is no disc cam", None, remedy)
+
+
+def reader_of_kind(source: Source, key: str) -> Reader:
+    """Reader of a recipe of another kind than a disc cam; it refuses words of other recipes in one sentence."""
+    kind = roots.reading(key)
+
+    def have(word: str) -> bool:
+        return word in FORMATS or word in roots.top_keys() or word in recipe_table(KEYS.answering()).keys
+
+    return Reader(source, READERS, kind.table(), Others(kind.noun, kind.instead, have))
+
+
+def name_by_stem(values: Values, reader: Reader, path: str | PathLike[str]) -> None:
+    """Set the name of a recipe that gives none to the stem of its file, or note that no name can be made of it."""
+    if "name" in reader.marks:
+        return
+    stem = Path(path).stem
+    try:
+        values["name"] = read_name(stem)
+    except Complaint as complaint:
+        remedy = f"give `name:` with {NAME_RULE}"
+        reader.fault(reader.source.root.mark, "name", f"the file's stem is {complaint.problem}", repr(stem), remedy)
 
 
 def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values]:
@@ -352,14 +414,21 @@ def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values
 def file_bytes(path: str | PathLike[str]) -> bytes:
     """Bytes of a recipe's file, at most the first `MAX_BYTES` + 1, by which a larger file is known.
 
-    Raises RecipeErrors for an empty name, and for a file that does not exist or cannot be read.
+    Raises RecipeErrors for an empty name, for a file that does not exist or cannot be read, and for one of a cam.
     """
     if not str(path):
         raise RecipeErrors([RecipeError("''", 0, 0, "", "an empty name of a file", None, "give the path of a recipe")])
     try:
-        return read_bytes(path, MAX_BYTES, "recipe")
+        data = read_bytes(path, MAX_BYTES, "recipe")
     except Complaint as complaint:
         raise RecipeErrors([RecipeError(str(path), 0, 0, "", complaint.problem, None, complaint.remedy)]) from None
+    if (suffix := Path(path).suffix.lower()) not in {".yaml", ".yml", ".txt"}:
+        from kin.read.formats import suffixes
+
+        if suffix in suffixes():
+            problem, remedy = "a file of a cam, and no recipe", "give the recipe first, and such files behind it"
+            raise RecipeErrors([RecipeError(str(path), 0, 0, "", problem, None, remedy)])
+    return data
 
 
 def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recipe:
@@ -371,10 +440,8 @@ def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recip
     return read(text.encode("utf-8", "surrogatepass"), path, unplaced)
 
 
-def _build(values: Values, document: Document, words: set[str]) -> Recipe:
-    """Recipe of values without faults; `words` are its words that may use capabilities."""
-    capabilities = tuple((name, registry.capability(name).build(values)) for name in _used(document, words))
-    values = _of_core(values, [name for name, _ in capabilities])
+def _build(values: Values, document: Document, capabilities: tuple[str, ...]) -> Recipe:
+    """Recipe of values without faults, which uses these capabilities."""
     milling, wheel = build_manufacture(values.get("manufacture", {}))
     linkage = build_linkage(values["linkage"]) if "linkage" in values else None
     cam = build_cam(values["cam"], values["mm"])
@@ -393,34 +460,9 @@ def _build(values: Values, document: Document, words: set[str]) -> Recipe:
         manufacture=milling,
         wheel=wheel,
         limits=build_limits(values.get("limits", [])),
-        capabilities=capabilities,
+        capabilities=tuple((name, KEYS[name].build(values)) for name in capabilities),
         **vars(document),
     )
 
 
-def _used(document: Document, words: set[str]) -> tuple[str, ...]:
-    """Names of the capabilities that a recipe uses: by its words, or by their keys in tables of the core."""
-    named = registry.by_words(words)
-    below = [
-        name
-        for name in registry.names_loaded()
-        for path, fields in registry.capability(name).below.items()
-        if any(f"{path}.{field.name}" in document.marks for field in fields)
-    ]
-    return tuple(name for name in registry.names_with_record() if name in {*named, *below})
-
-
-def _of_core(values: Values, capabilities: list[str]) -> Values:
-    """The values without the keys of these capabilities in the tables of the core."""
-    for capability in registry.in_order(capabilities):
-        for path, fields in capability.below.items():
-            values = _without_names(values, path.split("."), {field.name for field in fields})
-    return values
-
-
-def _without_names(values: Values, path: list[str], names: set[str]) -> Values:
-    """The values without some names in their mapping at a path."""
-    if not path:
-        return {name: value for name, value in values.items() if name not in names}
-    first, *rest = path
-    return {**values, first: _without_names(values[first], rest, names)} if first in values else values
+READING = Reading(table=recipe_table, read=of_source)

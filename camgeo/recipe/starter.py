@@ -11,7 +11,8 @@ from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.linkage import LINKAGES
 from camgeo.recipe.track import OF_A_DISC
 from camgeo.registry.gathered import Gathered
-from camgeo.registry.root import CAM, root
+from camgeo.registry.root import CAM, reading
+from camgeo.registry.slot import EMPTY, Slot
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import Field, FieldTable, Kind, either
 from kin.numeric.records import dataclass, field, replace
@@ -29,6 +30,7 @@ Given: TypeAlias = dict[str, "str | Given"]  # the text of a field, or the field
 class Starter:
     """A recipe to begin with: its title, the kind of cam, the given fields of the cam, and `more` fields beside it.
 
+    `task` is what somebody says who wants it, in a few words, and `also` are other words by which it is sought.
     `unfit` are fields of the follower, the part or the top level that do not go with the given ones; they are left out
     of the text. `after` names the core's starter behind which a capability's is listed. `root` is the top key of the
     recipe's kind; only `cam` has a cam.
@@ -41,6 +43,18 @@ class Starter:
     unfit: tuple[str, ...] = ()
     after: str = ""
     root: str = CAM
+    task: str = ""
+    also: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Starters:
+    """Answers of a capability with recipes to begin with, by name."""
+
+    starters: Mapping[str, Starter] = EMPTY
+
+
+STARTING = Slot("starter", Starters())
 
 
 def _roller(title: str, ratio: str, route: str, values: str | Given) -> Starter:
@@ -70,7 +84,20 @@ FOUR_BAR: Given = {
     "linkage": {"kind": "four-bar", "ground": "80", "coupler": "70", "rocker": "105"},
     "dwell": {"band": "0.1", "at_least": "36"},
 }
-_CORE = {
+_EACH = {
+    "toy": Starter(
+        "A toy that prints: two bumps of 15 mm a turn, hand cranked.",
+        "disc",
+        {
+            "base_radius": "24",
+            "follower": {"kind": "roller", "radius": "6"},
+            "motion": 2 * "\n    - {rise: 15, over: 80}\n    - {return: 15, over: 80}\n    - {dwell: 20}",
+        },
+        {
+            "part": {"thickness": "8", "bore": "6"},
+            "export": {"tolerance": "0.02", "files": "[stl, 3mf, svg, html]"},
+        },
+    ),
     "support": Starter("A cam from a formula for its support function.", "support", {"p": "25 + 2*cos(3*t)", **_SHAFT}),
     "fourier": Starter(
         "A cam from a Fourier series; odd harmonics alone give constant breadth.",
@@ -245,7 +272,57 @@ _CORE = {
     ),
 }
 
-STARTERS: Gathered[Starter] = Gathered(_CORE, lambda capability: capability.starters())
+# in the order of use, the most frequent first: what each is for, and by which other words it is sought
+_TASKS = {
+    "disc-roller": (
+        "one roller, held by a spring",
+        "plate disk translating stem rise dwell return fall single lift tappet base radius prime circle",
+    ),
+    "toy": (
+        "two bumps, hand cranked",
+        "automata automaton 3d print printed printing crank wood lobes two paper kids simple stl",
+    ),
+    "disc-flat": ("a flat face, held by a spring", "tappet mushroom plate disk translating stem"),
+    "disc-arm": ("a roller on a swinging arm, held by a spring", "oscillating rocker lever pivot plate disk"),
+    "disc-lobe": ("valve lobe", "engine motor camshaft intake exhaust bucket tappet poppet"),
+    "disc-card": ("valve lobe by its cam card", "engine motor camshaft duration lift degrees intake exhaust grind"),
+    "disc-groove": ("a roller in a groove, no spring", "face track slot closed positive desmodromic box"),
+    "constant-diameter": (
+        "two rollers in one frame, no spring",
+        "yoke conjugate positive desmodromic diametral scotch",
+    ),
+    "constant-breadth": ("two flat faces in one frame, no spring", "yoke width positive desmodromic breadth film"),
+    "disc-drop": ("a roller that drops at once", "snap quick fall hammer step snail"),
+    "disc-ring": ("a roller inside a ring", "internal inner track hollow"),
+    "disc-shoe": ("a curved shoe, held by a spring", "slipper round tip crowned domed mushroom"),
+    "disc-knife-edge": ("a knife edge, held by a spring", "point pointed tip pencil needle stylus"),
+    "disc-arm-flat": ("a flat face on a swinging arm", "oscillating rocker finger pad lever"),
+    "disc-conjugate": (
+        "two discs for two rollers, no spring",
+        "complementary conjugate double twin positive desmodromic loom",
+    ),
+    "reuleaux": ("Reuleaux triangle", "constant width breadth polygon square hole drill rounded"),
+    "double-roller-law": (
+        "Wunderlich: two rollers on one arm, one disc, no spring",
+        "positive desmodromic oscillating rocker double roller conjugate base radius prime circle",
+    ),
+    "double-roller": (
+        "Wunderlich, from a polynomial",
+        "two rollers one arm disc trigonometric base radius prime circle",
+    ),
+    "double-roller-arc": ("Wunderlich, from a circular arc", "two rollers one arm disc base radius prime circle"),
+    "double-roller-rosette": ("Wunderlich, from a rosette", "two rollers one arm disc leaf base radius prime circle"),
+    "flat-pair": ("Wunderlich: two flat faces on one arm", "positive desmodromic oscillating pair"),
+    "support": ("a curve by a formula", "support function p(t) convex constant width"),
+    "fourier": ("a curve by its harmonics", "fourier series constant width breadth support function"),
+    "hypocycloid": ("a rounded hypocycloid", "deltoid astroid constant width parallel"),
+    "four-bar": ("a linkage that dwells: four-bar", "square frame coupler rocker long dwell"),
+    "inverted-slider-crank": ("a linkage that dwells: rocker", "square frame slides inverted crank"),
+    "slider-crank": ("a linkage that dwells: slider-crank", "square frame coupler piston slide"),
+}
+_CORE = {name: replace(_EACH[name], task=task, also=also) for name, (task, also) in _TASKS.items()}
+
+STARTERS: Gathered[Starters, Starter] = Gathered(_CORE, STARTING, lambda answers: answers.starters)
 """Every starter by its name, the core's and those of capabilities."""
 
 _REST: Given = {
@@ -265,12 +342,13 @@ def starters_for(kind: str) -> tuple[str, ...]:
 def starter(kind: str) -> str:
     """Text of the starter named `kind`; raises ValueError for a name that is none of STARTERS."""
     if kind not in STARTERS:
-        known = f"there is {either(starters_for(kind) or tuple(STARTERS), 'and')}"
-        hint = known if starters_for(kind) else suggestion(kind, STARTERS) or known
+        meant = starters_for(kind) or tuple(name for name, one in STARTERS.items() if kind.lower() in one.also.split())
+        known = f"there is {either(meant or tuple(STARTERS), 'and')}"
+        hint = known if meant else suggestion(kind, STARTERS) or known
         raise ValueError(f"no starter for {kind!r}; {hint}")
     chosen = STARTERS[kind]
     fields: Given = {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}, **chosen.more}
-    lines = _lines(_recipe(kind, chosen) if chosen.root == CAM else root(chosen.root).table(), fields, "")
+    lines = _lines(_recipe(kind, chosen) if chosen.root == CAM else reading(chosen.root).table(), fields, "")
     return "\n".join([f"# {chosen.title} Lengths in mm, angles in degrees.", *lines, ""])
 
 

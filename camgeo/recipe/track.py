@@ -77,7 +77,7 @@ def _check_groove(values: Values, reader: Reader) -> None:
                 remedy = "leave it out; cam.track.groove.clearance is the play of the roller"
                 reader.fault_at(f"{path}.{kind}.{name}", "a groove is made to its nominal size", None, remedy)
         record = FORMATS[kind]
-        if (record.solid or record.program) and "depth" not in groove:
+        if (record.solid or record.program) and depth not in reader.marks:
             reader.fault_at(path, f"{kind} needs the depth of the groove", None, f"give {depth}, or leave {kind} out")
         elif record.solid and "part.outer" not in reader.marks:
             remedy = f"give part.outer, the diameter of the blank, or leave {kind} out"

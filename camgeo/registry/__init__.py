@@ -1,1 +1,1 @@
-"""Capabilities as the core sees them: their labels, the record of each, and tables that all of them add to."""
+"""Capabilities and formats as the core sees them: labels, questions and answers, tables that all of them add to."""

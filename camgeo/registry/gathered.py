@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from typing import TYPE_CHECKING, Protocol, TypeVar
-
-from camgeo.registry import registry
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
-    from camgeo.registry.capability import Capability
+    from camgeo.registry.slot import Slot
 
 
 class Entry(Protocol):
@@ -19,26 +17,28 @@ class Entry(Protocol):
         """Name of the core's entry behind which this one stands; empty for a place behind all of them."""
 
 
+A = TypeVar("A")
 E = TypeVar("E", bound=Entry)
 
 
-class Gathered(Mapping[str, E]):
+class Gathered(Mapping[str, E], Generic[A, E]):
     """Entries of the core and of the capabilities, in one order whatever has been imported.
 
-    A name of the core needs no import. Any other name is sought in the records of capabilities that were imported, then
+    A name of the core needs no import. Any other name is sought in the answers of capabilities that were imported, then
     in all of them; iteration imports all. `among` gives the entries of the core and of some capabilities.
     """
 
-    def __init__(self, core: Mapping[str, E], entries_of: Callable[[Capability], Mapping[str, E]]) -> None:
-        """Make the table of the core's entries; `entries_of` gives those of a capability."""
+    def __init__(self, core: Mapping[str, E], slot: Slot[A], entries_of: Callable[[A], Mapping[str, E]]) -> None:
+        """Make the table of the core's entries; `entries_of` gives those in a capability's answers to a question."""
         self._core = core
+        self._slot = slot
         self._entries_of = entries_of
         self._every: list[str] = []
 
     def __getitem__(self, name: str) -> E:
         """Entry of this name; raises KeyError where neither the core nor a capability has one."""
         owner = self.owner(name)
-        return self._entries_of(registry.capability(owner))[name] if owner else self._core[name]
+        return self._entries_of(self._slot[owner])[name] if owner else self._core[name]
 
     def __contains__(self, name: object) -> bool:
         """Whether the core or a capability has an entry of this name."""
@@ -66,9 +66,9 @@ class Gathered(Mapping[str, E]):
         """Name of the capability that an entry comes from, empty for the core; raises KeyError for an unknown entry."""
         if name in self._core:
             return ""
-        loaded = registry.names_loaded()
-        for capability in (*loaded, *(unread for unread in registry.names_with_record() if unread not in loaded)):
-            if name in self._entries_of(registry.capability(capability)):
+        loaded = self._slot.loaded()
+        for capability in (*loaded, *(unread for unread in self._slot.answering() if unread not in loaded)):
+            if name in self._entries_of(self._slot[capability]):
                 return capability
         raise KeyError(name)
 
@@ -78,7 +78,7 @@ class Gathered(Mapping[str, E]):
         return {name: added[name] if name in added else self._core[name] for name in self._ordered(capabilities)}
 
     def _added(self, capabilities: Collection[str]) -> Iterator[Mapping[str, E]]:
-        return map(self._entries_of, registry.in_order(capabilities))
+        return map(self._entries_of, self._slot.of(capabilities))
 
     def _ordered(self, capabilities: Collection[str]) -> list[str]:
         """Names of the core and of these capabilities, in order; the core's entries are not imported.
@@ -94,5 +94,5 @@ class Gathered(Mapping[str, E]):
 
     def _whole(self) -> list[str]:
         if not self._every:
-            self._every = self._ordered(registry.names_with_record())
+            self._every = self._ordered(self._slot.answering())
         return self._every

@@ -1,4 +1,4 @@
-"""Label of a capability: its words, commands and formats, read before its record."""
+"""Label of a capability: its words, commands and formats, read before its answers."""
 
 from __future__ import annotations
 
@@ -20,13 +20,15 @@ class Label(NamedTuple):
     commands  names of its commands, each with its help; the module `command` of the folder has them
     reports   names of files of the output folder that list other files, as `report.json` does
     absent    why a run leaves the capability out, for the report's `skipped`; empty where that needs no words
-    record    whether the folder has a module `record`; without one it adds nothing to recipes and reports
     option    help of the option of the folder's name, by which a call uses it on files of one cam; empty: none
-    roots     keys of the top level that make a text a recipe of another kind, which the record reads
-    suffixes  suffixes of files that `verify` takes for it, where its record claims them by their heading
+    roots     keys of the top level that make a text a recipe of another kind, which the folder reads
+    kinds     values of `cam.kind` that do so too, each with what such cams are made for, as the error of an unknown
+              kind lists it
+    slips     words that some write in place of one of these kinds, each with the kind
+    kin       packages of kin that judge for it alone, and are deleted with it
+    suffixes  suffixes of files that `verify` leaves to it, where it claims them by their heading
     names     names that it adds to the library, each with the module of the folder that has it
-    sources   options of `camgeo new` by which it makes a recipe out of files, each with its help; the function
-              `started` of the folder's module `start` is given the files, the path of a recipe and the new name
+    sources   options of `camgeo new` by which it makes a recipe out of files, each with its help
     """
 
     rank: int
@@ -35,9 +37,11 @@ class Label(NamedTuple):
     commands: Mapping[str, str] = NONE
     reports: tuple[str, ...] = ()
     absent: str = ""
-    record: bool = True
     option: str = ""
     roots: tuple[str, ...] = ()
+    kinds: Mapping[str, str] = NONE
+    slips: Mapping[str, str] = NONE
+    kin: tuple[str, ...] = ()
     suffixes: tuple[str, ...] = ()
     names: Mapping[str, str] = NONE
     sources: Mapping[str, str] = NONE

@@ -1,96 +1,76 @@
-"""Kinds of recipes as the core sees them: a recipe of one cam, and those that capabilities read.
+"""Kinds of recipes as their reading sees them: a recipe of one cam, and those that capabilities read.
 
-A text is a recipe of the kind whose key stands at its top level, or of one cam. The types below stand above this
-module: imports upwards are for types alone.
+A text is a recipe of the kind whose key stands at its top level or is its `cam.kind`, or of a disc cam.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from camgeo.registry import registry
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
     from pathlib import Path
 
-    from camgeo.api.check import Check
-    from camgeo.output.pipeline import Outcome
-    from camgeo.recipe.recipe import Order
-    from camgeo.registry.capability import FileCall
     from camgeo.schema.fields import FieldTable
     from camgeo.schema.yaml_source import Source
-    from camgeo.synthesis.expected_checks import Foreseen
 
-R = TypeVar("R", bound="Order")
+R = TypeVar("R")
 CAM = "cam"
-_OF_A_CAM = "camgeo.api.cam"  # the module that has the core's own
-
-
-class Designed(Protocol):
-    """Protocol of a design that the library returns for any kind of recipe."""
-
-    @property
-    def checks(self) -> tuple[Check, ...]:
-        """Checks of the design that need no file."""
+_OF_A_CAM = "camgeo.recipe.recipe"  # the module that has the core's own
+_LEAST_ANGLE = "camgeo.measures.least_angle"  # what a cam leaves open is computed by figures, above recipes
 
 
 @dataclass(frozen=True, kw_only=True)
-class Root(Generic[R]):
-    """Functions of one kind of recipe for commands and the library; lengths in mm.
+class Reading(Generic[R]):
+    """Functions that read one kind of recipe.
 
     table    table of the recipe's keys
     read     recipe of a parsed text, at a path; raises RecipeErrors with all faults
-    design   exact cams, in the form that the library returns
-    export   writes and judges files: (recipe, folder, kinds of files or none for all, callback for each stage)
-    check    makes and judges all files, and keeps none: (recipe, callback for each stage)
-    judge    report on files of any origin: (recipe, paths, tolerance, mm of the unit of files that state none, gap)
-    claimed  report on files that a capability judges: (recipe, name of the capability, arguments of `verify`)
-    settle   recipe with the values of its motion that it leaves open computed; None: none may be left open
-    show     report on files of any origin, and the page that shows them; None where there is no page
-    explain  text of several lines on a failed check: (check, report, recipe, name of the recipe's file)
-    foresee  checks that a run will make
-    instead  remedy for a command that takes recipes of one cam alone
+    noun     what such a recipe is of, without an article: `camshaft`
+    instead  the recipe to give in its place where one of a disc cam is needed: `the recipe of a lobe`
     """
 
     table: Callable[[], FieldTable]
     read: Callable[[Source, Path], R]
-    design: Callable[[R], Designed]
-    export: Callable[[R, Path, tuple[str, ...], Callable[[str], None]], Outcome]
-    check: Callable[[R, Callable[[str], None]], Outcome]
-    judge: Callable[[R, list[Path], float | None, float | None, float | None], dict[str, Any]]
-    claimed: Callable[[R, str, FileCall], dict[str, Any]]
-    explain: Callable[[dict[str, Any], dict[str, Any], R, str | None], str]
-    foresee: Callable[[R], Sequence[Foreseen]]
-    show: Callable[[R, list[Path], float | None, float | None, float | None], tuple[dict[str, Any], str]] | None = None
-    settle: Callable[[R], R] | None = None
+    noun: str = "disc cam"
     instead: str = ""
 
 
 def folders() -> dict[str, str]:
-    """Name of the capability that reads recipes of another kind than a cam, by the key of the kind."""
-    return {key: name for name, label in registry.labels().items() for key in label.roots}
+    """Name of the capability that reads recipes of another kind than a disc cam, by the key of the kind."""
+    return {key: name for name, label in registry.labels().items() for key in (*label.roots, *label.kinds)}
 
 
-def root(key: str) -> Root[Any]:
-    """Record of a kind of recipe by its key; raises KeyError for a key that no kind of recipe has."""
-    if key == CAM:
-        record: Root[Any] = import_module(_OF_A_CAM).ROOT
-        return record
-    return registry.capability(folders()[key]).roots[key]
+def top_keys() -> tuple[str, ...]:
+    """Keys of the top level that make a text a recipe of another kind than a disc cam."""
+    return tuple(key for label in registry.labels().values() for key in label.roots)
 
 
-def root_of(recipe: R) -> Root[R]:
-    """Record of a recipe's kind."""
-    return root(recipe.root)
+def kinds() -> dict[str, str]:
+    """Kinds of cams that make a text a recipe of another kind, each with what such cams are made for."""
+    return {kind: words for label in registry.labels().values() for kind, words in label.kinds.items()}
+
+
+def slips() -> dict[str, str]:
+    """Words that some write in place of such a kind, each with the kind that is meant."""
+    return {word: kind for label in registry.labels().values() for word, kind in label.slips.items()}
+
+
+def reading(key: str) -> Reading[Any]:
+    """Functions that read a kind of recipe, by its key; raises KeyError for a key that no kind of recipe has."""
+    module = _OF_A_CAM if key == CAM else f"{registry.PACKAGE}.{folders()[key]}.root"
+    functions: Reading[Any] = import_module(module).READING
+    return functions
 
 
 def settle(recipe: R) -> R:
-    """Recipe with the values of its motion that it leaves open computed; the same recipe where its kind has none.
+    """Recipe of a cam with the values of its motion that it leaves open computed.
 
     Raises RecipeErrors where no such values exist.
     """
-    settle_kind = root_of(recipe).settle
-    return recipe if settle_kind is None else settle_kind(recipe)
+    compute: Callable[[R], R] = import_module(_LEAST_ANGLE).with_least_angle
+    return compute(recipe)

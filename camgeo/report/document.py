@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.measures.units import UNIT_NAMES, in_units, pounds
-from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
-from camgeo.report.bound import sign, title, unit_text, verb, words
+from camgeo.report.extension import PAGE
+from camgeo.report.limit_words import place_text, sign, title, unit_text, verb, words
 from camgeo.version import __version__
 from kin.judge.verdict import UNREAD
 from kin.numeric.lengths import in_unit
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from camgeo.curve.measures import Measures
     from camgeo.measures.balance import Balance
     from camgeo.measures.file_result import FileResult
-    from camgeo.measures.remarks import RuleRemark
+    from camgeo.measures.rule_remark import RuleRemark
     from camgeo.recipe.recipe import Order
     from kin.follower.motion_error import MotionError, Play
-    from kin.judge.check import Check
     from kin.judge.verdict import ClosureVerdict, SurfaceVerdict
     from kin.law.joints import DerivativeJump
     from kin.law.sources.motion import Kept
+    from kin.numeric.check import Check
 
 BELOW = "below rounding"
 ROUNDING = 1e-11  # mm, in or degrees: rounding of sums of numbers of some hundred
@@ -86,7 +86,7 @@ def document(recipe: Order, findings: Findings) -> dict[str, Any]:
         "about": recipe.about,
         "camgeo": __version__,
         "units": recipe.units,
-        "rotation": recipe.rotation,
+        **recipe.input_entries,
         "follower": findings.follower,
         "ok": findings.ok,
         "tolerance": recipe.export.tolerance / recipe.mm,
@@ -127,7 +127,7 @@ def _check(recipe: Order, check: Check) -> dict[str, Any]:
         "limit": limit,
         "unit": unit,
         "sense": check.sense,
-        "at_deg": check.at_deg,
+        **_place_entry(recipe, check),
     }
     if (conversion := pounds(recipe.units, unit)) is not None and value is not None:
         pound_unit, factor = conversion
@@ -145,6 +145,14 @@ def _check(recipe: Order, check: Check) -> dict[str, Any]:
     return entry
 
 
+def _place_entry(recipe: Order, item: Check | RuleRemark) -> dict[str, Any]:
+    """Entries of the place of a check or remark: `at_deg`, a shaft angle, or `at` with its unit."""
+    if item.at_unit == "deg":
+        return {"at_deg": item.at}
+    at, unit = in_units(recipe, item.at, item.at_unit)
+    return {"at": at, "at_unit": unit}
+
+
 def _remark(recipe: Order, remark: RuleRemark) -> dict[str, Any]:
     value, unit = in_units(recipe, remark.value, remark.unit)
     rule, _ = in_units(recipe, remark.rule, remark.unit)
@@ -153,7 +161,7 @@ def _remark(recipe: Order, remark: RuleRemark) -> dict[str, Any]:
         "value": value,
         "rule": rule,
         "unit": unit,
-        "at_deg": remark.at_deg,
+        **_place_entry(recipe, remark),
         "sentence": remark.sentence,
     }
 
@@ -174,7 +182,15 @@ def _table_entry(findings: Findings) -> dict[str, Any]:
     table, (scale, unit) = findings.table, findings.displacements
     if table is None or table.distance is None:
         return {}
-    return {"table": {"distance": table.distance * scale, "unit": unit, "line": table.line or None}}
+    return {
+        "table": {
+            "distance": table.distance * scale,
+            "lowered": table.lowered * scale,
+            "distance_lowered": table.distance_lowered * scale,
+            "unit": unit,
+            "line": table.line or None,
+        }
+    }
 
 
 def _file(recipe: Order, file: FileResult) -> dict[str, Any]:
@@ -357,18 +373,17 @@ def table(report: dict[str, Any]) -> str:
             value_text(check),
             "" if check["limit"] is None else f"{sign(check)} {_number(check['limit'])}",
             unit_text(check),
-            "" if check["at_deg"] is None else f"{check['at_deg']:.2f} deg",
+            place_text(check),
             escaped(check.get("file", "")),
         )
         for check in report["checks"]
     ]
     # a remark has no side of its own: its figure lies on the unusual side of the rule
     for remark in report.get("remarks", ()):
-        rule, place = remark["rule"], remark["at_deg"]
+        rule = remark["rule"]
         side = "" if rule is None else ">=" if remark["value"] < rule else "<="
-        place_text = "" if place is None else f"{place:.2f} deg"
         value, usual = _number(remark["value"]), f"{side} {_number(rule)}".strip()
-        rows.append((remark["name"], "remark", value, usual, remark["unit"], place_text, ""))
+        rows.append((remark["name"], "remark", value, usual, remark["unit"], place_text(remark), ""))
     text = align(rows)
     if report.get("remarks"):
         text += "\n\n" + "\n".join(f"remark {remark['name']}: {remark['sentence']}" for remark in report["remarks"])
@@ -388,11 +403,11 @@ def table(report: dict[str, Any]) -> str:
                 error_text(file.get("measured_error"), limit=file.get("tolerance")),
                 error_text(motion.get("max"), motion.get("unit", ""), limit=file.get("tolerance")),
                 error_text(motion.get("rms"), limit=file.get("tolerance")),
-                "" if motion.get("at_deg") is None else f"{motion['at_deg']:.2f} deg",
+                place_text(motion),
             )
         )
     text += "\n\n" + align(rows)
-    tables = (capability.lines(report) for capability in registry.in_order(registry.names_loaded()))
+    tables = (answers.lines(report) for answers in PAGE.of(report))
     text += "".join(f"\n\n{lines}" for lines in tables if lines)
     if report["skipped"]:
         text += f"\n\nskipped (the JSON says why): {', '.join(item['what'] for item in report['skipped'])}"
@@ -425,8 +440,8 @@ def _failure_text(check: dict[str, Any]) -> str:
         text += f": {_number(check['value'])} {unit_text(check)}".rstrip()
         if check["limit"] is not None:
             text += f", {words(check)} {_number(check['limit'])} {verb(check)}"
-        if check["at_deg"] is not None:
-            text += f", at {check['at_deg']:.2f} deg"
+        if place := place_text(check):
+            text += f", at {place}"
     if check.get("detail"):
         text += f": {check['detail']}"
     return text

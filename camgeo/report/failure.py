@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.checks.declared import LIMIT, Declared, declaration
-from camgeo.report.bound import title, unit_text, verb, words
+from camgeo.checks.declaration import Declared
+from camgeo.checks.declared import LIMIT, declaration
+from camgeo.report.limit_words import place_text, title, unit_text, verb, words
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order, Recipe
@@ -28,15 +29,16 @@ def failure_at(check: dict[str, Any], recipe: Order, field: str, would_do: str =
     `shown` names the recipe's file in place of its path.
     """
     line, column = recipe.locate(field)
-    place = recipe.unplaced or f"{shown or recipe.path}:{line}:{column}"
+    source = recipe.unplaced or f"{shown or recipe.path}:{line}:{column}"
+    place = place_text(check, 4)
     rows = [
         ("value", _value(check)),
         ("limit", _limit(check)),
-        ("at", "" if check["at_deg"] is None else f"{check['at_deg']:.4f} deg of shaft angle"),
+        ("at", place and f"{place} of {'travel' if 'at' in check else 'shaft angle'}"),
         ("file", check.get("file", "")),
         ("found", check.get("detail", "")),
         ("remedy", would_do),
-        ("recipe", f"{place} {field}"),
+        ("recipe", f"{source} {field}"),
     ]
     return headline(check) + "".join(f"{INDENT}{name:<9}{text}" for name, text in rows if text)
 
@@ -48,8 +50,8 @@ def headline(check: dict[str, Any]) -> str:
     if check["value"] is None:
         return f"{text}: {check.get('detail') or 'nothing to measure'}"
     parts = [_value(check), f"{_limit(check)} {verb(check)}" if _limit(check) else ""]
-    if check["at_deg"] is not None:
-        parts.append(f"at {check['at_deg']:.2f} deg")
+    if place := place_text(check):
+        parts.append(f"at {place}")
     return f"{text}: " + ", ".join(part for part in parts if part)
 
 

@@ -6,26 +6,34 @@ import json
 import math
 import re
 import sys
+from collections import Counter
 from collections.abc import Mapping as AnyMapping
 from collections.abc import Sequence as AnySequence
+from functools import partial
 from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
 from camgeo.schema.edit import number_text
 from camgeo.schema.errors import RecipeError, RecipeErrors, quote
+from camgeo.schema.items import Entry, NoPlaceError, cut, put
 from camgeo.schema.yaml_source import (
     MAX_DEPTH,
     Mapping,
     Scalar,
     Sequence,
     Source,
+    comments,
+    content,
     entries,
     is_empty,
     is_within,
     join,
+    nodes,
     scalars,
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -38,6 +46,7 @@ _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")  # texts that YAML and people re
 _WORDS = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan", "inf"})
 _NO_PATH = ("not the path of a field", "write it like cam.base_radius or cam.motion[1].over")
 _BY_HAND = ("the value cannot be put there", "write it into the text by hand")
+_SHARED = ("an alias shares this place with others", "write the value out where it stands")
 _STEP = re.compile(r"\.?(?:([A-Za-z0-9_-]+)|'([^'\\]*)')|\[([0-9]+)\]")
 
 
@@ -65,9 +74,7 @@ def set_value(source: Source, path: str, value: Value) -> str:
         node, node_path = child, join(node_path, step)
     own_ids = {id(scalar) for _, scalar in scalars(node)}
     if any(id(scalar) in own_ids for scalar_path, scalar in scalars(source.root) if not is_within(scalar_path, path)):
-        raise _refusal(
-            source.file, path, "an alias shares this place with others", "write the value out where it stands"
-        )
+        raise _refusal(source.file, path, *_SHARED)
     text = _flow(value, path, source.file, 0)
     first, behind = _span(source, node.mark, node.end)
     old = source.text[first:behind]
@@ -95,6 +102,95 @@ def replace_entry(source: Source, path: str, key: str, value: Value) -> str:
             new = f"{key}: {_flow(value, new_path, source.file, 0)}{text[len(text.rstrip()) :]}"
             return _verify_change(source, path, source.text[:first] + new + source.text[behind:], new_path)
     raise _refusal(source.file, path, *_NO_PATH)
+
+
+def insert_item(source: Source, path: str, index: int, value: Value) -> str:
+    """Text of a recipe with a value in the list at a path, such as `cam.motion`, before the entry at an index.
+
+    At the index that is the number of entries it comes last. All else stays as it is, comments included, as the tree of
+    the new text proves. Raises RecipeErrors for a path at which no list stands, an index beyond it, a value that no
+    recipe may hold, a list that shares anything with others by an alias, and a value that cannot be put there without
+    harm to the rest.
+    """
+    items = _list_at(source, path, index, 1)
+    text = _flow(value, join(path, index), source.file, 0)
+    entry = Entry(text if items.flow else f" {text}")
+    wanted = [content(item) for item in items.items]
+    wanted.insert(index, content(Source.of(text, source.file).root))
+    return _verify_items(source, path, partial(put, source, items, index, entry), {id(items): tuple(wanted)})
+
+
+def remove_item(source: Source, path: str, index: int) -> str:
+    """Text of a recipe without the entry at an index of the list at a path, and without the comments of that entry.
+
+    To it belong the comments behind it and those below that are indented more; comments above it stay. Raises
+    RecipeErrors as `insert_item` does.
+    """
+    items = _list_at(source, path, index)
+    others = tuple(content(item) for i, item in enumerate(items.items) if i != index)
+    return _verify_items(source, path, lambda: cut(source, items, index)[0], {id(items): others}, index)
+
+
+def move_item(source: Source, path: str, index: int, to: int) -> str:
+    """Text of a recipe in which the entry at an index of the list at a path has come to the index `to`.
+
+    It takes its comments along, those that `remove_item` would remove. Raises RecipeErrors as `insert_item` does.
+    """
+    items = _list_at(source, path, index)
+    _list_at(source, path, to)
+    if index == to:
+        return source.text
+
+    def moved() -> str:
+        without, entry, _ = cut(source, items, index)
+        left = Source.of(without, source.file)
+        return put(left, _list_at(left, path, 0), to, entry)
+
+    wanted = [content(item) for item in items.items]
+    wanted.insert(to, wanted.pop(index))
+    return _verify_items(source, path, moved, {id(items): tuple(wanted)})
+
+
+def _list_at(source: Source, path: str, index: int, beyond: int = 0) -> Sequence:
+    """The list at a path, which has an entry at an index or so many `beyond`, and nothing that an alias shares."""
+    node: Node | None = source.root
+    for step in _steps(source, path):
+        node = None if node is None else _entry(node, step)
+    if not isinstance(node, Sequence):
+        raise _refusal(source.file, path, "no list stands there", "give the path of a list, such as cam.motion")
+    if not 0 <= index < len(node.items) + beyond:
+        most = len(node.items) - 1 + beyond
+        remedy = f"give an index from 0 to {most}" if most >= 0 else "insert an entry first"
+        raise _refusal(source.file, path, f"the list has {len(node.items)} entries", remedy, str(index))
+    count = Counter(map(id, nodes(source.root)))
+    if any(count[id(one)] > 1 for one in nodes(node)):
+        raise _refusal(source.file, path, *_SHARED)
+    return node
+
+
+def _verify_items(
+    source: Source,
+    path: str,
+    change: Callable[[], str],
+    wanted: AnyMapping[int, tuple[object, ...]],
+    removed: int | None = None,
+) -> str:
+    """The new text itself, whose tree must be the old one with `wanted` in a list, and which must keep all comments.
+
+    Comments of a `removed` entry need not be there. Raises RecipeErrors where that is not so.
+    """
+    try:
+        text = change()
+        new = Source.of(text, source.file)
+        within = None if removed is None else cut(source, _list_at(source, path, removed), removed)[2]
+    except (NoPlaceError, RecipeErrors) as error:
+        raise _refusal(source.file, path, *_BY_HAND) from error
+    first, behind = within or (0, 0)
+    kept = Counter(source.text[a:b] for a, b in comments(source) if not first <= a < behind)
+    lost = kept - Counter(text[a:b] for a, b in comments(new))
+    if lost or content(new.root) != content(source.root, wanted):
+        raise _refusal(source.file, path, *_BY_HAND)
+    return text
 
 
 def _steps(source: Source, path: str) -> list[str | int]:

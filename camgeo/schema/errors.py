@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from camgeo.common.terminal import escaped
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
 
 _SHOWN = 60  # characters of a value that an error repeats
 NEAR, NEARER = 0.6, 0.75  # likeness from which a word is suggested, and from which it is taken for a misspelling
+MOST_ALIKE = 3  # faults that differ in their places alone and have a line each
 _LONGEST_WORD = 40  # characters of a word for which a near one is sought
 
 
@@ -52,7 +54,11 @@ class RecipeError:
 
 
 class RecipeErrors(CamgeoError):  # noqa: N818 - it carries several errors
-    """All faults of a recipe in the order of their places, each once; `str()` gives a line for each."""
+    """All faults of a recipe in the order of their places, each once.
+
+    `str()` gives a line for each; of more than MOST_ALIKE that differ in their places alone the first has one, with
+    their number.
+    """
 
     errors: tuple[RecipeError, ...]
 
@@ -62,8 +68,24 @@ class RecipeErrors(CamgeoError):  # noqa: N818 - it carries several errors
         super().__init__(self.errors)
 
     def __str__(self) -> str:
-        """Write the faults one a line."""
-        return "\n".join(map(str, self.errors))
+        """Write the faults one a line, many alike on one line."""
+        alike: dict[object, list[RecipeError]] = {}
+        for error in self.errors:
+            alike.setdefault(_without_place(error), []).append(error)
+        lines = []
+        for error in self.errors:
+            equal = alike[_without_place(error)]
+            if len(equal) <= MOST_ALIKE:
+                lines.append(str(error))
+            elif error is equal[0]:
+                last = f", the last in line {equal[-1].line}" if equal[-1].line else ""
+                lines.append(f"{error}; and {len(equal) - 1} more such faults{last}")
+        return "\n".join(lines)
+
+
+def _without_place(error: RecipeError) -> object:
+    """What faults that differ in their places alone have in common: their paths without numbers of entries too."""
+    return error.file, re.sub(r"\[\d+\]", "[]", error.path), error.problem, error.value, error.remedy
 
 
 def quote(text: str) -> str:
@@ -81,9 +103,14 @@ def suggestion(word: str, words: Iterable[str], near: float = NEAR) -> str:
 
 
 def nearest_word(word: str, words: Iterable[str], near: float = NEAR) -> str:
-    """The nearest of the known words, of a likeness of `near` or more; empty without one."""
+    """The known word that ends it, as harmonic does simple-harmonic, or the nearest of a likeness of `near` or more.
+
+    Empty without one.
+    """
     from difflib import get_close_matches  # for the message alone
 
     if len(word) > _LONGEST_WORD:
         return ""
-    return next(iter(get_close_matches(word.lower(), list(words), n=1, cutoff=near)), "")
+    known, given = list(words), word.lower()
+    ending = [one for one in known if given.endswith(f"-{one}")]
+    return next(iter(ending or get_close_matches(given, known, n=1, cutoff=near)), "")

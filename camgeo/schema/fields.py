@@ -77,7 +77,8 @@ class OwnForm(Generic[R]):
 
     `noun` and `wanted` are for messages. `read`, (reader, field, node, path), gives the value, or None for a faulty
     one, whose fault it notes; `schema` makes the JSON schema. For a mapping whose `kind` chooses its keys, `tables` has
-    the table of each kind, and messages name the place of a key by `group` and the kind: `cam of kind support`.
+    the table of each kind, and messages name the place of a key by `group` and the kind: `cam of kind support`;
+    `elsewhere` are further kinds, which other recipes have.
     """
 
     noun: str
@@ -87,6 +88,7 @@ class OwnForm(Generic[R]):
     tables: Mapping[str, FieldTable] | None = None
     group: str = ""
     others: str = ""  # remedy for a `kind` that is none of these
+    elsewhere: tuple[str, ...] = ()
     instead: FieldTable | None = None  # of a mapping that may stand in place of a list
 
 
@@ -95,7 +97,7 @@ class Field:
     """One key of a table. Bounds are in the recipe's own units and degrees, as written.
 
     `about` describes the value in messages and in the JSON schema. `after` is the core's key behind which the key of a
-    capability stands; `unshown` are starters that leave it out.
+    capability stands; `unshown` are starters that leave it out; `slips` are words that some write in place of its name.
     """
 
     name: str
@@ -117,6 +119,7 @@ class Field:
     most: int = MOST_COEFFICIENTS  # entries of a list of numbers
     after: str = ""
     unshown: Collection[str] = ()
+    slips: Collection[str] = ()
 
     @property
     def noun(self) -> str:

@@ -59,7 +59,8 @@ def _alternative(table: FieldTable, chosen: str) -> Schema:
     with_it = (chosen, *companions[chosen])
     all_names = {name for key, names in companions.items() for name in (key, *names)}
     excluded = all_names - set(with_it)
-    return {"required": list(with_it), "properties": dict.fromkeys(sorted(excluded), False)}
+    needed = [name for name in with_it if name == chosen or not table.field(name).default]
+    return {"required": needed, "properties": dict.fromkeys(sorted(excluded), False)}
 
 
 def _field(field: Field) -> Schema:

@@ -23,7 +23,7 @@ MASSES = {"kg": 10**8, "lb": 45359237}
 _QUANTITY = r"(.*(?:[0-9.)]|\bpi)) *((?!pi)[A-Za-zµ°\"'%][A-Za-zµ°\"'%/²³*-]*(?:\^[0-9])?)"
 _WITHIN = rf"[0-9.)] *(?:{'|'.join((*LENGTHS, *ANGLES, *FORCES, 'Nm', *MASSES))})\b"
 _MOST = 80  # characters; a number of them has fewer
-_RATIONAL = r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
+_RATIONAL = r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
 _TAKEN = {
     "degrees": (ANGLES, "deg", "an angle"),
     "mm": (LENGTHS, "mm", "a length"),

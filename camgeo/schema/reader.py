@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from camgeo.schema.errors import RecipeError, nearest_word, quote
 from camgeo.schema.fields import Field, FieldTable, Kind, belongs_to_other_kind, either, place_of_key
@@ -37,6 +37,24 @@ _SI = {  # units of a follower that slides, and of one that turns
 }
 
 
+class Others(NamedTuple):
+    """Words of other recipes, which a recipe of this noun does not take; `instead` is the recipe to give with them.
+
+    `have` says whether a word is one of them.
+    """
+
+    noun: str
+    instead: str
+    have: collections.abc.Callable[[str], bool]
+
+    def refusal(self, word: str) -> tuple[str, None, str]:
+        """Problem, value and remedy of the fault of a word of another recipe."""
+        return f"a {self.noun} takes no {word}", None, f"leave it out, or give {self.instead}"
+
+
+NO_OTHERS = Others("", "", lambda _: False)
+
+
 class Reader:
     """Reads one recipe by its tables and collects its faults.
 
@@ -48,9 +66,10 @@ class Reader:
     kinds    kind of each mapping with kinds, by its key
     angular  kinds of field that hold an angle
     offers   words for what its cam has, such as `roller`, `arm` and `plate`
+    others   words of other recipes, which this one does not take
     """
 
-    def __init__(self, source: Source, readers: Readers, root: FieldTable) -> None:
+    def __init__(self, source: Source, readers: Readers, root: FieldTable, others: Others = NO_OTHERS) -> None:
         self.source = source
         self.readers = readers
         self.root = root
@@ -62,6 +81,7 @@ class Reader:
         self.kinds: dict[str, str] = {}
         self.angular = {Kind.ANGLE}
         self.offers: frozenset[str] = frozenset()
+        self.others = others
 
     # --- faults ------------------------------------------------------------------------------------------------------
 
@@ -161,10 +181,15 @@ class Reader:
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
             elif name.isdecimal() and is_empty(entries(node)[name]):  # {rise: 12,5}
                 self.fault(key.mark, below, "a number cut at its comma", None, "a decimal takes a point, not a comma")
+            elif not path and self.others.have(name):
+                self.fault(key.mark, below, *self.others.refusal(name))
             else:
                 near, remedy = _other_measure(name, entries(node)[name], known_keys)
                 if not near:
-                    near = nearest_word(name, known_keys)
+                    meant = (field.name for field in table.fields if name in field.slips)
+                    near = next(meant, "") or nearest_word(name, known_keys)
+                    if near and path and name in self.root.keys and name not in near:
+                        near = ""  # a word of the top level is spelled as it was meant
                     if name not in near and belongs_to_other_kind(self.root, below):
                         near = ""  # a key of another kind is no slip of the pen, unless it is a part of the near word
                     remedy = f"did you mean {near}?" if near else place_of_key(self.root, name, table)
@@ -190,8 +215,8 @@ class Reader:
             return
         companions = dict(table.alternatives)
         for name in companions[chosen[0]]:
-            if name not in nodes and name not in misspelled:
-                field = table.field(name)
+            field = table.field(name)
+            if name not in nodes and name not in misspelled and not field.default:
                 problem, remedy = f"missing, needed with {chosen_key}", f"{self.wanted(field)}: {field.about}"
                 self.fault(node.mark, join(path, name), problem, None, remedy)
         for name in dict.fromkeys(name for group in companions.values() for name in group):
@@ -217,8 +242,8 @@ class Reader:
             self.fault(node.mark, path, "not a mapping", describe(node), self.wanted(field))
             return None
         about = f"the kind of {field.noun.removeprefix('a ')}"
-        hint = field.form.others if field.form else ""
-        kind = Field("kind", Kind.CHOICE, about, required=True, choices=tuple(tables), others=hint)
+        hint, more = (field.form.others, field.form.elsewhere) if field.form else ("", ())
+        kind = Field("kind", Kind.CHOICE, about, required=True, choices=(*tables, *more), others=hint)
         if chosen := kind_of(node, tables):
             table = tables[chosen]
             return self.table(FieldTable((kind, *table.fields), table.alternatives), node, path)

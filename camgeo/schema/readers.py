@@ -96,13 +96,17 @@ READERS: Readers = {
 
 
 def form_of_kinds(
-    noun: str, tables: collections.abc.Mapping[str, FieldTable], group: str = "", others: str = ""
+    noun: str,
+    tables: collections.abc.Mapping[str, FieldTable],
+    group: str = "",
+    others: str = "",
+    elsewhere: tuple[str, ...] = (),
 ) -> OwnForm[Reader]:
     """Form of a mapping whose `kind` chooses the table of its keys.
 
     `noun`, without an article, names the mapping in messages. `group` stands before the kind where a message names the
     kind that has a key, `cam of kind` for `cam of kind support`; without it no message does. `others` is the remedy for
-    a kind that is none of these.
+    a kind that is none of these, `elsewhere` are kinds of other recipes.
     """
     return OwnForm(
         f"a {noun}",
@@ -112,4 +116,5 @@ def form_of_kinds(
         tables=tables,
         group=group,
         others=others,
+        elsewhere=elsewhere,
     )

@@ -7,12 +7,12 @@ import re
 
 MOST_LAMBDA = 200
 MOST_TEXT = 1000  # characters
-_UNSIGNED = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_UNSIGNED = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER = rf"[+-]?{_UNSIGNED}"
 _FRACTION = r"([+-]?[0-9]{1,9})/([0-9]{1,9})"
 _RATIO = r"([0-9]{1,9})(?:/([0-9]{1,9}))?"
 _ZEROS_BEFORE = r"(?<![0-9.eE])(?<![eE][+-])0+[0-9]"
-_ARITHMETIC = r"[-+*/() ]*[-+*/()][-+*/() ]*"  # arithmetic once its numbers and pi are blanks
+_ARITHMETIC = r" *[-+*/()][-+*/() ]*"  # arithmetic once its numbers and pi are blanks
 _LEADING_ZERO = r"[+-]?0+[0-9]"
 _MOST_DIGITS = 60
 _LEAST = 1e-30  # so that no later square or quotient leaves the range of floats
@@ -22,7 +22,7 @@ _NOT_NUMBERS = (
     (r"(?i:[+-]?\.?(?:inf|infinity|nan))", "it must be finite"),
     (r"[+-]?[0-9]+(?::[0-9.]+)+", "sexagesimal numbers are not read; write it as one decimal number"),
     (r"(?i:[+-]?0[xob][0-9a-f_]+)", "write it in decimal"),
-    (r"[+-]?[0-9][0-9_]*_[0-9_]*(?:\.[0-9_]*)?", "write it without underscores"),
+    (r"[+-]?[0-9]+_[0-9_]*(?:\.[0-9_]*)?", "write it without underscores"),
     (r"[+-]?[0-9]*,[0-9]+", "a decimal takes a point, not a comma"),
     (r"[+-]?[0-9]+ [0-9]+/[0-9]+", "a mixed number takes a plus, such as 1+1/2"),
     (r".*[0-9.)] ?(?:mm|cm|in|inch|deg)\b.+", "a unit stands once, behind the whole number"),
@@ -88,15 +88,15 @@ def within_range(value: float) -> float:
 
 
 def _evaluate(text: str) -> float:
-    """Value of sums, products and quotients of numbers and pi.
+    """Value of sums, products, quotients and powers of numbers and pi.
 
     Raises Complaint for a text that is no such number, divides by zero or is too large.
     """
     from kin.law.formula.formula import FormulaError
     from kin.law.formula.parser import parse
 
-    if "**" in text or "//" in text:
-        raise Complaint("not a number", "numbers are joined by + - * / and parentheses alone")
+    if "//" in text or re.search(r"\*\s+\*|\*{3}", text):
+        raise Complaint("not a number", "numbers are joined by + - * / ** and parentheses alone")
     if re.search(_ZEROS_BEFORE, text):
         raise Complaint("a leading zero, which some read as octal", "leave the zero out")
     try:

@@ -8,6 +8,7 @@ therefore never come about. Size, depth and the expansion of aliases are bounded
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
@@ -19,6 +20,7 @@ from kin.numeric.records import dataclass, field
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from collections.abc import Mapping as AnyMapping
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 50
@@ -29,7 +31,7 @@ MAX_NODES = 10_000  # texts, lists and mappings; those of an alias are counted w
 _FORBIDDEN = "[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]"
 _DISPUTED = r"[\t?]|[|>][0-9+-]*#"  # libyaml takes some that PyYAML's own reader refuses: the latter decides
 _LINE_END = r"\r\n|\r|\n"
-_DIRECTIVE = r"(?:[ \t]*(?:#[^\r\n]*)?(?:\r\n|\r|\n))*%"
+_DIRECTIVE = r"(?:[ \t]*(?:#[^\r\n]*)?[\r\n])*%"
 _BLANK = r"[ ]*(?:#[^\0\r\n\x85\u2028\u2029]*)?"
 _BARE = r"[+-]?(?=\.?[0-9])[0-9.]{1,40}(?:[eE][+-]?[0-9]{1,20})?(?:/[0-9]{1,40})?"
 _PLAIN_KEY = r"[A-Za-z0-9_-]{1,40}"
@@ -55,12 +57,14 @@ class Scalar:
 
 @dataclass(frozen=True)
 class Sequence:
-    """A list; `end` is the place behind its bracket, or behind its last entry where it has none.
+    """A list; `flow` is whether it stands in brackets.
 
-    `tag` is its YAML tag as written, None without one; `size` counts it and the nodes in it, also those of aliases.
+    `end` is the place behind its bracket, or behind its last entry where it has none. `tag` is its YAML tag as written,
+    None without one; `size` counts it and the nodes in it, also those of aliases.
     """
 
     items: tuple[Node, ...]
+    flow: bool
     mark: Mark
     end: Mark
     tag: str | None
@@ -139,7 +143,7 @@ class _Frame:
         size, tag, flow = nodes - self.before, self.event.tag, bool(self.event.flow_style)
         end = end if flow else self.last  # without brackets YAML's own end lies before whatever comes next
         if isinstance(self.event, yaml.SequenceStartEvent):
-            return Sequence(tuple(self.children), self.mark, end, tag, size)
+            return Sequence(tuple(self.children), flow, self.mark, end, tag, size)
         pairs = tuple(zip(self.children[::2], self.children[1::2], strict=True))
         return Mapping(pairs, flow, self.mark, end, tag, size)
 
@@ -191,6 +195,46 @@ def scalars(node: Node, path: str = "") -> Iterator[tuple[str, Scalar]]:
     else:
         for key, value in entries(node).items():
             yield from scalars(value, join(path, key))
+
+
+def nodes(node: Node) -> Iterator[Node]:
+    """Every node of a tree, keys too, from its root; one that aliases share comes once for each place."""
+    yield node
+    if isinstance(node, Sequence):
+        for item in node.items:
+            yield from nodes(item)
+    elif isinstance(node, Mapping):
+        for pair in node.entries:
+            for part in pair:
+                yield from nodes(part)
+
+
+def content(node: Node, lists: AnyMapping[int, tuple[object, ...]] | None = None) -> object:
+    """What a tree holds, without its places, to be compared; `lists` has the contents of lists that differ, by id."""
+    if isinstance(node, Scalar):
+        return node.text, node.plain, node.tag
+    if isinstance(node, Sequence):
+        given = (lists or {}).get(id(node))
+        return "list", node.tag, tuple(content(item, lists) for item in node.items) if given is None else given
+    return "mapping", node.tag, tuple((content(key, lists), content(value, lists)) for key, value in node.entries)
+
+
+def comments(source: Source) -> Iterator[tuple[int, int]]:
+    """Places of the comments in a text, from # to just before the end of the line, as indices in the text.
+
+    What stands behind | or > on the line where a block of text begins counts to that text.
+    """
+    held = sorted(
+        (source.index(node.mark), source.index(node.end)) for node in nodes(source.root) if isinstance(node, Scalar)
+    )
+    firsts = [first for first, _ in held]
+    for start, line in zip(source.starts, source.lines, strict=True):
+        for mark in re.finditer("#", line):
+            place = start + mark.start()
+            before = bisect_right(firsts, place)
+            if not before or place >= held[before - 1][1]:
+                yield place, start + len(line)
+                break
 
 
 def is_empty(node: Node) -> bool:

@@ -11,8 +11,8 @@ import numpy as np
 
 from camgeo.cams.flat_faced import SAME_BREADTH, spread
 from camgeo.checks.declared import DIAMETER, FACE_WIDTH, PRESSURE, TRAVEL, WHEEL
-from kin.judge.check import Check
 from kin.numeric.angles import degrees
+from kin.numeric.check import Check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

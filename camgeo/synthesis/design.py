@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.checks.declared import BENT, CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDERCUT_LOCAL
+from camgeo.checks.extension import CHECKING
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
 from camgeo.part.features import EDGE_KEYS
-from camgeo.registry import registry
-from kin.judge.check import Check, as_drawn
+from kin.numeric.check import Check, as_drawn
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     for a linkage that cannot be made; CurveError where the least radius of the hollows that a grinding wheel has to
     fit cannot be proved.
     """
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     clock = clock or Clock()
     try:
@@ -180,8 +180,8 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         checks = [check for surface in sounded for check in surface.checks]
         contours = [(made.surface, made.contour) for made in sounded if made.contour is not None]
         checks += motion_checks(exact)
-        for capability in registry.in_order(recipe.uses):
-            checks += capability.exact(recipe, exact, contours)
+        for answers in CHECKING.of(recipe.uses):
+            checks += answers.exact(recipe, exact, contours)
         checks += wheel_checks(recipe, exact, contours)
     # the linkage, and the part with its walls
     driven = None
@@ -207,7 +207,7 @@ def sketched(recipe: Recipe) -> Design:
 
     Takes a fraction of the time of `designed`. Raises RecipeErrors where there is no such motion or curve.
     """
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
 
     try:
         exact = recipe.cam.exact(framed=False)

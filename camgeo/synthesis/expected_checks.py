@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.checks.declared import CheckFacts, declarations
+from camgeo.checks.declaration import CheckFacts
+from camgeo.checks.declared import declarations
 
 if TYPE_CHECKING:
     from camgeo.cams.follower import Follower

@@ -7,8 +7,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.linkage import output_slides
+from camgeo.registry.formats import of_formats
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, Disc
     from kin.judge.intent import ClosureIntent, Limits, PartIntent
@@ -91,3 +95,14 @@ def permitted(recipe: Recipe, tolerance: float, gap: float | None = None) -> Lim
     if motion is not None and recipe.cam.arrangement.unit == "deg":
         motion = math.degrees(motion)
     return Limits(tolerance, motion, output=output, gap=gap)
+
+
+@dataclass(frozen=True)
+class FileIntent:
+    """Intent by which kin judges files of a format: (recipe, design of one disc)."""
+
+    of: Callable[[Recipe, Design], PartIntent] = intended
+
+
+INTENTS = of_formats("INTENT", FileIntent())
+"""`INTENT` of each format by its word."""

@@ -14,8 +14,8 @@ import numpy as np
 from camgeo.checks.declared import DWELL, MOBILITY, REVERSAL
 from camgeo.common.rounding import upward
 from camgeo.recipe.linkage import with_other_lengths
-from kin.judge.check import Check, failed
 from kin.numeric.angles import TURN, degrees
+from kin.numeric.check import Check, failed
 from kin.numeric.errors import CamgeoError
 from kin.numeric.monotone import RoughError
 from kin.numeric.records import dataclass
@@ -45,7 +45,7 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
     Raises RecipeErrors where the shaft does not lie within the cam, or a dyad's output would not swing, ValueError for
     a recipe without a linkage, RoughError for a motion that changes too abruptly.
     """
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
     from kin.linkage.mechanism import Mechanism, OutsideError
 
     linkage = recipe.linkage

@@ -8,6 +8,7 @@ import numpy as np
 
 from kin.contour.arcs import cross, dot, radial
 from kin.contour.nearest import nearest
+from kin.contour.pieces import LINE
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 ROUND = 1e-4  # of the radius: greatest difference of the corners' distances from the centre
 # Of the radius: the middles of a polygon's edges lie inside the circle by less, that of a D-shaped bore's flat by more.
 FLAT = 0.01
+LEVEL = 1e-9  # slope that is still rounding
 
 
 def goes_round(contour: Contour) -> bool:
@@ -44,8 +46,15 @@ def circle_about(contour: Contour, x: float = 0.0, y: float = 0.0) -> float | No
 def tracks(contours: Sequence[Contour]) -> list[Contour]:
     """Contours round the shaft on which a follower can run, in the order of falling area; empty where none goes round.
 
-    Circles about the shaft are the outline of a ring or of a groove's blank, or the bore: they are left out unless
-    all contours round the shaft are circles.
+    Circles about the shaft are the outline of a ring or of a groove's blank, or the bore, and a frame is that of the
+    sheet: they are left out where there is another contour round the shaft.
     """
     around = sorted(filter(goes_round, contours), key=lambda contour: -abs(contour.area))
-    return [contour for contour in around if circle_about(contour) is None] or around
+    framed = [contour for contour in around if not is_frame(contour)]
+    return [contour for contour in framed if circle_about(contour) is None] or framed or around
+
+
+def is_frame(contour: Contour) -> bool:
+    """Whether a contour is made of lines along x and y alone, as the frame of a sheet is and no cam."""
+    along = np.abs(contour.end - contour.start)
+    return bool((contour.kind == LINE).all() and (along.min(axis=1) <= LEVEL * along.max(axis=1)).all())

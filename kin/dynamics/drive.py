@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.chebyshev import AT_START, DEGREE, NODES, fitted, split
+from kin.numeric.chebyshev import AT_START, DEGREE, NODES, evaluated, fitted, split
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import CamgeoError
+from kin.numeric.monotone import cells, extremes
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from kin.follower.drive import Excitation
     from kin.numeric.arrays import Array, Indices
@@ -152,6 +153,28 @@ def drives(
     values = [np.concatenate([part[1][i] for part in done], axis=1)[:, order] for i in range(len(motions))]
     pairs = zip(motions, values, strict=True)
     return [Drive(knots, s, ds, dds, _jumps(knots, ds, motion)) for motion, (s, ds, dds) in pairs]
+
+
+def lowest(knots: Array, rows: Sequence[Array], figure: Callable[[Array], Array]) -> tuple[float, float]:
+    """Least value over a turn of a figure of r series, to rounding, and its shaft angle, rad.
+
+    `rows` are series (m, DEGREE + 1) on the stretches between `knots` (m + 1,); `figure` takes their values (r, n) to
+    its own (n,), smooth on each stretch. At a knot the lower of both limits counts. Raises RoughError for a figure that
+    no polynomials follow.
+    """
+
+    def at(stretch: Indices, phi: Array) -> Array:
+        x = 2.0 * (phi - knots[stretch]) / (knots[stretch + 1] - knots[stretch]) - 1.0
+        return figure(np.stack([evaluated(row, stretch, x) for row in rows]))
+
+    def between(phi: Array) -> Array:
+        return at(np.clip(np.searchsorted(knots, phi, side="right") - 1, 0, len(knots) - 2), phi)[None]
+
+    (_, place), _ = extremes(cells(between, knots))
+    # the series are nearer to the figure than the polynomials that show the place
+    sides = [np.searchsorted(knots, place, side=side) - 1 for side in ("left", "right")]
+    values = at(np.clip(sides, 0, len(knots) - 2), np.full(2, place))
+    return float(values.min()), place
 
 
 def _jumps(knots: Array, velocity: Array, motion: Excitation) -> Array:

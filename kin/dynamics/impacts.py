@@ -19,13 +19,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.dynamics.cycle import ContactSamples, Log, Turn
+from kin.dynamics.drive import lowest
 from kin.dynamics.events import FREE, LOWER, UPPER, Driven, Pressed, SpentError, Work, dips, first, windows
 from kin.dynamics.flight import Flight, Path
 from kin.dynamics.peaks import ResponseFigure
 from kin.dynamics.response import Response, ResponsePlaces, response
 from kin.dynamics.train import DynamicsError, Running, Train
 from kin.numeric.arrays import Array
-from kin.numeric.chebyshev import AT_START, DERIVATIVE, evaluated, together
+from kin.numeric.chebyshev import AT_START, DERIVATIVE, evaluated
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -93,11 +94,8 @@ def course(
 
 
 def least_gap(lower: Drive, upper: Drive) -> tuple[float, float]:
-    """Least distance, m or rad, from lower to upper face among nine angles a stretch, and its shaft angle, rad."""
-    x = np.linspace(-1.0, 1.0, 9)
-    gap = together(upper.position - lower.position, x)
-    stretch, place = np.unravel_index(np.argmin(gap), gap.shape)
-    return float(gap[stretch, place]), float(lower.knots[stretch] + (1.0 + x[place]) * lower.half[stretch])
+    """Least distance, m or rad, from lower to upper face over the turn, to rounding, and its shaft angle, rad."""
+    return lowest(lower.knots, [upper.position - lower.position], lambda row: row[0])
 
 
 class _Course:

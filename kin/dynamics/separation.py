@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.dynamics.drive import lowest
 from kin.dynamics.events import SpentError, Work, crossing
 from kin.dynamics.separation_bounds import Look, Range
 from kin.dynamics.train import DynamicsError, Train, steady
 from kin.numeric.angles import TURN
-from kin.numeric.chebyshev import together
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -71,8 +71,8 @@ def float_speed(train: Train, drive: Drive, *, most: int = MOST_WORK) -> FloatSp
         raise DynamicsError("without preload contact is lost at any speed")
     if train.damping <= 0.0:
         raise DynamicsError("without damping contact is lost wherever a harmonic resonates, at however low a speed")
-    rigid = _rigid_float_rpm(train, drive)
     search = _Search(train, drive, Work(most))
+    rigid = _rigid_float_rpm(train, drive)
     try:
         begins = search.run()
     except SpentError:
@@ -95,12 +95,13 @@ class _Search:
 
     def run(self) -> float | None:
         """Least speed, rpm, at which contact is lost; None where it holds at all speeds looked at."""
-        last = _last(self.train)
-        low = self._look(self.holds)
+        last, low = _last(self.train), self._look(self.holds)
+        ladder = _SURE_LADDER if low.surely > 0.0 else _LADDER
         while low.rpm < last:
-            high = self._look(min(low.rpm * (_SURE_LADDER if low.surely > 0.0 else _LADDER), last))
-            if low.surely > 0.0 and not high.surely > 0.0:
-                high = self._look(min(low.rpm * _LADDER, last))
+            high = self._look(min(low.rpm * ladder, last))
+            if ladder > _LADDER and not high.surely > 0.0:  # nor will twice a higher speed be sure
+                ladder = _LADDER
+                high = self._look(min(low.rpm * ladder, last))
             begins = self._first(Range(low, high))
             if begins is not None:
                 return begins
@@ -202,15 +203,15 @@ def _resonances(train: Train, rpm: float) -> list[float]:
 
 
 def _rigid_float_rpm(train: Train, drive: Drive) -> float | None:
-    """Speed, rpm, at which F + k_p s + m W^2 s'' first falls to 0, by 33 points a stretch; None with corners."""
+    """Speed, rpm, at which F + k_p s + m W^2 s'' first falls to 0, to rounding; None with corners, or without one.
+
+    The spring's force F + k_p s is above 0 all round.
+    """
     if (np.abs(drive.jumps) > _CORNER * float(np.abs(drive.velocity).sum(axis=1).max())).any():
         return None
-    position, bend = together(np.stack([drive.position, drive.acceleration]), np.linspace(-1.0, 1.0, 33))
-    falling = bend < 0.0
-    if not falling.any():
-        return None
-    spring = np.maximum(train.preload + train.rate * position[falling], 0.0)
-    return float(np.sqrt((spring / (-train.mass * bend[falling])).min())) * 60.0 / TURN
+    rows = drive.position, drive.acceleration
+    share, _ = lowest(drive.knots, rows, lambda row: train.mass * row[1] / (train.preload + train.rate * row[0]))
+    return 60.0 / (TURN * math.sqrt(-share)) if share < 0.0 else None
 
 
 def _last(train: Train) -> float:
@@ -226,7 +227,9 @@ def _safe(train: Train, drive: Drive) -> float:
     zeta = train.damping_ratio
     bend = float(np.abs(drive.acceleration).sum(axis=1).max())
     kicks = float(np.abs(drive.jumps).sum())
-    spring = train.preload + train.rate * min(0.0, float(drive.position.sum(axis=1).min()))
+    spring = train.preload
+    if train.rate:
+        spring += train.rate * min(0.0, lowest(drive.knots, [drive.position], lambda row: row[0])[0])
     if spring <= 0.0:
         raise DynamicsError("the preload spring is slack over a part of the turn")
 

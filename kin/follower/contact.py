@@ -18,45 +18,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.contour.arcs import Arcs, circle, cross, dot, left, right
+from kin.contour.arcs import cross, dot, left
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from kin.contour.arcs import Arcs
     from kin.follower.guide import Guide
     from kin.numeric.arrays import Array, Indices
 
-STRAIGHT_ON = 1e-12  # corners that turn less, in radians, get no arc of their own
 MOST_TURN = np.pi / 8.0  # pieces are cut until each turns less
 WIDER = 1e3  # times the slack, for a second search where the first meets nothing
 PAIRS_AT_ONCE = 1_000_000  # of piece and angle: bounds the memory that a hostile contour takes
-
-
-def dilated(chain: Arcs, radius: float) -> Arcs:
-    """Pieces, in no order, among them the whole boundary of the region that a disc's centre cannot enter.
-
-    The metal lies left of the closed chain; `radius` is the disc's, mm. Of radius 0, the point of a knife edge, the
-    boundary is the chain itself.
-    """
-    if radius == 0.0:
-        return chain
-    # moved outward by r, a piece of curvature k and length L has k/(1 + k r) and L (1 + k r)
-    growth = 1.0 + chain.curvature * radius
-    fits = growth > 0.0
-    moved = chain.start + radius * right(chain.tangent)
-    pieces = Arcs(moved, chain.tangent, chain.curvature / np.where(fits, growth, 1.0), chain.length * growth).take(fits)
-    # about convex corners arcs of the disc's radius
-    turns = chain.turns()
-    corner = turns > STRAIGHT_ON
-    before = np.roll(chain.end_tangents, 1, axis=0)[corner]
-    vertices = chain.start[corner]
-    bend = np.full(len(vertices), 1.0 / radius)
-    pieces = pieces.joined(Arcs(vertices + radius * right(before), before, bend, radius * turns[corner]))
-    if not fits.all():  # hollows too tight for the disc: it rests on their edges
-        edges = np.concatenate([chain.start[~fits], chain.ends[~fits]])
-        pieces = pieces.joined(circle(edges, np.full(len(edges), radius)))
-    return pieces
 
 
 def shortened(obstacle: Arcs, guide: Guide) -> tuple[Arcs, Indices]:

@@ -1,7 +1,8 @@
 """The motion that a contour gives a follower by contact, where none is intended.
 
 Nothing is fitted: at each shaft angle the touch rests on the lines, arcs and splines of the contour, and the
-derivatives are those of the piece on which it rests. A polygon gives a velocity that steps from edge to edge.
+derivatives are those of the piece on which it rests. A polygon gives a velocity that steps from edge to edge. Kinks of
+rounded numbers, which the shaft passes in less than a thousandth of a degree, are no corners.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ LEAST_DWELL = math.radians(10.0)  # a shorter stretch may be the top of a nose
 DEEPER = 4.0  # times the depth, at which a nose is twice as wide, and a dwell hardly wider
 WIDENS = 1.5  # times as wide at that depth: more is a nose
 CLOSER, ROUNDS = 16, 5  # angles on either side of an extreme, and how often they are drawn closer about it
+PASSED = 1e-5  # rad of the shaft: a corner that is passed sooner is a kink of a drawing's digits
 LEAP = 1e-9  # rad, on either side of an angle at which the contact may leap
 
 
@@ -135,6 +137,14 @@ def measured(
     phi = TURN * np.arange(steps) / steps
     rows = first.rows(phi) / follower.si
     pressure, radius = follower.pressed(contour, phi)
+    kinks = np.flatnonzero(radius == 0.0)
+    if kinks.size:  # the piece beyond bears there
+        beyond = phi[kinks] + PASSED
+        further, curved = follower.pressed(contour, beyond)
+        passed = curved != 0.0
+        kinks, beyond = kinks[passed], beyond[passed]
+        rows[1:, kinks] = first.rows(beyond)[1:] / follower.si
+        pressure[kinks], radius[kinks] = further[passed], curved[passed]
     # extremes are also looked for beside each angle at which the contact may leap
     leaps = np.concatenate([drive.breaks for drive in (first, *others)])
     finer = np.concatenate([phi, leaps - LEAP, leaps + LEAP])

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from kin.law.contacts import Contact
     from kin.numeric.arrays import Array, Indices
 
+# Of a radian, or of the contour's extent: positions by closed forms of a piece are good to a tenth of it.
+ROUNDING = 1e-13
 CELLS = 16  # of a piece, in the table of shaft angles
 PARTS = 2  # of a piece, with which the search for its bounds begins
 MOST_CUTS = 8  # in quarters, until the shaft angle is seen to rise
@@ -75,7 +77,7 @@ class SplinePath:
 
         For a translating roller it is a share of the contour's extent, for an arm a constant.
         """
-        return RESOLUTION * (float(np.abs(self.beziers.control).max()) if self.guide.unit == "mm" else 1.0)
+        return ROUNDING * (float(np.abs(self.beziers.control).max()) if self.guide.unit == "mm" else 1.0)
 
     def at(self, row: Indices, t: Array) -> tuple[CentreState, Array]:
         """State of the centre on pieces `row` (n,) at t (n,), and the derivative of its path's length by t (n,), mm."""

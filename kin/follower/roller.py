@@ -19,9 +19,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from kin.contour.arcs import cross, dot, left, right
+from kin.contour.dilated import dilated
 from kin.contour.nearest import signed_distance
 from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
-from kin.follower.contact import Search, dilated, shortened
+from kin.follower.contact import Search, shortened
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.guide import led
 from kin.follower.laws import GuidedPitch, leeway

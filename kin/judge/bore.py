@@ -8,7 +8,7 @@ import numpy as np
 
 from kin.contour.about import goes_round
 from kin.contour.arcs import dot, left
-from kin.judge.check import ROUNDING, Check, at_most, failed
+from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.extrema import extremes, resolution
 from kin.numeric.lengths import UNIT, length_words, place_words
 

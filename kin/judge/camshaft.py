@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.judge.bore import bore_check, round_check
-from kin.judge.check import ROUNDING, Check, about, as_drawn, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
-from kin.judge.layers import SAME, between_sections, settled
-from kin.judge.limits import limit_of
 from kin.judge.verdict import SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
+from kin.numeric.check import ROUNDING, Check, about, as_drawn, at_most, failed, less_sure
 from kin.numeric.lengths import UNIT, length_words, span_words
+from kin.numeric.limits import limit_of
 from kin.numeric.records import dataclass
 from kin.read.errors import NOT_READ, ReadError
 from kin.read.files import kind_of, read_solid
+from kin.read.layers import SAME, between_sections, settled
 from kin.read.nesting import scaled
 
 if TYPE_CHECKING:

@@ -14,10 +14,10 @@ import numpy as np
 from kin.follower.base import Closure
 from kin.follower.drive import extremes_between
 from kin.follower.motion_error import ContactError, Play
-from kin.judge.check import Check, failed
 from kin.judge.contour_checks import beside_interference, fine, play_checks
 from kin.judge.verdict import ClosureVerdict
 from kin.numeric.angles import degrees
+from kin.numeric.check import Check, failed
 from kin.numeric.errors import UnsettledError
 
 if TYPE_CHECKING:

@@ -11,12 +11,13 @@ import numpy as np
 from kin.contour.contour import ARC_SHARE
 from kin.follower.deviation import Deviation, convex_deviation, deviation
 from kin.follower.motion_error import ALLOWANCE, ContactError, Judged, MotionError, Play
-from kin.judge.check import ROUNDING, Check, at_most, failed
-from kin.judge.limits import SPLINE_ERROR, SPLINE_SHARE, direct_play, is_loose, limit_of, stroke_of, unlimited
+from kin.judge.limits import direct_play, stroke_of
 from kin.judge.verdict import SurfaceVerdict
 from kin.numeric.angles import TURN
+from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, amount_words, length_words, marked
+from kin.numeric.limits import SPLINE_ERROR, SPLINE_SHARE, is_loose, limit_of, unlimited
 
 if TYPE_CHECKING:
     from kin.contour.contour import Contour

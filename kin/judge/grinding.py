@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.contour.offset import TightError, chain_of, parallel
-from kin.judge.check import Check, at_most
+from kin.numeric.check import Check, at_most
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError
 from kin.read.formats import contents
@@ -168,13 +168,15 @@ def _read(path: Path, grinding: Grinding) -> _Table:
     if len(kinds) > 1 or len(set(names)) < len(names) or not COLUMNS.issuperset(names):
         wanted = f"c_deg, {kinds[0]} and normal_deg are read, each once"
         raise ReadError("unsupported", f"columns {', '.join(names)[:SHOWN]}: of a table of a grinder {wanted}", path)
+    if len(lines) > MOST_ROWS + 1:
+        raise ReadError("range", f"the table has {len(lines) - 1} rows; {LEAST_ROWS} to {MOST_ROWS} are read", path)
     try:
         rows = [line.split(",") for line in lines[1:]]
         values = np.array([[float(cell) for cell in row] for row in rows], dtype=np.float64)
         values = values.reshape(len(rows), len(names))
     except ValueError as error:
         raise ReadError("syntax", f"a row is no row of {len(names)} numbers", path) from error
-    if not LEAST_ROWS < len(values) <= MOST_ROWS:
+    if len(values) <= LEAST_ROWS:
         raise ReadError("range", f"the table has {len(values)} rows; {LEAST_ROWS} to {MOST_ROWS} are read", path)
     degrees, distance = values[:, names.index("c_deg")], UNITS[unit] * values[:, names.index(kinds[0])]
     distance = distance + (0.0 if word == "x" else grinding.zero)

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Literal
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from kin.contour.holes import Hole
     from kin.follower.base import Follower
     from kin.judge.grinding import Grinding
-    from kin.judge.holes import Hole
-    from kin.judge.layers import CrossHole, Layer
     from kin.law.contacts import Side
     from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
+    from kin.read.layers import CrossHole, Layer
 
 
 @dataclass(frozen=True)

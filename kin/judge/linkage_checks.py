@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.follower.frame import FrameError, implied_limit, judge_frame
-from kin.judge.check import Check, at_most, failed
 from kin.linkage.loop import BindingError
+from kin.numeric.check import Check, at_most, failed
 from kin.numeric.lengths import amount_words, span_words
 
 if TYPE_CHECKING:

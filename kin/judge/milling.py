@@ -14,8 +14,8 @@ import numpy as np
 from kin.contour.arcs import cross, dot, left
 from kin.contour.least_distance import least_distance
 from kin.contour.nearest import nearest, signed_distance
-from kin.judge.check import Check, at_most, failed
 from kin.judge.cuts import across, at_the_floor, cuts_of, features_of, rounds, trace
+from kin.numeric.check import Check, at_most, failed
 from kin.numeric.lengths import UNIT, file_place_words, length_words
 from kin.numeric.records import dataclass
 from kin.read.errors import ReadError

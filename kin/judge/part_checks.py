@@ -4,24 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from kin.contour.holes import FINE, Tallies, Tally, apart, tally
 from kin.follower.deviation import deviation
-from kin.judge.check import Check, less_sure
-from kin.judge.holes import FINE, Tallies, Tally, apart, tally
-from kin.judge.layers import SAME, between_sections, faces, heights, leans, slotted
+from kin.numeric.check import Check, less_sure
 from kin.numeric.lengths import UNIT, length_words
+from kin.read.layers import between_sections, faces, heights, leans, slotted, tally_faces, told
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.contour.contour import Contour
     from kin.judge.intent import PartIntent
-    from kin.judge.layers import Layer
     from kin.judge.surfaces import SortedChains
     from kin.read.formats import AnySolid
-
-ORDER = ("bore", "holes", "mark", "thickness", "hub", "chamfer", "set-screw")
+    from kin.read.layers import Layer
 
 
 def drawn_checks(
@@ -34,7 +30,7 @@ def drawn_checks(
     shallow = [hole for hole in part.holes if hole.depth is not None]
     if shallow:
         tally(tallies, engraved, shallow, tolerance, where=", engraved", settled=part.holes, closed=part.closed)
-    return _told(tallies, tolerance)
+    return told(tallies, tolerance)
 
 
 def levels_of(part: PartIntent) -> list[float]:
@@ -53,42 +49,13 @@ def solid_checks(solid: AnySolid, sections: Sequence[SortedChains], part: PartIn
     kinds = ["thickness", *(layer.outline.kind for layer in layers if layer.outline is not None)]
     kinds += ["chamfer" for layer in layers if layer.inset != (0.0, 0.0)] + ["set-screw" for _ in cross_holes]
     tallies: Tallies = {kind: Tally() for kind in kinds}
-    _faces(tallies, solid, layers, tolerance)
+    tally_faces(tallies, solid, layers, tolerance)
     levels = [z for _, z in faces(layers)]
     for kind, fault in between_sections(solid, levels, leans(layers, cross_holes), tolerance):
         tallies[kind].faults.append(fault)
     for (z, layer), section in zip(heights(layers, cross_holes), sections, strict=True):
         _section(tallies, (z, layer), section, part, tolerance)
-    return [less_sure(check, solid.uneven) for check in _told(tallies, tolerance)]
-
-
-def _told(tallies: Tallies, tolerance: float) -> list[Check]:
-    names = [*(name for name in ORDER if name in tallies), *(name for name in tallies if name not in ORDER)]
-    return [tallies[name].check(name, tolerance) for name in names]
-
-
-def _faces(tallies: Tallies, solid: AnySolid, layers: Sequence[Layer], tolerance: float) -> None:
-    """Compare the horizontal faces with the intended ones."""
-    expected = faces(layers)
-    levels = np.array(solid.faces)
-    for kind, z in expected:
-        tally = tallies.setdefault(kind, Tally())
-        if not levels.size:
-            tally.faults.append(f"no horizontal face at z = {length_words(z, '.9g')} {UNIT}")
-            continue
-        nearest = float(levels[np.abs(levels - z).argmin()])
-        tally.measured(
-            abs(nearest - z),
-            f"a face at z = {length_words(nearest, '.9g')} {UNIT}, where {length_words(z, '.9g')} {UNIT} is expected",
-        )
-    places = np.array([z for _, z in expected])
-    for z in solid.faces:
-        k = int(np.abs(places - z).argmin())
-        if abs(float(places[k]) - z) > tolerance + SAME:
-            kind = expected[k][0]
-            tallies[kind].faults.append(
-                f"a horizontal face at z = {length_words(z, '.9g')} {UNIT}, where none is expected"
-            )
+    return [less_sure(check, solid.uneven) for check in told(tallies, tolerance)]
 
 
 def _section(

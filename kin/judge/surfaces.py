@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kin.contour.contour import Contour
-    from kin.judge.check import Check
     from kin.judge.intent import PartIntent, SurfaceIntent
+    from kin.numeric.check import Check
     from kin.read.nesting import ClosedContour
 
 SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's size is taken

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from kin.judge.check import about
 from kin.judge.closure import judge_closures
 from kin.judge.verify import verify, verify_together
+from kin.numeric.check import about
 from kin.numeric.lengths import marked
 from kin.numeric.records import replace
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.judge.check import Check
     from kin.judge.intent import Limits, ShaftIntent
     from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
+    from kin.numeric.check import Check
 
 
 class DiscFile(NamedTuple):

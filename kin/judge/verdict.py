@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError, Play
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 
 @dataclass(frozen=True)
@@ -121,6 +121,7 @@ class Verdict(OfSurfaces):
               surface, outermost first
     uneven    bound of the contours' own error, mm: a solid's other sections that differ by rounding, a drawing's gaps
               that were joined, the arcs for a grinder's table
+    passed    what was left out of a drawing as no part of the cam, in words
     """
 
     kind: str
@@ -130,6 +131,7 @@ class Verdict(OfSurfaces):
     units: float | None = None
     bodies: tuple[tuple[Contour, ...], ...] = ()
     uneven: float = 0.0
+    passed: tuple[str, ...] = ()
 
     @property
     def ok(self) -> bool:

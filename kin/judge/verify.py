@@ -7,23 +7,33 @@ intended motion alone (`kin.follower.envelope`), the motion from contact with th
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.contour.intersections import crossings
 from kin.contour.nearest import signed_distance
 from kin.judge.bore import bore_check
-from kin.judge.check import ROUNDING, Check, about, as_drawn, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
 from kin.judge.surfaces import SIZED, SortedChains, deepest, sort_chains
 from kin.judge.verdict import ClosureVerdict, SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
-from kin.numeric.errors import CamgeoError
-from kin.numeric.lengths import UNIT, file_place_words, length_words, marked, place_words, shown, span_words
+from kin.numeric.check import Check, about, as_drawn, less_sure
+from kin.numeric.lengths import UNIT, length_words, marked, shown
 from kin.read.bodies import Sought
-from kin.read.errors import NOT_READ, ReadError
+from kin.read.checks import (
+    NOT_CLOSED,
+    closed_check,
+    count_check,
+    crossing_places,
+    demand_same,
+    thickness_check,
+    units_check,
+    unread_check,
+)
+from kin.read.errors import ReadError
 from kin.read.files import read_bodies, read_drawing, read_solid
 from kin.read.formats import FORMATS, format_of
 from kin.read.nesting import ClosedContour, scaled
@@ -35,26 +45,10 @@ if TYPE_CHECKING:
 
     from kin.contour.contour import Contour
     from kin.judge.intent import Limits, PartIntent, ShaftIntent
-    from kin.read.drawing.drawing import Drawing, Fault
+    from kin.read.drawing.drawing import Drawing
     from kin.read.formats import AnySolid, Contents, Format
 
-UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
-SIZE_SHARE = (
-    0.05  # a drawing that comes out by another unit's factor too large or small, within this, misstates its own
-)
-NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
-MOST_NAMED = 5  # faults named in a message
-WIDE = 1.5  # of a gap within which ends are joined, which is measured along x and along y: how long a line may be
-OTHERS = (
-    ("inches", 25.4, "inch"),
-    ("centimetres", 10.0, "cm"),
-    ("metres", 1000.0, "m"),
-    ("mm", 1.0, "mm"),
-)  # what a file that states no unit may be drawn in, in mm, and what says so
-
-
-class UnitsError(CamgeoError, ValueError):
-    """A unit was given for a file that states another one itself."""
+SHAFT = (0.0, 0.0)
 
 
 def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: float | None = None) -> Verdict:
@@ -66,10 +60,11 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
     """
     kind = format_of(path)
     if kind.contents == "table":
-        from kin.judge.drive import drive_checks, is_drive  # which has no contour
+        from kin.judge.drive import follower_checks  # which has no contour
+        from kin.read.drive_tables import is_drive
 
         if is_drive(path):
-            checks = drive_checks(path, part.surfaces[0].gauge, limits, 1.0 if units is None else units)
+            checks = follower_checks(path, part.surfaces[0].gauge, limits, 1.0 if units is None else units)
             return Verdict(kind.name, tuple(about(check, path.name) for check in checks))
         if is_point_list(path):
             return verify_points(path, part, angles, limits, 1.0 if units is None else units)
@@ -123,11 +118,7 @@ def _verdict(
     try:
         files = read()
     except ReadError as error:
-        if kind.contents == "solid":
-            unread = "readable" if error.reason in NOT_READ else "watertight"
-        else:
-            unread = "closed" if error.reason in NOT_CLOSED else "readable"
-        return Verdict(kind.name, (about(failed(unread, error.message), path.name),))
+        return Verdict(kind.name, (about(unread_check(kind.contents, error), path.name),))
     checks, surfaces, closures = list[Check](), list[SurfaceVerdict](), list[ClosureVerdict]()
     for part, file in files:
         part_checks = list(file.checks)
@@ -155,7 +146,8 @@ def _verdict(
     named = tuple(about(check, path.name) for check in checks)
     bodies = tuple(tuple(chain.contour for chain in file.chains) for _, file in files)
     units, uneven = files[0][1].units, max(file.uneven for _, file in files)
-    return Verdict(kind.name, named, tuple(surfaces), tuple(closures), units, bodies, uneven)
+    passed = tuple(words for _, file in files for words in file.passed)
+    return Verdict(kind.name, named, tuple(surfaces), tuple(closures), units, bodies, uneven, passed)
 
 
 class _Read(NamedTuple):
@@ -164,6 +156,7 @@ class _Read(NamedTuple):
     `uneven`: difference of a solid's other sections from these, mm, by rounding alone; of a drawing the widest gap that
     was joined, of a table the error of its arcs.
     `stated_error`: greatest distance from the exact contour, mm, as the file itself states it.
+    `passed`: what was left out of a drawing as no part of the cam, in words.
     """
 
     checks: list[Check]
@@ -172,32 +165,47 @@ class _Read(NamedTuple):
     units: float
     uneven: float = 0.0
     stated_error: float | None = None
-
-
-def _demand_same(stated: float | None, units: float | None, path: Path) -> None:
-    """Refuse a unit that is given beside another one that the file states."""
-    if stated is not None and units is not None and not abs(stated / units - 1.0) <= UNITS_SHARE:
-        message = f"{path}: the file states its unit, {stated:.9g} mm; {units:.9g} mm is given for it"
-        raise UnitsError(f"{message}, which is for files that state none")
+    passed: tuple[str, ...] = ()
 
 
 def _of_drawing(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
     """Read a DXF or SVG: the checks on what is drawn, and its surfaces."""
     engraved = any(hole.depth is not None for hole in part.holes)
     unstated, within = part.mm if units is None else units, limits.tolerance
-    drawing = read_drawing(
-        path, limits.gap, engraved=engraved, deepest=deepest(part), bridged=within, unstated=unstated
+    read = partial(
+        read_drawing, path, limits.gap, engraved=engraved, deepest=deepest(part), bridged=within, unstated=unstated
     )
-    _demand_same(drawing.units_mm, units, path)
+    try:
+        drawing = read(shaft=None if part.closed else SHAFT)
+    except ReadError as error:
+        if part.closed and error.reason in NOT_CLOSED and error.closing is None and _is_read(read):
+            error.message += "; verify: {openings: ignore} passes over what is no part of the cam"
+        raise
+    demand_same(drawing.units_mm, units, path)
     scale = unstated if drawing.units_mm is None else 1.0
     chains = scaled(drawing.chains, scale, mirrored=part.mirrored)
     parts = sort_chains(chains[0], chains[1:], part, limits.tolerance, path)
-    joined = max(chain.gap for chain in parts.surfaces) if drawing.openings else 0.0
+    joined = max(chain.gap for chain in parts.surfaces)
     uneven = joined if limits.gap is None else max(joined, limits.gap)
-    checks = [_units_check(drawing.units_mm, units, part, parts), _closed_check(drawing, scale, parts, limits, uneven)]
+    unit = units_check(drawing.units_mm, units, part.mm, partial(_size, part, parts))
+    checks = [unit, closed_check(drawing, scale, _contours(parts), limits.gap, uneven)]
     marks = scaled([ClosedContour(contour) for contour in drawing.engraved], scale, mirrored=part.mirrored)
     checks += [*parts.checks, *_opening_checks(parts.holes, [mark.contour for mark in marks], part, limits)]
-    return _Read(checks, parts.surfaces, chains, scale if drawing.units_mm is None else drawing.units_mm, uneven)
+    return _Read(
+        checks,
+        parts.surfaces,
+        chains,
+        scale if drawing.units_mm is None else drawing.units_mm,
+        uneven,
+        passed=drawing.passed,
+    )
+
+
+def _is_read(read: Callable[..., Drawing]) -> bool:
+    """Whether a drawing gives a cam without what is no part of it."""
+    with suppress(ReadError):
+        return bool(read(shaft=SHAFT).passed)
+    return False
 
 
 def _of_program(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
@@ -208,12 +216,13 @@ def _of_program(path: Path, part: PartIntent, limits: Limits, units: float | Non
     if part.milling is None:
         raise ReadError("unsupported", "how the part is milled is not given", path)
     program = read_gcode(path)
-    _demand_same(program.units_mm, units, path)
+    demand_same(program.units_mm, units, path)
     done = milled(program, part.milling, limits.tolerance)
     chains = scaled(done.chains, 1.0, mirrored=part.mirrored)
     outline, others = (chains[0], chains[1:]) if part.milling.outline else (None, chains)
     parts = sort_chains(outline, others, part, limits.tolerance, path)
-    checks = [_units_check(program.units_mm, units, part, parts), _count_check("closed", _crossing_places(parts))]
+    unit = units_check(program.units_mm, units, part.mm, partial(_size, part, parts))
+    checks = [unit, count_check("closed", crossing_places(_contours(parts)))]
     checks += [*done.checks, *_opening_checks(parts.holes, [], part, limits)]
     return _Read(checks, parts.surfaces, chains, program.units_mm)
 
@@ -225,9 +234,9 @@ def _of_table(path: Path, part: PartIntent, limits: Limits, units: float | None)
     if part.grinding is None or len(part.surfaces) > 1:
         raise ReadError("unsupported", "of a CSV the table that grinds a cam of one surface is judged", path)
     table = ground(path, part.grinding, limits.tolerance)
-    _demand_same(table.units, units, path)
+    demand_same(table.units, units, path)
     chains = scaled((table.chain,), 1.0, mirrored=part.mirrored)
-    checks = [_count_check("head", list(table.faults))]
+    checks = [count_check("head", list(table.faults))]
     normals = normals_check(table, part.surfaces[0].gauge.envelope, limits.tolerance, mirrored=part.mirrored)
     checks += [] if normals is None else [normals]
     return _Read(checks, tuple(chains), chains, table.units, table.off, table.error)
@@ -245,85 +254,21 @@ def _opening_checks(
     return [bore] if bore else []
 
 
-def _units_check(stated: float | None, units: float | None, part: PartIntent, parts: SortedChains) -> Check:
-    """Check the unit of a drawing or a program: the stated unit counts, unless the size shows that it is wrong."""
-    unit = part.mm
-    if stated is None and units is None:
-        why = f"the drawing states no unit and is judged in that of the recipe, {unit:.9g} mm"
-        large = _size(part, parts)
-        by_size = (other for other in OTHERS if abs(large * other[1] / unit - 1.0) <= SIZE_SHARE)
-        name, mm, word = next(by_size, ("", unit, "mm"))
-        why += f"; by its size it is drawn in {name}" if mm != unit else ""
-        return failed("units", f"{why}; give it by --units, such as --units {word}", limit=UNITS_SHARE)
-    if stated is None:
-        return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"the file states no unit; {units:.9g} mm is given")
-    off = abs(stated / unit - 1.0)
-    detail = f"a drawing unit is {stated:.9g} mm, {unit:.9g} mm is expected"
-    if off > UNITS_SHARE:
-        large = _size(part, parts)
-        if abs(large * unit / stated - 1.0) > SIZE_SHARE or abs(large - 1.0) <= SIZE_SHARE:
-            return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"a drawing unit is {stated:.9g} mm, as stated")
-    return Check("units", off <= UNITS_SHARE, off, UNITS_SHARE, "", detail=detail)
-
-
 def _size(part: PartIntent, parts: SortedChains) -> float:
     """Size of the first surface over that of the exact one."""
     exact = part.surfaces[0].gauge.envelope.points(SIZED)
     return float(np.abs(parts.surfaces[0].contour.vertices).max() / np.abs(exact).max())
 
 
-def _closed_check(drawing: Drawing, scale: float, parts: SortedChains, limits: Limits, joined: float) -> Check:
-    """Check that no surface is open or crosses itself, and that nothing is drawn twice or without length.
-
-    `scale` is mm in a unit of the drawing as it was read.
-    """
-    faults = list(drawing.openings)
-    faults += [f"{fault.kind} {_entity_words(fault, scale)}" for fault in drawing.faults]
-    faults += _crossing_places(parts, joined)
-    check = _count_check("closed", faults)
-    if drawing.openings:
-        remedy = f"--gap {float(f'{WIDE * joined:.1e}'):g}mm joins what lies so near"
-        detail = f"the rest is judged with {joined:.3g} mm counted; {remedy}" if joined else "the rest is judged"
-        return replace(check, detail=f"{marked(check.detail)}; {detail}")
-    if limits.gap is not None:
-        short = [_entity_words(piece, scale) for piece in drawing.short]
-        detail = f"ends up to {limits.gap:.6g} mm apart are joined, which is counted; {len(short)} pieces are no longer"
-        named = f"{detail}: {_listed(short)}" if short else detail
-        return replace(check, detail=f"{marked(check.detail)}; {named}".removeprefix("; "))
-    return check
-
-
-def _entity_words(fault: Fault, scale: float) -> str:
-    return f"{fault.entity} at {file_place_words(scale * fault.x, scale * fault.y)}"
-
-
-def _crossing_places(parts: SortedChains, joined: float = 0.0) -> list[str]:
-    """Words for the places where surfaces cross themselves, without those beside a line that joins two ends."""
-    places = []
-    for chain in parts.surfaces:
-        points, contour = crossings(chain.contour).point, chain.contour
-        if joined and len(points):
-            lines = np.flatnonzero(np.hypot(*(contour.end - contour.start).T) <= WIDE * joined)
-            apart = np.hypot(*np.moveaxis(points[:, None] - contour.start[None, lines], 2, 0))
-            points = points[~(apart <= 2.0 * WIDE * joined).any(axis=1)]
-        places += [f"the contour crosses or touches itself at {place_words(x, y)} {UNIT}" for x, y in points.tolist()]
-    return places
-
-
-def _count_check(name: str, faults: list[str]) -> Check:
-    return at_most(name, len(faults), 0, "faults", detail=_listed(faults))
-
-
-def _listed(texts: Sequence[str]) -> str:
-    more = f"; and {len(texts) - MOST_NAMED} more" if len(texts) > MOST_NAMED else ""
-    return "; ".join(texts[:MOST_NAMED]) + more
+def _contours(parts: SortedChains) -> list[Contour]:
+    return [chain.contour for chain in parts.surfaces]
 
 
 def _of_solid(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
     """Read a solid of one part: the checks on it, and its surfaces, each in the section that it is found in."""
     sought = _sought(part)
     solid = read_solid(path, sought.heights, units, sought.deepest)
-    _demand_same(solid.units_mm, units, path)
+    demand_same(solid.units_mm, units, path)
     return _solid_read(solid, part, limits, path, units)
 
 
@@ -369,7 +314,7 @@ def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, u
     if len(solid.sections) < len(_sought(part).heights):
         raise ReadError("height", "the solid has no section where the part has its layers", path)
     if part.layers:
-        from kin.judge.layers import leans, settled
+        from kin.read.layers import leans, settled
 
         solid = settled(solid, leans(part.layers, part.cross_holes), limits.tolerance)
     parts = _found(solid, part, limits.tolerance, path)
@@ -387,7 +332,7 @@ def _solid_read(solid: AnySolid, part: PartIntent, limits: Limits, path: Path, u
         if part.thickness is not None:
             from kin.judge.volume import volume_check
 
-            checks.append(_thickness_check(solid, part.thickness, limits.tolerance))
+            checks.append(thickness_check(solid, part.thickness, limits.tolerance))
             checks.append(volume_check(solid.volume, solid.thickness, contours, part, limits.tolerance))
     chains = scaled(solid.chains, 1.0, mirrored=part.mirrored)
     return _Read(checks, parts.surfaces, chains, solid.units_mm or units or 1.0, _uneven(solid, part, contours))
@@ -418,7 +363,7 @@ def _found(solid: AnySolid, part: PartIntent, tolerance: float, path: Path) -> S
 
 def _layered(solid: AnySolid, part: PartIntent, limits: Limits, path: Path) -> list[SortedChains]:
     """Sort the chains of a solid's sections in layers; the outline is the surface of a layer with one of its own."""
-    from kin.judge.layers import heights
+    from kin.read.layers import heights
 
     parts = []
     for (_, layer), section in zip(heights(part.layers, part.cross_holes), solid.sections, strict=False):
@@ -432,23 +377,7 @@ def _layered(solid: AnySolid, part: PartIntent, limits: Limits, path: Path) -> l
 
 def _watertight_check(solid: AnySolid, parts: SortedChains) -> Check:
     """Check that each edge has two faces, one either way, that they face outward, and no surface crosses itself."""
-    return _count_check("watertight", [*solid.faults, *_crossing_places(parts)])
-
-
-def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Check:
-    """Check that the part reaches from z = 0 to its thickness, with walls that stand upright all the way.
-
-    Walls that lean by the rounding of the file's own numbers alone count as upright; the difference is counted in.
-    """
-    off = max(abs(solid.z_min), abs(solid.z_max - thickness))
-    detail = f"z from {span_words(solid.z_min, solid.z_max)}, 0 to {length_words(thickness, '.9g')} {UNIT} is expected"
-    for unit, mm, _ in OTHERS:
-        if mm != 1.0 and abs(mm * solid.thickness - thickness) <= 1e-3 * thickness:
-            detail += f"; as if drawn in {unit} and stated as mm"
-    if not solid.prism:
-        return failed("thickness", f"the sections at different heights differ; {detail}", unit="mm", limit=tolerance)
-    checked = at_most("thickness", off, tolerance, "mm", detail=detail, slack=ROUNDING * thickness)
-    return less_sure(checked, solid.uneven)
+    return count_check("watertight", [*solid.faults, *crossing_places(_contours(parts))])
 
 
 READERS: dict[Contents, Callable[[Path, PartIntent, Limits, float | None], _Read]] = {

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.judge.check import ROUNDING, Check, at_most
+from kin.numeric.check import ROUNDING, Check, at_most
 from kin.numeric.lengths import UNIT, length_words
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def layers_volume_check(measured: float, contours: Sequence[Contour], part: Part
 
     `contours` are the file's, one of each surface. The limit is the tolerance, mm, times the area of the walls.
     """
-    from kin.judge.layers import volume, wall_area
+    from kin.read.layers import volume, wall_area
 
     area, perimeter, source = exact_area(contours, part)
     expected = volume(part.layers, part.cross_holes, area, perimeter)

@@ -126,15 +126,16 @@ def highest(law: Piecewise, weights: Sequence[float], k: int) -> tuple[float, fl
     return best
 
 
-def cubic_cells(law: Piecewise, breaks: Array, near: float) -> Array:
-    """Edges (m + 1,), rising from 0 to a turn, of cells between a law's breaks in which it is nearly a cubic.
+def cubic_cells(law: Piecewise, breaks: Array, near: float, span: tuple[float, float] = (0.0, TURN)) -> Array:
+    """Edges (m + 1,), rising over the span, of cells between a law's breaks in which it is nearly a cubic.
 
     The cubic through a cell's end values and slopes is proved to be within `near`, in the law's unit, of the law: on
     width h it is off by no more than h^4/384 max|f''''|. Where that is not bounded, the law itself is enclosed as
-    closely. So no feature of the law is too narrow for a search on the cells. `breaks` are angles, rad. Raises
-    UnsettledError where too many cells are needed.
+    closely. So no feature of the law is too narrow for a search on the cells. `breaks` lie in the span, or away from it
+    by whole spans. Raises UnsettledError where too many cells are needed.
     """
-    ends = distinct(np.concatenate([[0.0], np.mod(breaks, TURN), [TURN]]))
+    first, last = span
+    ends = distinct(np.concatenate([[first], first + np.mod(breaks - first, last - first), [last]]))
     parts = np.linspace(ends[:-1], ends[1:], _PARTS + 1)
     low, high, settled = parts[:-1].ravel(), parts[1:].ravel(), [ends[:1]]
     for _ in range(_HALVINGS):
@@ -154,6 +155,6 @@ def cubic_cells(law: Piecewise, breaks: Array, near: float) -> Array:
         parted = [np.linspace(low[halvings == k], high[halvings == k], 2**k + 1) for k in range(1, _AT_ONCE + 1)]
         low, high = (np.concatenate([parts[ends].ravel() for parts in parted]) for ends in (slice(-1), slice(1, None)))
     else:
-        raise UnsettledError(f"the intended motion cannot be followed to {near:.3g} about {low[0]:.6g} rad")
+        raise UnsettledError(f"the intended motion cannot be followed to {near:.3g} about an input of {low[0]:.6g}")
     cells: Array = np.sort(np.concatenate(settled))
     return cells

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.law.bounds import highest, undecided
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.segment import Constant
 from kin.numeric.elementary import DomainError
 

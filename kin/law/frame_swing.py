@@ -29,8 +29,8 @@ from kin.law.bounds import undecided
 from kin.law.formula.expression import FormulaError
 from kin.law.formula.formula import Formula
 from kin.law.joints import ORDERS, DerivativeJump, joints_of
-from kin.law.programme import IntentError
-from kin.law.segment import Constant, Series, Stretch
+from kin.law.normalised import IntentError
+from kin.law.segment import Alike, Constant, Series, Stretch
 from kin.law.sources.motion import Motion, joined
 from kin.numeric.angles import TURN
 from kin.numeric.distinct import distinct
@@ -38,16 +38,16 @@ from kin.numeric.elementary import Ball, BallJet, DomainError, Jet, asin, cos, s
 from kin.numeric.inverse import Inverse
 from kin.numeric.jet import derivatives_by
 from kin.numeric.records import dataclass
-from kin.numeric.taylor import compose, compose_balls, factorials
+from kin.numeric.taylor import compose, compose_balls
 
 if TYPE_CHECKING:
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 _SAME = 1e-9  # rad: greatest error of the angle that a law covers, as of segments
 _JOIN = 1e-9  # relative difference of velocities that meet
 _ULPS = 4.0  # first step of the search for an enclosure of a shaft angle
 _DOUBLINGS = 60  # of that step: more than any stretch is long
-_TABLE = 256  # steps of tables that inverses begin from
+_TABLE = 256  # steps of a stretch, of tables that inverses begin from
 _LOOKS = 64  # shaft angles at which the size of a derivative is looked at
 
 
@@ -105,7 +105,7 @@ class FrameSwing:
 
     def _later(self, phi: Array, order: int) -> Array:
         """Taylor coefficients (order + 1, n) of psi at shaft angles (n,) beyond the given law: of the law's image."""
-        return _by(*self._image_over(Jet.variable(self._before_image(phi), order)))
+        return self._before_image.series(self._image_over, phi, order)
 
     def _image_over(self, phi: Jet) -> tuple[Jet, Jet]:
         """Image psi* of psi at shaft angles phi of the given law, and the shaft angles at which it is taken."""
@@ -116,8 +116,13 @@ class FrameSwing:
     @cached_property
     def _before_image(self) -> Inverse:
         """Shaft angle of the given law over that of its image."""
-        steps = np.linspace(0.0, self.motion.total, _TABLE + 1)
-        return Inverse(self._image_shaft, distinct(np.concatenate([steps, self.motion.motion.breaks])))
+        return Inverse(self._image_shaft, self._places)
+
+    @cached_property
+    def _places(self) -> Array:
+        """Shaft angles of the given law at which tables of inverses stand: equal steps of each stretch."""
+        steps = [np.linspace(*ends, _TABLE + 1) for ends in pairwise(self.motion.motion.knots.tolist())]
+        return distinct(np.concatenate(steps))
 
     def _image_shaft(self, phi: Array) -> tuple[Array, Array]:
         """Shaft angle of the image of shaft angles phi (n,) of the given law, and its derivative, (n,) each."""
@@ -140,8 +145,8 @@ class FrameSwing:
         places = (knots - self.motion.derivatives(knots, 0)[0]).tolist()
         places[0], places[-1] = 0.0, math.pi
         made = [
-            Constant(self.lift(function.value)) if isinstance(function, Constant) else _Lifted(self, function, *ends)
-            for function, ends in zip(functions, pairwise(knots.tolist()), strict=True)
+            Constant(self.lift(function.value)) if isinstance(function, Constant) else _Lifted(self, index)
+            for index, function in enumerate(functions)
         ]
         return joined(places, made, -1)
 
@@ -149,60 +154,88 @@ class FrameSwing:
         """Lift S - S(0), mm, of the frame where the swing is psi_0 + `moved`, rad."""
         return self.side * 2.0 * self.ground * math.cos(self.start + 0.5 * moved) * math.sin(0.5 * moved)
 
+    @cached_property
+    def shaft(self) -> Inverse:
+        """Shaft angle of the given law over the relative angle."""
+        return Inverse(self._relative, self._places)
+
+    def _relative(self, phi: Array) -> tuple[Array, Array]:
+        """Relative angle at shaft angles phi (n,), and its derivative, (n,) each; a method can be pickled."""
+        at = Jet.variable(phi, 1)
+        relative = at - self.motion.on(at)
+        return relative.c[0], relative.c[1]
+
 
 @dataclass(frozen=True, eq=False)
-class _Lifted:
-    """S - S(0) over the relative angle, from a stretch of the swing between two shaft angles, in jet arithmetic."""
+class _Lifted(Alike):
+    """S - S(0) over the relative angle, on a stretch of the swing, in jet arithmetic: all stretches together."""
 
     law: FrameSwing
-    function: Stretch
-    begin: float
-    end: float
+    index: int
+
+    @property
+    def kind(self) -> tuple[str, int]:
+        """Key of the stretches of one law."""
+        return "swing", id(self.law)
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """Number of the stretch."""
+        return (float(self.index),)
+
+    def together(self, rows: Array) -> Stretch:
+        """Give one function for n stretches, whose numbers are the row of `rows` (1, n)."""
+        return _LiftedTogether(self.law, rows[0].astype(np.intp))
+
+    def __call__(self, t: Series, /) -> Series:
+        """Give the lift at the relative angle t."""
+        count = (t.c if isinstance(t, Jet) else t.mid).shape[1]
+        return self.together(np.full((1, count), self.numbers[0]))(t)
+
+
+@dataclass(frozen=True, eq=False)
+class _LiftedTogether:
+    """S - S(0) over the relative angle, each point or interval on its stretch (n,) of the swing."""
+
+    law: FrameSwing
+    stretch: Indices
 
     def __call__(self, t: Series, /) -> Series:
         """Give the lift at the relative angle t: the series over the shaft angle, inverted."""
         if isinstance(t, BallJet):
             return BallJet.of(compose_balls(self._ball_rows(*t.rows[0].bounds(), t.order), t.rows))
-        at = Jet.variable(self._shaft(t.c[0]), t.order)
-        moved = self.function(at)
-        return Jet(compose(_by(self._lift(moved), at - moved), t.c))
+        return Jet(compose(self.law.shaft.series(self._over_shaft, t.c[0], t.order, self._ends), t.c))
 
-    def _lift(self, moved: Series) -> Series:
+    @property
+    def _ends(self) -> tuple[Array, Array]:
+        """Shaft angles at which the stretches begin and end, (n,) each."""
+        knots = self.law.motion.motion.knots
+        return knots[self.stretch], knots[self.stretch + 1]
+
+    def _over_shaft(self, at: Series) -> tuple[Series, Series]:
+        """Lift and relative angle over the shaft angle; the latter is that angle less the swing, psi - psi_0."""
+        moved = self.law.motion.motion.apply(at, self.stretch)
         half = moved * 0.5
-        return cos(half + self.law.start) * sin(half) * (2.0 * self.law.side * self.law.ground)
+        return cos(half + self.law.start) * sin(half) * (2.0 * self.law.side * self.law.ground), at - moved
 
     def _ball_rows(self, lower: Array, upper: Array, order: int) -> Ball:
-        """Balls (order + 1, n) of the lift's Taylor coefficients by the relative angle, over angles `lower` to `upper`.
-
-        The relative angle is the shaft angle `at` less the swing `moved`, psi - psi_0.
-        """
+        """Balls (order + 1, n) of the lift's Taylor coefficients by the relative angle, from `lower` to `upper`."""
         at = BallJet.variable(*self._shafts_beyond(lower, upper), order)
-        moved = self.function(at)
-        rows = [row.rows[0] for row in derivatives_by(self._lift(moved), at - moved)]
+        rows = [row.rows[0] for row in derivatives_by(*self._over_shaft(at))]
         rows[1:] = [row * (1.0 / math.factorial(k)) for k, row in enumerate(rows[1:], 1)]
         return Ball(np.stack([row.mid for row in rows]), np.stack([row.rad for row in rows]))
-
-    @cached_property
-    def _shaft(self) -> Inverse:
-        """Shaft angle over the relative one, within this stretch."""
-        return Inverse(self._relative, np.linspace(self.begin, self.end, _TABLE + 1))
-
-    def _relative(self, phi: Array) -> tuple[Array, Array]:
-        """Relative angle at shaft angles phi (n,), and its derivative, (n,) each; a method can be pickled."""
-        at = Jet.variable(phi, 1)
-        relative = at - self.function(at)
-        return relative.c[0], relative.c[1]
 
     def _shafts_beyond(self, lower: Array, upper: Array) -> tuple[Array, Array]:
         """Shaft angles (n,) surely not above those of relative angles `lower` (n,), and not below those of `upper`."""
         theta, way = np.concatenate([lower, upper]), np.repeat([-1.0, 1.0], len(lower))
-        phi, end = self._shaft(theta), np.where(way < 0.0, self.begin, self.end)
+        (begin, close), stretch = np.tile(self._ends, 2), np.tile(self.stretch, 2)
+        phi, end = self.law.shaft(theta), np.where(way < 0.0, begin, close)
         # steps outwards are doubled until the proved relative angle there is beyond theta, or the stretch ends
         step = _ULPS * np.spacing(np.maximum(np.abs(phi), 1.0))
         for _ in range(_DOUBLINGS):
-            beyond = np.clip(phi + way * step, self.begin, self.end)
+            beyond = np.clip(phi + way * step, begin, close)
             at = BallJet.variable(beyond, beyond, 0)
-            low, high = (at - self.function(at)).rows[0].bounds()
+            low, high = (at - self.law.motion.motion.apply(at, stretch)).rows[0].bounds()
             open_ = (beyond != end) & ~np.where(way < 0.0, high <= theta, low >= theta)
             if not open_.any():
                 break
@@ -210,12 +243,6 @@ class _Lifted:
         else:
             beyond = np.where(open_, end, beyond)
         return beyond[: len(lower)], beyond[len(lower) :]
-
-
-def _by(f: Jet, parameter: Jet) -> Array:
-    """Taylor coefficients (order + 1, n) of f by another parameter, both given as jets over one."""
-    rows: Array = np.stack([row.c[0] for row in derivatives_by(f, parameter)]) / factorials(f.order)
-    return rows
 
 
 def span_of(text: str, scale: float) -> float:

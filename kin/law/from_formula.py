@@ -9,7 +9,7 @@ import numpy as np
 
 from kin.law.bounds import unbounded
 from kin.law.formula.expression import Expression, FormulaDomainError, FormulaError
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.support_function import Circle, Lift, about, joined
 
 if TYPE_CHECKING:

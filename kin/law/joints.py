@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.numeric.lengths import Words, input_words
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -26,11 +26,11 @@ class DerivativeJump:
     at: float
     jumps: tuple[tuple[int, float, float], ...]
 
-    def said(self, unit: str = "mm") -> str:
-        """Words for the jumps, lowest derivative first: limits in `unit` and per rad, and the angle in degrees."""
-        per = ("", "/rad", "/rad^2", "/rad^3")
-        parts = [f"{_NAMES[k]} jumps from {a:.6g} to {b:.6g} {unit}{per[k]}" for k, a, b in self.jumps]
-        return f"{' and '.join(parts)} at {math.degrees(self.at):.6g} degrees"
+    def said(self, unit: str = "mm", per: str = "rad") -> str:
+        """Marked words for the jumps, lowest derivative first: limits in `unit`, over `per` of the input, and place."""
+        units = (unit, f"{unit}/{per}", f"{unit}/{per}^2", f"{unit}/{per}^3")
+        parts = [f"{_NAMES[k]} jumps from {a:.6g} to {b:.6g} {units[k]}" for k, a, b in self.jumps]
+        return Words(f"{' and '.join(parts)} at {input_words(self.at)}")
 
     def scaled(self, by: float) -> DerivativeJump:
         """The jump with displacements multiplied by `by`, as for another unit."""

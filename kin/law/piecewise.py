@@ -35,6 +35,7 @@ _SNAP_ULPS = 8.0
 # Stretches shorter than this, relative to the whole, would be lost in that rounding.
 _LEAST_STRETCH = 1e-13
 _LOOKS = 1024  # parameters at which a formula's rounding is looked at
+_AT_ONCE = 200_000  # numbers that describe the stretches of points, which bounds the memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +68,16 @@ class _Alike:
 
     def __call__(self, t: Series, index: Indices) -> Series:
         """Apply to each of the points or intervals t (n,) the function of its stretch (n,)."""
-        return _moved(self.first.together(self.numbers[:, index]), self.ways[:, index], t)
+        half = len(index) // 2
+        if len(self.numbers) * half < _AT_ONCE:
+            return _moved(self.first.together(self.numbers[:, index]), self.ways[:, index], t)
+        kind, rows = type(t), _rows(t)
+        first = self(kind(*(row[:, :half] for row in rows)), index[:half])
+        try:
+            last = self(kind(*(row[:, half:] for row in rows)), index[half:])
+        except DomainError as error:
+            raise DomainError(error.operation, error.indices + half) from None
+        return kind(*map(np.hstack, zip(_rows(first), _rows(last), strict=True)))
 
 
 def _moved(function: Stretch, ways: Array, t: Series) -> Series:
@@ -243,7 +253,7 @@ class Piecewise:
         if isinstance(t, Jet):
             c = t.c.copy()
             c[0] = places.low
-            return self._apply(Jet(c), places.first)
+            return self.apply(Jet(c), places.first)
         return self._on_intervals(t, places)
 
     def places(self, t: Series, side: Side = 1) -> Places:
@@ -355,7 +365,7 @@ class Piecewise:
         for step, active, index in places.each(len(self.functions)):
             begin = places.low[active] if step == 0 else self.knots[index]
             end = np.where(places.steps[active] == step, places.high[active], self.knots[index + 1])
-            part = self._apply(self._within(index, begin, end, t, active), index).rows
+            part = self.apply(self._within(index, begin, end, t, active), index).rows
             if step:
                 part = hull(Ball(mid[:, active], rad[:, active]), part)
             mid[:, active], rad[:, active] = part.mid, part.rad
@@ -373,8 +383,11 @@ class Piecewise:
         mid[0], rad[0] = interval.mid, interval.rad
         return BallJet(mid, rad)
 
-    def _apply(self, t: Series, index: Indices) -> Series:
-        """Apply to each of the points or intervals t (n,) the function of its stretch (n,)."""
+    def apply(self, t: Series, index: Indices) -> Series:
+        """Apply to each of the points or intervals t (n,), which lie in stretches `index` (n,), its stretch's function.
+
+        Raises DomainError where a function does not exist at a jet.
+        """
         owner, groups = self._groups
         if len(groups) == 1:
             return groups[0](t, index)

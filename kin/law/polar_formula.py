@@ -9,8 +9,8 @@ import numpy as np
 
 from kin.law.feasibility import JOIN, checked, demand_ratio
 from kin.law.formula.expression import FormulaError
+from kin.law.normalised import IntentError
 from kin.law.piecewise import Piecewise
-from kin.law.programme import IntentError
 from kin.law.routes import FromExpression
 from kin.law.segment import Constant, Stretch
 from kin.law.transmission import over_period

@@ -18,7 +18,7 @@ import cmath
 import math
 from typing import TYPE_CHECKING
 
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

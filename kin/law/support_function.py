@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.law.normalised import IntentError, first_harmonic
 from kin.law.piecewise import Piecewise, Side
-from kin.law.programme import IntentError, first_harmonic
 from kin.law.segment import AffineStretch, Constant, Harmonic, Harmonics, Series, Stretch
 from kin.numeric.elementary import BallJet, cos, sin
 from kin.numeric.interval import Ball

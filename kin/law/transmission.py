@@ -15,8 +15,8 @@ import numpy as np
 from kin.law.bounds import highest, undecided
 from kin.law.feasibility import JOIN, checked, demand_leaf, demand_ratio, too_steep, too_wide
 from kin.law.formula.expression import FormulaError
+from kin.law.normalised import IntentError
 from kin.law.piecewise import Piecewise
-from kin.law.programme import IntentError
 from kin.law.routes import FromArc, FromDelta, FromLeaf, steepness
 from kin.law.segment import Constant, Harmonics, Stretch, moved
 from kin.law.transmission_law import Transmission

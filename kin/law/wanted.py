@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.law.bounds import undecided
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.segment import Harmonics
 from kin.numeric.elementary import asin
 from kin.numeric.errors import UnsettledError

@@ -14,13 +14,16 @@ the link that a linkage drives, `driven` its name, and `joined` the name of the 
 are the frame's: the frame, or a block in it. `joints` are D and the pivot B. `transmission` is the sine and cosine (n,)
 of the angle from the frame's line u to the rocker BD, or to the slide's normal; `force_angle` the sine and cosine of
 the force angle (`kin.linkage.forces`) for the slopes S' and S1' (n,): the sine has the sign of phi' and is 0 where
-there is no line of force. `force_line` is that line.
+there is no line of force. `force_line` is that line. `deviation` is the change of the output by small displacements.
+`closure` has the gap, mm, by which the loop fails to close, and the output, (n,) each, for any place D of the joint,
+mm, and unit vector u along the frame, (n,) each, with B or the slide's line displaced by `pivot`, mm, and the rocker
+longer, or the slide higher, by `link`, mm.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -49,7 +52,16 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Complexes
 
-__all__ = ["Assembly", "BindingError", "FourBar", "InvertedSliderCrank", "Linkage", "Positions", "SliderCrank"]
+__all__ = [
+    "Assembly",
+    "BindingError",
+    "Displaced",
+    "FourBar",
+    "InvertedSliderCrank",
+    "Linkage",
+    "Positions",
+    "SliderCrank",
+]
 
 
 QUARTER = 0.5 * math.pi
@@ -84,8 +96,41 @@ class Positions:
         return self.joint[0].c[0] - px, self.joint[1].c[0] - py
 
 
+class Displaced(NamedTuple):
+    """Small displacements of a solved linkage whose shaft is held, (n,) or one for all positions, mm.
+
+    joint   of D, with the frame's direction kept
+    sweep   of D, per rad of the frame's turn
+    pivot   of B, or of the slide's line
+    link    growth of the rocker's length, or of the slide's height
+    """
+
+    joint: Complexes
+    sweep: Complexes
+    pivot: Complexes | complex
+    link: float
+
+    def closed(self, closing: Complexes | complex) -> tuple[Complexes, Array]:
+        """Displacement of D from the pivot, mm, and turn of the frame, rad, (n,) each, that close the loop again.
+
+        `closing` is the unit vector, one or (n,), along which D keeps its distance but for the link's growth.
+        """
+        turn = (self.link - _dot(closing, self.joint - self.pivot)) / _dot(closing, self.sweep)
+        return self.joint + self.sweep * turn - self.pivot, turn
+
+
+class _Rocking:
+    """A linkage that drives a rocker about B."""
+
+    ground: float
+
+    def output_link(self, positions: Positions) -> Link:
+        """Return the rocker: origin B, x towards D."""
+        return rocker((self.ground, 0.0), math.pi - positions.output)
+
+
 @dataclass(frozen=True)
-class FourBar:
+class FourBar(_Rocking):
     """AB = ground r1, coupler r3 from the frame's face to D, rocker BD = r4; D `joint_offset` off the mid-line; mm.
 
     Open is the (+) root of AS 18, D above AB (Figure 7); crossed has D below. ValueError unless all lengths are
@@ -126,31 +171,14 @@ class FourBar:
         frame = abd.beside * side - ad.bearing()
         return Positions(frame, abd.between * side, joint, ad.x)
 
-    def output_link(self, positions: Positions) -> Link:
-        """Return the rocker: origin B, x towards D."""
-        return _rocker(self.ground, positions)
-
     def joints(self, positions: Positions) -> dict[str, Joint]:
         """Joints by their letters: B and D."""
         return {"B": pivot((self.ground, 0.0), positions.output), "D": Joint("pin", Link(positions.joint, None))}
 
-    def deviation(
-        self,
-        positions: Positions,
-        sweep: Complexes,
-        joint: Complexes,
-        pivot: Complexes | complex,
-        link: float,
-    ) -> Array:
-        """Change of theta_4, rad (n,), for displacements (n,) and a longer rocker, `link`, mm.
-
-        The shaft is held. `joint` is the displacement of D, mm, with the frame's direction kept, `sweep` its further
-        displacement, mm, per rad of the frame's turn, `pivot` that of B. Derived from the loop to first order; (dD -
-        dB).h = dr4 along the rocker h.
-        """
+    def deviation(self, positions: Positions, by: Displaced) -> Array:
+        """Change of theta_4, rad (n,), to first order: (dD - dB).h = dr4 along the rocker h."""
         away = np.exp(1j * (math.pi - positions.output.c[0]))  # from B to D
-        turn = (link - _dot(away, joint - pivot)) / _dot(away, sweep)  # of the frame, rad, that closes the loop again
-        change: Array = _dot(-1j * away, joint + sweep * turn - pivot) / self.rocker
+        change: Array = _dot(-1j * away, by.closed(away)[0]) / self.rocker
         return change
 
     def closure(
@@ -160,11 +188,7 @@ class FourBar:
         pivot: Complexes | complex,
         link: Array | float,
     ) -> tuple[Array, Array]:
-        """Gap, mm, by which the loop fails to close, and output, rad, (n,) each, for any D and direction of the frame.
-
-        `joint` is D, mm, `along` the unit vector u, (n,) each; `pivot`, mm, is the displacement of B, `link`, mm, the
-        growth of the rocker's length.
-        """
+        """Gap, mm, and output, rad, (n,) each."""
         arm = joint - self.ground - pivot
         return np.abs(arm) - self.rocker - link, math.pi - np.angle(arm)
 
@@ -191,7 +215,7 @@ class FourBar:
 
 
 @dataclass(frozen=True)
-class InvertedSliderCrank:
+class InvertedSliderCrank(_Rocking):
     """AB = ground r1, and a rocker r4 whose end D slides along the frame's u: theta_3 + theta_4 = 90 degrees; mm.
 
     The line on which it slides is `joint_offset` off the frame's mid-line, and touches the circle of r4 about B. r4 = 0
@@ -240,45 +264,18 @@ class InvertedSliderCrank:
         joint = near * (r4 / r1) + (r1 - r4), slide * (r4 / r1)
         return Positions(math.pi / 2 - output, output, joint, slide)
 
-    def output_link(self, positions: Positions) -> Link:
-        """Return the rocker: origin B, x towards D."""
-        return _rocker(self.ground, positions)
-
     def joints(self, positions: Positions) -> dict[str, Joint]:
         """Joints by their letters: B, and D in a slot of the frame along u."""
         return {"B": pivot((self.ground, 0.0), positions.output), "D": Joint("slot", positions.coupler)}
 
-    def deviation(
-        self,
-        positions: Positions,
-        sweep: Complexes,
-        joint: Complexes,
-        pivot: Complexes | complex,
-        link: float,
-    ) -> Array:
-        """Change of theta_4, rad (n,), for displacements (n,) and a longer rocker, `link`, mm.
-
-        The shaft is held. `joint` is the displacement of D, mm, with the frame's direction kept, `sweep` its further
-        displacement, mm, per rad of the frame's turn, `pivot` that of B. Derived from the loop to first order; Y + r1
-        cos theta_4 = r4.
-        """
-        u = np.exp(1j * positions.frame.c[0])
-        away = _dot(1j * u, joint - pivot) - link
-        change: Array = away / _dot(1j * u, sweep)
-        return change
+    def deviation(self, positions: Positions, by: Displaced) -> Array:
+        """Change of theta_4, rad (n,), to first order: Y + r1 cos theta_4 = r4, and theta_3 turns the other way."""
+        return -by.closed(1j * np.exp(1j * positions.frame.c[0]))[1]
 
     def closure(
-        self,
-        joint: Complexes,
-        along: Complexes,
-        pivot: Complexes | complex,
-        link: Array | float,
+        self, joint: Complexes, along: Complexes, pivot: Complexes | complex, link: Array | float
     ) -> tuple[Array, Array]:
-        """Gap, mm, by which the loop fails to close, and output, rad, (n,) each, for any D and direction of the frame.
-
-        `joint` is D, mm, `along` the unit vector u, (n,) each; `pivot`, mm, is the displacement of B, `link`, mm, the
-        growth of the rocker's length.
-        """
+        """Gap, mm, and output, rad, (n,) each."""
         off = _dot(1j * along, joint - self.ground - pivot) - self.rocker - link
         return off, QUARTER - np.angle(along)
 
@@ -358,22 +355,9 @@ class SliderCrank:
         """Joints by their letters: D, which slides on the fixed line."""
         return {"D": Joint("slide", Link(positions.joint, positions.output.constant(0.0)))}
 
-    def deviation(
-        self,
-        positions: Positions,  # noqa: ARG002 - one call for all linkages
-        sweep: Complexes,
-        joint: Complexes,
-        pivot: Complexes | complex,
-        link: float,
-    ) -> Array:
-        """Change of D_x, mm (n,), for displacements (n,) and a higher slide, `link`, mm.
-
-        The shaft is held. `joint` is the displacement of D, mm, with the frame's direction kept, `sweep` its further
-        displacement, mm, per rad of the frame's turn, `pivot` that of the slide's line. Derived from the loop to first
-        order; D_y is the offset.
-        """
-        turn = (link - (joint - pivot).imag) / sweep.imag  # of the frame, rad, that closes the loop again
-        change: Array = (joint + sweep * turn - pivot).real
+    def deviation(self, positions: Positions, by: Displaced) -> Array:  # noqa: ARG002 - one call for all linkages
+        """Change of D_x, mm (n,), to first order: D_y is the offset."""
+        change: Array = by.closed(1j)[0].real
         return change
 
     def closure(
@@ -383,11 +367,7 @@ class SliderCrank:
         pivot: Complexes | complex,
         link: Array | float,
     ) -> tuple[Array, Array]:
-        """Gap, mm, by which the loop fails to close, and output, mm, (n,) each, for any D and direction of the frame.
-
-        `joint` is D, mm, `along` the unit vector u, (n,) each; `pivot`, mm, is the displacement of the slide's line,
-        `link`, mm, its growth in height.
-        """
+        """Gap and output, mm, (n,) each."""
         place = joint - pivot
         return place.imag - self.offset - link, place.real
 
@@ -413,10 +393,6 @@ class SliderCrank:
 Linkage = FourBar | InvertedSliderCrank | SliderCrank
 
 
-def _rocker(ground: float, positions: Positions) -> Link:
-    return rocker((ground, 0.0), math.pi - positions.output)
-
-
 def _frame_terms(
     s: float | Array, s1: float | Array, w: float, r3: float, e: float
 ) -> tuple[tuple[float | Array, ...], tuple[float | Array, ...]]:
@@ -428,7 +404,7 @@ def _frame_vector(s: Jet, s1: Jet, w: float, r3: float, e: float) -> Vector:
     return Vector.of(-s1, s, *_frame_terms(s.c[0], s1.c[0], w, r3, e))
 
 
-def _dot(x: Complexes, y: Complexes | complex) -> Array:
+def _dot(x: Complexes | complex, y: Complexes | complex) -> Array:
     """Scalar products (n,) of vectors as complex numbers."""
     product: Array = (np.conj(x) * y).real
     return product

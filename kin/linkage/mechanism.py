@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.linkage.chain import Chain
 from kin.linkage.extremes import Figures, Quantities, figures
 from kin.linkage.loop import BindingError

@@ -116,9 +116,7 @@ def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) ->
 
 def _below(pieces: MonotonePieces, level: float) -> tuple[Span, ...]:
     """Spans of a turn in which a function is at or below a level."""
-    places = pieces.crossings(level).tolist()
-    if len(places) > 1 and places[0] + TURN - places[-1] <= _BESIDE:
-        places.pop()  # 0, found again at 2 pi
+    places = pieces.crossings_round(level).tolist()
     if not places:
         return ((0.0, TURN),) if pieces.values[0] <= level else ()
     ends = np.array([*places, places[0] + TURN])

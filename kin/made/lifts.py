@@ -21,6 +21,7 @@ from kin.made.metal import Metal
 from kin.made.motion import RAISED
 from kin.made.points import FACTORS, MIRRORED, UNLIKE, SurfacePoints, UnlikePointsError
 from kin.made.shaft_alike import LOOKS, NEAR, SMALL, row
+from kin.made.smooth import strays
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import replace
@@ -85,6 +86,11 @@ class Readings(NamedTuple):
         chosen = np.linspace(0, len(self.lift) - 1, min(FEW, len(self.lift))).astype(np.intp)
         return self._replace(shaft=self.shaft[chosen], lift=self.lift[chosen])
 
+    def on_metal(self, late: float) -> Readings:
+        """The readings without strays, which stand far off those beside them, where all are `late` by an angle, rad."""
+        stray = strays(self.shaft, self.off(late), UNLIKE * self.stroke)
+        return self._replace(shaft=self.shaft[~stray], lift=self.lift[~stray]) if stray.any() else self
+
     def off(self, late: float = 0.0) -> Array:
         """Readings (n,) less the lifts of the exact cam `late` by an angle, rad, and less their mean; mm or rad."""
         off = self.lift - self.exact(self.shaft - late)[0]
@@ -129,12 +135,13 @@ def points_of_lifts(readings: Readings, *, aligned: bool = False, alone: bool = 
     """
     follower, side, shaft, lift, touch, _ = readings
     # without `aligned` it is put back, so that an approximation is enough
-    late = lateness([readings if aligned else readings.few()])
-    _demand_alike(readings, late if aligned or alone else 0.0, aligned=aligned)
+    on_metal = readings.on_metal(lateness([readings.few()]))
+    late = lateness([on_metal if aligned else on_metal.few()])
+    _demand_alike(on_metal, late if aligned or alone else 0.0, aligned=aligned)
     # deviation of the metal: what the lifts are off, over the gain (probe's position by mm of metal)
     exact = readings.exact
     expected, places = exact(shaft - late)
-    zero = float((lift - expected).mean())
+    zero = float((on_metal.lift - exact(on_metal.shaft - late)[0]).mean())
     every = equal_steps(GAINS)
     gains = (exact(every, RAISED)[0] - exact(every, -RAISED)[0]) / (2.0 * RAISED)
     gain = np.interp(np.mod(shaft - late, TURN), every, gains, period=TURN)
@@ -168,13 +175,12 @@ def lateness(readings: Sequence[Readings]) -> float:
     tables = [cam.exact(every)[0] for cam in few]
     variances = [max(float(np.var(table)), np.finfo(float).tiny) for table in tables]
 
-    def scatter(late: float) -> float:
-        return sum(
-            float(np.var(cam.lift - np.interp(np.mod(cam.shaft - late, TURN), every, table, period=TURN))) / variance
-            for cam, table, variance in zip(few, tables, variances, strict=True)
-        )
-
-    late = min(every.tolist(), key=scatter)
+    turned_back = (np.mod(cam.shaft - every[:, None], TURN) for cam in few)
+    scatter = sum(
+        np.var(cam.lift - np.interp(shaft, every, table, period=TURN), axis=1) / variance
+        for cam, shaft, table, variance in zip(few, turned_back, tables, variances, strict=True)
+    )
+    late = float(every[np.argmin(scatter)])
     slopes = [(np.roll(table, -1) - np.roll(table, 1)) * (0.5 * COARSE_TURNS / TURN) for table in tables]
     for some in (few, readings):
         late = _least_squares_lateness(some, late, variances, slopes)

@@ -13,6 +13,7 @@ import numpy as np
 
 from kin.contour.arcs import turned
 from kin.follower.frame_contact import CENTRED, QUARTER, WAYS, driven
+from kin.made.local_faults import within
 from kin.made.metal import Metal
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -25,8 +26,9 @@ if TYPE_CHECKING:
     from kin.follower.base import Follower
     from kin.law.contacts import Side
     from kin.linkage.mechanism import Mechanism
+    from kin.made.local_faults import LocalFault
     from kin.made.smooth import Smooth
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
 
 STEP_SHARE, MOST_STEP = 0.05, 2e-3  # of a span, and rad: the step of the differences
 OFFSETS = (-2.0, -1.0, 0.0, 1.0, 2.0)  # steps; weights of the first and second derivative follow
@@ -75,6 +77,7 @@ class Errors:
     gain (n,)        change of the position per mm more of metal
     intended (3, n)  the intended position, velocity and acceleration
     felt             contacts with the metal, of which the error is the sum
+    sound (n,)       whether the metal that is touched has no local fault
     """
 
     shaft: Array
@@ -83,6 +86,7 @@ class Errors:
     gain: Array
     intended: Array
     felt: tuple[Felt, ...]
+    sound: Mask
 
     @property
     def offset(self) -> float:
@@ -97,7 +101,10 @@ class Errors:
 
     @property
     def phase(self) -> tuple[float, Array]:
-        """Turn of the metal, rad ccw as drawn, that explains most of the error, and the remaining error (n,)."""
+        """Turn of the metal, rad ccw as drawn, that explains most of the error, and the remaining error (n,).
+
+        The turn is that of the sound metal, without local faults, which remain.
+        """
         turn, remaining = self._least_squares_turn(0.0)
         square = float(remaining @ remaining)
         if square > UNEXPLAINED * float(self.remaining @ self.remaining):  # a turn of many degrees
@@ -113,7 +120,7 @@ class Errors:
         made = self.intended[0] + self.rows[0]
         for _ in range(STEPS):
             position, velocity = self._intended(self.shaft - turn)
-            column, remaining = velocity.mean() - velocity, made - position
+            column, remaining = self._without_mean(velocity), made - position
             square = float(column @ column)
             step = float(column @ remaining) / square if square > 0.0 else 0.0
             turn += step
@@ -135,10 +142,15 @@ class Errors:
     @property
     def phase_weights(self) -> Array:
         """Weights (n,) of the errors in the turn of least squares, rad per mm or rad; all 0 without motion."""
-        column = self.intended[1].mean() - self.intended[1]
+        column = self._without_mean(self.intended[1])
         square = float(column @ column)
         weights: Array = column / square if square > 0.0 else np.zeros_like(column)
         return weights
+
+    def _without_mean(self, velocity: Array) -> Array:
+        """What a turn of a rad makes of the position (n,), by velocities (n,), less its mean; 0 on faulty metal."""
+        column: Array = np.where(self.sound, velocity[self.sound].mean() - velocity, 0.0)
+        return column
 
     def influence(self, weights: Array) -> Influence:
         """Uncertainties of the sum of the errors times weights (n,)."""
@@ -164,12 +176,20 @@ class Errors:
 class MadePlay:
     """Play `gap` (n,) of a follower between opposite contacts at shaft angles (n,), rad, and its standard deviations.
 
-    It is in mm or rad, below 0 where the contacts interfere.
+    It is in mm or rad, below 0 where the contacts interfere. `gain` (n,) is its change per mm of metal, with the sign
+    the worst at either contact, `shifted` (n,) that per mm of shift of the metal in the worst direction.
     """
 
     shaft: Array
     gap: Array
     sds: Array
+    gain: Array
+    shifted: Array
+
+    def uncertainty(self, error: float = 0.0, shift: float = 0.0) -> Array:
+        """Expanded uncertainty (k = 2) of the gap (n,), by that of the metal and of its shift, mm."""
+        expanded: Array = np.sqrt((COVERAGE * self.sds) ** 2 + (self.gain * error) ** 2 + (self.shifted * shift) ** 2)
+        return expanded
 
 
 def metal_of(follower: Follower, side: Side, curve: Smooth) -> Metal:
@@ -202,11 +222,19 @@ def derivatives_of(errors: Array, step: float) -> Array:
     return np.stack([errors[:, 2], FIRST @ errors / step, SECOND @ errors / step**2], axis=1)
 
 
-def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array, turned_by: float = 0.0) -> list[Errors]:
+def contact_errors(
+    follower: Follower,
+    side: Side,
+    curve: Smooth,
+    shaft: Array,
+    turned_by: float = 0.0,
+    *,
+    faults: Sequence[LocalFault] = (),
+) -> list[Errors]:
     """Motion errors at shaft angles (n,), rad, by each contact, on metal turned by `turned_by`, rad, counter-clockwise.
 
     `side` is 1 for metal inside the contour, -1 outside; the metal lies off it by `curve`, mm, above 0 for too much
-    metal. Raises ContactError where a contact finds no metal.
+    metal; `faults` are its local ones. Raises ContactError where a contact finds no metal.
     """
     step, metal, angle = step_of(curve), metal_of(follower, side, curve), shaft - turned_by
     errors, places = positions_about(metal, angle, step)
@@ -223,7 +251,8 @@ def contact_errors(follower: Follower, side: Side, curve: Smooth, shaft: Array, 
         gain = (raised[k] - lowered[k]) / (2.0 * RAISED)
         sds = np.stack([np.abs(gain) * rate**q * curve.standard_deviations(place[2], q) for q in range(3)])
         normals = turned(side * follower.envelope.frames(place[2]).normals, np.array(turned_by))
-        contacts.append(Errors(shaft, rows, sds, gain, intended, (Felt(curve, place[2], gain, normals),)))
+        felt, sound = Felt(curve, place[2], gain, normals), ~within(faults, place[2])
+        contacts.append(Errors(shaft, rows, sds, gain, intended, (felt,), sound))
     return contacts
 
 
@@ -246,8 +275,11 @@ def between(pushing: Errors, stopping: Errors) -> tuple[Errors, MadePlay]:
     gap = stopping.rows[0] - pushing.rows[0]
     gain = np.maximum(np.abs(pushing.gain), np.abs(stopping.gain))
     felt = tuple(half._replace(gain=0.5 * half.gain) for half in (*pushing.felt, *stopping.felt))
-    middle = Errors(pushing.shaft, rows, sds, gain, pushing.intended, felt)
-    return middle, MadePlay(pushing.shaft, gap, np.hypot(pushing.sds[0], stopping.sds[0]))
+    middle = Errors(pushing.shaft, rows, sds, gain, pushing.intended, felt, pushing.sound & stopping.sound)
+    either = np.abs(pushing.gain) + np.abs(stopping.gain)
+    (push,), (stop,) = pushing.felt, stopping.felt
+    shifted = np.linalg.norm(stop.gain[:, None] * stop.normals - push.gain[:, None] * push.normals, axis=1)
+    return middle, MadePlay(pushing.shaft, gap, np.hypot(pushing.sds[0], stopping.sds[0]), either, shifted)
 
 
 def paired(follower: Follower, errors: Sequence[Errors]) -> tuple[Errors, MadePlay | None]:
@@ -266,12 +298,21 @@ class OutputErrors:
     centred (n,)   mm or rad
     worst (n,)     of greatest size among the ways in which the frame may rest, mm or rad
     sds (n,)       standard deviation of the centred one
+    gain (n,)      its change per mm of metal, with the sign the worst at each face
+    rate (n,)      derivative of the intended output by the shaft angle
     """
 
     shaft: Array
     centred: Array
     worst: Array
     sds: Array
+    gain: Array
+    rate: Array
+
+    def uncertainty(self, systematic: float = 0.0, turn: float = 0.0) -> Array:
+        """Expanded uncertainty (k = 2) of the output (n,), by that of the metal, mm, and of its turn, rad, besides."""
+        expanded: Array = np.sqrt((COVERAGE * self.sds) ** 2 + (self.gain * systematic) ** 2 + (self.rate * turn) ** 2)
+        return expanded
 
 
 def output_errors(
@@ -294,12 +335,15 @@ def output_errors(
     shaft, centred = output(CENTRED.first, CENTRED.second, ring)
     ways = np.stack([output(way.first, way.second, ring)[1] for way in WAYS])
     worst = np.take_along_axis(ways, np.abs(ways).argmax(axis=0)[None], axis=0)[0]
-    square = np.zeros_like(centred)
+    square, gain = np.zeros_like(centred), np.zeros_like(centred)
     for face in range(4):
         moved = ring.copy()
-        moved[face] += curve.standard_deviations(relative + face * QUARTER)
-        square += (output(CENTRED.first, CENTRED.second, moved)[1] - centred) ** 2
-    return OutputErrors(shaft, centred, worst, np.sqrt(square))
+        moved[face] += RAISED
+        own = np.abs(output(CENTRED.first, CENTRED.second, moved)[1] - centred) / RAISED
+        square += (own * curve.standard_deviations(relative + face * QUARTER)) ** 2
+        gain += own
+    intended = mechanism.at(relative, 1)
+    return OutputErrors(shaft, centred, worst, np.sqrt(square), gain, intended.output[1] / intended.shaft[1])
 
 
 def least_fault(sigma: float, squares: float, places: int) -> float:

@@ -14,6 +14,7 @@ import numpy as np
 
 from kin.contour.arcs import cross
 from kin.made.placing import ILL, conditions, interval, least_squares, minimax
+from kin.made.smooth import strays
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import CamgeoError, UnsettledError
 from kin.numeric.records import dataclass, replace
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from kin.follower.base import Follower
     from kin.law.contacts import Side
     from kin.made.placing import Minimax
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices, Mask
 
 Datum: TypeAlias = Literal["part", "bore", "none"]
 FREE: dict[Datum, str] = {"part": "", "bore": "g", "none": "gxy"}
@@ -139,11 +140,22 @@ class SurfacePoints:
         e = self.side * feet.excess - (0.0 if directions is not None else self.ball)
         return Deviations(feet.parameter, e, normals, cross(touched, normals))
 
+    @cached_property
+    def on_metal(self) -> SurfacePoints:
+        """The points without strays, a few that lie so far off the others that they are not on the part.
+
+        Strays count in deviations of the part, but say nothing of where it stands. Raises UnsettledError where a foot
+        is not found.
+        """
+        stray = strays(self.deviations.parameter, self.deviations.e, FAR * _size([self]))
+        return self.part(~stray) if stray.any() else self
+
     def placed(self, placing: Placing) -> SurfacePoints:
         """The points with another placing of the metal to take out, instead of the former one."""
-        return replace(self, placing=placing)
+        same = placing.turn == self.placing.turn and placing.shift == self.placing.shift
+        return self if same else replace(self, placing=placing)
 
-    def part(self, chosen: Array) -> SurfacePoints:
+    def part(self, chosen: Indices | Mask) -> SurfacePoints:
         """Those of the points that indices or a mask (n,) choose."""
         directions = None if self.directions is None else self.directions[chosen]
         return replace(self, places=self.places[chosen], directions=directions)
@@ -158,8 +170,8 @@ class Profile:
     """The profile deviation of points under a datum (ISO 1101, ISO 1660): the value is twice the greatest |e|.
 
     datum, free      what fixes the axes, and which unknowns it leaves free and the points can tell: of g, x, y
-    placing          minimax: of least greatest deviation; as the points stand where nothing is free
-    deviations       of all points so placed, surface by surface
+    placing          minimax: of least greatest deviation, strays left out; as the points stand where nothing is free
+    deviations       of all points so placed, strays too, surface by surface
     certified        touching points with multipliers; None where nothing is free
     turns            least and greatest turn, rad, with that deviation, where only a turn is free
     least            placing by least squares, and its greatest deviation, mm
@@ -194,8 +206,9 @@ def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:
     free = told_apart(standing, wanted)
     if not free:
         return Profile(datum, free, surfaces[0].placing, standing, None, None, (surfaces[0].placing, _most(standing)))
-    least = settled(surfaces, free)
-    rough = _stacked(surfaces, least)
+    on_metal = [surface.on_metal for surface in surfaces]
+    least = settled(on_metal, free)
+    rough = _stacked(on_metal, least)
     best, placing, turns = least, None, None
     # minimax to first order, then feet anew; of an interval of equal turns the one nearest to least squares
     for _ in range(STEPS):
@@ -207,11 +220,13 @@ def profile(surfaces: Sequence[SurfacePoints], datum: Datum) -> Profile:
             step = np.array([min(max(float(least_squares(columns, e)[0]), turns[0]), turns[1])])
             turns = (best.turn + turns[0], best.turn + turns[1])
         best = best.on(step, free)
-        rough = _stacked(surfaces, best)
-        if _still(step, free, surfaces):
+        rough = _stacked(on_metal, best)
+        if _still(step, free, on_metal):
             break
     else:
         raise UnsettledError("the placing of the points does not come to rest")
+    if any(len(surface) < len(every) for surface, every in zip(on_metal, surfaces, strict=True)):
+        rough = _stacked(surfaces, best)
     return Profile(datum, free, best, rough, placing, turns, (least, _most(_stacked(surfaces, least))))
 
 
@@ -304,7 +319,8 @@ def demand_alike(surfaces: Sequence[SurfacePoints], *, aligned: bool, shiftable:
                 looks.append((left * (MIRRORED if mirrored else 1.0), words))
     if looks:
         raise UnlikePointsError(f"{how_far}: {min(looks)[1]}")
-    raise UnlikePointsError(f"{how_far}, however they are turned or mirrored: they look like those of another cam")
+    if float(np.median(np.abs(e))) > FAR * size:  # else most lie on it, and the others are a fault of the part
+        raise UnlikePointsError(f"{how_far}, however they are turned or mirrored: they look like those of another cam")
 
 
 def _likeness(placing: Placing, factor: float, size: float, about: tuple[bool, bool, bool]) -> str:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.law.contacts import Unit
-    from kin.law.programme import Law
+    from kin.law.normalised import Law
     from kin.made.point_motion import PointMotion
     from kin.numeric.arrays import Array, Indices
 
@@ -312,7 +312,7 @@ def _fitted(motion: PointMotion, boundaries: Array, levels: Array, strokes: tupl
 
 
 def _hidden(motion: PointMotion, columns: Array, free: Indices, scale: Array, boundaries: int) -> Hidden:
-    """The form of few waves a turn that is hidden the most by f unknowns, whose columns are (n, f).
+    """How much of a form of few waves a turn f unknowns, whose columns are (n, f), take for motion: of the worst one.
 
     `free` (f,) are their indices among all unknowns: as many boundaries as `boundaries` says, then levels. `scale` has
     for each of all unknowns the step, rad or mm, to which its column belongs.

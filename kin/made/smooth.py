@@ -32,11 +32,14 @@ MOST_SPANS = 1440  # a quarter of a degree: what a probe's ball lets through; ke
 POINTS_A_SPAN = 5  # at least, on average
 WIDEST_GAP = 2.0  # spans without a point, above which the curve between is invented
 BLOCK = 40  # coefficients that are eliminated at once, more than the band is wide
-GROSS = 3.0  # times OUTLIER: outliers that are left out before there is a curve
+GROSS = 3.0  # times the bound: outliers that are left out before there is a curve
 LADDER = 1.35  # ratio of the numbers of spans that are tried
 FINER = 1.09  # ratio of those beside the best
-OUTLIER = 4.5 * 1.4826  # median absolute deviations: 4.5 standard deviations of normal noise
+OUTLIER = 4.5  # standard deviations: the least by which an outlier stands out
+FALSE = 0.005  # of sets of points, however many, in normal noise without outliers, one is found: 4.5 of 735 points
+MAD = 1.4826  # standard deviations of normal noise in its median absolute deviation
 FELLOWS = 2  # points beside one another: more that stand out together are a fault of the part, not of the measurement
+MOST_STRAYS = 0.05  # of the values
 ROUNDS = 12  # of leaving out outliers
 TRIFLE = 1e-5  # mm: less than this no instrument tells, so that no point is an outlier by it
 CORRELATED = 2.0  # standard deviations 1/sqrt(n) of the lag-1 correlation of white noise
@@ -91,9 +94,7 @@ class Smooth:
     @property
     def pieces(self) -> Array:
         """Coefficients (6, N) of the polynomial on each span, lowest first, by the place in it from 0 to 1."""
-        index = (np.arange(self.spans) + np.arange(WIDTH)[:, None]) % self.spans
-        pieces: Array = BASIS.T @ self.coefficients[index]
-        return pieces
+        return _pieces(self.coefficients)
 
     def times(self, factor: float) -> Smooth:
         """The curve with values and standard deviations times a factor."""
@@ -148,6 +149,12 @@ class SmoothFit:
     outliers: NDArray[np.bool_]
     correlation: float
 
+    @property
+    def worst(self) -> Indices:
+        """Indices (k,) of the outliers, that of the greatest residual first."""
+        out = np.flatnonzero(self.outliers)
+        return out[np.argsort(-np.abs(self.residuals[out]), kind="stable")]
+
 
 def fit(t: Array, e: Array, spans: int | None = None) -> SmoothFit:
     """Fit a smooth curve to values e (n,), mm, at parameters t (n,), rad; outliers are left out.
@@ -158,15 +165,18 @@ def fit(t: Array, e: Array, spans: int | None = None) -> SmoothFit:
     """
     order = np.argsort(np.mod(t, TURN), kind="stable")
     angle, value = np.mod(t, TURN)[order], e[order]
-    kept = ~_gross(value)
+    left_in, number, at_rest = ~_gross(value), 0, True
     for _ in range(ROUNDS):
+        kept = left_in
         system = _Points(angle[kept], value[kept], len(angle))
-        coefficients = system.solved(system.chosen(spans))
+        if at_rest or number > system.most:  # a choice takes as long as twenty curves: not for every set of outliers
+            number, chosen_for = system.chosen(spans), kept
+        coefficients = system.solved(number)
         residuals = value - _evaluated(coefficients, angle)
         left_in = ~_standing_out(residuals, kept)
-        if (left_in == kept).all():
+        at_rest = bool((left_in == kept).all())
+        if at_rest and (kept == chosen_for).all():
             break
-        kept = left_in
     # noise by the residuals' degrees of freedom; residuals of an autoregressive process widen it by (1 + r)/(1 - r)
     count = int(kept.sum())
     left = residuals[kept]
@@ -181,13 +191,42 @@ def fit(t: Array, e: Array, spans: int | None = None) -> SmoothFit:
     return SmoothFit(curve, residuals[back], ~kept[back], correlation)
 
 
+def _off_neighbours(value: Array) -> Array:
+    """By how much values (n,) in order round a turn stand off the median of those beside each, (n,).
+
+    On a slope that is nothing, however they scatter; a value that stands out alone or in a pair shows whole.
+    """
+    beside = np.stack([np.roll(value, k) for k in range(-FELLOWS - 1, FELLOWS + 2)])
+    off: Array = np.abs(value - np.median(beside, axis=0))
+    return off
+
+
+def strays(t: Array, e: Array, far: float) -> NDArray[np.bool_]:
+    """Whether values e (n,) at parameters t (n,), rad, are strays: farther than `far` from 0, where nearly all are not.
+
+    Where more are, strays stand off those beside them by as much, alone or in pairs. More than a twentieth are none:
+    nothing tells which of the values are right.
+    """
+    stray = np.abs(e) > far
+    if stray.sum() > MOST_STRAYS * len(e):
+        order = np.argsort(np.mod(t, TURN), kind="stable")
+        stray[order] = _off_neighbours(e[order]) > far
+    return stray if stray.sum() <= MOST_STRAYS * len(e) else np.zeros_like(stray)
+
+
 def _gross(value: Array) -> NDArray[np.bool_]:
     """Points that stand out from the median of those beside them, before there is a curve, which they would bend."""
-    beside = np.stack([np.roll(value, k) for k in range(-FELLOWS - 1, FELLOWS + 2)])
-    off = np.abs(value - np.median(beside, axis=0))  # nothing on a slope, however the points scatter
+    off = _off_neighbours(value)
     scatter = float(np.median(np.abs(value - 0.5 * (np.roll(value, 1) + np.roll(value, -1)))))
-    gross: NDArray[np.bool_] = off > max(GROSS * OUTLIER * scatter, TRIFLE)
+    gross: NDArray[np.bool_] = off > max(GROSS * _bound(len(value)) * MAD * scatter, TRIFLE)
     return gross
+
+
+def _bound(count: int) -> float:
+    """Standard deviations by which an outlier of `count` points stands out: hardly ever passed in normal noise."""
+    from statistics import NormalDist
+
+    return max(OUTLIER, NormalDist().inv_cdf(1.0 - 0.5 * FALSE / count))
 
 
 def _standing_out(residuals: Array, kept: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -198,7 +237,7 @@ def _standing_out(residuals: Array, kept: NDArray[np.bool_]) -> NDArray[np.bool_
     """
     middle = np.median(residuals[kept])
     size = np.abs(residuals - middle)
-    far = size > max(OUTLIER * float(np.median(size[kept])), TRIFLE)
+    far = size > max(_bound(len(size)) * MAD * float(np.median(size[kept])), TRIFLE)
     if not far.any() or far.all():
         return far
     turn = -int(np.flatnonzero(~far)[0])  # a run of them may pass the turn's zero
@@ -216,11 +255,13 @@ class _Points:
     """Points in order of their parameters (n,), and the normal equations of splines through them."""
 
     def __init__(self, angle: Array, value: Array, count: int) -> None:
-        """Take the kept ones of `count` points, and find their widest gap, rad."""
+        """Take the kept ones of `count` points; find their widest gap, rad, and the most spans by number and by gap."""
         self.angle, self.value, self.count = angle, value, count
         gaps = np.diff(angle, append=angle[:1] + TURN)
         self.widest = int(np.argmax(gaps))
         self.gap = float(gaps[self.widest])
+        self.enough = min(max(count // POINTS_A_SPAN, LEAST_SPANS), MOST_SPANS)
+        self.most = max(min(self.enough, int(WIDEST_GAP * TURN / self.gap)), LEAST_SPANS)
 
     def chosen(self, spans: int | None) -> int:
         """Number of spans: the given one, else that of the least cross-validation.
@@ -228,14 +269,14 @@ class _Points:
         Raises SpansError for a given number that is too small, or too large for the points, GapError for a gap above
         two spans.
         """
-        most = min(max(self.count // POINTS_A_SPAN, LEAST_SPANS), MOST_SPANS)
         if spans is not None:
-            if not LEAST_SPANS <= spans <= most:
-                raise SpansError(f"from {LEAST_SPANS} to {most} spans are fitted to {self.count} points, not {spans}")
+            if not LEAST_SPANS <= spans <= self.enough:
+                range_ = f"from {LEAST_SPANS} to {self.enough} spans"
+                raise SpansError(f"{range_} are fitted to {self.count} points, not {spans}")
             self._demand_filled(spans)
             return spans
         self._demand_filled(LEAST_SPANS)
-        most = max(min(most, int(WIDEST_GAP * TURN / self.gap)), LEAST_SPANS)
+        most = self.most
         count = max(1, math.ceil(math.log(most / LEAST_SPANS) / math.log(LADDER)))
         coarse = np.unique(np.round(np.geomspace(LEAST_SPANS, most, count + 1)).astype(int)).tolist()
         best = min(coarse, key=self._validated)
@@ -259,19 +300,23 @@ class _Points:
 
     def _normal(self, spans: int) -> tuple[Array, Array]:
         """Normal matrix (N, N), banded but for its corners, and right side (N,)."""
+        # in each span sums of powers of the place, and of these times the value; points are in order
         place, span = _place(self.angle, spans)
-        values = _values(place, 0, spans)
-        every = np.arange(spans)
+        begin = np.flatnonzero(np.diff(span, prepend=-1))
+        filled, power = span[begin], np.ones(len(place))
+        sums, moments = np.zeros((2 * DEGREE + 1, spans)), np.zeros((WIDTH, spans))
+        for k in range(len(sums)):
+            sums[k, filled] = np.add.reduceat(power, begin)
+            if k < WIDTH:
+                moments[k, filled] = np.add.reduceat(power * self.value, begin)
+            power *= place
+        # products of the six splines, and of these with the value
+        hankel = sums[np.arange(WIDTH)[:, None] + np.arange(WIDTH)]
+        products = np.einsum("ai,bj,ijs->abs", BASIS, BASIS, hankel, optimize=True)
+        index = (np.arange(spans) + np.arange(WIDTH)[:, None]) % spans
         matrix, right = np.zeros((spans, spans)), np.zeros(spans)
-        for a in range(WIDTH):
-            row = (every + a) % spans
-            right += np.bincount(row[span], values[a] * self.value, spans)
-            for b in range(a, WIDTH):
-                column = (every + b) % spans
-                sums = np.bincount(span, values[a] * values[b], spans)
-                matrix[row, column] += sums
-                if b > a:
-                    matrix[column, row] += sums
+        np.add.at(matrix, (index[:, None], index[None]), products)
+        np.add.at(right, index, BASIS @ moments)
         return matrix, right
 
     def solved(self, spans: int) -> Array:
@@ -333,10 +378,20 @@ def _values(place: Array, order: int, spans: int) -> Array:
     return values
 
 
+def _pieces(coefficients: Array) -> Array:
+    """Coefficients (6, N) of the polynomial on each span, lowest first, by the place in it from 0 to 1."""
+    spans = len(coefficients)
+    index = (np.arange(spans) + np.arange(WIDTH)[:, None]) % spans
+    pieces: Array = BASIS.T @ coefficients[index]
+    return pieces
+
+
 def _evaluated(coefficients: Array, t: Array) -> Array:
+    """Values (n,) at parameters t (n,), rad, of the curve with these coefficients."""
     place, span = _place(t, len(coefficients))
-    values = _values(place, 0, len(coefficients))
-    total = np.zeros(len(place))
-    for m in range(WIDTH):
-        total += values[m] * coefficients[(span + m) % len(coefficients)]
+    *pieces, highest = _pieces(coefficients)
+    total: Array = highest[span]
+    for piece in reversed(pieces):
+        total *= place
+        total += piece[span]
     return total

@@ -11,6 +11,8 @@ import numpy as np
 from kin.numeric.newton import zeros
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from kin.numeric.arrays import Array
 
 # Roots closer to an end than this are taken for the end itself.
@@ -29,15 +31,8 @@ def values(coefficients: Array, t: Array) -> Array:
     By Horner's rule in t/(1 - t) or its inverse, whichever is at most 1 (Schumaker and Volk, CAGD 3, 1986): the cost
     grows with k, not with its square, and the rounding is that of de Casteljau's scheme within a factor of two.
     """
-    k = coefficients.shape[1] - 1
-    inner_axes = range(1, coefficients.ndim)
-    rows = coefficients.transpose(*inner_axes, 0)  # the loops of numpy run along the polynomials
-    late = t > 0.5
-    if bool(late.any()):
-        rows = np.where(late, rows[::-1], rows)
-    away = np.where(late, 1.0 - t, t)
-    near = 1.0 - away
-    ratio = away / near
+    rows, _, near, ratio = _turned(coefficients, t)
+    k = len(rows) - 1
     value = rows[k]
     # the binomials are symmetric
     for i, share in zip(range(k - 1, -1, -1), binomials(k)[1:], strict=True):
@@ -45,6 +40,36 @@ def values(coefficients: Array, t: Array) -> Array:
     value = value * near**k
     out: Array = value.transpose(-1, *range(value.ndim - 1))
     return out
+
+
+def values_and_slopes(coefficients: Array, t: Array) -> tuple[Array, Array]:
+    """Values and derivatives by t, (n,) each, of Bernstein polynomials: coefficients (n, k+1), k >= 1, and t (n,).
+
+    The values are those of `values`; slopes are good to some k roundings of the greatest coefficient.
+    """
+    rows, late, near, ratio = _turned(coefficients, t)
+    k = len(rows) - 1
+    value, slope = rows[k], np.zeros(len(t))
+    for i, share in zip(range(k - 1, -1, -1), binomials(k)[1:], strict=True):
+        slope = slope * ratio + value
+        value = value * ratio + share * rows[i]
+    power = near ** (k - 1)
+    slope = power * (slope / near - k * value)
+    return value * near**k, np.where(late, -slope, slope)
+
+
+def _turned(coefficients: Array, t: Array) -> tuple[Array, NDArray[np.bool_], Array, Array]:
+    """Coefficients (k+1, ..., n) from the end that is nearer to t, whether that is the last, 1 - s and s/(1 - s).
+
+    s (n,) is the distance from there.
+    """
+    rows = coefficients.transpose(*range(1, coefficients.ndim), 0)  # the loops of numpy run along the polynomials
+    late = t > 0.5
+    if bool(late.any()):
+        rows = np.where(late, rows[::-1], rows)
+    away = np.where(late, 1.0 - t, t)
+    near = 1.0 - away
+    return rows, late, near, away / near
 
 
 @lru_cache
@@ -131,11 +156,10 @@ def rising_root(coefficients: Array) -> Array:
     root = np.where(first >= 0.0, 0.0, 1.0)
     inside = np.flatnonzero(~((first >= 0.0) | (last <= 0.0)))
     c, ends = coefficients[inside], (np.zeros(len(inside)), np.ones(len(inside)))
-    slope = np.diff(c, axis=1) * (c.shape[1] - 1)
     with np.errstate(invalid="ignore", divide="ignore"):
         t = c[:, 0] / (c[:, 0] - c[:, -1])
     t = np.where((t > 0.0) & (t < 1.0), t, 0.5)
-    root[inside] = zeros(lambda t: (values(c, t), values(slope, t)), *ends, t, SETTLED)
+    root[inside] = zeros(lambda t: values_and_slopes(c, t), *ends, t, SETTLED)
     return root
 
 

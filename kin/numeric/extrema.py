@@ -21,9 +21,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.numeric.arrays import Array, Indices
+    from kin.numeric.elementary import Jet
 
 MOST_HALVINGS = 48
 MOST_OPEN = 400_000  # intervals, beside eight times those given, that may stay undecided
+PARTS = 4  # of a cell of a figure, from which its extremes are looked for: as many cost no more than few
+FIGURES = 1e-13  # of the greatest value of a figure, to which its extremes are found
 RESOLUTION = 2e-14  # as a share of a contour's extent: to this the extremes of a length are found (1e-12 mm of 50 mm)
 BLOCK = 8192  # intervals at a time, so that their arrays stay in the cache
 
@@ -58,6 +61,23 @@ class Extremes:
     def span(self) -> float:
         """Greatest less least value."""
         return self.greatest - self.least
+
+
+def extremes_over(cells: Array, figure: Callable[[Array, int], Jet]) -> Extremes:
+    """Extremes of a figure over cells (m + 1,), within each of which it is smooth.
+
+    `figure(x, side)` gives it as a jet of second order at points x (n,), at the cells' ends as its limit from the right
+    or, with side -1, from the left. Raises UnsettledError where rounding makes it too rough.
+    """
+    ends = np.append(np.linspace(cells[:-1], cells[1:], PARTS + 1)[:-1].T.ravel(), cells[-1])
+    low, high = ends[:-1], ends[1:]
+
+    def inside(x: Array, _: Indices) -> Array:
+        return figure(x, 1).derivatives()
+
+    at_low, at_high = figure(low, 1).derivatives(), figure(high, -1).derivatives()
+    size = max(float(np.abs(at_low[0]).max()), float(np.abs(at_high[0]).max()))
+    return extremes(low, high, at_low, at_high, inside, resolution=FIGURES * max(size, 1e-3))
 
 
 def extremes(

@@ -17,6 +17,7 @@ from kin.numeric.taylor import (
     exp_rows,
     factorials,
     log_rows,
+    polynomial_rows,
     power_rows,
     product,
     quotient,
@@ -298,19 +299,21 @@ def horner(coefficients: Sequence[float] | Array, x: Series) -> Series:
     Raises DomainError where a jet overflows.
     """
     if isinstance(x, BallJet):
-        ball = x.constant(coefficients[-1])
-        for row in coefficients[-2::-1]:
-            ball = ball * x + row
-        return ball
+        return BallJet.of(compose_balls(polynomial_rows(coefficients, x.rows[0], x.order), x.rows))
     with np.errstate(all="ignore"):
-        straight = not x.c[2:].any()  # then a product has two terms in each row, and the same digits
         total = np.zeros_like(x.c)
         total[0] = coefficients[-1]
-        for row in coefficients[-2::-1]:
-            if straight:
-                before, total = total, total * x.c[0]
-                total[1:] += before[:-1] * x.c[1:2]
-            else:
+        if x.c[2:].any():
+            for row in coefficients[-2::-1]:
                 total = product(total, x.c)
-            total[0] += row
+                total[0] += row
+            return finite(total, "overflow")
+        # a product has two terms in each row, and the same digits
+        value, above, below, carry = total[0], total[1:], total[:-1], np.empty_like(total[1:])
+        at, slope = x.c[0], x.c[1:2]
+        for row in coefficients[-2::-1]:
+            np.multiply(below, slope, out=carry)
+            total *= at
+            above += carry
+            value += row
         return finite(total, "overflow")

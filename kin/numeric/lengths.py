@@ -3,12 +3,15 @@
 Words are put together in many places that do not know the unit of the report. So a length stands among them as its
 whole value and its form, between two characters of Unicode's private use, and becomes digits at the end.
 
+So is the input of a motion, which the words call an angle, in degrees, unless they are shown for a travel.
+
 Places and turns are composed in the axes of a cam that turns clockwise. Their y and their sense are marked, so that
 `mirrored` gives them as a file has them that is drawn mirrored.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING
 
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
 FIRST, LAST = "\ue000", "\ue001"
 UNIT = f"{FIRST}{LAST}"
 """The name of the unit, among words."""
-_MARKED = re.compile(f"{FIRST}(?:([^{LAST}]*?):([^{LAST}]*?):([123]|y|turn))?{LAST}")
+_MARKED = re.compile(f"{FIRST}(?:([^{LAST}]*?):([^{LAST}]*?):([123]|y|turn|at|number|noun))?{LAST}")
 _POWERS = {"1": 1, "2": 2, "3": 3, "y": 1, "turn": 0}  # of a length in each kind of mark
 
 
@@ -31,6 +34,20 @@ def length_words(mm: float, form: str = ".6g", power: int = 1) -> str:
 
 def _mark(value: float, form: str, kind: str) -> str:
     return f"{FIRST}{float(value)!r}:{form}:{kind}{LAST}"
+
+
+def input_words(value: float, form: str = ".6g") -> str:
+    """Mark an input of a motion, a shaft angle in rad or a travel in mm, to be shown with its unit."""
+    return _mark(value, form, "at")
+
+
+def input_number(value: float, form: str = ".6g") -> str:
+    """Mark an input of a motion, rad or mm, to be shown without its unit."""
+    return _mark(value, form, "number")
+
+
+INPUT = f"{FIRST}0:s:noun{LAST}"
+"""The noun of the input, among words: `angle` or `length`."""
 
 
 def amount_words(value: float, unit: str, form: str = ".6g") -> str:
@@ -80,7 +97,7 @@ class Words(str):
     marked: str
 
     def __new__(cls, marked: str) -> Self:
-        """Show the lengths of marked words in mm."""
+        """Show the lengths of marked words in mm, inputs in degrees."""
         words = super().__new__(cls, shown(marked))
         words.marked = marked
         return words
@@ -95,16 +112,29 @@ def marked(words: str) -> str:
     return words.marked if isinstance(words, Words) else words
 
 
-def in_unit(words: str, mm: float, unit: str) -> str:
-    """Give words with their lengths in a unit of `mm` mm, named `unit`; words without marks as they are."""
-    return shown(marked(words), mm, unit)
+def in_unit(words: str, mm: float, unit: str, *, travel: bool = False) -> str:
+    """Give words with their lengths in a unit of `mm` mm, named `unit`; words without marks as they are.
+
+    Inputs are angles, in degrees, or with `travel` lengths.
+    """
+    return shown(marked(words), mm, unit, travel=travel)
 
 
-def shown(words: str, mm: float = 1.0, unit: str = "mm") -> str:
-    """Show the lengths of marked words in a unit of `mm` mm, and its name `unit`."""
+def shown(words: str, mm: float = 1.0, unit: str = "mm", *, travel: bool = False) -> str:
+    """Show the lengths of marked words in a unit of `mm` mm, and its name `unit`.
+
+    Inputs are angles, in degrees, or with `travel` lengths.
+    """
 
     def digits(mark: re.Match[str]) -> str:
         value, form, kind = mark.groups()
-        return unit if value is None else f"{float(value) / mm ** _POWERS[kind]:{form}}"
+        if value is None:
+            return unit
+        if kind == "noun":
+            return "length" if travel else "angle"
+        if kind in {"at", "number"}:
+            number = f"{float(value) / mm if travel else math.degrees(float(value)):{form}}"
+            return number if kind == "number" else f"{number} {unit if travel else 'degrees'}"
+        return f"{float(value) / mm ** _POWERS[kind]:{form}}"
 
     return _MARKED.sub(digits, words)

@@ -21,11 +21,18 @@ _MOST = 5000  # pivots in all; a programme of a hundred rows takes some hundred
 
 
 class Optimum(NamedTuple):
-    """Least value, the variables (n,), and the least sum of errors of the rows, 0 where a point fulfils them."""
+    """Least value, the variables (n,), and the least sum of errors of the rows, 0 where a point fulfils them.
+
+    `multipliers` y (m,) are the solution of the dual programme: y times `right` is the least value, and no column costs
+    less than y times it. Where the rows cannot be met, y times `right` is the least sum of errors, and y times a column
+    is nowhere above 0; where only rounding keeps a point of least value from meeting them, y is that of the cost. Both
+    hold but for the rounding of the pivots.
+    """
 
     value: float
     x: Array
     missed: float
+    multipliers: Array
 
 
 def minimise(cost: Array, rows: Array, right: Array, enough: float = 1e-10) -> Optimum:
@@ -40,33 +47,37 @@ def minimise(cost: Array, rows: Array, right: Array, enough: float = 1e-10) -> O
     table = np.hstack([rows * sign[:, None], np.eye(count), (right * sign)[:, None]])
     basis = np.arange(size, size + count)
     single_entries = np.flatnonzero((table[:, :size] != 0.0).sum(axis=0) == 1)
-    for (
-        column
-    ) in single_entries:  # a slack of a row that it may stand for, so that the row needs no artificial variable
+    # a slack of a row may stand for it, so that the row needs no artificial variable
+    for column in single_entries:
         row = int(np.argmax(table[:, column]))
         if table[row, column] == 1.0 and basis[row] >= size:
             basis[row] = column
     whole = table.copy()
     artificial = basis >= size
+    # the costs of the artificial variables, less those of the basis; they cost 1, and 0 where a slack stands for them
     artificial_costs = -table[artificial].sum(axis=0)
-    artificial_costs[size : size + count] = 0.0
+    artificial_costs[size : size + count] += artificial
     _pivot(table, artificial_costs, basis, size)
     missed = max(-float(artificial_costs[-1]), 0.0)
     if missed > enough:  # perhaps only by the rounding of all pivots: the table is worked out anew
-        table, *_ = np.linalg.lstsq(whole[:, basis], whole, rcond=None)
+        table = np.linalg.pinv(whole[:, basis]) @ whole
         artificial_costs = -table[basis >= size].sum(axis=0)
-        artificial_costs[size : size + count] = 0.0
+        artificial_costs[size : size + count] += artificial
         _pivot(table, artificial_costs, basis, size)
         missed = max(-float(artificial_costs[-1]), 0.0)
     if missed > enough:
-        return Optimum(np.inf, _point(rows, right, basis, size), missed)
+        multipliers = sign * (artificial - artificial_costs[size : size + count])
+        return Optimum(np.inf, _point(rows, right, basis, size), missed, multipliers)
     # phase 2: the cost itself from there
     costs = np.concatenate([cost, np.zeros(count + 1)])
     reduced_costs = costs - costs[basis] @ table
     _pivot(table, reduced_costs, basis, size)
     x = _point(rows, right, basis, size)
     missed = float(np.abs(rows @ x - right).sum())
-    return Optimum(float(cost @ x), x, 0.0) if missed <= enough else Optimum(np.inf, x, missed)
+    multipliers = -sign * reduced_costs[size : size + count]
+    if missed > enough:
+        return Optimum(np.inf, x, missed, multipliers)
+    return Optimum(float(cost @ x), x, 0.0, multipliers)
 
 
 def _pivot(table: Array, costs: Array, basis: Indices, size: int) -> None:

@@ -76,7 +76,7 @@ def dwells(
     period: float = TURN,
     most: int = 8,
 ) -> tuple[Window, ...]:
-    """Find the longest windows over which f stays within `band`, the longest first.
+    """Find the longest windows over which f stays within `band`, to a billionth of it, the longest first.
 
     f(x (n,), order) gives (order + 1, n) derivatives; it is called with order 0, at 0 <= x <= period. It is continuous
     and periodic, and smooth between breaks. No window can be lengthened by shifting it a little, and none overlaps a
@@ -86,7 +86,7 @@ def dwells(
     """
     search = _search(f, breaks, band, period)
     (least, _), (greatest, _) = search.of.least(), search.of.greatest()
-    if greatest - least <= band + 2.0 * search.of.noise:  # a run from a little above the least takes in all of it
+    if greatest - least <= band + 2.0 * search.slack:  # a run from a little above the least takes in all of it
         return (Window(0.0, period, least, greatest),)
     at_nodes = search.node_windows()
     shortest = float((at_nodes.b - at_nodes.a).max(initial=0.0)) if most == 1 else 0.0
@@ -98,11 +98,11 @@ def longest_of_each(
 ) -> tuple[Window, ...]:
     """Find the longest window of each section between `edges` (m + 1,), the period's 0 and end among them.
 
-    Over a window f stays within `band`. f(x (n,), order) gives (order + 1, n) derivatives and is called with order 0;
-    it is periodic and continuous, and smooth between `breaks`. It leaves the band about each edge, so that no window
-    reaches from one section into the next. Ends are good to 1e-10 of the period, or as far as f's rounding lets them be
-    known. Raises ValueError for a band that is not positive or is lost in the rounding of f, and for an output that
-    jumps; RoughError for one too rough to follow.
+    Over a window f stays within `band`, to a billionth of it. f(x (n,), order) gives (order + 1, n) derivatives and is
+    called with order 0; it is periodic and continuous, and smooth between `breaks`. It leaves the band about each edge,
+    so that no window reaches from one section into the next. Ends are good to 1e-10 of the period, or as far as f's
+    rounding lets them be known. Raises ValueError for a band that is not positive or is lost in the rounding of f, and
+    for an output that jumps; RoughError for one too rough to follow.
     """
     search = _search(f, breaks, band, float(edges[-1]))
     at_nodes = search.node_windows()
@@ -188,6 +188,11 @@ class _Search:
         value = np.concatenate([np.tile(pieces.values[:-1], 3), pieces.values[:1]])
         return _Search(pieces, band, period, x, value, doubled(value, np.minimum), doubled(value, np.maximum))
 
+    @property
+    def slack(self) -> float:
+        """Difference of values that are equal: what pieces leave of f, and their rounding."""
+        return _RESOLUTION * self.band + self.of.noise
+
     def local(self, piece: Indices) -> tuple[Indices, Array]:
         """Each piece (k,) as one of the period's own, and how far it is from there."""
         count = len(self.of.coefficients)
@@ -203,9 +208,8 @@ class _Search:
 
     def inside(self, level: int, begin: Indices, low: Array) -> Flags:
         """Whether the 2^level nodes from `begin` (k,) on lie in the band from `low` (k,)."""
-        noise = self.of.noise
         lowest, highest = self.lowest[level][begin], self.highest[level][begin]
-        return (lowest >= low - noise) & (highest <= low + self.band + noise)
+        return (lowest >= low - self.slack) & (highest <= low + self.band + self.slack)
 
     def reach_right(self, node: Indices, low: Array) -> Indices:
         """Last node (k,) of the run from `node` (k,) to the right that stays in the band; `node` counts as within."""
@@ -302,8 +306,7 @@ class _Search:
             tail = end[at_level] + 1 - 2**k
             lowest[at_level] = np.minimum(self.lowest[k][begin[at_level]], self.lowest[k][tail])
             highest[at_level] = np.maximum(self.highest[k][begin[at_level]], self.highest[k][tail])
-        noise = self.of.noise
-        return any_node & (lowest <= low + noise), any_node & (highest >= low + self.band - noise)
+        return any_node & (lowest <= low + self.slack), any_node & (highest >= low + self.band - self.slack)
 
     def balanced_windows(self, starts: Array, least: float) -> _Windows:
         """Windows through whose ends f goes alike, with equal slopes, between neighbouring starts of node windows.

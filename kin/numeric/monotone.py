@@ -6,7 +6,9 @@ Bernstein form its turning points and points of inflection are counted by the si
 diminishing), so none is missed, and the polynomial is cut at them. What is left are pieces on which every question
 has one answer: the extremes of a function are at ends of pieces, a level is crossed once or not at all.
 
-Points of a cell are inside it, so one-sided values at a break are never asked for.
+Points of a cell are inside it, so one-sided values at a break are never asked for. Where the polynomials of two
+neighbours do not meet, or one does not meet the function just inside a break, something between their outermost points
+and their ends was missed: they are halved.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from kin.numeric.arrays import Array, Indices
+    from kin.numeric.arrays import Array, Indices, Mask
 
 DEGREE = 10
 FIRST_CELLS = 32
@@ -43,6 +45,8 @@ BLUR = 2.0**-43
 GENERATIONS = 3
 STAGNANT = 0.25
 AMPLIFIED = 16.0  # by the change of basis, and from one place to another
+# Neighbours meet within so many times what is accepted of either: a polynomial is least known at its ends.
+MEETING = 8.0
 # Cuts closer than this to an end of a cell, as a share of it, are the end.
 END_MARGIN = 1e-9
 # A run along a level no longer than this part of the whole is one point.
@@ -134,7 +138,7 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array 
     blur = BLUR * (places[-1] - places[0])
     scale = np.zeros(1)
     before = np.full((GENERATIONS, len(low)), np.inf)  # what was left of each cell's forebears, the oldest first
-    done = []
+    done: list[_Resolved] = []
     while len(low):
         # the last two Chebyshev coefficients on each cell estimate the error, in units of what is allowed: `excess`
         at = low[:, None] + (high - low)[:, None] * basis.points
@@ -148,20 +152,70 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array 
         rounding = (excess > STAGNANT * before[0]) & (last <= MOST_NOISE * scale[:, None]).all(axis=0)
         rounding &= np.roll(rounding, len(low) // 2)  # in both halves of a cell
         # cells that are resolved, rounding or too narrow are done, the rest are halved
-        unresolved = (excess > 1.0) & ~rounding & (high - low > least)
-        done.append((low[~unresolved], high[~unresolved], y[:, ~unresolved], (last * rounding)[:, ~unresolved]))
+        narrow = high - low <= least
+        unresolved = (excess > 1.0) & ~rounding & ~narrow
+        error = allowed + np.where(narrow, np.ptp(y, axis=2), 0.0)
+        done.append(_Resolved(low, high, y, last * rounding, error).chosen(~unresolved))
         low, high = low[unresolved], high[unresolved]
         before = np.tile(np.vstack([before[1:, unresolved], excess[unresolved]]), 2)
+        if not len(low):  # a corner between the outermost point of a cell and its end shows at that end
+            whole = _Resolved.of(done)
+            parted = whole.parted(f, places, scale) & (whole.high - whole.low > least)
+            done, low, high = [whole.chosen(~parted)], whole.low[parted], whole.high[parted]
+            before = np.full((GENERATIONS, 2 * len(low)), np.inf)
         if len(low) > most:
             raise RoughError(float(low[0]), float(allowed.max()))
         middle = 0.5 * (low + high)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
-    low, high = np.concatenate([d[0] for d in done]), np.concatenate([d[1] for d in done])
-    y, left = np.concatenate([d[2] for d in done], axis=1), np.concatenate([d[3] for d in done], axis=1)
-    order = np.argsort(low)
-    y, noise = y[:, order], NOISE * scale[:, None] + AMPLIFIED * left[:, order]
-    base = y[..., DEGREE // 2, None]  # rounding in the change of basis is then that of the change within the cell
-    return Cells(low[order], high[order], base + (y - base) @ basis.bernstein.T, noise)
+    (whole,) = done
+    base = whole.y[..., DEGREE // 2, None]  # rounding in the change of basis is then that of the change within the cell
+    return Cells(whole.low, whole.high, base + (whole.y - base) @ basis.bernstein.T, whole.noise(scale))
+
+
+class _Resolved(NamedTuple):
+    """Cells [low, high] (m,) that are done, with values `y` (r, m, DEGREE + 1) of r functions at their points.
+
+    `left` (r, m) is what rounding leaves of the last coefficients, `error` (r, m) the greatest error that is accepted.
+    """
+
+    low: Array
+    high: Array
+    y: Array
+    left: Array
+    error: Array
+
+    @staticmethod
+    def of(parts: list[_Resolved]) -> _Resolved:
+        """All cells of the parts, rising."""
+        columns = zip(*parts, strict=True)
+        low, high, *rows = (np.concatenate(column, axis=min(column[0].ndim - 1, 1)) for column in columns)
+        order = np.argsort(low)
+        return _Resolved(low[order], high[order], *(row[:, order] for row in rows))
+
+    def chosen(self, mask: Mask) -> _Resolved:
+        """The cells for which the mask (m,) is true."""
+        return _Resolved(self.low[mask], self.high[mask], self.y[:, mask], self.left[:, mask], self.error[:, mask])
+
+    def noise(self, scale: Array) -> Array:
+        """Greatest error of coefficients by rounding (r, m); `scale` (r,) is the greatest size of each function."""
+        return NOISE * scale[:, None] + AMPLIFIED * self.left
+
+    def parted(self, f: Callable[[Array], Array], places: Array, scale: Array) -> Mask:
+        """Mask (m,) of cells that do not meet their neighbours, or beside one of the places (k,) do not meet f."""
+        basis, width = _basis(), self.high - self.low
+        begins, ends = (self.y @ column for column in basis.bernstein[[0, -1]])
+        error = MEETING * self.error + self.noise(scale)
+        apart = (np.abs(ends[:, :-1] - begins[:, 1:]) > error[:, :-1] + error[:, 1:]).any(axis=0)
+        apart &= ~np.isin(self.low[1:], places)
+        parted: Mask = np.append(apart, False) | np.append(False, apart)
+        begin, end = np.flatnonzero(np.isin(self.low, places)), np.flatnonzero(np.isin(self.high, places))
+        inside = np.minimum(np.maximum(END_MARGIN * width, BLUR * (places[-1] - places[0])), 0.5 * width)
+        x = np.concatenate([(self.low + inside)[begin], (self.high - inside)[end]])
+        beside = np.concatenate([begin, end])
+        t = (x - self.low[beside]) / width[beside]
+        own = np.stack([values(row, t) for row in self.y[:, beside] @ basis.bernstein.T])
+        parted[beside[(np.abs(f(x) - own) > error[:, beside]).any(axis=0)]] = True
+        return parted
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,6 +278,21 @@ class MonotonePieces:
         short = end - begin <= SAME * (self.x[-1] - self.x[0])
         runs = np.concatenate([0.5 * (begin + end)[short], begin[~short], end[~short]])
         return distinct(np.concatenate([runs, self.crossing(through, np.full(len(through), level))]))
+
+    def crossings_round(self, level: float) -> Array:
+        """As `crossings`, of a function that repeats: its last x is its first, and a run over both has no end there."""
+        places, first, last = self.crossings(level), self.x[0], self.x[-1]
+        same = SAME * (last - first)
+        if len(places) < 2 or places[0] - first > same or last - places[-1] > same:
+            return places
+        # from the node farthest from the level on, round to it again
+        away = np.abs(self.values[:-1] - level)
+        begin = int(np.argmax(away))
+        if away[begin] <= self.noise:
+            return np.empty(0)
+        x = np.concatenate([self.x[begin:], self.x[1 : begin + 1] + (last - first)])
+        turned = MonotonePieces(x, np.roll(self.coefficients, -begin, axis=0), np.roll(self.blur, -begin))
+        return np.unique(first + np.mod(turned.crossings(level) - first, last - first))
 
     def least(self) -> tuple[float, float]:
         """Least value, and the x at which it is reached."""

@@ -3,21 +3,22 @@
 The standard library compiles six functions from text for each class when its module is loaded: half a millisecond a
 class, and a short run loads over two hundred. Below 80 classes, or 40 ms, this module would not be worth its lines.
 Here the fields are read from the annotations when the first record is made, and functions of one text for all classes
-go by their names. `dataclasses.fields` and what rests on it (`replace`, `asdict`, matching by place) come from the
-standard library when they are first used. To a type checker there is no difference.
+go by their names. What `dataclasses.fields` and all that rests on it (`replace`, `asdict`, matching by place) read is
+from a class of the library with the same fields, made at their first use: the record's class gains attributes and never
+lacks one, so that threads may share it. To a type checker there is no difference.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import sys
+from copy import copy
 from dataclasses import KW_ONLY, MISSING, Field, FrozenInstanceError, field, fields, replace
 from functools import cache, cached_property
 from operator import attrgetter
 from reprlib import recursive_repr
 from threading import RLock
-from types import CodeType, FunctionType, ModuleType
-from typing import TYPE_CHECKING, ClassVar, NoReturn, TypeVar
+from types import CodeType, FunctionType, MappingProxyType
+from typing import TYPE_CHECKING, NoReturn, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,8 +35,10 @@ _MAKING = RLock()
 class _Shape:
     """The fields of a class, read from its annotations."""
 
-    def __init__(self, kind: type, *, kw_only: bool) -> None:
+    def __init__(self, kind: type, *, frozen: bool, eq: bool, kw_only: bool) -> None:
         self.kind = kind
+        self.frozen = frozen
+        self.eq = eq
         self.kw_only = kw_only
         self.described = {name: value for name, value in vars(kind).items() if isinstance(value, Field)}
         for name, entry in self.described.items():
@@ -46,19 +49,24 @@ class _Shape:
 
     @cached_property
     def fields(self) -> dict[str, Field[object]]:
-        """Fields by name, those of bases first."""
+        """Fields by name, those of bases first; a default that can be altered is refused, as records would share it."""
         every: dict[str, Field[object]] = {}
         for base in reversed(self.kind.__mro__[1:]):
             if base in _SHAPES:
                 every |= _SHAPES[base].fields
+            elif _STANDARD[0] in vars(base):
+                every |= {entry.name: entry for entry in fields(base)}
         kw_only = self.kw_only
         for name, annotation in vars(self.kind).get("__annotations__", {}).items():
-            if annotation in ("KW_ONLY", KW_ONLY):
+            if annotation in ("KW_ONLY", "dataclasses.KW_ONLY", KW_ONLY):
                 kw_only = True
             elif not str(annotation).startswith(("ClassVar", "typing.ClassVar")):
                 entry = self.described.get(name) or field(default=vars(self.kind).get(name, MISSING))
+                if type(entry.default).__hash__ is None and not isinstance(entry.default, MappingProxyType):
+                    raise ValueError(f"{self.kind.__qualname__}.{name}: a default that can be altered needs a factory")
                 if entry.kw_only is MISSING:
                     entry.kw_only = kw_only
+                entry.type = annotation
                 every[name] = entry
         return every
 
@@ -82,6 +90,8 @@ class _Shape:
                     by_key[name] = entry.default
                 elif factory or entry.default is not MISSING:
                     by_place.append(entry.default)
+                elif by_place and not entry.kw_only:
+                    raise TypeError(f"{self.kind.__qualname__}.{name} has no default and follows a field that has one")
             if factory:
                 value = f"fields[{value!r}].default_factory()" + f" if {value} is MISSING else {value}" * entry.init
             if entry.init or factory:
@@ -103,21 +113,22 @@ class _Shape:
         type.__setattr__(self.kind, "__init__", function)
 
     def standardise(self) -> None:
-        """Let the standard library see the class; it looks into the class's module, which may be unloaded by then."""
-        module = self.kind.__module__
-        unloaded = module not in sys.modules
-        if unloaded:
-            sys.modules[module] = ModuleType(module)
-            vars(sys.modules[module]).update(ClassVar=ClassVar, KW_ONLY=KW_ONLY)
-        try:
-            for name in _STANDARD:
-                delattr(self.kind, name)
-            for name, entry in self.described.items():
-                setattr(self.kind, name, entry)
-            dataclasses.dataclass(init=False, repr=False, eq=False, kw_only=self.kw_only)(self.kind)
-        finally:
-            if unloaded:
-                del sys.modules[module]
+        """Give the class what the standard library's functions read, from one of the library with the same fields."""
+        bare = {name: copy(entry) for name, entry in self.fields.items()}
+        for entry in bare.values():
+            entry.default = MISSING  # the library would refuse a read-only view of a dictionary
+        described = [(name, entry.type, entry) for name, entry in bare.items()]
+        text = {"__doc__": self.kind.__name__}  # without it the library would take time to write one
+        standard = dataclasses.make_dataclass(
+            self.kind.__name__, described, namespace=text, init=False, repr=False, eq=False
+        )
+        for name, entry in bare.items():
+            entry.default = self.fields[name].default
+        for name in ("init", "repr", "eq", "frozen"):
+            setattr(vars(standard)["__dataclass_params__"], name, getattr(self, name, True))
+        for name in _STANDARD:
+            if isinstance(vars(self.kind)[name], _Later):
+                type.__setattr__(self.kind, name, vars(standard)[name])
 
 
 @cache
@@ -136,12 +147,12 @@ class _Later:
         self.name = name
         self.make = make
 
-    def __get__(self, record: object, _kind: type) -> object:
+    def __get__(self, record: object, kind: type) -> object:
         with _MAKING:
             if vars(self.kind)[self.name] is self:
                 self.make()
-        value: object = getattr(self.kind if record is None else record, self.name)
-        return value
+        value: object = vars(self.kind)[self.name]  # and not the heir's of the same name, where its base's is meant
+        return value.__get__(record, kind) if isinstance(value, FunctionType) else value
 
 
 def _shape(record: object) -> _Shape:
@@ -178,8 +189,8 @@ if not TYPE_CHECKING:
         """Make a class a dataclass as `dataclasses.dataclass` does, without slots or order."""
 
         def made(kind: type[T]) -> type[T]:
-            shape = _SHAPES[kind] = _Shape(kind, kw_only=kw_only)
-            methods: dict[str, object] = {"__repr__": full_text}
+            shape = _SHAPES[kind] = _Shape(kind, frozen=frozen, eq=eq, kw_only=kw_only)
+            methods: dict[str, object] = {"__repr__": full_text, "__replace__": replace}
             if frozen:
                 methods |= {"__setattr__": _refuse, "__delattr__": _keep}
             if eq:

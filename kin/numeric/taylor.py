@@ -9,12 +9,17 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from kin.numeric.arrays import Array
 from kin.numeric.interval import Ball
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
 Row = TypeVar("Row", Array, Ball)
 
@@ -161,6 +166,42 @@ def _power_columns(exponent: float, order: int) -> tuple[Array, Array | None, Ar
 def _exact(exponent: float, k: int) -> bool:
     """Whether exponent - k is a double."""
     return math.fsum((exponent, -k, k - exponent)) == 0.0
+
+
+def polynomial_rows(coefficients: Sequence[float] | Array, x: Ball, order: int) -> Ball:
+    """Taylor coefficients (order + 1, n) over balls x (n,) of polynomials by their coefficients (k,) or (k, n).
+
+    Coefficients stand lowest first. Row i is the sum of binom(i + p, i) a_(i + p) x**p, all rows by Horner's scheme at
+    once, which encloses no wider than the scheme on series does; rows above the degree are exactly 0.
+    """
+    a = np.array(coefficients, dtype=float).reshape(len(coefficients), -1)
+    factors, place = _shifts(len(a), min(order, len(a) - 1))
+    m, r, whole = x.mid, x.rad, np.abs(x.mid) + x.rad
+    mid, rad = np.zeros((2, order + 1, len(m)))
+    rows = factors * a[place]  # (power, row, n), each off by half an ulp of the coefficient, and half of its own
+    with np.errstate(all="ignore"):
+        # 2 ulps of the sum and of what is added cover the roundings of a step, the last factor those of the radius
+        off, total = 2.0 * 2.0**-52 * np.abs(rows), rows[-1]
+        size, radius = np.abs(total), off[-1]
+        for row, row_off in zip(rows[-2::-1], off[-2::-1], strict=True):
+            radius = size * r + radius * whole
+            total = total * m + row
+            size = np.abs(total)
+            radius += size * (2.0 * 2.0**-52) + row_off
+        # what underflows on the way grows no more than powers do
+        lost = np.where(rows[1:].any(axis=0), np.minimum(whole, 1e-300) * np.maximum(whole, 1.0) ** len(a), 0.0)
+        radius = (radius + 64.0 * lost) * (1.0 + 8.0 * len(a) * 2.0**-52)
+        sound = np.isfinite(radius)
+    mid[: len(total)], rad[: len(total)] = np.where(sound, total, 0.0), np.where(sound, radius, np.inf)
+    return Ball(mid, rad)
+
+
+@lru_cache(maxsize=64)
+def _shifts(count: int, order: int) -> tuple[Array, NDArray[np.intp]]:
+    """Binomials binom(i + p, i) (count, order + 1, 1), 0 beyond `count` coefficients, and places i + p, clipped."""
+    power, row = np.arange(count)[:, None], np.arange(order + 1)
+    binomial = [[float(math.comb(i + p, i)) if i + p < count else 0.0 for i in range(order + 1)] for p in range(count)]
+    return np.array(binomial)[:, :, None], np.minimum(power + row, count - 1)
 
 
 def led(rows: Row, value: Row) -> Row:

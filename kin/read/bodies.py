@@ -12,7 +12,7 @@ from kin.read.errors import ReadError
 from kin.read.nesting import Nest, scaled
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
     from typing import Self
 
@@ -147,6 +147,19 @@ class Placed(NamedTuple):
         """Whether the place turns and shifts the object and does nothing else to it."""
         turn = self.place[:3]
         return bool((np.abs(turn @ turn.T - np.eye(3)) <= RIGID).all() and np.linalg.det(turn) > 0.0)
+
+
+class SeparateBody(NamedTuple):
+    """One of several bodies of a file: its name, its box, and what reads it.
+
+    The box is its least and greatest coordinates (3,), in the file's unit or, where it states one, mm; None where it
+    cannot be read. `read` takes heights of sections and how many others a chain may lie inside, and gives the solid, in
+    the same unit (`heights`, `deepest`); it raises ReadError as the reader of a file with that body alone does.
+    """
+
+    name: str
+    box: tuple[Array, Array] | None
+    read: Callable[..., ReadSolid]
 
 
 class Sought(NamedTuple):

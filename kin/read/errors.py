@@ -9,21 +9,7 @@ from kin.numeric.errors import CamgeoError
 if TYPE_CHECKING:
     from pathlib import Path
 
-REASONS = {
-    "syntax": "the file is damaged or not of this format",
-    "truncated": "the file ends too early",
-    "empty": "the file holds nothing to cut",
-    "unsupported": "the file holds something that is not a contour of lines, arcs and splines in one plane",
-    "range": "a number is not finite or out of range",
-    "open": "the contour does not close: a segment is missing",
-    "gap": "two ends are farther apart than the permitted gap",
-    "branch": "more than two ends meet",
-    "height": "the part does not reach a height at which its section is sought",
-    "several": "there is more than one outer contour",
-    "crossing": "two contours cross or touch",
-    "island": "a contour lies inside a hole",
-}
-
+SHOWN = 40  # characters of a text of a file in a message
 NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range", "height"})
 """Reasons for which a solid counts as not readable; for the others it is not watertight."""
 
@@ -31,11 +17,20 @@ NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range", "h
 class ReadError(CamgeoError, ValueError):
     """A file from which no contour can be read.
 
-    reason      a short code, a key of REASONS
+    Codes of reasons: syntax, the file is damaged or not of this format; truncated, it ends too early; empty, it holds
+    nothing to cut; unsupported, something that is not a contour of lines, arcs and splines in one plane; range, a
+    number is not finite or out of range; open, a segment is missing; gap, two ends are farther apart than permitted;
+    branch, more than two ends meet; height, the part does not reach a height at which its section is sought; several,
+    there is more than one outer contour; crossing, two contours cross or touch; island, one lies inside a hole.
+
+    reason      a short code
     message     what is wrong, where, and by how much
     path        the file
     place       (x, y) in mm (drawing units if the file states none), or None if the error has no place
     width       size of a gap, in the same unit, or None
+    closing     gap, mm, within which all ends would find a partner; None where none closes it
+    unstated    whether the file states no unit, where ends of its contour do not meet
+    between     ends (x, y), in the same unit, of the one stretch that is missing; None where there are more
     """
 
     def __init__(
@@ -52,9 +47,22 @@ class ReadError(CamgeoError, ValueError):
         self.path = path
         self.place = place
         self.width = width
+        self.closing: float | None = None
+        self.unstated = False
+        self.between: tuple[tuple[float, float], tuple[float, float]] | None = None
+
+    def closed_by(self, gap: float | None) -> ReadError:
+        """Return the error itself, with the gap that would close what is open."""
+        self.closing = gap
+        return self
 
     def __str__(self) -> str:
         return f"{self.path}: {self.message}"
+
+
+def short(text: str) -> str:
+    """Text of a file, cut to SHOWN characters for a message."""
+    return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."
 
 
 def xml_fault(error: Exception) -> str:

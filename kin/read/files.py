@@ -12,9 +12,11 @@ from kin.read.formats import FORMATS, DrawingOptions, format_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.read.bodies import Placed, Sought
+    from kin.contour.across import Across
+    from kin.read.bodies import Placed, SeparateBody, Sought
     from kin.read.drawing.drawing import Drawing
     from kin.read.formats import AnySolid
+    from kin.read.mesh.checked import CheckedMesh
 
 
 def kind_of(path: Path | str) -> str:
@@ -30,13 +32,18 @@ def read_drawing(
     deepest: int = 1,
     bridged: float = 0.0,
     unstated: float = 1.0,
+    shaft: tuple[float, float] | None = None,
+    across: Across | None = None,
 ) -> Drawing:
     """Read the contour and the holes that a drawing gives to cut.
 
-    Ends within `gap`, mm, are joined; None is 1e-6 mm, or 2e-8 of the size of a drawing below 50 mm. With `engraved`
-    the closed chains on the layer ENGRAVE are read too, if there is something on CUT. A closed chain may lie inside
-    `deepest` others. Gaps up to `bridged`, mm, and open chains within the contour are reported in `openings`; without
-    `bridged` they raise. For a drawing that states no unit, `gap` and `bridged` take its unit to be `unstated` mm.
+    Ends within `gap`, mm, are joined; by default those that are as near as the digits of the file explain, or 1e-7 of
+    the drawing's size. With `engraved` the closed chains on the layer ENGRAVE are read too, if there is something on
+    CUT. A closed chain may lie inside `deepest` others. Gaps up to `bridged`, mm, and open chains within the contour
+    are reported in `openings`; without `bridged` they raise. Where the whole is not one contour with others in it, the
+    contours round `shaft`, mm, are read if it is given, and what is left out is told in `passed`; `across` closes a
+    contour that is open in one place, which `bridge` tells. For a drawing that states no unit, `gap`, `bridged` and
+    `shaft` take its unit to be `unstated` mm.
 
     Raises OSError where the file cannot be read; ReadError for a damaged or too large file, and for what is not one
     closed contour with holes; ValueError for a suffix that is no drawing's.
@@ -45,7 +52,7 @@ def read_drawing(
     read = format_of(path).drawing
     if read is None:
         raise ValueError(f"{path.name} is no drawing")
-    return read(path, DrawingOptions(gap, engraved, deepest, bridged, unstated))
+    return read(path, DrawingOptions(gap, engraved, deepest, bridged, unstated, shaft, across))
 
 
 def read_solid(
@@ -80,6 +87,19 @@ def read_solid(
     return solid if mm == 1.0 else solid.in_units(heights, mm)
 
 
+def separate_bodies(path: Path | str) -> list[SeparateBody]:
+    """List the bodies of a solid's file, each to be read by itself, in the file's order.
+
+    Raises OSError where the file cannot be read; ReadError for a file that is too large or damaged; ValueError for a
+    suffix that is no solid's.
+    """
+    path = Path(path)
+    separate = format_of(path).separate
+    if separate is None:
+        raise ValueError(f"{path.name} is no solid")
+    return list(separate(path))
+
+
 def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
     """Read the triangles of each body, mm; `units`, mm, is the unit of a file that states none, None is mm.
 
@@ -92,6 +112,24 @@ def read_meshes(path: Path | str, units: float | None = None) -> list[Placed]:
         raise ValueError(f"{path.name} holds no mesh")
     scale = 1.0 if record.units or units is None else units
     return [placed._replace(corners=placed.corners * scale) for placed in record.meshes(path)]
+
+
+def read_mesh(path: Path | str, units: float | None = None) -> CheckedMesh:
+    """Read the mesh of one part of any shape, mm, welded and checked; `faults` says in words what is wrong with it.
+
+    `units`, mm, is the unit of a file that states none; None is mm. A 3MF holds one object that is built, or one of
+    several that is named "cam".
+
+    Raises OSError where the file cannot be read; ReadError for a file that is too large, damaged or none of its format,
+    a flat part, and several bodies; ValueError for a suffix of files without meshes.
+    """
+    from kin.read.mesh.checked import checked
+
+    path = Path(path)
+    record = format_of(path)
+    if record.part is None:
+        raise ValueError(f"{path.name} holds no mesh")
+    return checked(record.part(path), path, 1.0 if record.units or units is None else units)
 
 
 def read_bodies(path: Path | str, sought: Sequence[Sought], levels: Sequence[float]) -> list[AnySolid]:

@@ -17,11 +17,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from kin.contour.across import Across
     from kin.numeric.arrays import Array
-    from kin.read.bodies import Placed, Sought
+    from kin.read.bodies import Placed, SeparateBody, Sought
     from kin.read.drawing.drawing import Drawing
+    from kin.read.mesh.checked import Form, Triangles
     from kin.read.mesh.prism import Corners
-    from kin.read.mesh.stl import Form, Solid
+    from kin.read.mesh.stl import Solid
     from kin.read.step.step import StepSolid
 
     AnySolid: TypeAlias = Solid | StepSolid
@@ -32,11 +34,13 @@ Contents: TypeAlias = Literal["drawing", "solid", "program", "table"]
 class DrawingOptions(NamedTuple):
     """How a drawing is read.
 
-    gap       mm; ends within it are joined. None: 1e-6, or 2e-8 of the size of a drawing below 50 mm
+    gap       mm; ends within it are joined. None: what the file's digits explain, or 1e-7 of the drawing's size
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
     deepest   how many others a closed chain may lie inside: 1, so that a hole has no island
     bridged   mm; gaps up to this, and open chains within the contour, are reported in `openings`; with 0 they raise
-    unstated  mm; for a drawing that states no unit, `gap` and `bridged` take its unit to be this long
+    unstated  mm; for a drawing that states no unit, `gap`, `bridged` and `shaft` take its unit to be this long
+    across    how a contour that is open in one place is closed there: by an arc about the shaft, or by a chord
+    shaft     place, mm, of which the contours are sought: what else is drawn is left aside. None: all of it is read
     """
 
     gap: float | None = None
@@ -44,6 +48,8 @@ class DrawingOptions(NamedTuple):
     deepest: int = 1
     bridged: float = 0.0
     unstated: float = 1.0
+    shaft: tuple[float, float] | None = None
+    across: Across | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +64,9 @@ class Format:
     drawing   reads a drawing: (path, options); None for a format that holds none
     solid     reads one part and its sections at heights, within which chains are nested: (path, heights, deepest)
     bodies    reads several parts of one file, the lowest first: (path, sections sought of each part)
+    separate  reads the bodies of one file one by one, in the order of the file
     meshes    reads the triangles of each body, in mm, or in the file's unit where it states none
+    part      reads the triangles of one part
     """
 
     name: str
@@ -69,7 +77,9 @@ class Format:
     drawing: Callable[[Path, DrawingOptions], Drawing] | None = None
     solid: Callable[[Path, Sequence[float], int], AnySolid] | None = None
     bodies: Callable[[Path, Sequence[Sought]], Sequence[AnySolid]] | None = None
+    separate: Callable[[Path], Sequence[SeparateBody]] | None = None
     meshes: Callable[[Path], Sequence[Placed]] | None = None
+    part: Callable[[Path], Triangles] | None = None
 
 
 def mesh(
@@ -100,7 +110,27 @@ def mesh(
         corners: Array = read(path)[0].astype(np.float64)
         return (Placed("", corners, np.eye(4, 3)),)
 
-    return Format(name=name, contents="solid", most=most, suffixes=suffixes, units=units, solid=solid, meshes=meshes)
+    def part(path: Path) -> Triangles:
+        from kin.read.mesh.checked import Triangles
+
+        return Triangles(*read(path))
+
+    def separate(path: Path) -> Sequence[SeparateBody]:
+        from kin.read.mesh.stl import bodies_of
+
+        return bodies_of(*read(path), path)
+
+    return Format(
+        name=name,
+        contents="solid",
+        most=most,
+        suffixes=suffixes,
+        units=units,
+        solid=solid,
+        separate=separate,
+        meshes=meshes,
+        part=part,
+    )
 
 
 def _dxf(path: Path, options: DrawingOptions) -> Drawing:
@@ -145,6 +175,24 @@ def _meshes_of_three_mf(path: Path) -> Sequence[Placed]:
     return read_placed(path)
 
 
+def _separate_of_three_mf(path: Path) -> Sequence[SeparateBody]:
+    from kin.read.mesh.threemf import separate_bodies
+
+    return separate_bodies(path)
+
+
+def _separate_of_step(path: Path) -> Sequence[SeparateBody]:
+    from kin.read.step.step import separate_bodies
+
+    return separate_bodies(path)
+
+
+def _part_of_three_mf(path: Path) -> Triangles:
+    from kin.read.mesh.threemf import read_part
+
+    return read_part(path)
+
+
 def _step(path: Path, heights: Sequence[float], deepest: int) -> StepSolid:
     from kin.read.step.step import read_step
 
@@ -171,7 +219,9 @@ FORMATS: dict[str, Format] = {
             suffixes=(".3mf",),
             solid=_three_mf,
             bodies=_bodies_of_three_mf,
+            separate=_separate_of_three_mf,
             meshes=_meshes_of_three_mf,
+            part=_part_of_three_mf,
         ),
         Format(
             name="step",
@@ -180,6 +230,7 @@ FORMATS: dict[str, Format] = {
             suffixes=(".step", ".stp"),
             solid=_step,
             bodies=_bodies_of_step,
+            separate=_separate_of_step,
         ),
         Format(name="gcode", contents="program", most=32_000_000, suffixes=(".gcode", ".ngc", ".nc", ".tap")),
         Format(name="csv", contents="table", most=16_000_000, suffixes=(".csv", ".txt", ".xyz")),

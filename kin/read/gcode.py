@@ -23,7 +23,7 @@ ARC_MM = 0.002  # by which the distances of an arc's ends from its centre may di
 MOST_LINES = 1_000_000
 LARGEST = 1e6  # of a number as written
 CENTRES = "have the post-processor write arcs by their centre, I and J"
-_WORD = re.compile(r"([A-Z])([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
+_WORD = re.compile(r"([A-Z])([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+))")
 _COMMENT = re.compile(r"\(([^()]*)\)")
 _GROUPS = {
     "motion": ("0", "1", "2", "3"),
@@ -84,11 +84,10 @@ def read_gcode(path: Path | str) -> Program:
         text = contents(path, "gcode").decode("ascii")
     except UnicodeDecodeError as error:
         raise ReadError("syntax", f"byte {error.start} is not ASCII", path) from error
-    machine = _Machine(path)
-    lines = text.splitlines()
-    if len(lines) > MOST_LINES:
+    if max(text.count("\n"), text.count("\r")) > MOST_LINES:
         raise ReadError("range", f"more than {MOST_LINES} lines", path)
-    for number, line in enumerate(lines, start=1):
+    machine = _Machine(path)
+    for number, line in enumerate(text.splitlines(), start=1):
         machine.block(number, line)
     if not machine.ended:
         raise ReadError("truncated", "the program does not end: there is no M30 or M2", path)

@@ -1,22 +1,45 @@
 """A place for libraries that keep files in the user's home folder, where there is none or it cannot be written.
 
 ezdxf and matplotlib keep a list of the system's fonts there. Without a home folder they print notices, or fail; neither
-is needed for what is read and drawn here.
+is needed for what is read and drawn here. Of ezdxf they are an eighth of its import, for which it has no switch.
 """
 
 from __future__ import annotations
 
 import os
+import sys
 from functools import lru_cache
+from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 _FOLDERS = {"XDG_CACHE_HOME": "~/.cache", "XDG_CONFIG_HOME": "~/.config"}
 _LIBRARIES = ("ezdxf", "matplotlib")
+_FONTS = "ezdxf.fonts.fonts"
+
+
+class _FontsLater:
+    """Finder of ezdxf's fonts, which are loaded when something of them is asked for."""
+
+    def find_spec(self, name: str, path: Sequence[str] | None = None, _target: object = None) -> ModuleSpec | None:
+        """What Python asks of a finder."""
+        spec = PathFinder.find_spec(name, path) if name == _FONTS else None
+        if spec is not None and spec.loader is not None:
+            from importlib.util import LazyLoader
+
+            sys.meta_path.remove(self)
+            spec.loader = LazyLoader(spec.loader)
+        return spec
 
 
 @lru_cache(maxsize=1)
 def prepare_home() -> None:
     """Send ezdxf and matplotlib to a temporary folder where the home folder is missing or cannot be written.
+
+    ezdxf's fonts are not loaded until they are asked for.
 
     The folder is removed when the process ends. The call comes before the import of either library, and before other
     processes are started.
@@ -25,6 +48,8 @@ def prepare_home() -> None:
 
     for library in _LIBRARIES:  # without a handler Python prints their warnings
         logging.getLogger(library).addHandler(logging.NullHandler())
+    if _FONTS not in sys.modules:
+        sys.meta_path.insert(0, _FontsLater())
     if all(_usable(os.environ.get(variable) or default) for variable, default in _FOLDERS.items()):
         return
     import atexit

@@ -11,6 +11,7 @@ from kin.contour.closed_spline import closed_spline
 from kin.contour.contour import Contour
 from kin.contour.pieces import Pieces
 from kin.read.errors import ReadError
+from kin.read.rows import has_more_rows
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -77,6 +78,10 @@ def _points(path: Path) -> Array:
     if path.stat().st_size > MOST:
         raise ReadError("range", f"larger than {MOST / 1e6:g} MB", path)
     text = path.read_bytes().decode("utf-8-sig", "replace")
+    if has_more_rows(text, MOST_POINTS + 1):
+        raise ReadError(
+            "range", f"more than {MOST_POINTS + 1} points; {LEAST_POINTS + 1} to {MOST_POINTS + 1} are read", path
+        )
     lines = [line.replace(",", " ").replace(";", " ").split() for line in text.splitlines() if line.strip()]
     try:
         rows = np.array([[float(cell) for cell in line] for line in lines])

@@ -11,21 +11,22 @@ end continues a line.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
+from kin.contour.across import Bridge, bulge_across
 from kin.contour.contour import Contour
 from kin.contour.intersections import crossings
 from kin.numeric.records import dataclass, replace
-from kin.read.errors import ReadError
-from kin.read.nesting import counter_clockwise
-from kin.read.rows import RowError, read_rows, short
+from kin.read.errors import ReadError, short
+from kin.read.rows import ROW, RowError, has_more_rows, read_rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from kin.contour.across import Across
     from kin.numeric.arrays import Array, Indices, Mask
     from kin.read.rows import Rows
 
@@ -34,7 +35,13 @@ TurnsOf: TypeAlias = Literal["crank", "cam", ""]
 SUFFIXES = (".csv", ".txt", ".xyz", ".asc", ".dmo", ".dmi", ".dms")
 MOST_BYTES = 200_000_000
 LEAST_POINTS, MOST_POINTS = 36, 1_000_000  # in a file; the least is one every 10 degrees
+MOST_HEADINGS = 1000  # lines of words above the rows; of few points beyond the most the rows are counted one by one
 LARGEST = 1e6  # of a coordinate, in the file's unit
+# Points leave out a stretch where a step is so many times as wide as the second widest of so many on either side,
+MANY, NEIGHBOURS = 3.5, 10
+UNEVEN = 2.0  # twice as many of steps that are themselves so uneven
+# unless it goes straight on from both: turns by no more than so much, rad, and so many times as the steps beside it.
+STRAIGHT, BENDS = np.radians(0.5), 1.5
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch": 25.4, "inches": 25.4, "thou": 0.0254}
 CRANK = 2.0  # turns of a four-stroke engine's crank for one of its camshaft
 ANGLES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0, "rad": 180.0 / np.pi}
@@ -49,12 +56,13 @@ NAMES = {  # what columns are called by the programs that write them
     "s": "lift", "reading": "lift", "displacement": "lift", "swing": "lift",
     "surface": "surface", "flank": "surface", "lobe": "lobe",
 }  # fmt: skip
-HEADING = re.compile(r"^(?P<name>.*?)[ _]*(?:[\[(]\s*(?P<inside>[^\])]*)[\])]|_(?P<after>[a-z°]+))?$")
+UNIT = re.compile(r"[\[(](?P<inside>[^\[\]()]*)[\])]$|_(?P<after>[a-z°]+)$")
 OF_CRANK, OF_CAM = (
     re.compile(rf"(?<![a-z])(?:{word})(?![a-z])") for word in ("crank(?:shaft)?|ca", "cam(?:shaft)?|shaft")
 )
 COMMENT = ("#", ";", "%", "!", "//", "$$")
-DMIS = re.compile(r"^FA\s*\(\s*(?P<label>[^)]*)\)\s*=\s*FEAT\s*/\s*POINT\s*,\s*CART\s*,(?P<rest>.*)$", re.IGNORECASE)
+POINT = r"FA[ \t]*\("  # begin of the statement of a point in DMIS
+DMIS = re.compile(r"FA\s*\([^)]*\)\s*=\s*FEAT\s*/\s*POINT\s*,\s*CART\s*,(?P<rest>.*)$", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +125,10 @@ def read_points(path: Path) -> PointTable:
     if b"\0" in raw and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise ReadError("syntax", "not a text; save the points as CSV", path)
     text = _decoded(raw)
-    if re.search(r"^\s*FA\s*\(", text, re.MULTILINE | re.IGNORECASE) and "FEAT" in text.upper():
+    is_dmis = has_more_rows(text, 0, POINT) and "FEAT" in text.upper()
+    if has_more_rows(text, MOST_POINTS + MOST_HEADINGS, POINT if is_dmis else ROW):
+        raise ReadError("range", f"more than {MOST_POINTS} rows; up to {MOST_POINTS} are read: leave some out", path)
+    if is_dmis:
         return _demand_sound(_dmis(text, path), path)
     if text.lstrip().upper().startswith("DMISMN"):
         message = "a program that measures, and no point FA(label)=FEAT/POINT,CART of what it measured: give its output"
@@ -125,29 +136,92 @@ def read_points(path: Path) -> PointTable:
     return _demand_sound(_table(text, path), path)
 
 
-def read_contour_points(path: Path, unit: float) -> list[Contour]:
+class PointContour(NamedTuple):
+    """A closed contour through points, counter-clockwise, mm, and the stretch that closes it where points are left out.
+
+    `unit` is mm of the file's unit, None where it states none.
+    """
+
+    contour: Contour
+    bridge: Bridge | None
+    unit: float | None
+
+
+def read_contour_points(path: Path, unit: float, across: Across | None = None) -> list[PointContour]:
     """Read closed polygons, counter-clockwise, mm, through points in order: one for each surface that the file names.
 
-    `unit`, mm, is the unit of a file that states none. Raises OSError where the file cannot be read; ReadError for a
-    file without sound points, one of angles and lifts, and points out of order, whose lines cross.
+    `unit`, mm, is the unit of a file that states none. Where points leave a stretch of the contour out, `across` closes
+    it. Raises OSError where the file cannot be read; ReadError for a file without sound points, one of angles and
+    lifts, points out of order, whose lines cross, and points that leave a stretch out without `across`.
     """
     table = read_points(path)
     if "x" not in table.columns:
         message = "angles and lifts make no contour; give them as table, or points x, y"
         raise ReadError("unsupported", message, path)
-    places = np.column_stack([table.columns["x"], table.columns["y"]]) * (table.unit or unit)
+    mm = table.unit or unit
+    places = np.column_stack([table.columns["x"], table.columns["y"]]) * mm
     labels = np.array(table.labels or [""] * len(table))
     contours = []
     for label in dict.fromkeys(labels.tolist()):
-        points = places[labels == label]
-        contour = Contour.from_vertices(points[(points != np.roll(points, 1, axis=0)).any(axis=1)])
+        points, lines = places[labels == label], table.lines[labels == label]
+        moved = (points != np.roll(points, 1, axis=0)).any(axis=1)
+        points, lines = points[moved], lines[moved]
+        contour = Contour.from_vertices(points)
         crossing = crossings(contour).point
         if len(crossing):
-            x, y = (crossing[0] / (table.unit or unit)).tolist()
+            x, y = (crossing[0] / mm).tolist()
             message = f"lines from point to point cross near {x:.6g}, {y:.6g}; give the points in their order"
             raise ReadError("crossing", f"{message} round the contour", path, (x, y))
-        contours.append(counter_clockwise(contour))
+        if contour.area < 0.0:
+            points, lines = points[::-1], lines[::-1]
+        contours.append(PointContour(*_closed(points, lines, across, mm, path), table.unit))
     return contours
+
+
+def _closed(
+    points: Array, lines: Indices, across: Across | None, mm: float, path: Path
+) -> tuple[Contour, Bridge | None]:
+    """The polygon through points (n, 2), mm, counter-clockwise, closed by `across` where they leave a stretch out."""
+    open_at = left_out(points)
+    if open_at is None:
+        return Contour.from_vertices(points), None
+    start, end = points[open_at], points[(open_at + 1) % len(points)]
+    between = sorted([int(lines[open_at]), int(lines[(open_at + 1) % len(points)])])
+    wide = float(np.hypot(*(end - start)))
+    named = (
+        f"lines {between[0]} and {between[1]}: {wide / mm:.4g} apart, {wide / _usual(points):.0f} times the usual step"
+    )
+    bridge = Bridge((float(start[0]), float(start[1])), (float(end[0]), float(end[1])))
+    if across is None or bridge.angles[1] - bridge.angles[0] >= np.pi:
+        remedy = "give the points between them" + ("" if across else ", or across: arc or chord, which closes it there")
+        raise ReadError("open", f"{named}: a stretch of the contour is left out; {remedy}", path, None, wide)
+    bulges = np.zeros(len(points))
+    bulges[open_at] = bulge_across(start, end, across)
+    return Contour.from_bulges(points, bulges), bridge
+
+
+def left_out(points: Array) -> int | None:
+    """Index of the point (n, 2), mm, behind which a stretch of the closed contour is left out; None where none is.
+
+    The step there is many times as wide as those on either side, and does not go straight on from either: a flank
+    that is straight needs no points between its ends. Of several the widest counts.
+    """
+    step = np.roll(points, -1, axis=0) - points
+    length = np.hypot(*step.T)
+    beside = np.stack([np.roll(length, k) for k in range(-NEIGHBOURS, NEIGHBOURS + 1) if k])
+    usual = np.sort(beside, axis=0)[-2]  # but for one more such stretch
+    many = np.where(usual > UNEVEN * np.median(beside, axis=0), 2.0, 1.0) * MANY
+    # the turn from each step to the next, and how much the points turn beside that
+    heading = np.arctan2(step[:, 1], step[:, 0])
+    turn = np.abs((np.roll(heading, -1) - heading + np.pi) % (2.0 * np.pi) - np.pi)
+    near = np.stack([np.maximum(np.roll(turn, k + 1), np.roll(turn, -k)) for k in range(1, NEIGHBOURS // 2 + 1)])
+    straight = np.maximum(np.roll(turn, 1), turn) <= STRAIGHT + BENDS * np.median(near, axis=0)
+    wide = np.flatnonzero((length > many * usual) & ~straight)
+    return int(wide[np.argmax(length[wide])]) if wide.size else None
+
+
+def _usual(points: Array) -> float:
+    return float(np.median(np.hypot(*(np.roll(points, -1, axis=0) - points).T)))
 
 
 def _decoded(data: bytes) -> str:
@@ -160,13 +234,15 @@ def _decoded(data: bytes) -> str:
 
 
 def _dmis(text: str, path: Path) -> PointTable:
-    rows, lines, statement, begin = [], [], "", 0
+    rows, lines, begin = [], [], 0
+    parts: list[str] = []
     for number, line in enumerate(text.splitlines(), 1):
-        begin = begin if statement else number
-        statement += line.strip()
-        if statement.endswith("$") and not statement.startswith("$$"):
-            statement = statement[:-1]
+        begin = begin if parts else number
+        parts.append(line.strip())
+        if parts[-1].endswith("$") and not parts[0].startswith("$$"):
+            parts[-1] = parts[-1][:-1]
             continue
+        statement, parts = "".join(parts), []
         if feature := DMIS.match(statement):
             try:
                 rows.append([float(cell) for cell in feature["rest"].split(",")])
@@ -175,7 +251,6 @@ def _dmis(text: str, path: Path) -> PointTable:
             if len(rows[-1]) not in {3, 6}:
                 raise ReadError("syntax", f"line {begin}: x,y,z or x,y,z,i,j,k are expected: {short(statement)}", path)
             lines.append(begin)
-        statement = ""
     if not rows:
         raise ReadError("empty", "no FA(label) = FEAT/POINT,CART,... is among its lines", path)
     if len({len(row) for row in rows}) > 1:
@@ -186,7 +261,7 @@ def _dmis(text: str, path: Path) -> PointTable:
 
 
 def _stated_in_dmis(text: str) -> float | None:
-    statement = re.search(r"^\s*UNITS\s*/\s*(MM|CM|M|INCH)\b", text, re.MULTILINE | re.IGNORECASE)
+    statement = re.search(r"^[ \t]*UNITS[ \t]*/[ \t]*(MM|CM|M|INCH)\b", text, re.MULTILINE | re.IGNORECASE)
     return UNITS[statement[1].lower()] if statement else None
 
 
@@ -317,12 +392,11 @@ def _column(cell: str) -> tuple[str, str, str, bool]:
     A name by the first word alone, as of `X set`, is not sure. The name is empty if unknown.
     """
     text = cell.strip().strip('"').strip().lower()
-    heading = HEADING.match(text)
     name, unit = text, ""
-    if heading is not None:
-        stated = (heading["inside"] or heading["after"] or "").strip()
-        if stated in UNITS or stated in ANGLES or heading["inside"] is not None:
-            name, unit = heading["name"].strip(), stated
+    if behind := UNIT.search(text):
+        stated = (behind["inside"] or behind["after"] or "").strip()
+        if stated in UNITS or stated in ANGLES or behind["inside"] is not None:
+            name, unit = text[: behind.start()].rstrip(" _\t"), stated
     words = [word for word in re.split(r"[ _]+", name) if word]
     if not words or "cutter" in words:  # where a cutter stands is no metal
         return "", "", unit, True

@@ -1,7 +1,9 @@
-"""Rows of a table as text: headings, the mark between columns, decimal commas, comments.
+"""Rows of a table as text: headings, the mark between columns, decimal commas, comments, units behind numbers.
 
-Columns are parted by semicolons, tabs, blanks or commas; a comma is the decimal mark where it does not part. The first
-line is a heading unless it begins with a number or has two; so are lines below it that have none, such as one of units.
+Columns are parted by semicolons, tabs, bars, blanks or commas; a comma is the decimal mark where it does not part. The
+lines above the first row are headings: it begins with a number, or has as many cells as the others and two numbers. Of
+several the names and units are taken, and a number of rows that stands alone above them is compared. Cells behind the
+first row's that are no numbers are comments.
 """
 
 from __future__ import annotations
@@ -9,24 +11,36 @@ from __future__ import annotations
 import io
 import re
 from contextlib import suppress
-from itertools import takewhile, zip_longest
+from itertools import compress, islice, zip_longest
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kin.numeric.errors import CamgeoError
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
+from kin.read.errors import short
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.numeric.arrays import Array, Indices
 
-SHOWN = 40  # characters of a line in a message
 _LOOKED = 20  # lines from which the mark between columns is found
-_NUMBER = re.compile(r"[+-]?(?:(?:\d+[.,]?\d*|[.,]\d+)(?:e[+-]?\d+)?|nan|inf(?:inity)?)", re.IGNORECASE | re.ASCII)
+_NUMBER = re.compile(
+    r"[+-]?(?:(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[ed][+-]?\d+)?|nan|inf(?:inity)?)", re.IGNORECASE | re.ASCII
+)
+_BEHIND = re.compile(r"\s(?:#|!|//).*")  # comment behind a row
+_UNIT = re.compile(
+    r"(?<=[\d.,])\s*(degrees?|deg|°|rad|turns?|%|mm|cm|[µμu]m|inch|in|thou|mils?|seconds|sec|ms|s|kN|Nm|N|lbf)(?=[\s;,|]|$)"
+)
+_QUOTED = re.compile(r'"[^"]*"(?:\s*,\s*"[^"]*")+\s*,?$')
+_PARTED = re.compile(r'"\s*,\s*"')
+_WIDE = re.compile(r"\s{2,}|\t")
+_BEHIND_BRACKET = re.compile(r"(?<=[)\]])")
+_COMMENTS = ("#", "!", "%", "//")
+ROW = r"[^\s#;%!/$]"  # begin of a line that is neither empty nor a comment
 _EXCEL = re.compile(r"sep=.$", re.IGNORECASE)  # its word for the mark between columns
-_MARKS = {";": "semicolons", "\t": "tabs", " ": "blanks", ",": "commas"}
+_MARKS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "blanks", ",": "commas"}
 
 
 class RowError(CamgeoError, ValueError):
@@ -42,13 +56,16 @@ class Rows:
     """A table as text: its lines of numbers (n), their line numbers from 1, the mark between columns, and the heading.
 
     Cells of a second line of headings stand in brackets behind the first, as units do: `x (mm)`. `heading` is empty
-    where there is none.
+    where there is none, `units` where none stand behind the numbers of the first row. `commented` are what comments
+    above the rows would be as headings, the last one first.
     """
 
     lines: list[str]
     numbers: Indices
     mark: str
     heading: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
+    commented: tuple[tuple[str, ...], ...] = ()
 
     @property
     def width(self) -> int:
@@ -58,20 +75,36 @@ class Rows:
     @property
     def columns(self) -> int:
         """Number of columns of the first row, trailing empty ones included where the heading names them."""
-        line, mark = self.lines[0], None if self.mark == " " else self.mark
-        count = len(line.split(mark))
-        return count if len(self.heading) == count else len(_cells(line, self.mark))
+        counts = _counts(self.lines[0], self.mark)
+        return max(min(counts), len(self.heading))
 
     def texts(self, column: int) -> list[str]:
         """Cells of a column, counted from 0, as they are written (n); "" where a row has not so many."""
         rows = (_cells(line, self.mark) for line in self.lines)
         return [row[column] if column < len(row) else "" for row in rows]
 
+    def numbered(self) -> list[int]:
+        """Columns, counted from 0, in which a number is among the first rows."""
+        looked = [_cells(line, self.mark) for line in self.lines[:_LOOKED]]
+        return [k for k in range(self.columns) if any(k < len(row) and _NUMBER.fullmatch(row[k]) for row in looked)]
+
+    def filled(self, columns: Sequence[int]) -> Rows:
+        """Those rows that are not empty in all of these columns, as shorter ones beside longer ones are at their end.
+
+        Raises RowError where there is none.
+        """
+        full = [any(cells) for cells in zip(*map(self.texts, columns), strict=True)]
+        if all(full):
+            return self
+        if not any(full):
+            raise RowError("these columns are empty", int(self.numbers[0]))
+        return replace(self, lines=[*compress(self.lines, full)], numbers=self.numbers[full])
+
     def values(self, columns: Sequence[int], *, blanks: bool = False) -> Array:
         """Numbers (n, k) of some columns, counted from 0; with `blanks` an empty cell is nan.
 
-        Raises RowError with the first line that has more columns than the heading, or no number in one of these
-        columns.
+        Raises RowError with the first line that has a number more than the heading has names, or no number in one of
+        these columns.
         """
         mark = None if self.mark == " " else self.mark
         body = "\n".join(self.lines if mark == "," else [line.replace(",", ".") for line in self.lines])
@@ -85,7 +118,7 @@ class Rows:
     def _row(self, line: str, number: int, columns: Sequence[int], *, blanks: bool) -> list[float]:
         cells = _cells(line, self.mark)
         count = len(line.split(None if self.mark == " " else self.mark))
-        if len(cells) > self.width or count <= max(columns):
+        if _numbers(cells[self.width :]) or count <= max(columns):
             problem = f"{count} columns, and {self.width} are expected, parted by {_MARKS[self.mark]}: {short(line)!r}"
             wide = self.mark == "," and len(cells) > self.width
             raise RowError(problem + ": with decimal commas, part the columns by semicolons" * wide, number)
@@ -95,47 +128,95 @@ class Rows:
             if not _NUMBER.fullmatch(cell) and (cell or not blanks):
                 problem = f"{short(cell)!r} is not a number" if cell else f"column {k + 1} is empty"
                 raise RowError(f"{problem}, in {short(line)!r}", number)
-            row.append(float(cell.replace(",", ".") or "nan"))
+            row.append(float(cell.replace(",", ".").lower().replace("d", "e") or "nan"))
         return row
 
 
-def read_rows(text: str, comments: tuple[str, ...] = ("#",)) -> Rows:
+def read_rows(text: str, comments: tuple[str, ...] = _COMMENTS) -> Rows:
     """Find the rows of a text; lines that begin with one of `comments` are left out.
 
-    Raises RowError for a text without rows.
+    Raises RowError for a text without rows, and for one whose first line states another number of rows.
     """
-    lines = [(i, line.strip()) for i, line in enumerate(text.lstrip("\ufeff").splitlines(), 1)]
-    kept = [(i, line) for i, line in lines if line and not line.startswith(comments) and not _EXCEL.match(line)]
+    lines = [(i, line.strip()) for i, line in enumerate(text.lstrip("\ufeff").replace("\u2212", "-").splitlines(), 1)]
+    if any(line.startswith("|") for _, line in lines[:_LOOKED]):
+        lines = [(i, line.strip("|").strip()) for i, line in lines]
+    kept = [
+        (i, line)
+        for i, line in lines
+        if line.strip(";,|:-+\t ") and not line.startswith(comments) and not _EXCEL.match(line)
+    ]
     if not kept:
         raise RowError("no row of numbers is among its lines")
-    # lines of headings: the first, unless it has numbers, and those without numbers below it
+    if all(_QUOTED.match(line) for _, line in kept[:_LOOKED]):  # commas within the quotes are decimal ones
+        kept = [(i, _PARTED.sub('";"', line)) for i, line in kept]
+    kept = [(i, _BEHIND.sub("", line)) if "#" in line or "!" in line or "//" in line else (i, line) for i, line in kept]
+    as_written = dict(kept)
+    if any(_NUMBER.match(line) and _UNIT.search(line) for _, line in kept[: _LOOKED + 1]):
+        kept = [(i, _UNIT.sub("", line) if _NUMBER.match(line) else line) for i, line in kept]
     mark = _mark([line for _, line in kept[1 : _LOOKED + 1] or kept])
-    count = 0
-    if _is_heading(kept[0][1], mark):
-        count = 1 + len(list(takewhile(lambda row: not _numbers(_cells(row[1], mark)), kept[1:])))
+    stated, kept = _stated(kept)
+    count = _headings([line for _, line in kept], mark)
     rows = kept[count:]
+    if stated is None:
+        stated, rows = _stated(rows)
     if not rows:
         raise RowError("below its heading there is no row")
+    if stated is not None and stated[1] != len(rows):
+        remedy = "add the others, or begin this line with # if it states something else"
+        raise RowError(f"{stated[1]} rows are stated, and {len(rows)} follow; {remedy}", stated[0])
+    behind = [_UNIT.search(cell) for cell in _cells(as_written[rows[0][0]], mark)]
+    units = tuple("" if unit is None else unit[1] for unit in behind)
     # headings with as many cells as the rows have columns; a second one's cells go in brackets behind the first's
-    first = rows[0][1]
-    widths = {len(_cells(first, mark)), len(first.split(None if mark == " " else mark))}
+    first_row = rows[0][1]
+    widths = set(_counts(first_row, mark)) | {max(len(_cells(line, mark)) for _, line in rows[:_LOOKED])}
     headings = [_heading(line, mark, widths) for _, line in kept[:count]]
     fitting = [heading for heading in headings if len(heading) in widths] or headings[-1:]
     heading = tuple(
         " ".join([name, *(f"({word.strip('[()]')})" for word in more if word)]).strip()
         for name, *more in zip_longest(*fitting, fillvalue="")  # a line may leave out its last cells
     )
-    return Rows([line for _, line in rows], np.array([i for i, _ in rows], dtype=np.intp), mark, heading)
+    above = [line.lstrip("#!%/ \t") for i, line in lines if i < rows[0][0] and line.startswith(comments)]
+    commented = tuple(tuple(_heading(line, mark, widths)) for line in reversed(above))
+    numbers = np.array([i for i, _ in rows], dtype=np.intp)
+    return Rows([line for _, line in rows], numbers, mark, heading, units, commented)
 
 
-def short(text: str) -> str:
-    """Text, cut to SHOWN characters for a message."""
-    return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."
+def _stated(rows: list[tuple[int, str]]) -> tuple[tuple[int, int] | None, list[tuple[int, str]]]:
+    """The line and the number of rows that a first line states alone, or None, and the rows below it.
+
+    Above rows of one number it is that of the rows, or it is one of them.
+    """
+    if len(rows) > 1 and rows[0][1].isdecimal():
+        (line, text), *others = rows
+        if int(text) == len(others) or not all(_NUMBER.fullmatch(other) for _, other in others[:_LOOKED]):
+            return (line, int(text)), others
+    return None, rows
 
 
-def _is_heading(line: str, mark: str) -> bool:
-    cells = _cells(line, mark)
-    return not _NUMBER.fullmatch(cells[0]) and _numbers(cells) < 2
+def has_more_rows(text: str, most: int, row: str = ROW) -> bool:
+    """Whether more than `most` lines of a text begin with the pattern `row`; they are counted, and none is kept."""
+    return next(islice(re.finditer(rf"^[ \t]*{row}", text, re.MULTILINE | re.IGNORECASE), most, None), None) is not None
+
+
+def _headings(lines: Sequence[str], mark: str) -> int:
+    """Number of lines above the first row: up to the last one without numbers, one of a name and a number at least."""
+    typical, count = len(_cells(lines[-1], mark)), 0
+    for i, line in enumerate(lines):
+        cells = _cells(line, mark)
+        if (
+            _NUMBER.fullmatch(cells[0])
+            or (len(cells) == typical and _numbers(cells) >= 2)
+            or (not cells[0] and _numbers(cells))
+        ):
+            break
+        if not i or not _numbers(cells):
+            count = i + 1
+    return count
+
+
+def _counts(line: str, mark: str) -> tuple[int, int]:
+    """Number of cells of a line without and with empty ones at its end."""
+    return len(_cells(line, mark)), len(line.split(None if mark == " " else mark))
 
 
 def _numbers(cells: list[str]) -> int:
@@ -144,7 +225,7 @@ def _numbers(cells: list[str]) -> int:
 
 def _mark(lines: Sequence[str]) -> str:
     """The mark between columns, by these lines."""
-    for mark in (";", "\t"):
+    for mark in (";", "\t", "|"):
         if sum(mark in line for line in lines) * 2 > len(lines):
             return mark
     if all(re.search(r",\s", line) for line in lines):
@@ -165,6 +246,13 @@ def _cells(line: str, mark: str) -> list[str]:
 
 
 def _heading(line: str, mark: str, widths: set[int]) -> list[str]:
-    """Cells of a heading's line, parted by the first mark that gives one of `widths`; the rows' mark is tried first."""
+    """Cells of a heading's line, parted by the first mark that gives one of `widths`; the rows' mark is tried first.
+
+    Names of several words stand apart by two blanks, or end with their unit in brackets.
+    """
     ways = [_cells(line, parting) for parting in (mark, ";", "\t", ",")]
+    ways += [
+        [cell.strip('"') for cell in _WIDE.split(line)],
+        [cell.strip() for cell in _BEHIND_BRACKET.split(line) if cell.strip()],
+    ]
     return next((names for names in ways if len(names) in widths), ways[0])

@@ -5,7 +5,7 @@ from camgeo.api.notebook import line, notebook_html, table
 
 
 def check(name, *, ok):
-    return Check(name, ok, 1.5, 2.0, "mm", at_deg=30.0, sense="at_least", file="a.dxf")
+    return Check(name, ok, 1.5, 2.0, "mm", at=30.0, sense="at_least", file="a.dxf")
 
 
 def test_the_verdict_counts_what_failed():

@@ -31,6 +31,7 @@ def test_the_import_loads_nothing_else() -> None:
     assert done.stdout == "[]\n"
 
 
+@pytest.mark.slow
 def test_reading_a_recipe_loads_no_library_of_drawings_or_solids() -> None:
     code = "import sys, camgeo; camgeo.load(sys.argv[1]); print(sorted(set(sys.argv[2:]) & set(sys.modules)))"
     heavy = ["ezdxf", "manifold3d", "matplotlib", "OCP", "scipy", "camgeo.output.pipeline", "camgeo.fit.arcs"]
@@ -146,6 +147,7 @@ def errors_of(package: str) -> list[type[BaseException]]:
     return [one for one in found if issubclass(one, BaseException) and not one.__name__.startswith("_")]
 
 
+@pytest.mark.slow
 def test_every_error_has_the_one_base() -> None:
     found = errors_of("kin") + errors_of("camgeo")
     assert len(found) >= 30

@@ -1,4 +1,7 @@
-"""`export`, `check` and `verify` of the library: what they refuse."""
+"""`export`, `check` and `verify` of the library: what they refuse.
+
+Holds: camgeo.output.claims, camgeo.api.root.
+"""
 
 from __future__ import annotations
 

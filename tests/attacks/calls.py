@@ -10,7 +10,10 @@ from camgeo.recipe.starter import STARTERS
 from camgeo.registry.formats import FORMATS
 
 if TYPE_CHECKING:
+    from pathlib import Path
     from random import Random
+
+    from attacks.outcome import Done
 
 SMALL = b"cam: {kind: support, p: 9 + cos(3*t)}\nexport: {tolerance: 0.01, files: [dxf]}\nverify: {angles: 60}\n"
 NAMES = [
@@ -139,6 +142,43 @@ def called(rng: Random, number: int) -> Attack:
     return Attack(f"call {number}", tuple(words), {**files, "folder/kept.txt": b"kept"})
 
 
+DISC = "cam: {kind: disc, base_radius: 36, follower: {kind: roller, radius: 9}, motion: MOTION}\n"
+RISE = "[{rise: 4, over: 180, law: cycloidal}, {return: 4, over: 180, law: cycloidal}]"
+NAMING = [
+    DISC.replace("MOTION", "{contour: FILE, reading: 0.01}"),
+    DISC.replace("MOTION", "{table: FILE}"),
+    DISC.replace("MOTION", RISE) + "made: {profile: 0.03, points: [FILE]}\n",  # needs: made
+    DISC.replace("MOTION", RISE) + "dynamics: {mass: 1, rpm: 9, preload: 9, load: {table: FILE}}\n",  # needs: dynamics
+    DISC.replace("MOTION", RISE) + "valve: {ratio: {table: FILE}}\n",  # needs: valve
+    "camshaft: {shaft: {diameter: 9, to: 50}, lobes: [{recipe: FILE, at: 0, z: 9, length: 9}]}\n",  # needs: camshaft
+]
+"""Recipes that name a file."""
+MISSING = ["x" * 300, "x" * 5000, "folder", "/dev/null", "/dev/stdout", "none", "folder/none", "cam.yaml/none"]
+"""Names, but for their suffix, of what is no file."""
+
+
+def misnamed(rng: Random, number: int) -> Attack:
+    """A name of no file, in a recipe and in a call: refused in a line with the place."""
+    name = rng.choice(MISSING) + rng.choice(["", ".csv", ".svg", ".dxf", ".yaml", ".stl"])
+    text = rng.choice(NAMING).replace("FILE", f"'{name}'")
+    words = rng.choice(
+        [
+            ("check", "cam.yaml"),
+            ("check", "cam.yaml"),
+            ("verify", "small.yaml", name),
+            ("follow", name, "--roller", "8"),  # needs: follow
+            ("new", "--from", name, "small.yaml", "new.yaml"),  # needs: made
+        ]
+    )
+
+    def judge(done: Done, _: Path) -> list[str]:
+        begins = ("cam.yaml:", "camgeo: ")
+        return [f"words: no place in {line[:200]!r}" for line in done.err.splitlines() if not line.startswith(begins)]
+
+    files = {"cam.yaml": text.encode(), "small.yaml": SMALL, "folder/kept.txt": b"kept"}
+    return Attack(f"misnamed {number}", words, files, (2,), judge)
+
+
 SOUND = {
     "disc": ["--roller 8", "--roller 0 --offset 2", "--shoe 60", "--flat", "--flat --width 60", "--roller 1000"],
     "arm": ["--roller 8 --arm 80,65", "--shoe 30 --arm 80,65 --leading", "--flat --arm 90", "--roller 0 --arm 900,890"],
@@ -177,4 +217,14 @@ def followed(rng: Random, number: int) -> Attack:
     words = ["follow", "cam.svg", *follower.split(), *more]
     words += rng.choice([[], [], ["--rotation", "ccw"], ["--reading", "0.2"], ["--at", "2,0"]])
     words += rng.choice([[]] * 9 + [["--units", "inch"]])
+    odd = ["--across arc", "--across chord", "--mirror y", "--turn 40", "--turn 1e9", "--gap 1", "--gap 0", "--body 2"]
+    words += rng.choice([[]] * 8 + [rng.choice(odd).split()])
     return Attack(f"follower {number}", tuple(words), {"cam.svg": drawing.encode()})
+
+
+# needs: follow
+def followed_by_name(rng: Random, number: int) -> Attack:
+    """A sound contour under an odd name, with the page of its recipe: what is named does not matter."""
+    name = rng.choice(["my cam", "Nocken-\u00e4", "-x", ".x", "a:b", "NUL", "x" * 200, "{x}", "#1", "cam.rejected"])
+    words = ("follow", "--roller", "8", "--page", "page.html", "--", f"{name}.svg")
+    return Attack(f"call of a name {number}", words, {f"{name}.svg": ROUND}, (0,))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from attacks.cams import drawn
 from attacks.outcome import Attack
+from kin.read.drive_tables import MOTION_FUNCTION
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,13 +20,21 @@ HEADS = (
     "# joined by polynomials of degree 5\nmaster_deg,slave_deg,velocity,acceleration\n",
     "master_deg,slave_mm\n",
     "# joined by straight lines\n# within nan mm of the motion\nmaster_deg,slave_in\n",
+    "# joined by a cubic spline\n# Start Slope 0.1, End Slope nan\nmaster_deg,slave_mm\n",
+    "# slave in mm; MCCP with Start Slope 0, End Slope 1e300\nMaster,Slave,SegmentType\n",
+    "# slave in deg\n" + ",".join(MOTION_FUNCTION.columns) + "\n",
+    "# numbers of single precision\n# joined by straight lines\nmaster_deg,slave_mm\n",
+)
+CONTROLLERS = (
+    *("codesys", "codesys-table", "twincat", "twincat-table", "rockwell", "rockwell-linear", "siemens", "sew", "plain"),
 )
 
 
 def driven(rng: Random, number: int) -> Attack:
     """A cam by chance as a table for a drive."""
-    options = f"as: controller, for: {rng.choice(['codesys', 'codesys-table', 'sew', 'plain'])}"
+    options = f"as: controller, for: {rng.choice(CONTROLLERS)}"
     options += rng.choice(["", "", ", step: 1", ", step: 0.01", ", step: 7", ", units: inch", ", tolerance: 1e-7"])
+    options += rng.choice(["", "", ", joints: true", ", velocity_error: 0.5", ", acceleration_error: 2"])
     text = drawn(rng).text(f"{{csv: {{{options}}}}}")
 
     def judge(done: Done, folder: Path) -> list[str]:

@@ -5,7 +5,21 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from attacks import calls, drives, files, ground, measured, recipes, shafts, tables, valves, wider
+from attacks import (
+    axes,  # needs: axis
+    calls,
+    drives,
+    drums,  # needs: cylindrical
+    files,
+    ground,
+    measured,
+    plates,  # needs: linear
+    recipes,
+    shafts,
+    tables,
+    valves,
+    wider,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,6 +65,17 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     ground.pressed,
     ground.named,
     calls.followed,  # needs: follow
+    recipes.of_the_schema,
+    recipes.of_the_schema,
+    calls.misnamed,
+    calls.followed_by_name,  # needs: follow
+    plates.slid,  # needs: linear
+    plates.tabled,  # needs: linear
+    plates.mangled,  # needs: linear
+    axes.driven,  # needs: axis
+    axes.misdriven,  # needs: axis
+    drums.turned,  # needs: cylindrical
+    drums.slipped,  # needs: cylindrical
 )
 """Ways to attack, in turn."""
 

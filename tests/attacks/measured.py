@@ -74,7 +74,7 @@ OPTIONS = (
 
 
 @cache
-def _surfaces(kind: str) -> list[tuple[int, Any, Any]]:
+def _surfaces(kind: str) -> tuple[tuple[int, Any, Any], ...]:
     return surfaces(RECIPES[kind])
 
 
@@ -149,9 +149,12 @@ def _corrected(rng: Random, number: int, kind: str, file: tuple[str, str]) -> At
     name, text = file
     plain = rng.choice(["dxf", "svg", "{dxf: {as: arcs, kerf: 0.1}}", "{svg: {correct: 0}}"])
     share = rng.choice(["0.8", "1", "1.5", "-1", "2", "half"])
+    local = rng.choice(["", "", ", local: take", ", local: leave", ", local: some"])
     run = rng.choice([name, f"[{name}, {name}]", f"{{file: {name}, align: rotation}}", "no.csv", "[]"])
     recipe = RECIPES[kind].partition("\nexport:")[0]
-    recipe += f"\nmade: {{points: [{run}]}}\nexport: {{files: [{plain}, {{dxf: {{as: arcs, correct: {share}}}}}]}}\n"
+    recipe += (
+        f"\nmade: {{points: [{run}]}}\nexport: {{files: [{plain}, {{dxf: {{as: arcs, correct: {share}{local}}}}}]}}\n"
+    )
     return Attack(f"corrected {number}", ("export", "cam.yaml"), {"cam.yaml": recipe.encode(), name: text.encode()})
 
 

@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 from support.places import ROOT, SHIPPED
+from support.spoilt import by_schema, holder, leaves
 from support.starters import OF_CAMS
 
 from attacks.cams import drawn, wrong_verdict
 from attacks.outcome import Attack, nothing_more
 from camgeo.recipe.starter import starter
+from camgeo.registry import root as roots
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
     from random import Random
 
@@ -49,6 +50,7 @@ FORMS += [
 SHEETS: list[Any] = [
     "sheet",
     {"sheet": {"paper": "A4", "projection": "third", "step": 15, "scale": "1:2", "title": "x"}},
+    {"sheet": {"profile": 0.01, "finish": {"contour": "Ra 0.8", "bore": "Rz 6.3"}}},
 ]
 PLACED = re.compile(r"^cam\.yaml(:\d+:\d+)?: |^camgeo: ")
 
@@ -59,7 +61,7 @@ def sound(rng: Random, number: int) -> Attack:
     files = [
         "{dxf: {as: " + rng.choice(["arcs", "polyline", "spline"]) + "}}",
         *rng.sample(FORMS[1:7], rng.randrange(3)),
-        *rng.choice([[], [], ["{sheet: {profile: 0.02}}"]]),
+        *rng.choice([[], [], ["{sheet: {profile: 0.02}}"], ["{sheet: {finish: {contour: Ra 0.8}}}"]]),
     ]
 
     def judge(done: Done, folder: Path) -> list[str]:
@@ -95,22 +97,9 @@ def bases() -> tuple[str, ...]:
 
 def lighter(data: dict[str, Any], rng: Random) -> dict[str, Any]:
     """The recipe with a file or two of its own, so that a run is short."""
-    data.setdefault("export", {})["files"] = rng.sample(["dxf", "stl", "svg", "csv", *SHEETS], rng.randrange(1, 3))
+    files = rng.sample(["dxf", "stl", "svg", "csv", *SHEETS], rng.randrange(1, 3))
+    data.setdefault("export", {})["files"] = copy.deepcopy(files)  # what comes after spoils them
     data["verify"] = {**data.get("verify", {}), "angles": 360}
-    return data
-
-
-def leaves(node: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Paths of all values below a node, mappings and lists among them."""
-    entries = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
-    for key, value in entries:
-        yield (*path, key)
-        yield from leaves(value, (*path, key))
-
-
-def holder(data: Any, path: tuple[Any, ...]) -> Any:
-    for key in path[:-1]:
-        data = data[key]
     return data
 
 
@@ -172,7 +161,7 @@ def wrong(rng: Random, number: int) -> Attack:
         path = rng.choice(list(leaves(data)))
         where = holder(data, path)
         if way == "value":
-            where[path[-1]] = rng.choice(VALUES)
+            where[path[-1]] = copy.deepcopy(rng.choice(VALUES))
         elif way == "missing":
             del where[path[-1]]
         elif way == "extreme":
@@ -188,6 +177,12 @@ def wrong(rng: Random, number: int) -> Attack:
         raw = rng.choice([deep_list, aliases, many_keys])() + raw
     words = rng.choice([("check", "cam.yaml"), ("check", "cam.yaml", "--json"), ("export", "cam.yaml")])
     return Attack(f"{way} {number}", words, {"cam.yaml": raw}, statuses, nothing_more if "--json" in words else judge)
+
+
+def of_the_schema(rng: Random, number: int) -> Attack:
+    """Keys by chance from the schema, of all sections together, sound and wrong."""
+    raw = by_schema(rng, rng.choice(["cam", "cam", "cam", "cam", *roots.folders()])).encode()
+    return Attack(f"schema {number}", ("check", "cam.yaml"), {"cam.yaml": raw}, (0, 1, 2), placed, LONG)
 
 
 def _names(key: str) -> Judge:

@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 SMOOTH = ("cycloidal", "polynomial-345", "polynomial-4567")
 UNITS = {"mm": 1.0, "inch": 25.4, "thou": 0.0254}
 ANGLES = {"cam": 360.0, "crank": 720.0, "radians": 2 * math.pi, "turns": 1.0, "percent": 100.0}
-HARMS = ("cut", "twice", "swap", "word", "big", "gap", "empty", "wide", "constant", "same", "noise", "nan", "headed")
+HARMS = (
+    *("cut", "twice", "swap", "word", "big", "gap", "empty", "wide", "constant", "same", "noise", "nan", "headed"),
+    *("count", "comment", "units", "bars", "short", "alone", "exponents"),
+)
 SUFFIXES = {"mm": "_mm", "inch": "_in", "thou": "_thou"}
 
 
@@ -68,9 +71,7 @@ def tabled(rng: Random, number: int) -> Attack:
     def judge(done: Done, folder: Path) -> list[str]:
         report = reported(done)
         if done.status or report is None:
-            refused = [
-                word for word in ("stands out", "does not close", "rounding stands", "column") if word in done.err
-            ]
+            refused = [word for word in ("stated", "does not close", "rounding stands", "column") if word in done.err]
             return [f"verdict: a sound table is refused: {done.err[:300]}"] if refused else []
         if step > 2 or digit > 0.05:  # between rows far apart, or of few digits, nothing is said
             return []
@@ -111,19 +112,38 @@ def mangled(rng: Random, number: int) -> Attack:
         rows = [rows[i]] * 5
     elif harm == "noise":
         rows = [f"{a:g};{rng.uniform(0, 5):.3f}" for a in degrees]
+    elif harm == "count":
+        rows.insert(0, str(len(rows) + rng.randrange(-1, 2)))
+    elif harm == "comment":
+        rows[i] += rng.choice([" # note", "  // note", ";note", " ! note;1"])
+    elif harm == "units":
+        rows = [
+            row.replace(";", rng.choice([" deg;", " rad;", ";"])) + rng.choice([" mm", "mm", " in"]) for row in rows
+        ]
+    elif harm == "bars":
+        rows = ["| deg | lift |", "|---|---|", *(f"| {row.replace(';', ' | ')} |" for row in rows)]
+    elif harm == "short":
+        rows = [f"{row};{row}" if k < i else rng.choice([f"{row};", f"{row};;", row]) for k, row in enumerate(rows)]
+    elif harm == "alone":
+        rows = [row.partition(";")[2] for row in rows]
+    elif harm == "exponents":
+        rows = [f"{row}{rng.choice(['D+00', 'd0', 'e0', 'D', 'E-1'])}" for row in rows]
     elif harm == "headed":
         rows = rng.sample(["sep=;", "Cam 7", "deg;lift", "[deg];[mm]", ";mm", "x;1"], rng.randrange(1, 4)) + rows
     keys = [
         f"reading: {rng.choice(['1e-12', '0.001', '0.5', '100', 'auto', '0', '-1'])}",
-        f"angle: {rng.choice(['cam', 'crank', 'radians', 'turns', 'percent', 'grad'])}",
-        f"columns: {rng.choice(['[1, 2]', '[2, 1]', '[1, 9]', '[deg, lift]', '2', '[]'])}",
+        f"angle: {rng.choice(['cam', 'crank', 'radians', 'turns', 'percent', 'seconds', 'grad'])}",
+        f"period: {rng.choice(['360', '0.5', '0', '1e-9'])}",
+        f"columns: {rng.choice(['[1, 2]', '[2, 1]', '[3, 4]', '[1, 9]', '[deg, lift]', '2', '[]'])}",
+        f"columns: {{column: {rng.choice([1, 2, 'lift'])}, step: {rng.choice([2, 5, 720, 0])}}}",
         f"scale: {rng.choice(['1e-9', '-1', '0', '1e6', 'x'])}",
         f"offset: {rng.choice(['3', '-3', '1e6'])}",
         f"rest: {rng.choice(['dwell', 'cycle', 'mirror', 'none'])}",
-        f"suspect: {rng.choice(['keep', 'refuse'])}",
+        f"suspect: {rng.choice(['keep', 'drop', 'refuse'])}",
         f"units: {rng.choice([*UNITS, 'yards'])}",
     ]
-    chosen = "".join(f", {key}" for key in rng.sample(keys, rng.randrange(4)))
+    drawn_keys = {key.partition(":")[0]: key for key in rng.sample(keys, rng.randrange(4))}
+    chosen = "".join(f", {key}" for key in drawn_keys.values())
     text = with_motion(cam.text("csv"), f"{{table: table.csv{chosen}}}")
     files = {"cam.yaml": text.encode(), "table.csv": "\n".join(rows).encode()}
     return Attack(f"mangled table {number}, {harm}", ("check", "cam.yaml", "--json"), files, (0, 1, 2))
@@ -139,6 +159,8 @@ def redrawn(rng: Random, number: int) -> Attack:
     keys = [f"reading: {rng.choice(['0.02', '1e-9', 'auto', '5'])}"]
     keys += [f"curve: {rng.choice(['cam', 'pitch', 'none'])}"] if rng.random() < 0.5 else []
     keys += [f"units: {rng.choice([*UNITS])}"] if rng.random() < 0.2 else []
+    more = ["across: arc", "across: chord", "mirror: x", "mirror: y", "turn: -30", "turn: 1e9", "gap: 0.01", "gap: 0"]
+    keys += rng.sample(more, rng.choice([0, 0, 1, 2]))
     text = with_motion(cam.text("csv"), f"{{contour: {name}, {', '.join(keys)}}}")
     points = round_the_shaft(rng, radius, x)
     files = {"cam.yaml": text.encode(), "old.svg": svg.encode(), "old.dxf": b"0\nEOF\n", "old.csv": points.encode()}
@@ -153,7 +175,7 @@ def round_the_shaft(rng: Random, radius: float, x: float) -> str:
         angle = 2.0 * math.pi * k / count
         r = radius * (1.0 + height * math.cos(waves * angle))
         places.append((x + r * math.cos(angle), r * math.sin(angle)))
-    harm = rng.choice(["", "", "shuffled", "doubled", "again", "word", "lifts", "backwards"])
+    harm = rng.choice(["", "", "shuffled", "doubled", "again", "word", "lifts", "backwards", "hole"])
     if harm == "shuffled":
         rng.shuffle(places)
     elif harm == "doubled":
@@ -162,9 +184,11 @@ def round_the_shaft(rng: Random, radius: float, x: float) -> str:
         places *= 2
     elif harm == "backwards":
         places.reverse()
+    elif harm == "hole":
+        places = places[: -rng.randrange(1, count)]
     rows = [f"{a:.{rng.randrange(2, 6)}f},{b:.4f}" for a, b in places]
     if harm == "word":
-        rows[rng.randrange(count)] = "x,1"
+        rows[rng.randrange(len(rows))] = "x,1"
     lifts = ["angle_deg,lift", "crank_deg,lift", "angle_rad,lift_rad"]
     heading = rng.choice(lifts if harm == "lifts" else ["x,y", "X [mm],Y [mm]", "x_in,y_in", "X pos,Y pos", ""])
     return "\n".join([heading, *rows] if heading else rows)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from support.brute_disc import Touching
 
-from attacks import cams, runner
+from attacks import cams, runner, valves
 from attacks.cams import Cam, wrong_verdict
 from attacks.files import exported
 from attacks.generator import WAYS, attack_of
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SEED = 22
-QUICK, SLOW = len(WAYS), 200
+QUICK, SLOW = len(WAYS), 120
 COST = ("time:", "memory:")  # those are for the command, on a machine that has nothing else to do
 
 CAM = Cam(
@@ -34,8 +34,17 @@ def wrong(told: runner.Told) -> list[str]:
     return [f"{told.number} {told.name} {told.words}: {text}" for text in told.findings if not text.startswith(COST)]
 
 
+@pytest.mark.costly("what an attack does is by chance")
 @pytest.mark.thin(3)
-@pytest.mark.parametrize("number", range(QUICK))
+@pytest.mark.parametrize(
+    "number",
+    [
+        pytest.param(
+            number, marks=pytest.mark.slow if way is valves.carded else ()
+        )  # sizing a lobe by its card is long
+        for number, way in enumerate(WAYS)
+    ],
+)
 def test_attacks_find_nothing(number: int) -> None:
     assert wrong(runner.made(attack_of(SEED, number), number)) == []
 

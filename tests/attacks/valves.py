@@ -24,6 +24,13 @@ VALVES: tuple[str, ...] = (
     "valve: {ratio: {table: [[0, 1.5], [6, 1.6], [7, 0.01]]}, lash: 0.2}\n",  # needs: valve
     "valve: {ratio: -1}\n",  # needs: valve
 )
+TRAINS: tuple[str, ...] = (
+    "spring: {on: valve, seat_length: 40, loads: [[40, 260], [20, 900]], solid_length: 18}",  # needs: dynamics
+    "spring: {on: tappet, seat_length: 40, free_length: 70, rate: 30 N/mm}, load: 3",  # needs: dynamics
+    "spring: {seat_length: 40, free_length: 70, rate: 30 N/mm}",  # needs: dynamics
+    "spring: {on: valve, seat_length: 40, free_length: 70, rate: 30}, stiffness: 1e6",  # needs: dynamics
+)
+MASSES = ("0.1", "{tappet: 0.05, valve: 0.08}", "{tappet: 1e-9, valve: 1e9}", "{valve: 0}")
 REFUSED = re.compile(r"give|let|lies? between|longer than|shorter durations|leaves nothing|half and powers")
 
 
@@ -47,7 +54,7 @@ def carded(rng: Random, number: int) -> Attack:
 
     even = rng.random() < 0.7
     rows = card(1.0)
-    shape = f"duration: [{written(rows)}]{ramp}"
+    shape = f"duration: [{written(rows)}]{ramp}{rng.choice(['', '', ', least: velocity', ', least: face'])}"
     if not even:
         other = rng.choice(["half: 66, powers: [2, 8, 14, 20, 26]", f"duration: [{written(card(0.5))}]{ramp}"])
         shape = f"opening: {{duration: [{written(card(0.5))}]}}, closing: {{{other}}}"
@@ -58,6 +65,9 @@ def carded(rng: Random, number: int) -> Attack:
     text += f"  motion: {{lobe: {{lift: {lift}, {shape}}}}}\nexport: {{files: [dxf]}}\n"
     text += f"limits: {{duration: [{bounds}]}}\n" if even else ""
     text += rng.choice(["", "", *VALVES])
+    if TRAINS and rng.random() < 0.4:
+        rpm = round(10 ** rng.uniform(1, 5))
+        text += f"dynamics: {{mass: {rng.choice(MASSES)}, rpm: {rpm}, {rng.choice(TRAINS)}}}\n"
 
     def judge(done: Done, _: Path) -> list[str]:
         if done.status == 2:

@@ -74,6 +74,8 @@ FEATURES = [
     "mark: {width: 60}",
     "mark: {as: engrave, length: 3}",
     "keyway: din6885",
+    "keyway: {standard: din6885, fit: P9}",
+    "keyway: {standard: jis-b1301, fit: JS9, at: 200}",
     "lightening: {ring: 5, wall: 3}",
     "wall: 60",
     "dowel: {circle: 22, hole: 3}",
@@ -222,6 +224,10 @@ def budgeted(rng: Random, number: int) -> Attack:
     text = cam.text("dxf", f"budget: {{permitted: {permitted}, tolerances: {{{tolerances}}}{options}}}\n")
     if rng.random() < 0.2:
         text = text.replace("bore: 8}", "bore: {diameter: 8, fit: H7}}").replace("budget: {", "budget: {fit: g6, ")
+    elif rng.random() < 0.2:
+        hub, own = rng.choice(["JS9", "P9", "H9"]), rng.choice(["din6885", "{standard: din6885, fit: P9}"])
+        text = text.replace("bore: 8}", f"bore: {{diameter: 8, fit: H7}}, keyway: {own}}}")
+        text = text.replace("budget: {", f"budget: {{fit: h6, key: {{hub: {hub}, shaft: P9}}, ")
     call = ("budget", "cam.yaml", *rng.choice([(), (), ("--json",), ("cam.yaml",), ("a-1.dxf", "a-2.dxf")]))
     return Attack(f"budget {number}", call, {"cam.yaml": text.encode()}, (0, 1, 2))
 

@@ -139,7 +139,7 @@ def least_by_brute_force(cam: Recipe, apart: float, rise: float, back: float) ->
     return float(np.hypot(d, e[:, 0])[kept].min())
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(("rise", "back"), [(30, 30), (35, 25), (25, 40)])
 def test_a_stem_is_sized_by_both_discs(rise: int, back: int) -> None:
     size = f"sizing: {{pressure-angle: {{at_most: {rise}, on_return: {back}}}}}"
@@ -248,6 +248,7 @@ def undercut(design: Design) -> dict[str, str]:
     return {check.surface: check.detail for check in checks if check.detail}
 
 
+@pytest.mark.slow
 def test_undercut_of_disc_2_and_what_frees_it() -> None:
     sharp = STROKES.replace("LAW", "parabolic").replace("140", "60").replace("80", "160")
     told = undercut(pair(STEM, "distance: 100, radius: 26", sharp))

@@ -65,7 +65,7 @@ def judged(text, points, bulges, tolerance=1e-4):
 # --- what is made -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 def test_every_format_holds_its_corners(text, tmp_path):
     files = "dxf, svg, stl, 3mf, glb, html, csv, {csv: {as: contacts}}, {csv: {as: polar}}"
@@ -284,6 +284,7 @@ def test_an_arc_about_another_centre_is_seen(text, which):
     assert not checks["motion"].ok
 
 
+@pytest.mark.slow
 def test_a_rounding_in_place_of_a_corner_is_seen():
     """By 0.002 mm: it takes 0.0003 mm off a corner of 120 degrees."""
     recipe = recipe_of(TRIANGLE)

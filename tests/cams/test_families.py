@@ -46,6 +46,7 @@ def test_a_family_is_told_of(kind: str) -> None:
     assert f"`{kind}`" in (ROOT / "docs" / "which-cam.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_the_list_of_families_imports_none_of_them() -> None:
     code = (
         "import sys; from camgeo.cams.families import FAMILIES; from camgeo.recipe.cam import CAMS\n"

@@ -92,6 +92,7 @@ def test_a_tolerance_that_takes_the_play_is_remarked_on(tmp_path):
     assert "no-play" not in remarks(tmp_path, 0.005, 0.00249)
 
 
+@pytest.mark.slow
 def test_a_sized_groove_is_freed_by_what_is_told():
     recipe = recipe_of("sizing: {pressure-angle: {at_most: 60}}", 14)
     found = undercut(recipe)

@@ -10,28 +10,33 @@ import sys
 from typing import TYPE_CHECKING
 
 import pytest
-from support.deleted import copy_without, unshipped, uses, without_marked
+from support.deleted import copy_without, covering, unshipped, uses, without_marked
 from support.places import ROOT
 
+from camgeo.recipe.extension import KEYS
 from camgeo.registry import registry
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-TESTS = (
-    "tests/recipe",
-    "tests/cli",
-    "tests/report",
-    "tests/docs",
-    "tests/capabilities/sweep",
-    "tests/web/test_live.py",
-)
+TESTS = ("recipe", "cli", "report", "docs", "capabilities/sweep", "web/test_live.py")  # of tests/
 
 CAPABILITIES = tuple(registry.labels())
 
 
+# Of an installation that can be edited: it would find what a copy lacks where it was copied from.
+APART = """\
+import sys
+sys.meta_path[:] = [finder for finder in sys.meta_path if "__editable__" not in getattr(finder, "__module__", "")]
+"""
+
+
 def start(folder: Path, *words: str) -> subprocess.Popen[str]:
-    surroundings = {**os.environ, "PYTHONPATH": str(folder), "COLUMNS": "200"}  # a line of a failure is not cut
+    apart = folder.with_name("apart")
+    apart.mkdir(exist_ok=True)
+    (apart / "sitecustomize.py").write_text(APART)
+    path = os.pathsep.join(map(str, (folder, apart)))
+    surroundings = {**os.environ, "PYTHONPATH": path, "COLUMNS": "200"}  # a line of a failure is not cut
     return subprocess.Popen(
         [sys.executable, *words],
         cwd=folder,
@@ -49,21 +54,70 @@ def run(folder: Path, *words: str) -> tuple[int, str, str]:
     return process.returncode, output, errors
 
 
+def files_of_tests() -> list[Path]:
+    """The tests that are tried without a capability."""
+    places = [ROOT / "tests" / test for test in TESTS]
+    return sorted(file for place in places for file in ([place] if place.is_file() else place.rglob("test_*.py")))
+
+
+def words_of(name: str) -> set[str]:
+    """Words by which texts name a capability: its own name, those of recipes."""
+    label = registry.labels()[name]
+    return {name, *(word.partition(":")[0] for word in label.words), *label.roots}
+
+
+def chosen_tests(name: str) -> list[str]:
+    """Tests that name a capability though it is gone: a mark was forgotten, or a word means another thing."""
+    named = re.compile(rf"\b(?:{'|'.join(map(re.escape, sorted(words_of(name))))})\b")
+    paths = [path for path in files_of_tests() if ROOT / "tests" / "capabilities" / name not in path.parents]
+    left = {path: without_marked(path.read_text(encoding="utf-8"), name) for path in paths}
+    naming = [str(path.relative_to(ROOT)) for path, text in left.items() if named.search(text)]
+    return naming or ["tests/cli/test_main.py"]
+
+
+def recipes_of(name: str) -> list[str]:
+    """Few recipes that have every word of all capabilities but one."""
+    paths = sorted(path for path in (ROOT / "recipes").rglob("*.yaml") if not uses(path, name))
+    others = {word for other in registry.labels().values() for word in (*other.words, *other.roots)}
+    return [str(path.relative_to(ROOT)) for path in covering(paths, others)]
+
+
+@pytest.fixture(scope="module", params=CAPABILITIES)
+def copied(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """A capability, and the repository without it."""
+    return request.param, copy_without([request.param], tmp_path_factory.mktemp("without") / "copy")
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", CAPABILITIES)
-def test_without_a_capability_all_else_works(name: str, tmp_path: Path) -> None:
-    """A minute on two cores: the recipes are exported while the tests run."""
-    folder = copy_without(name, tmp_path / "copy")
-    assert not (folder / "camgeo" / "capabilities" / name).exists()
+def test_without_a_capability_all_else_works(copied: tuple[str, Path]) -> None:
+    """Those that may know another: tests that name it, recipes of other capabilities; all else is tried without any."""
+    name, folder = copied
+    gone = [folder / "camgeo" / "capabilities" / name, *(folder / "kin" / half for half in registry.labels()[name].kin)]
+    assert not any(path.exists() for path in gone)
+    demand_that_all_works(folder, chosen_tests(name), recipes_of(name))
+
+
+@pytest.mark.slow
+def test_without_any_all_else_works(tmp_path: Path) -> None:
+    """A core that reaches for a capability by any of its names fails, whichever it is: all tests, all recipes left."""
+    folder = copy_without(CAPABILITIES, tmp_path / "copy")
     recipes = [str(path.relative_to(folder)) for path in sorted((folder / "recipes").rglob("*.yaml"))]
-    there = [test for test in TESTS if (folder / test).exists()]
-    with start(folder, "-m", "pytest", "-q", "--tb=no", "-p", "no:xdist", "-p", "no:cacheprovider", *there) as tests:
-        status, _, errors = run(folder, "-m", "camgeo", "export", *recipes, "--out", str(tmp_path / "out"))
+    tests = [str(path.relative_to(ROOT)) for path in files_of_tests() if (folder / path.relative_to(ROOT)).exists()]
+    assert len(recipes) > 30
+    demand_that_all_works(folder, tests, recipes)
+
+
+def demand_that_all_works(folder: Path, places: list[str], recipes: list[str]) -> None:
+    """Tests at these places of a copy pass, and its recipes are exported while they run."""
+    assert all((folder / place).exists() for place in [*places, *recipes])
+    quiet = ("-q", "--tb=no", "-p", "no:xdist", "-p", "no:cacheprovider")
+    with start(folder, "-m", "pytest", *quiet, *places) as tests:
+        status, _, errors = run(folder, "-m", "camgeo", "export", *recipes, "--out", str(folder.with_name("out")))
         output, _ = tests.communicate()
     failures = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
-    errors = "".join(line for line in errors.splitlines(keepends=True) if "takes more than" not in line)  # progress
+    errors = "".join(line for line in errors.splitlines(keepends=True) if not line.endswith(" ...\n"))  # progress
     if status or errors or tests.returncode:
-        pytest.fail(f"without {name}:\n{errors}" + "\n".join(failures or output.splitlines()[-5:]), pytrace=False)
+        pytest.fail(f"{errors}" + "\n".join(failures or output.splitlines()[-5:]), pytrace=False)
 
 
 def strings(path: Path) -> set[str]:
@@ -74,55 +128,53 @@ def strings(path: Path) -> set[str]:
     return {node.value for node in constants if isinstance(node.value, str)}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CAPABILITIES)
 def test_no_test_that_is_left_imports_it(name: str) -> None:
-    imported = re.compile(rf"^\s*(?:from|import) camgeo\.capabilities\.{name}\b", re.MULTILINE)
-    paths = [path for path in (ROOT / "tests").rglob("*.py") if path.parents[0].name != name]
+    packages = [f"camgeo.capabilities.{name}", *(f"kin.{half}" for half in registry.labels()[name].kin)]
+    imported = re.compile(rf"^\s*(?:from|import) (?:{'|'.join(map(re.escape, packages))})\b", re.MULTILINE)
+    own = ROOT / "tests" / "capabilities" / name
+    paths = [path for path in (ROOT / "tests").rglob("*.py") if own not in path.parents]
     texts = {path.name: path.read_text(encoding="utf-8") for path in paths}
     naming = {file: text for file, text in texts.items() if imported.search(text)}
     assert [file for file, text in naming.items() if imported.search(without_marked(text, name))] == []
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in CAPABILITIES if unshipped(name)])
-def test_no_test_that_is_left_reads_a_recipe_that_is_gone(name: str, tmp_path: Path) -> None:
-    tests = copy_without(name, tmp_path / "copy") / "tests"
-    stems = "|".join(re.escape(path.stem) for path in unshipped(name))
+def test_no_test_that_is_left_reads_a_recipe_that_is_gone(copied: tuple[str, Path]) -> None:
+    name, folder = copied
+    if not (gone := unshipped(name)):
+        return
+    tests, stems = folder / "tests", "|".join(re.escape(path.stem) for path in gone)
     read = re.compile(rf"(?:^|[/ ])(?:{stems})(?:\.yaml)?(?:$| )")
     hits = [(path.name, text) for path in tests.rglob("*.py") for text in strings(path) if read.search(text)]
     assert hits == []
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", CAPABILITIES)
-def test_its_words_are_unknown(name: str, tmp_path: Path) -> None:
+def test_its_words_are_unknown(copied: tuple[str, Path]) -> None:
+    name, folder = copied
     label = registry.labels()[name]
-    folder = copy_without(name, tmp_path / "copy")
     for command in label.commands:
         assert f"invalid choice: '{command}'" in run(folder, "-m", "camgeo", command)[2]
-    path = folder / "cam.yaml"
     if label.option:
         option = f"--{name.replace('_', '-')}"
         assert f"unrecognized arguments: {option}" in run(folder, "-m", "camgeo", "verify", "a", "b", option)[2]
-    for kind in label.formats:
-        path.write_text(f"cam: {{kind: support, p: 25 + 2*cos(3*t)}}\nexport: {{files: [{kind}]}}\n", encoding="utf-8")
-        assert f"unknown file format, given '{kind}'" in run(folder, "-m", "camgeo", "check", str(path))[2]
     options = [word for word in label.words if ": " in word]
+    told = {f"export: {{files: [{kind}]}}": f"unknown file format, given '{kind}'" for kind in label.formats}
     for option in options:
-        text = f"cam: {{kind: support, p: 25 + 2*cos(3*t)}}\nexport: {{files: [{{stl: {{{option}}}}}]}}\n"
-        path.write_text(text, encoding="utf-8")
-        key = option.partition(":")[0]
-        assert f"stl.{key}: unknown key" in run(folder, "-m", "camgeo", "check", str(path))[2]
-    for word in {*label.words, *label.roots} - {*label.formats, *options}:
-        path.write_text(f"cam: {{kind: support, p: 25 + 2*cos(3*t)}}\n{word}: {{}}\n", encoding="utf-8")
-        assert f"{word}: unknown key" in run(folder, "-m", "camgeo", "check", str(path))[2]
-    figures = registry.capability(name).figures if label.record else {}
-    for figure in figures:
-        path.write_text(
-            f"cam: {{kind: support, p: 25 + 2*cos(3*t)}}\nlimits: {{{figure}: {{at_most: 1}}}}\n", encoding="utf-8"
-        )
-        assert f"limits.{figure}: unknown figure" in run(folder, "-m", "camgeo", "check", str(path))[2]
+        told[f"export: {{files: [{{stl: {{{option}}}}}]}}"] = f"stl.{option.partition(':')[0]}: unknown key"
+    told |= {
+        f"{word}: {{}}": f"{word}: unknown key" for word in {*label.words, *label.roots} - {*label.formats, *options}
+    }
+    told |= {f"limits: {{{key}: {{at_most: 1}}}}": f"limits.{key}: unknown figure" for key in KEYS[name].figures}
+    for number, text in enumerate(told):
+        recipe = f"cam: {{kind: support, p: 25 + 2*cos(3*t)}}\n{text}\n"
+        (folder / f"cam-{number}.yaml").write_text(recipe, encoding="utf-8")
+    names = [f"cam-{number}.yaml" for number in range(len(told))]
+    errors = run(folder, "-m", "camgeo", "check", *names)[2].splitlines() if told else []
+    for file, words in zip(names, told.values(), strict=True):
+        assert [line for line in errors if file in line and words in line], words
 
 
 def test_what_is_marked_goes() -> None:

@@ -23,6 +23,7 @@ RECIPES = {
 }
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", RECIPES)
 def test_a_run_imports_the_capabilities_that_its_recipe_uses(name: str, tmp_path: Path) -> None:
     text, used = RECIPES[name]

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from camgeo.cli import batch
+from camgeo.cli.batch import folder_conflicts
 from camgeo.cli.main import main
 
 if TYPE_CHECKING:
@@ -62,9 +65,55 @@ def test_each_kind_of_a_call_is_one_that_the_recipe_lists(capsys: pytest.Capture
     assert capsys.readouterr().err == "sound.yaml:2:34: export.files: lists no stl, which --only requests\n"
 
 
+@pytest.mark.parametrize("repeats", [False, True])
+def test_folders_of_many_recipes_are_compared_in_proportion_to_their_number(repeats: bool) -> None:
+    compared = []
+
+    class CountedPath:
+        def __init__(self, number: int) -> None:
+            self.number = number
+
+        def resolve(self) -> CountedPath:
+            return self
+
+        def __hash__(self) -> int:
+            return self.number
+
+        def __eq__(self, other: object) -> bool:
+            compared.append(other)
+            return isinstance(other, CountedPath) and self.number == other.number
+
+        def __str__(self) -> str:
+            return f"{self.number}.yaml"
+
+    recipes: list[Any] = [SimpleNamespace(path=CountedPath(k), name=f"cam-{k % 2999}") for k in range(3000)]
+    recipes += [SimpleNamespace(path=CountedPath(7), name="cam-7")] * repeats
+    messages = folder_conflicts(recipes)
+    assert [message.partition(":")[0] for message in messages] == (["7.yaml"] if repeats else ["0.yaml", "2999.yaml"])
+    assert len(compared) < 10
+
+
 @pytest.mark.usefixtures("recipes")
 def test_one_recipe_twice_is_called_that(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", "sound.yaml", "./sound.yaml"]) == 2
     said = "camgeo: sound.yaml: the same recipe is named twice in this call; name it once\n"
     assert capsys.readouterr().err == said
     assert main(["export", "sound.yaml"]) == 0
+
+
+@pytest.mark.parametrize(("seconds", "alone"), [(1.8, 5), (2.0, 3)])
+def test_the_rest_goes_to_processes_where_its_seconds_are_worth_them(
+    seconds: float, alone: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first of five imports for 9 s; those left count the mean of the second, 0.1 s, and the third."""
+    clock = iter([0.0, 0.0, 9.0, 9.0, 9.1, 9.1 + seconds, 9.1 + seconds])
+    own: list[str] = []
+    monkeypatch.setattr(batch, "IMPORTS", 9.0)
+    monkeypatch.setattr("camgeo.cli.batch.time.process_time", lambda: next(clock))
+    monkeypatch.setattr("camgeo.cli.batch.workers.may_fork", lambda: False)
+    monkeypatch.setattr(batch, "PAYS", 2.0)
+    monkeypatch.setattr(batch, "result", lambda recipe, *_: own.append(recipe.name))
+    monkeypatch.setattr(batch, "_in_parallel", lambda rest, *_, **__: [None for _ in rest])
+    recipes: Any = [SimpleNamespace(name=name) for name in "abcde"]
+    assert len(list(batch.results(recipes, batch.BatchTask(None), 2))) == 5
+    assert len(own) == alone

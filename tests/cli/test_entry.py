@@ -33,6 +33,7 @@ assert dict(os.environ) == before
 NAMES = ("MKL_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("given", "seen"),
     [({}, "['1', '1', '1', '1']"), ({"OMP_NUM_THREADS": "3"}, "[None, '3', None, None]")],
@@ -44,6 +45,7 @@ def test_a_command_starts_one_thread_unless_told_otherwise(given: dict[str, str]
     assert done.stdout.strip() == seen
 
 
+@pytest.mark.slow
 def test_the_library_leaves_the_environment_alone() -> None:
     bare = {name: value for name, value in os.environ.items() if name not in NAMES}
     subprocess.run([sys.executable, "-c", LIBRARY], env=bare, cwd=ROOT, check=True)

@@ -114,12 +114,12 @@ def test_several_recipes(tmp_path: Path, delay: float, times: int) -> None:
 @pytest.mark.parametrize("jobs", ["1", "3"])
 def test_several_recipes_at_any_moment(tmp_path: Path, jobs: str) -> None:
     paths = recipes(tmp_path, 20)
-    for step in range(40):
-        assert_quiet(interrupted(["check", *paths, "--jobs", jobs], 0.02 * step))
+    for step in range(20):
+        assert_quiet(interrupted(["check", *paths, "--jobs", jobs], 0.04 * step))
 
 
 # needs: sweep
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_sweep(tmp_path: Path, jobs: str) -> None:
     path = tmp_path / "many.yaml"
@@ -155,7 +155,7 @@ import os, signal, time, weakref
 from multiprocessing import Pipe
 from camgeo.common import workers
 run = Pipe()
-workers._be_a_worker(run[0], None)
+workers._be_a_worker(run[0], None, None)
 def work(_):
     class Gone: pass
     gone = Gone()

@@ -8,6 +8,7 @@ import pytest
 
 from camgeo.cli.main import main
 from kin.law.sources.laws import NAMES, named
+from kin.law.sources.peaks import peaks
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -22,7 +23,7 @@ def test_every_law_is_listed_with_its_peaks(capsys):
     rows = json.loads(capsys.readouterr().out)
     assert [row["law"] for row in rows] == list(NAMES)
     by = {row["law"]: row for row in rows}
-    assert by["freudenstein-135"]["acceleration"] == named("freudenstein-135").peaks.acceleration
+    assert by["freudenstein-135"]["acceleration"] == peaks(named("freudenstein-135").motion).acceleration
     assert by["constant-velocity"]["acceleration"] is None
 
 
@@ -33,6 +34,7 @@ def test_laws_by_name(capsys):
     assert "no law is called 'trapezium'; did you mean trapezoid?" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_picture_shows_each_law_with_four_curves(tmp_path, capsys):
     path = tmp_path / "laws.svg"
     assert main(["laws", "--picture", str(path)]) == 0

@@ -19,13 +19,13 @@ def test_a_file_that_exists_stays_and_the_others_go(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["b"]
     assert (tmp_path / "b").read_text(encoding="utf-8") == "old"
     with pytest.raises(CallError, match="b exists already"):
-        demand_new(None, *names)
+        demand_new({"--page": None, "--table": names[0], "--recipe": names[1]})
 
 
 def test_a_name_that_stands_twice_is_refused(tmp_path):
-    with pytest.raises(CallError, match="would be written twice"):
-        demand_new(str(tmp_path / "a"), str(tmp_path / "." / "a"))
-    demand_new(str(tmp_path / "a"), None, str(tmp_path / "b"))
+    with pytest.raises(CallError, match="a would be written twice, by --table and by --page: give"):
+        demand_new({"--table": str(tmp_path / "a"), "--page": str(tmp_path / "." / "a")})
+    demand_new({"--table": str(tmp_path / "a"), "--recipe": None, "--page": str(tmp_path / "b")})
 
 
 def test_a_folder_that_is_missing_is_named(tmp_path):

@@ -42,6 +42,7 @@ def test_one_recipe_twice_is_refused(recipes: Path, capsys: pytest.CaptureFixtur
     assert not (recipes / "out").exists()
 
 
+@pytest.mark.slow
 def test_pictures_of_an_earlier_call_stay(recipes: Path) -> None:
     folder = recipes / "out" / "sound"
     assert main(["report", "sound.yaml", "--picture", "svg"]) == 0

@@ -37,7 +37,7 @@ def run(*arguments: str, **options: object) -> subprocess.CompletedProcess[bytes
     return subprocess.run([sys.executable, "-m", "camgeo", *arguments], check=False, **given)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 @pytest.mark.parametrize("what", ["schema", "check"])
 def test_a_narrow_encoding(recipe: Path, encoding: str, what: str) -> None:
@@ -76,6 +76,7 @@ def test_a_full_standard_output_is_told(call: list[str], buffered: bool) -> None
     assert b"No space left" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_reader_that_went_away(recipe: Path) -> None:
     read, write = os.pipe()
     os.close(read)
@@ -84,6 +85,7 @@ def test_a_reader_that_went_away(recipe: Path) -> None:
     assert (done.returncode, done.stderr) == (3, b"")
 
 
+@pytest.mark.slow
 def test_closed_streams() -> None:
     code = (
         "import sys; sys.stdout = sys.stderr = None; "
@@ -149,9 +151,9 @@ def test_a_pipe_is_refused_at_once(
     pipe = tmp_path / "pipe.dxf"
     os.mkfifo(pipe)
     assert main([command, str(pipe), *([str(pipe)] if command == "verify" else [])]) == 2
-    assert capsys.readouterr().err == f"{pipe}: a pipe or a device, not a file; save the recipe as a file\n"
+    assert capsys.readouterr().err == f"{pipe}: a pipe, a socket or a device, not a file; save the recipe as a file\n"
     assert main(["verify", str(recipe), str(pipe)]) == 2
-    assert capsys.readouterr().err == f"camgeo: {pipe}: not a regular file\n"
+    assert capsys.readouterr().err == f"camgeo: {pipe}: a pipe, a socket or a device, not a file\n"
 
 
 def test_a_stem_that_is_reserved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -62,7 +63,7 @@ def test_two_more_recipes_take_two_processes(method: str, tmp_path: Path, monkey
     assert method != "spawn" or made[0][1] == "spawn"
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [[], ["--jobs", "3"]])
 @pytest.mark.parametrize("pays", [math.inf, 0.0])
 def test_recipes_are_made_here_until_more_processes_pay(
@@ -101,13 +102,50 @@ def forever(path: str) -> None:
         Path(path).unlink()
 
 
+def deadly(task: tuple[str, int]) -> int:
+    """The number doubled; 3 kills its process always, 5 where it is the first time."""
+    folder, number = task
+    mark = Path(folder) / str(number)
+    if number == 3 or (number == 5 and not mark.exists()):
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return 2 * number
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_what_kills_its_process_is_tried_alone_and_the_rest_goes_on(tmp_path: Path) -> None:
+    left: list[int] = []
+    items = [(str(tmp_path), number) for number in range(9)]
+    made = {number: result for (_, number), result in workers.at_once(deadly, items, 2, fork=True, waiting=left.append)}
+    assert isinstance(made.pop(3), workers.Killed)
+    assert made == {number: 2 * number for number in (0, 1, 2, 4, 5, 6, 7, 8)}
+    assert left == sorted(left)
+    assert left[0] == 0
+
+
+def temporary(kill: bool) -> str:
+    folder = tempfile.mkdtemp()
+    if kill:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return folder
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.parametrize("kill", [True, False])
+def test_temporary_folders_of_workers_go(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, kill: bool) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    ((_, folder),) = workers.at_once(temporary, [kill], 1, fork=True)
+    assert isinstance(folder, workers.Killed) if kill else tmp_path in Path(str(folder)).parents
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.slow
 def test_work_under_spawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(multiprocessing, "get_all_start_methods", lambda: ["spawn"])
     assert dict(workers.at_once(double, range(5), 150)) == {number: 2 * number for number in range(5)}
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.parametrize("ended", [signal.SIGTERM, signal.SIGKILL])
 @pytest.mark.parametrize("fork", ["True", "False"])

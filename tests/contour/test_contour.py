@@ -143,6 +143,7 @@ def test_support_function_is_the_closed_form(known: Known) -> None:
         assert piece.max() < len(contour)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("known", KNOWN.values(), ids=KNOWN.keys())
 def test_the_contact_lies_on_the_piece_that_is_named(known: Known) -> None:
     _, point, piece = known.contour.support(ANGLES)

@@ -60,6 +60,7 @@ def of_spline(points: np.ndarray, weight: float = 1.0) -> Contour:
     return Contour.from_pieces(Pieces.from_unrolled(Beziers(control, weights).unrolled().pieces))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("weight", [1.0, 1.3])
 def test_splines_are_seen_whole_by_their_own_polynomials(weight: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """No arcs are made for a wavy spline beside a bore that is far from it; those of one that crosses itself are."""

@@ -218,6 +218,7 @@ def test_lobes_that_are_almost_circles_are_enclosed():
     assert found.radius == pytest.approx(seen, abs=1e-12 * 120.0)
 
 
+@pytest.mark.slow
 def test_no_enclosure_is_wide_where_the_sign_is_in_doubt():
     """A roller as large as those circles but for a few parts in 1e10: proved sharply, or not at all."""
     pitch = booth(60.0, 60.0 * math.sqrt(1.0 - 1e-3))

@@ -31,7 +31,7 @@ from camgeo.curve.undercut.causes import causes
 from camgeo.curve.undercut.trim import trimmed
 from camgeo.curve.undercut.undercut import undercuts
 from camgeo.recipe.loading import load
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -218,7 +218,8 @@ DENSE = 40_000
 ANGLES = np.linspace(0.0, TURN, 49)[:-1] + 0.0123
 
 
-@settings(max_examples=examples(100), deadline=None)
+@pytest.mark.costly("random cams of each follower")
+@settings(max_examples=examples(50), deadline=None)
 @given(motions(), st.sampled_from(FOLLOWERS), st.floats(0.05, 1.0), st.floats(-0.6, 0.6), st.sampled_from([1, -1]))
 def test_the_follower_touches_and_never_cuts(
     rows: tuple[tuple, ...], follower: str, stroke: float, aside: float, side: int
@@ -292,7 +293,7 @@ def hollow_pitch() -> CentreShape:
     return CentreShape(displaced((14, 60, "cycloidal"), (-14, 60, "cycloidal"), (240,)), Translating.on(30.0))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", [27.0, 40.0, 80.0])
 def test_a_ring_undercuts_where_its_pitch_curve_is_hollow(radius: float) -> None:
     """Speed sigma + R omega: what is left of the ring meets in corners, and is nowhere nearer than R to the pitch."""

@@ -99,7 +99,7 @@ def test_of_a_trimmed_contour() -> None:
     )
 
 
-@pytest.mark.thin(12)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CONTOURS)
 def test_polar_radii_lie_on_the_contour(name: str) -> None:
     curve = Curve.whole(CONTOURS[name])

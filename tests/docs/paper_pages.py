@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-sys.path += [str(ROOT / "tests"), str(ROOT / "docs")]  # where pytest has the one, and the scripts the other
+sys.path += [str(ROOT / "tests"), str(ROOT / "tools" / "docs")]  # where pytest has the one, and the scripts the other
 
 import aygahoglu_rows  # noqa: E402
 import shu_wu_rows  # noqa: E402

@@ -9,10 +9,12 @@ import configparser
 import re
 import shlex
 import shutil
+import sys
 import tomllib
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import NamedTuple, get_args
 
 import pytest
@@ -20,16 +22,21 @@ from support.cases import few
 from support.starters import OF_CAMS
 
 import camgeo
+from camgeo.api.root import root_of
 from camgeo.checks.declared import CHECKS
+from camgeo.checks.extension import CHECKING
 from camgeo.cli.main import main
 from camgeo.measures.remarks import RemarkName
-from camgeo.output import pipeline
 from camgeo.recipe.loading import load_order, read
+from camgeo.recipe.recipe import root_key
 from camgeo.recipe.starter import STARTERS, starters_for
 from camgeo.registry import registry
+from camgeo.registry.root import kinds, reading, top_keys
 from camgeo.report.page.content import DRAWN
+from camgeo.schema.yaml_source import read_source
 
 ROOT = Path(__file__).parents[2]
+PLAN = ROOT / "docs" / "architecture.md"
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")])
 RUN_ELSEWHERE = {"library.md"}  # its Python has tests of its own
 CAM = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8, bore: 10}\n"
@@ -71,24 +78,34 @@ def test_every_block_is_of_a_kind_that_is_tested():
     assert all(text.count("\n```") % 2 == 0 for text in (page.read_text(encoding="utf-8") for page in PAGES))
 
 
+def shown(text):
+    """The recipe of a block, of whatever kind."""
+    source = read_source(text.encode(), "shown.yaml")
+    return reading(root_key(source)).read(source, Path("shown.yaml"))
+
+
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("text", of("yaml", whole=True))
 def test_a_recipe_is_read(text):
-    read(text.encode(), "shown.yaml")
+    shown(text)
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize("text", few(of("yaml", whole=True), 4))
 def test_a_recipe_is_made_and_passes(text):
-    recipe = read(text.encode(), "shown.yaml")
+    recipe = shown(text)
     # a verdict at fewer angles is enough here
     recipe = replace(recipe, verify=replace(recipe.verify, angles=360))
-    outcome = pipeline.check(recipe)
+    outcome = root_of(recipe).check(recipe, lambda _: None)
     assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+
+
+OF_A_KIND = rf"^({'|'.join(('cam', *top_keys()))}):"
 
 
 def test_a_part_of_a_recipe_is_read_beside_a_cam():
     for block in blocks():
-        if block.language == "yaml" and not re.search(r"^(cam|camshaft):", block.text, re.MULTILINE):
+        if block.language == "yaml" and not re.search(OF_A_KIND, block.text, re.MULTILINE):
             rest = CAM if "part:" not in block.text else CAM.splitlines()[0] + "\n"
             read((rest + block.text).encode(), f"{block.page}:{block.line}")
 
@@ -200,7 +217,8 @@ def test_the_starters_that_pages_name_are_written(capsys):
         for cell in re.findall(r"^\|.*\| `camgeo new (.*?) \|(?: <!-- .* -->)?$", text, re.MULTILINE)
         for name in cell.split("`, `")
     }
-    assert {name.rstrip("`") for name in named} == set(OF_CAMS)
+    others = {name for name, each in STARTERS.items() if each.root in kinds()}
+    assert {name.rstrip("`") for name in named} == {*OF_CAMS, *others}
     assert main(["new", "support"]) == 0
     read(capsys.readouterr().out.encode(), "starter.yaml")
 
@@ -241,13 +259,17 @@ def scripts():
     return sorted({b.page for b in blocks() if b.language == "python"} - RUN_ELSEWHERE)
 
 
-@pytest.mark.parametrize("page", scripts())
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("page", few(scripts(), 3))
 def test_python_runs(page, workshop, monkeypatch):
     monkeypatch.chdir(workshop)
     names = {}
     for block in blocks():
         if (block.page, block.language) == (page, "python"):
             exec(compile("\n" * (block.line - 1) + block.text, block.page, "exec"), names)
+            if file := re.match(r"# (camgeo/\S+)\.py\n", block.text):  # a module that later blocks import
+                module = SimpleNamespace(**names)
+                monkeypatch.setitem(sys.modules, file[1].replace("/", "."), module)
     tests = [value for name, value in names.items() if name.startswith("test_")]
     for test in tests:
         test()
@@ -264,7 +286,8 @@ def called():
     return [pytest.param(lines, id=page, marks=slow.get(lines[-1][0], ())) for page, lines in found.items() if lines]
 
 
-@pytest.mark.parametrize("lines", called())
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("lines", few(called(), 3))
 def test_commands_of_shell_blocks_run(lines, workshop, monkeypatch, capsys):
     monkeypatch.chdir(workshop)
     for words in lines:
@@ -272,6 +295,7 @@ def test_commands_of_shell_blocks_run(lines, workshop, monkeypatch, capsys):
 
 
 # needs: camshaft
+@pytest.mark.slow
 def test_the_camshaft_of_its_page_is_made_of_the_lobe_beside_it(workshop, tmp_path):
     report = camgeo.export(workshop / "single.yaml", tmp_path)
     assert report.ok
@@ -318,7 +342,7 @@ def test_every_page_is_linked_from_the_readme():
 
 
 def test_the_plan_of_the_house_names_what_is_there():
-    """Each path and module of docs/architecture.md and CONTRIBUTING.md is there, and each room is in the plan."""
+    """Each path and module of docs/architecture.md and CONTRIBUTING.md is there, and so is each package of the code."""
     for name in ("docs/architecture.md", "CONTRIBUTING.md"):
         text = (ROOT / name).read_text(encoding="utf-8")
         paths = re.findall(r"`((?:kin|camgeo|tests|benchmarks|docs|recipes)/[\w./-]*)`", text)
@@ -330,9 +354,19 @@ def test_the_plan_of_the_house_names_what_is_there():
             for module in modules
             if not any((ROOT / (module.replace(".", "/") + end)).exists() for end in ("", ".py"))
         ] == []
-    plan = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-    rooms = [path.name for package in ("kin", "camgeo") for path in (ROOT / package).iterdir() if [*path.glob("*.py")]]
-    assert [room for room in rooms if room != "__pycache__" and f"**{room}**" not in plan] == []
+    plan = PLAN.read_text(encoding="utf-8")
+    packages = [path.name for top in ("kin", "camgeo") for path in (ROOT / top).iterdir() if [*path.glob("*.py")]]
+    assert [name for name in packages if f"**{name}**" not in plan] == []
+
+
+def test_the_drawing_of_the_layers_is_that_of_the_contracts():
+    (drawing,) = re.findall(r"^```text\n(.*?)^```", PLAN.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    rows = [row[:53].partition("   ")[0] for row in drawing.split("\n")]
+    drawn = [set(re.findall(r"\w+", row)) for row in rows[2:] if row]
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    contracts = settings["tool"]["importlinter"]["contracts"]
+    (layers,) = [contract["layers"] for contract in contracts if contract.get("containers") == ["camgeo"]]
+    assert drawn == [set(re.findall(r"\w+", layer)) for layer in layers if layer != "__main__"]
 
 
 def test_the_report_page_names_every_check():
@@ -340,12 +374,12 @@ def test_the_report_page_names_every_check():
     assert [name for name in CHECKS.among(()) if f"`{name}`" not in text] == []
 
 
-@pytest.mark.parametrize("name", registry.names_with_record())
+@pytest.mark.parametrize("name", CHECKING.answering())
 def test_the_page_of_a_capability_names_its_checks(name):
     page = ROOT / "docs" / f"{name}.md"
     page = page if page.is_file() else page.with_name("report.md")
     text = page.read_text(encoding="utf-8")
-    assert [one.name for one in registry.capability(name).checks() if f"`{one.name}`" not in text] == []
+    assert [one.name for one in CHECKING[name].checks if f"`{one.name}`" not in text] == []
 
 
 def test_the_report_page_names_every_follower_and_every_remark():

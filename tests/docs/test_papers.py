@@ -23,6 +23,7 @@ FIGURES = DOCS / "figures"
 SCRIPTS = {
     "make_camshafts": "camshafts.md",  # needs: camshaft
     "make_constant_breadth": "constant-breadth.md",
+    "make_cylindrical_picture": "cylindrical.md",  # needs: cylindrical
     "make_double_roller": "double-roller.md",
     "make_laws": "double-roller.md",
     "make_yoke_pictures": "linkages.md",
@@ -67,6 +68,7 @@ def test_the_tables_of_a_page_are_measured_anew(page: str) -> None:
         assert off(cells(DOCS / page, mark), rows) == [], f"{page}: python tests/docs/paper_pages.py writes it anew"
 
 
+@pytest.mark.slow  # of this file itself
 def test_a_wrong_figure_and_a_wrong_word_of_a_table_are_found() -> None:
     page, mark = "constant-breadth.md", "extremes of the radius of curvature"
     rows, shown = measured(page, mark), cells(DOCS / page, mark)
@@ -149,13 +151,13 @@ def differences(one: str, other: str) -> list[str]:
     return found
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_the_pictures_are_what_the_script_draws(script: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(str(DOCS))
+    monkeypatch.syspath_prepend(str(ROOT / "tools" / "docs"))
     for name, text in import_module(script).figures().items():
         path = FIGURES / f"{name}.svg"
-        assert differences(path.read_text(encoding="utf-8"), text) == [], f"python docs/{script}.py draws it anew"
+        assert differences(path.read_text(encoding="utf-8"), text) == [], f"python tools/docs/{script}.py draws it anew"
         assert path.stat().st_size < LARGEST
         assert not re.search(r"var\(|<style|\sstyle=|calc\(|vector-effect|paint-order", text)
 

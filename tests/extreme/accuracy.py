@@ -24,8 +24,7 @@ from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
-from kin.read.files import read_drawing
-from kin.read.mesh.stl import read_stl
+from kin.read.files import read_drawing, read_solid
 
 PAGE = Path(__file__).parents[2] / "docs" / "accuracy.md"
 TOPICS = (
@@ -139,7 +138,7 @@ def made(asked):
             if file.suffix == ".dxf":
                 found[file.name] = read_drawing(file).contour
             if file.suffix == ".stl":
-                found[file.name] = read_stl(file).contour
+                found[file.name] = read_solid(file).contour
         return Made(outcome.report, "", found)
 
 

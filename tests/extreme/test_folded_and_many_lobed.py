@@ -309,7 +309,7 @@ def arcs():
         )
 
 
-@pytest.mark.thin(30)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):
     shown_as_measured(__name__, name)

@@ -96,7 +96,7 @@ def eccentric():
     yield Row(what, "two arcs, mm", off, 1e-12, "rounding of the file's coordinates")
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):
     shown_as_measured(__name__, name)

@@ -26,10 +26,20 @@ def test_a_parallel_as_deep_as_an_arc_is_refused():
         inset(STADIUM, 2.0)
 
 
-def test_corners_have_no_parallel():
-    square = ArcSpline(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]), np.zeros(4), EXACT)
-    with pytest.raises(RegionError, match="meet at 81 degrees"):
-        inset(square, 0.5)
+SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+
+
+def test_lines_meet_in_a_corner_of_the_parallel_too():
+    inner = inset(ArcSpline(SQUARE, np.zeros(4), EXACT), 0.5)
+    assert inner.points.tolist() == [[0.5, 0.5], [3.5, 0.5], [3.5, 3.5], [0.5, 3.5]]
+    with pytest.raises(RegionError, match="nothing is left of an edge within a chamfer of 2 mm"):
+        inset(ArcSpline(SQUARE, np.zeros(4), EXACT), 2.0)
+
+
+def test_a_corner_at_an_arc_has_no_parallel():
+    bulged = ArcSpline(SQUARE, np.array([0.2, 0.0, 0.0, 0.0]), EXACT)
+    with pytest.raises(RegionError, match=r"the arcs meet at .* degrees, where no chamfer runs"):
+        inset(bulged, 0.5)
 
 
 def test_chord_and_radius_of_lines_and_arcs():

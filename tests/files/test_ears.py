@@ -93,7 +93,7 @@ def test_round_walls(shapes: list[tuple[int, int, float, int]]) -> None:
 
 
 @pytest.mark.usefixtures("alone")
-@pytest.mark.parametrize("count", [3, 4, 5, 6, 97, pytest.param(4000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [3, 4, 5, 6, 97, pytest.param(1500, marks=pytest.mark.slow)])
 def test_holes_on_a_circle_in_a_lobed_contour(count: int) -> None:
     angle = 2.0 * math.pi * np.arange(10 * count) / (10 * count)
     reach = 30.0 + 5.0 * np.cos(3.0 * angle)

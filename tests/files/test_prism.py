@@ -34,6 +34,7 @@ def exported(folder, part, kind="stl"):
     return recipe, outcome.folder / f"g.{kind}"
 
 
+@pytest.mark.costly("a part with a text, in each format of solids")
 def test_a_hub_below_and_a_mark(tmp_path):
     recipe, path = exported(tmp_path / "all", HUB + MARK)
     _, plain = exported(tmp_path / "plain", "")

@@ -64,6 +64,7 @@ def test_a_drawing_shows_outline_opening_and_holes(tmp_path, form, rotation):
     assert 'viewBox="-66 -66 132 132"' in text
 
 
+@pytest.mark.slow
 def test_solids_have_the_volume_of_the_ring(tmp_path):
     trimesh = pytest.importorskip("trimesh")
     recipe = ring(files="stl, 3mf")
@@ -144,7 +145,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_spoilt_ring_is_caught(tmp_path, fault):
     recipe = ring("{outer: 130}")

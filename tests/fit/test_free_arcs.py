@@ -25,7 +25,7 @@ from camgeo.fit import arcs as fitting
 from camgeo.fit import free_arcs
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.deviation import Chain, chain_deviation
-from camgeo.fit.parts import MonotonePart
+from camgeo.fit.monotone_parts import MonotonePart
 from camgeo.output.pipeline import check
 from camgeo.recipe.loading import load
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
@@ -115,7 +115,7 @@ def distance(curve: Curve, points: np.ndarray) -> np.ndarray:
     return across
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 3))
 def test_few_proved_and_smooth(curve: Curve, tolerance: float) -> None:
     arcs = fit_arcs(curve, tolerance)
@@ -134,7 +134,7 @@ def test_few_proved_and_smooth(curve: Curve, tolerance: float) -> None:
     assert np.abs(gap).max() >= arcs.bound.worst - 0.1 * tolerance
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance", few([1e-2, 1e-4], 2))
 def test_the_curve_is_near_the_arcs_too(curve: Curve, tolerance: float) -> None:
     """The other half of a two-sided bound: no point of the curve is farther from every arc than promised."""
@@ -148,7 +148,7 @@ def test_the_curve_is_near_the_arcs_too(curve: Curve, tolerance: float) -> None:
     assert step < 1.0
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 def test_never_more_than_biarcs(curve: Curve, monkeypatch: pytest.MonkeyPatch) -> None:
     free = [fit_arcs(curve, tolerance).count for tolerance in TOLERANCES]
     monkeypatch.setattr(free_arcs, "free_arcs", lambda _curve, parts, _aim, _limit: [None] * len(parts))
@@ -164,6 +164,7 @@ def test_the_count_tends_to_the_theory(curve: Curve) -> None:
     assert fit_arcs(curve, 1e-7).count <= 1.005 * total / math.cbrt(1e-7) + 1.7 * max(special, 1)
 
 
+@pytest.mark.slow
 def test_the_bound_holds_in_forty_digits() -> None:
     """Supports of the arcs of p = 25 + 2 cos 3t, evaluated by mpmath from the file's numbers, against p itself."""
     arcs = fit_arcs(Curve.whole(SupportShape(lift_from_fourier(25.0, {3: 2.0}, {}))), 1e-9)

@@ -93,7 +93,7 @@ def near_a_break(name: str) -> Curve:
     return load_text(text, "r").cam.exact().surfaces[0].curve
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NEAR_A_BREAK)
 @pytest.mark.parametrize("tolerance", [0.05, 0.001, 1e-5])
 def test_inflections_close_to_breaks(name: str, tolerance: float) -> None:
@@ -103,6 +103,7 @@ def test_inflections_close_to_breaks(name: str, tolerance: float) -> None:
     assert polygon.count <= 1.01 * least_vertices(curve, tolerance) + len(curve.runs[0].breaks) + 1
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "name",
     [

@@ -72,7 +72,7 @@ def test_what_is_proved_covers_the_span_at_any_number_of_steps(
         assert bottom[0] >= -true.min() - 1e-12
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", few(CURVES, 2))
 @pytest.mark.parametrize("length", [0.5, 0.1, 0.02])
 def test_it_exceeds_the_truth_by_a_fiftieth_at_most(name: str, length: float) -> None:

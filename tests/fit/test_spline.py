@@ -108,7 +108,7 @@ def test_no_span_of_a_right_length_does_better() -> None:
             assert np.abs(gap).max() > 0.98 * worst[0]
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", few(CONTOURS, 4))
 def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
     contour = designed(load(RECIPES / f"{name}.yaml")).only_surface.contour
@@ -128,7 +128,7 @@ def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> No
     assert np.mean(ratios) <= 1.16
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance", few([5e-4, 1.6e-4, 1e-5, 2e-6, 1e-6], 2))
 def test_where_sharing_does_not_settle_what_came_nearest_is_halved(tolerance: float) -> None:
     """A double roller in whose contour many places have no nearest cubic, and these move about as nodes are shared."""
@@ -151,7 +151,7 @@ def test_curves_missed_to_one_side_take_no_more_than_theory_does() -> None:
             assert found.count <= np.ceil(1.02 * totals * 10.0 ** (-exponent / 6)).sum() + 1
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("share", few([0.5, 0.98, 0.999], 4))
 @pytest.mark.parametrize("harmonic", [49, 97, 98, 99])
 def test_high_harmonics_near_undercut_are_held(harmonic: int, share: float) -> None:
@@ -236,6 +236,7 @@ def test_roundings_too_small_for_a_reader_become_corners(sides: int, rounding: f
     assert found.bound.worst <= 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("fourier", "pivot", "tolerance"),
     few(

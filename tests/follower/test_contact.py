@@ -10,8 +10,9 @@ from support.heavy import shapely
 
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
+from kin.contour.dilated import dilated
 from kin.contour.nearest import nearest, signed_distance
-from kin.follower.contact import Search, angles_of, dilated, shortened, within_reach
+from kin.follower.contact import Search, angles_of, shortened, within_reach
 from kin.follower.guide import Arm
 from kin.law.contacts import LEADING, TRAILING
 

@@ -65,7 +65,7 @@ def probes(points, spread, seed=5):
     return points + rng.uniform(-spread, spread, points.shape)
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LIFTS)
 @pytest.mark.parametrize("spread", [1e-3, 2.0])
 def test_excess_over_a_flat_face_is_the_greatest_reach_beyond_it(name, spread):
@@ -84,7 +84,7 @@ def test_excess_over_a_flat_face_is_the_greatest_reach_beyond_it(name, spread):
     assert feet.normal == pytest.approx(unit(feet.parameter), abs=1e-15)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", PITCHES)
 @pytest.mark.parametrize("spread", [1e-3, 2.0])
 def test_excess_over_a_roller_is_its_radius_less_the_distance_to_the_pitch_curve(name, spread):
@@ -185,7 +185,7 @@ def test_deviation_of_convex_polygons_is_the_difference_of_support_functions(nam
     assert reach.greatest == pytest.approx(found.outside, abs=1e-11)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(["Booth", "hollow", "arc", "given law"], 2))
 def test_deviation_from_a_roller_envelope_by_dense_distances(name):
     transmission, radius = PITCHES[name]

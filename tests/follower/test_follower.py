@@ -251,7 +251,7 @@ def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
     assert there[0, 1] - there[1, 1] == pytest.approx(judged.play.most, rel=1e-6)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("count", few([600, 1600], 2))
 @pytest.mark.parametrize("out", [1e-4, -1e-4])
 def test_errors_of_a_pair_are_settled_where_the_curvature_jumps(count, out):
@@ -344,7 +344,7 @@ DOUBLES = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(DOUBLES, 2))
 def test_double_roller_follows_ever_finer_polygons_ever_better(name):
     transmission, formula = DOUBLES[name]
@@ -411,7 +411,7 @@ def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
     assert 0.95 * play < gap < 1.001 * play
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", PAIRS)
 def test_limits_of_a_pair_hold_and_are_reached(name):
     e = 0.05
@@ -427,6 +427,7 @@ def test_limits_of_a_pair_hold_and_are_reached(name):
     assert 0.95 * pair.play_limit(e) < gap < 1.001 * pair.play_limit(e)
 
 
+@pytest.mark.slow
 def test_the_start_vertex_and_the_sense_of_writing_do_not_matter():
     points = roller_points(300, HOLLOW, 8.0)
     follower = followers.double_roller(DOUBLES["hollow"][0], 8.0)

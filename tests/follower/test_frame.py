@@ -247,7 +247,7 @@ def test_the_limit_is_the_sensitivity_times_the_tolerance(pair, tolerance):
     assert implied_limit(mechanism, tolerance) == pytest.approx(first_order, rel=max(0.2 * tolerance, 1e-6))
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance", few([1e-3, 0.1], 2))
 def test_a_parallel_cam_uses_the_whole_limit_and_no_more(pair, tolerance):
     """All round outside by the tolerance: the four ways of resting are the four combinations of signs."""
@@ -293,6 +293,7 @@ def test_a_contour_with_which_the_mechanism_binds():
         judge_frame(Contour.from_vertices(vertices), mechanism, SHAFT, 1e-3)
 
 
+@pytest.mark.slow
 def test_a_contour_that_turns_the_shaft_back():
     """The exact cam just turns; over the edges of a coarse polygon the frame swings faster than the shaft turns."""
     mechanism = Mechanism(InvertedSliderCrank(25.0, 0.0), LIFT, BREADTH)
@@ -306,7 +307,7 @@ def test_a_contour_that_turns_the_shaft_back():
 # --- dwells -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("over", ["shaft", "relative"])
 def test_the_dwell_of_the_paper_from_a_file(over):
     """AS Figure 9: about 45 degrees of the relative angle around 3 pi/2; less over the shaft angle."""
@@ -411,6 +412,7 @@ def moved_range(by, a, b):
     return wavy_range(a - by, b - by)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 8, 60])
 @pytest.mark.parametrize("band", [0.0, 0.3, 0.9, 1.5, 4.0])
 def test_runs_of_blocks_within_a_band_are_those_of_a_count_one_by_one(count, band):

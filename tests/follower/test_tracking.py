@@ -16,6 +16,7 @@ from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.follower.guide import Arm, Line
 from kin.follower.laws import ByLaw, Swing
+from kin.follower.tracking import bounds_of_error
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.contacts import LEADING, TRAILING
@@ -134,7 +135,7 @@ def dense(follower, contour, count):
 NAMES = ["cycloidal", "polynomial-345", "polynomial-4567", "modified-sine", "harmonic"]
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("seed", range(16))
 def test_random_double_rollers_against_dense_contacts(seed):
     rng = np.random.default_rng(seed)
@@ -165,6 +166,7 @@ def inch():
     return followers.double_roller(from_law(4, 3, 25.4 * 2.5, programme(segments, delta)), 25.4 * 0.3)
 
 
+@pytest.mark.slow
 def test_a_limit_below_the_true_error_and_above_the_samples_is_broken(tmp_path, monkeypatch):
     follower = inch()
     path = write_dxf(tmp_path / "cam.dxf", follower.envelope.points(np.arange(301) * 2 * np.pi / 301))
@@ -282,6 +284,7 @@ def test_opposite_rollers_on_polygons_against_bisected_distances(count):
         assert 80.0 - sum(each(np.radians([at]))) == pytest.approx(value, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_limits_of_opposite_rollers_hold_on_parallel_contours_and_are_sharp():
     """All metal too much, or too little. At pressure angles of 15 degrees 0.3 mm do more than the first order says."""
     yoke, reached = frame(), []
@@ -314,7 +317,7 @@ def test_a_frame_of_rollers_tells_its_dwells_and_how_flat_they_are():
     assert flat == pytest.approx(range_, rel=0.02)
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize("vertex", [0, 1, 1500, 1999])
 @pytest.mark.parametrize("depth", [0.02, -0.02])
 def test_a_dent_or_spike_of_one_vertex_is_proved(vertex, depth):
@@ -355,3 +358,29 @@ def test_a_dent_or_spike_in_a_very_fine_polygon_is_not_lost_between_samples(scal
     reached = np.degrees(dense(follower, contour, 40_000))
     assert motion.max == pytest.approx(reached, rel=0.02)
     assert reached <= motion.bound
+
+
+def test_an_error_is_bounded_and_reached_at_the_place_that_is_told():
+    """Of cubics over spans: the bound holds, and the error reached is one of the cubic, no less than the middle's."""
+    rng = np.random.default_rng(8)
+    f, slope, bend, third = rng.normal(size=(4, 60))
+    half = rng.uniform(0.2, 2.0, 60)
+    inner = 0.7 * half
+    s = half * np.linspace(-1.0, 1.0, 401)[:, None]
+
+    def cubic(at):
+        return f + at * (slope + at * (0.5 * bend + at * third / 6.0))
+
+    most = np.abs(slope + s * (bend + 0.5 * s * third)).max(axis=0), np.abs(bend + s * third).max(axis=0), np.abs(third)
+    bound, reached, where = bounds_of_error(np.stack([f, slope, bend]), most, half, inner)
+    assert (bound >= cubic(s).max(axis=0) - 1e-12).all()
+    assert (np.abs(where) <= inner).all()
+    assert (reached >= f).all()
+    assert (reached <= cubic(where) + 1e-12).all()
+    # of parabolas both are the greatest value within the inner part
+    most = most[0] + half * np.abs(third) * half, np.abs(bend), np.zeros(60)
+    bound, reached, where = bounds_of_error(np.stack([f, slope, bend]), most, inner, inner)
+    s = inner * np.linspace(-1.0, 1.0, 4001)[:, None]
+    greatest = (f + s * (slope + 0.5 * s * bend)).max(axis=0)
+    assert reached == pytest.approx(greatest, abs=1e-6)
+    assert bound == pytest.approx(reached, abs=1e-12)

@@ -14,6 +14,7 @@ from camgeo.formats.glb import PERIOD, Actor, make_view, write_glb
 from camgeo.output.job import Job
 from camgeo.recipe.export import FileRequest
 from camgeo.synthesis.design import designed
+from kin.read.formats import FORMATS
 
 TETRAHEDRON = Mesh(
     np.array([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 30.0]]),
@@ -150,7 +151,8 @@ def test_export_is_not_judged_and_the_same_twice(tmp_path, capsys):
         found.append((tmp_path / folder / "disc" / "disc.glb").read_bytes())
     assert found[0] == found[1]
     assert main(["verify", str(recipe), str(tmp_path / "one" / "disc" / "disc.glb")]) == 2
-    assert "none of .dxf, .svg, .stl, .ply, .3mf" in capsys.readouterr().err
+    judged = ", ".join(record.suffixes[0] for record in FORMATS.values())
+    assert f"disc.glb: none of {judged}" in capsys.readouterr().err
     recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\nexport: {files: [glb]}\n")
     assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 2
     assert "glb needs a thickness" in capsys.readouterr().err

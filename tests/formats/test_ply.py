@@ -51,6 +51,7 @@ def binary(path: Path, triangles, order: str = "<", kind: str = "f8") -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_part_with_all_features_is_right(tmp_path):
     recipe = recipe_of(PART, files="ply")
     design, made = files_of(recipe, tmp_path)
@@ -63,6 +64,7 @@ def test_a_part_with_all_features_is_right(tmp_path):
     assert read.volume == pytest.approx(read_solid(path).volume, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_numbers_are_those_of_the_mesh_to_the_bit(tmp_path: Path) -> None:
     """Of a tenth of a micrometre, which single precision does not hold at 25 mm."""
     report = camgeo.export(camgeo.load(f"{CAM}export: {{tolerance: 1.0e-7, files: [ply]}}\n"), tmp_path)

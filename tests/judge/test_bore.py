@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from kin.contour.contour import Contour
+from kin.contour.holes import round_hole
 from kin.judge.bore import bore_check, round_check
-from kin.judge.holes import round_hole
 
 
 def circle(x: float, diameter: float) -> Contour:

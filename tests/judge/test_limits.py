@@ -11,7 +11,8 @@ import camgeo
 from camgeo.measures.remarks import LOOSE
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
-from kin.judge.limits import MOST_SHARE, NO_LIMIT, STEEP, is_loose, stroke_of
+from kin.judge.limits import stroke_of
+from kin.numeric.limits import MOST_SHARE, NO_LIMIT, STEEP, is_loose
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,13 +10,12 @@ from support.heavy import ezdxf
 from support.parts import failures, files_of, recipe_of
 
 from camgeo.synthesis.intent import intended
+from kin.contour.holes import Hole, round_hole
 from kin.follower.envelope import FlatEnvelope
-from kin.judge.holes import Hole, round_hole
-from kin.judge.layers import CrossHole, Layer, faces, heights, slotted, volume
 from kin.law.support_function import lift_from_fourier
 from kin.read.errors import ReadError
-from kin.read.files import read_drawing
-from kin.read.mesh.stl import read_stl
+from kin.read.files import read_drawing, read_solid
+from kin.read.layers import CrossHole, Layer, faces, heights, slotted, volume
 
 E = 0.01
 PRISM = (
@@ -68,11 +67,12 @@ def turned(entity, degrees):
     entity.rotate_z(math.radians(degrees))
 
 
+@pytest.mark.slow
 def test_untouched_it_holds(drawing, tmp_path):
     assert spoilt(drawing, tmp_path, lambda space: space) == set()
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("which", range(4))
 @pytest.mark.parametrize("angle", [0.0, 2.0])
 def test_hole_moved_by_three_tolerances(drawing, tmp_path, which, angle):
@@ -183,6 +183,7 @@ def test_cut_mark_turned_by_a_fifth_of_a_degree(tmp_path):
     assert failures(files["stl"][0], recipe, design) == set()
 
 
+@pytest.mark.slow
 def test_mirrored_drawing_is_judged_as_such(tmp_path):
     recipe = recipe_of(PRISM.replace("AS", "cut"), more="rotation: ccw\n")
     design, files = files_of(recipe, tmp_path)
@@ -234,6 +235,7 @@ def test_fault_of_a_solid(solid, tmp_path, name):
         assert named is None or named in found
 
 
+@pytest.mark.slow
 def test_solid_stretched_turned_or_spoilt(solid, tmp_path):
     recipe, design, files = solid
     raw = bytearray(files["stl"][0].read_bytes())
@@ -261,7 +263,7 @@ def test_solid_stretched_turned_or_spoilt(solid, tmp_path):
 def test_section_that_is_not_there_is_told(solid):
     _, _, files = solid
     with pytest.raises(ReadError, match=r"it has no section at 20"):
-        read_stl(files["stl"][0], [4.0, 20.0])
+        read_solid(files["stl"][0], [4.0, 20.0])
 
 
 # --- parts of the judge, against closed forms -----------------------------------------------------------------------

@@ -26,9 +26,9 @@ from camgeo.curve.curve import Curve
 from camgeo.curve.moving_frame import Oscillating
 from camgeo.fit.spline import fit_spline
 from camgeo.formats.dxf import write_dxf as drawn_spline
+from kin.contour.holes import round_hole
 from kin.follower.guide import Line
 from kin.follower.roller import GuidedRoller
-from kin.judge.holes import round_hole
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.piecewise import Piecewise
@@ -69,7 +69,7 @@ def test_a_sound_file_passes(tmp_path, name):
     assert verdict.pieces == made.count
 
 
-@pytest.mark.thin(8)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_spline_under_every_follower(tmp_path, name):
     follower, path = FOLLOWERS[name], tmp_path / "cam.dxf"
@@ -81,6 +81,7 @@ def test_a_spline_under_every_follower(tmp_path, name):
     assert verdict.motion.max <= follower.motion_limit(1e-5 + 1e-8)
 
 
+@pytest.mark.slow
 def test_a_spline_at_the_edge_of_its_tolerance(tmp_path):
     """What does not hold with coarse arcs for it counted in is judged by fine ones."""
     follower, path = FOLLOWERS["trailing arm"], tmp_path / "cam.dxf"
@@ -94,7 +95,7 @@ def test_a_spline_at_the_edge_of_its_tolerance(tmp_path):
         assert check.value == pytest.approx(error, abs=2e-9)
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -107,7 +108,7 @@ def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
         assert caught >= {"contour", "motion"}
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(32)
 @pytest.mark.parametrize("depth", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
@@ -148,7 +149,7 @@ MISTAKEN = {
 }
 
 
-@pytest.mark.thin(12)
+@pytest.mark.thin(24)
 @pytest.mark.parametrize("fault", MISTAKEN)
 def test_a_cam_of_another_follower_is_caught(tmp_path, fault):
     name, meant = MISTAKEN[fault]
@@ -168,6 +169,7 @@ def ring_mesh(path, wide=OUTER, count=4000):
     return write_stl(path, solid_triangles(outer, FOLLOWERS["ring"].envelope.points(t), 0.0, 8.0))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_a_ring_as_a_mesh(tmp_path, mirrored):
     asked = intent(FOLLOWERS["ring"], thickness=8.0, mirrored=mirrored)
@@ -212,6 +214,7 @@ def test_a_ring_as_a_solid_of_faces(tmp_path):
         assert {check.name for check in verdict.checks if not check.ok} == failed
 
 
+@pytest.mark.slow
 def test_the_side_of_an_arm_is_not_lost_in_the_ring(tmp_path):
     """A trailing arm in a ring, and its own opening of arcs through points of the exact contour."""
     trailing, leading = (on_arm(M07, Oscillating.on(42.0, 80.0, 65.0, side), 8.0, side=-1) for side in (1, -1))

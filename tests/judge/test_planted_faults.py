@@ -79,7 +79,7 @@ def outward(points, k):
 # --- sound files ------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("form", ["polyline", "arcs", "lines", "stl"])
 def test_a_sound_file_passes_every_check(tmp_path, cam, form):
     intent, points = cam
@@ -127,7 +127,7 @@ def test_a_vertex_moved_along_the_contour_until_it_turns_back(tmp_path, cam):
     assert failures(write_dxf(tmp_path / "cam.dxf", spoilt), intent) & {"contour", "closed"}
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [-1.0, 0.0, 2.0])
 @pytest.mark.parametrize("rank", [0, 10])
 def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, cam, factor, rank):
@@ -141,12 +141,13 @@ def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, cam, factor, rank):
     assert "contour" in failures(write_dxf(tmp_path / "cam.dxf", vertices, bulges), intent, limits)
 
 
+@pytest.mark.thin(3)
 def test_a_missing_segment(tmp_path, cam):
     intent, points = cam
     assert failures(write_lines(tmp_path / "cam.dxf", points(400), leave_out=(123,)), intent) == {"closed"}
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 def test_a_reversed_segment(tmp_path, cam):
     """Two vertices of a polyline in the wrong order: within the tolerance everywhere, yet it runs back on itself."""
     intent, points = cam
@@ -172,7 +173,7 @@ def test_an_open_contour(tmp_path, cam):
     assert failures(path, intent) == {"closed"}
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 def test_a_contour_that_is_closed_by_a_chord(tmp_path, cam):
     """Twenty vertices left out: closed, but flat where it should be curved."""
     intent, points = cam
@@ -193,7 +194,7 @@ def test_a_turn(tmp_path, cam, degrees):
     assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "cam.dxf", turned(points(EDGES), degrees)), intent)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("shift", [(0.01, 0.0), (0.0, -0.01)])
 def test_a_shift(tmp_path, cam, shift):
     intent, points = cam
@@ -358,6 +359,7 @@ def test_a_dent_in_a_hollow_that_neither_roller_feels(tmp_path, depth):
     assert failures(write_dxf(tmp_path / "cam.dxf", vertices), intent) == {"contour"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("depth", few([0.0005, 0.002], 2))
 def test_a_dent_that_no_flat_face_feels_counts_with_its_depth(tmp_path, depth):
     """A face passes over a dent of any depth; it is metal missing, measured as such and held against the tolerance."""
@@ -421,7 +423,7 @@ def test_a_solid_with_a_triangle_missing(tmp_path, cam):
     assert "watertight" in found
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("which", [0, 5, -1])
 def test_a_solid_with_one_triangle_flipped(tmp_path, cam, which):
     intent, points = cam
@@ -473,7 +475,7 @@ def test_a_solid_in_inches(tmp_path, cam):
     assert {"contour", "motion", "thickness"} <= failures(path, intent)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 def test_a_solid_whose_top_differs_from_its_bottom(tmp_path, cam):
     """One corner of the top moved: the walls lean, and the section halfway up tells half of it."""
     intent, points = cam
@@ -502,14 +504,14 @@ def test_a_solid_with_a_wide_bore(tmp_path, cam):
     assert {"bore", "volume"} <= failures(stl(tmp_path, points(EDGES), bore=5.05), intent)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 def test_a_solid_scaled_or_turned(tmp_path, cam):
     intent, points = cam
     assert {"contour", "motion", "volume"} <= failures(stl(tmp_path, 1.001 * points(EDGES)), intent)
     assert {"contour", "motion"} <= failures(stl(tmp_path, turned(points(EDGES), 0.2)), intent)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 def test_a_solid_with_a_corner_moved(tmp_path, cam):
     intent, points = cam
     spoilt = points(EDGES)

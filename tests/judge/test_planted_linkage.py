@@ -107,7 +107,7 @@ def test_a_dwell_that_need_not_last_is_told_and_not_judged(tmp_path):
     assert verdict.linkage.error.dwell_flatness is None
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [1.0, -1.0])
 def test_a_file_that_uses_its_whole_tolerance_passes(tmp_path, share):
     """Arcs all round outside or inside by the tolerance: the implied limit is reached and holds."""
@@ -150,7 +150,7 @@ def test_mirrored_drawings(tmp_path):
     assert failures(path, dataclasses.replace(INTENT, mirrored=True)) == set()
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("linkage", "dyads", "unit"),
     [
@@ -216,7 +216,7 @@ def test_metal_left_on_anywhere_is_felt_by_the_output(tmp_path, form, k):
     assert checks["linkage-error"].value > checks["linkage-error"].limit
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [-1.0, 0.0, 2.0])
 def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, factor):
     """Metal on is felt by contact, metal off over a short chord is not: the contour tells of either."""
@@ -246,6 +246,7 @@ def test_a_dwell_spoilt_by_a_bump_within_it(tmp_path, form):
     assert found.linkage.error.dwell_flatness > 0.03
 
 
+@pytest.mark.slow
 def test_a_cam_that_the_mechanism_cannot_follow(tmp_path):
     """The checks say that, and where; the plain frame's are judged as ever."""
     spoilt = cam()
@@ -271,6 +272,7 @@ def test_an_intended_mechanism_that_does_not_turn(tmp_path):
         assert "relative angle" in checks[name].detail
 
 
+@pytest.mark.slow
 def test_a_trimmed_cam_is_told_of_and_judged_by_given_limits_alone(tmp_path):
     path = written(tmp_path, "dxf", turned(cam(), 0.2))
     whole = linked(INTENT, dwell=None)

@@ -98,7 +98,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", FAULTS)
 def test_the_cam_of_another_swing_is_caught(tmp_path, intent, fault):
     wrong = read(*FAULTS[fault]).cam.exact().law
@@ -110,6 +110,7 @@ def test_a_turned_cam_is_caught(tmp_path, intent, turned):
     assert failures(file_of(tmp_path, gauge_of(intent).motion, turned), intent) >= {"contour", "linkage-error"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", few(["motion", "links"]))
 def test_a_lift_that_is_not_the_laws_is_caught_by_the_swing_alone(tmp_path, intent, part):
     """As a generator would make it that mistook the law: the file is what its own lift says, exactly."""

@@ -108,7 +108,7 @@ def brute(inner, outer, radius, theta):
     return stopped[wide & (far.real > held)].min() - held
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("layers", [("GROOVE_INNER", "GROOVE_OUTER"), ("CUT", "CUT")])
 @pytest.mark.parametrize("blank", [None, 80.0])
 def test_a_sound_groove_is_found_by_layer_and_by_nesting(tmp_path, layers, blank):
@@ -124,7 +124,7 @@ def test_a_sound_groove_is_found_by_layer_and_by_nesting(tmp_path, layers, blank
     assert ("", "outer") in by_surface or blank is None
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("clearance", [1e-6, 0.03, 1.0])
 def test_what_is_left_between_two_circles_in_closed_form(tmp_path, clearance):
     """Both flanks are circles about a point 5 mm off the shaft, and so is the path of a roller on either."""
@@ -221,6 +221,7 @@ def test_a_flank_that_is_missing(tmp_path, layers, missing):
     assert not verdict.closures
 
 
+@pytest.mark.slow
 def test_the_flanks_of_an_arm(tmp_path):
     """In a circular groove about the shaft an arm does not move, and has j/(L cos alpha) to move in."""
     arm, radius = Arm(60.0, 75.0), 50.0
@@ -264,6 +265,7 @@ def test_two_discs_in_two_files(tmp_path, back):
     assert check.limit == pytest.approx(2e-4)
 
 
+@pytest.mark.slow
 def test_a_surface_in_a_section_of_its_own(tmp_path):
     """Two lobes of one solid, each judged at its height."""
     count = 720

@@ -77,7 +77,7 @@ def test_two_drawings_and_what_is_left_between_them(tmp_path):
     assert check.detail.endswith("with a.dxf")
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("fault", "caught"),
     [
@@ -92,6 +92,7 @@ def test_faults_of_disc_2_are_caught_in_its_file(tmp_path, fault, caught):
     assert {file for file, _, _ in failures(verdicts)} == {"b.dxf"}
 
 
+@pytest.mark.slow
 def test_discs_turned_together_are_off_their_keyway(tmp_path):
     """What is left between them stays nothing: the contours tell, as their angle is the shaft's."""
     verdicts = judged(first(tmp_path / "a.dxf", turned=0.02), second(tmp_path / "b.dxf", turned=0.02))
@@ -140,6 +141,7 @@ def shifted(triangles, by):
     return triangles + np.array(by)
 
 
+@pytest.mark.slow
 def test_two_bodies_in_one_file_stand_in_their_order(tmp_path):
     one, two = bodies()
     (verdict,) = together(in_3mf(tmp_path / "pair.3mf", two, one))
@@ -152,6 +154,7 @@ def test_two_bodies_in_one_file_stand_in_their_order(tmp_path):
     assert ("", "form-closure") in named
 
 
+@pytest.mark.slow
 def test_where_a_pair_lies_on_the_plate_does_not_count(tmp_path):
     c, s = math.cos(0.3), math.sin(0.3)
     place = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1], [100.1, 20.3, 0.7]])
@@ -159,6 +162,7 @@ def test_where_a_pair_lies_on_the_plate_does_not_count(tmp_path):
     assert verdict.ok, failures([verdict])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("gap", "moved"),
     [
@@ -181,6 +185,7 @@ def test_a_body_turned_in_its_place(tmp_path):
     assert failures([verdict]) >= {("pair.3mf", "disc 2", "contour"), ("pair.3mf", "disc 2", "motion")}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("count", "told"), [(1, "it holds 1 body, where 2 are expected"), (3, "3 objects are built")])
 def test_more_or_fewer_bodies(tmp_path, count, told):
     one, two = bodies()

@@ -12,7 +12,6 @@ from kin.contour.contour import Contour
 from kin.follower.deviation import deviation
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.guide import Arm
-from kin.judge.check import Check, about, at_most, failed
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.judge.volume import volume_check
@@ -20,6 +19,7 @@ from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.law.support_function import lift_from_fourier, lift_hypocycloid, lift_reuleaux
 from kin.law.transmission import from_delta
+from kin.numeric.check import Check, about, at_most, failed
 
 PHI = np.arange(360) * 2 * np.pi / 360
 HOLLOW = (4, 3, 60.0, {1: 625.0})
@@ -58,7 +58,7 @@ def supported(t, mean=25.0, amplitude=2.0):
 # --- curves of other kinds --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("count", "expected"), [(30, 1e-2), (120, 1e-4), (480, 1e-6)])
 def test_a_cubic_spline_in_a_yoke(tmp_path, count, expected):
     """Error measured by the verdict against the spline evaluated by scipy at 100 000 places."""
@@ -149,6 +149,7 @@ def test_a_contour_that_uses_the_whole_tolerance_just_holds(tmp_path, e):
     assert less["breadth-max"].value == pytest.approx(2 * e, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_default_limits_are_told(tmp_path):
     path = write_dxf(tmp_path / "cam.dxf", roller_points(3000, HOLLOW, 8.0))
     checks = named(verify(path, part_of(ROLLERS, bore=10.0), 90, Limits(2e-3)))
@@ -159,6 +160,7 @@ def test_default_limits_are_told(tmp_path):
     assert 0.0 <= checks["motion"].at_deg < 360.0
 
 
+@pytest.mark.slow
 def test_the_worst_place_is_told_as_a_shaft_angle(tmp_path):
     """A bump at polar angle 70 degrees of a circle under double rollers: contact there at phi = t + acos(r/2l)."""
     transmission = from_delta(3, 1, 60.0, {}, {})
@@ -223,6 +225,7 @@ def test_a_fault_on_a_trimmed_contour(tmp_path, fault):
     assert not checks["contour"].ok
 
 
+@pytest.mark.slow
 def test_a_corner_cut_off_a_sharp_reuleaux():
     """Cut by 0.9 e on either side of the corner, which itself is then missing by more than e."""
     breadth, e = 50.0, 0.01
@@ -250,6 +253,7 @@ def test_a_corner_cut_off_a_sharp_reuleaux():
     assert check.value == pytest.approx(1.1 * e, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_trimmed_undercut_of_rollers(tmp_path):
     """A roller of 30 mm in hollows that are tighter: the contour is the pitch curve shrunk by shapely."""
     transmission = from_delta(*HOLLOW, {})
@@ -290,6 +294,7 @@ def test_no_contact_is_a_motion_that_fails(tmp_path):
     assert not named(verdict)["contour"].ok
 
 
+@pytest.mark.slow
 def test_volume_from_the_intent_in_closed_form(tmp_path):
     """Rabinowitz's curve p = 9 + cos 3t: area 77 pi (Rabinowitz 1997); a plate of 4 mm with a bore of 4 mm."""
     yoke = followers.yoke(lift_from_fourier(9.0, {3: 1.0}, {}), 18.0)
@@ -308,7 +313,7 @@ def test_volume_from_the_intent_in_closed_form(tmp_path):
     assert verdict.kind == "stl"
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("unit", "mm", "word"), [("inches", 25.4, "inch"), ("centimetres", 10.0, "cm"), ("mm", 1.0, "mm")]
 )

@@ -15,12 +15,14 @@ from hypothesis import strategies as st
 from support.square_frame import Bars, Bench
 
 from kin.law.frame_swing import frame_swing, span_of
-from kin.law.programme import LAWS, IntentError
+from kin.law.normalised import IntentError
+from kin.law.sources.laws import named
 from kin.law.sources.programme import Dwell, Move, programme
 from kin.law.support_function import lift_constant_breadth
 from kin.linkage.dyad import RRR
 from kin.linkage.four_bar import InvertedSliderCrank
 from kin.linkage.mechanism import Mechanism
+from kin.numeric.inverse import Inverse
 
 DEG = math.pi / 180
 RADIUS = 40.0
@@ -47,7 +49,9 @@ class Case:
 
     def motion(self):
         dwell = [Dwell(self.span - self.over * DEG)]
-        return programme([Move(self.over * DEG, LAWS["cycloidal"], by=self.rise * DEG), *dwell], self.span, around=None)
+        return programme(
+            [Move(self.over * DEG, named("cycloidal"), by=self.rise * DEG), *dwell], self.span, around=None
+        )
 
     def law(self):
         return frame_swing(self.motion(), self.ground, self.rocker - self.offset, self.side)
@@ -116,6 +120,7 @@ def case(request):
     return request.param
 
 
+@pytest.mark.thin(2)
 def test_the_lift_is_that_of_the_loop(case):
     with mp.workdps(30):
         exact, lift = Exact(case), case.lift()
@@ -141,6 +146,7 @@ def test_the_mechanism_swings_by_the_law_all_round(case):
     assert law.output(phi + 4 * math.pi, 2).derivatives() == pytest.approx(output, abs=1e-11)
 
 
+@pytest.mark.slow
 def test_a_polygon_turning_in_a_rigid_square_swings_by_the_law():
     """Nothing of kin but the corners: directions of the frame are found by bisection at given shaft angles."""
     case = CASES[4]
@@ -157,8 +163,8 @@ def test_a_polygon_turning_in_a_rigid_square_swings_by_the_law():
 
 def test_what_rounding_leaves_of_a_rest_is_no_acceleration():
     back = [
-        Move(87.8816 * DEG, LAWS["harmonic"], by=-11.7795 * DEG),
-        Move(68.5594 * DEG, LAWS["polynomial-4567"], by=-11.7795 * DEG),
+        Move(87.8816 * DEG, named("harmonic"), by=-11.7795 * DEG),
+        Move(68.5594 * DEG, named("polynomial-4567"), by=-11.7795 * DEG),
     ]
     law = frame_swing(programme(back, 156.441 * DEG, around=None), 137.0, 0.0, 1.0)
     ends = [end for joint in law.joints for k, *both in joint.jumps if k == 2 for end in both]
@@ -177,6 +183,37 @@ def test_what_hangs_on_the_rocker_is_solved_from_the_law():
     assert _Prescribed(mechanism, case.law()).output(phi) == pytest.approx(at.output[0], abs=1e-11)
 
 
+def test_stretches_of_a_swing_are_one_evaluation(monkeypatch):
+    """The lift and its slope at relative angles that come from shaft angles, either side of each joint, and over all.
+
+    The relative angle is phi - m, the lift that of the swing m moved, so its slope is L'(m) m'/(1 - m').
+    """
+    swing = [Move(140.0 * DEG, named("modified-sine"), by=20.0 * DEG), Dwell(60.0 * DEG)]
+    law = frame_swing(programme(swing, 200.0 * DEG, around=None), 80.0, 0.0, 1.0)
+    half, knots = law.half_turn, law.motion.motion.knots
+    assert len(knots) == 5
+    places = 0.5 * (knots[:-1] + knots[1:])
+    phi, side = np.concatenate([places, knots[:-1], knots[1:]]), np.repeat([1, 1, -1], 4)
+    moved, rate = law.motion.derivatives(phi, 1, side)
+    slope = 80.0 * np.cos(law.start + moved) * rate / (1.0 - rate)
+    lift = np.array([law.lift(m) for m in moved.tolist()])
+
+    calls, series = [], Inverse.series
+    monkeypatch.setattr(Inverse, "series", lambda *args: calls.append(1) or series(*args))
+    theta = np.clip(phi - moved, 0.0, math.pi)
+    found = half.derivatives(theta, 1, side)
+    assert len(calls) == 1
+    assert found == pytest.approx(np.stack([lift, slope]), abs=2e-13)
+
+    order = np.argsort(theta)
+    first, last = order[:-3], order[3:]
+    mid, rad = half.enclosure(theta[first], theta[last], 1)
+    for k in range(4):
+        inside = np.stack([lift, slope])[:, order[k : len(order) - 3 + k]]
+        assert (np.abs(inside - mid) <= rad + 1e-12).all()
+
+
+@pytest.mark.slow
 @given(
     st.floats(-40, 40).filter(lambda h: abs(h) > 1),
     st.floats(60, 150),
@@ -236,15 +273,15 @@ def test_a_formula_tells_itself_where_it_ends():
 
 def moved(by, over, law="cycloidal", span=None):
     rest = (span if span is not None else 180 + by) - over
-    steps = [Move(over * DEG, LAWS[law], by=by * DEG), *([Dwell(rest * DEG)] if rest else [])]
+    steps = [Move(over * DEG, named(law), by=by * DEG), *([Dwell(rest * DEG)] if rest else [])]
     return programme(steps, (over + rest) * DEG, around=None)
 
 
 def beyond(rise, back):
     """A rise, and a part of the way back."""
     strokes = [
-        Move(120.0 * DEG, LAWS["cycloidal"], by=rise * DEG),
-        Move((60.0 + rise - back) * DEG, LAWS["cycloidal"], by=-back * DEG),
+        Move(120.0 * DEG, named("cycloidal"), by=rise * DEG),
+        Move((60.0 + rise - back) * DEG, named("cycloidal"), by=-back * DEG),
     ]
     return programme(strokes, (180.0 + rise - back) * DEG, around=None)
 
@@ -276,7 +313,7 @@ def test_swings_that_cannot_be(make, links, told):
     assert caught.value.field == "swing"
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rise", "ground", "rocker", "does"),
     [

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from kin.law.formula.formula import Formula
+from kin.law.normalised import IntentError
 from kin.law.polar_formula import from_curve, from_delta_formula
-from kin.law.programme import IntentError
 from kin.law.transmission import from_arc, from_delta
 
 TURN = 2 * math.pi

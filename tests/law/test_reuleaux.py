@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.reuleaux import closed_angles, corners
 from kin.law.support_function import lift_reuleaux
 

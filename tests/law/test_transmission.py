@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from support.programmes import Segment, law, programme
 
 from kin.law.formula.formula import Formula
-from kin.law.programme import IntentError, polynomial_law
+from kin.law.normalised import IntentError, polynomial_law
 from kin.law.routes import FromDelta
 from kin.law.segment import Harmonics
 from kin.law.transmission import from_arc, from_delta, from_law, from_rosette

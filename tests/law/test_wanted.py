@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.programmes import Segment, law, programme
 
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.transmission import from_delta, from_law
 from kin.law.wanted import nearest, proved_error
 from kin.numeric.records import replace
@@ -108,6 +108,7 @@ def test_no_series_is_nearer(lam, name, harmonics):
         assert np.abs(errors(cos, sin, wanted, phi)).max() > found.error
 
 
+@pytest.mark.slow
 def test_more_harmonics_are_nearer():
     """By an order or two with smooth laws; where the acceleration jumps the error falls with the square."""
     wanted = up_and_down(5, 4.0, "cycloidal")
@@ -146,6 +147,7 @@ def test_a_law_with_corners():
     assert math.degrees(proved_error(found, wanted)) < 0.15
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harmonics", [1, 7])
 def test_a_law_all_but_too_steep(harmonics) -> None:
     """44 degrees in 45, whose image all but jumps: the best series is found, or an error says that it is not."""

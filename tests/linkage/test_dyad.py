@@ -280,7 +280,7 @@ def judge(dyad, kind, numbers, driven, ground):
     return worst
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("assembly", few(ASSEMBLIES, 2))
 @pytest.mark.parametrize("power", [1, 3, 5, 7, 9, 11, 13, 15])
 def test_near_the_limits(assembly, power):

@@ -292,6 +292,7 @@ def check(kind, linkage, dims, pair):
         assert ratio(ours, theirs, bound) <= 1
 
 
+@pytest.mark.slow
 @given(lengths, lengths, lengths, assemblies, frames)
 def test_any_four_bar(r1, r3, r4, assembly, frame):
     e, pair = frame

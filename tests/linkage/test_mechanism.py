@@ -12,7 +12,7 @@ from support.sensitivity import sensitivity
 
 from kin.law.formula.formula import Formula
 from kin.law.from_formula import lift_from_formula
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.support_function import lift_from_fourier, lift_hypocycloid, lift_reuleaux
 from kin.linkage.dyad import RPR, RRP, RRR
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
@@ -481,7 +481,7 @@ def test_a_round_cam_about_its_centre_stands_still_and_rests_on_the_dead_centre(
 # Other lifts
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "dyads"),
     few([*((kind, ()) for kind in LINKAGES), ("four-bar", SIX_BAR), ("oscillating yoke", SIX_BAR)], 3),

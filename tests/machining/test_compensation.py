@@ -139,6 +139,7 @@ def test_no_file_passes_for_another(tmp_path, cam):
         assert report["files"][0]["compensation"]["outward"] == pytest.approx(0.2, abs=0.006)
 
 
+@pytest.mark.slow
 def test_motion_of_a_compensated_pair_is_the_nominal_one(tmp_path):
     _, report, _ = made(tmp_path, "dxf, {dxf: {clearance: 1, version: R2013}}", cam=PAIR)
     one, other = (file["motion"]["max"] for file in report["files"])

@@ -46,6 +46,7 @@ def points_of(arcs, per_piece=12):
     return Contour.from_bulges(arcs.points, arcs.bulges).sample(per_piece)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("body", [DWELLS, SHU_WU, REULEAUX, ROLLER])
 def test_a_shape_run_backwards_is_the_same_shape(body):
     _, design = design_of(body)
@@ -80,7 +81,7 @@ def test_a_shape_run_backwards_is_the_same_shape(body):
         assert (here.turn <= bounds.turn_high).all()
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "radius"),
     [(ROLLER, 3.0), (ROLLER, 8.0), (ROLLER, 18.0), (DWELLS, 5.0), (SHU_WU, 10.0), (REULEAUX, 1.0), (TRIMMED, 4.0)],

@@ -22,6 +22,7 @@ def milled(cutter):
     return recipe, designed(recipe)
 
 
+@pytest.mark.slow
 def test_a_cutter_that_reaches_all_says_the_least_hollow():
     recipe, design = milled("9")
     ((check, path),) = reach_checks(recipe, design)
@@ -46,3 +47,12 @@ def test_nothing_is_milled_without_a_cutter():
     recipe, design = milled("9")
     with pytest.raises(ValueError, match="there is nothing to mill"):
         milled_contours(replace(recipe, manufacture=None), design)
+
+
+def test_a_contour_without_a_hollow_names_none(monkeypatch):
+    """Where it is not proved at once that there is none, its least radius is infinite."""
+    monkeypatch.setattr("camgeo.machining.reach.no_hollow", lambda _: False)
+    text = "cam: {kind: support, p: 20 + cos(2*t)}\nmanufacture: {cutter: 9}\n"
+    recipe = read(text.encode(), Path("round.yaml"))
+    ((check, _),) = reach_checks(recipe, designed(recipe))
+    assert (check.ok, check.detail) == (True, "no hollow")

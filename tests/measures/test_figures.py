@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from camgeo.cams.disc_cams import DiscCam
     from camgeo.curve.moving_frame import Displacement
     from camgeo.measures.measured import Measured
-    from camgeo.measures.remarks import RuleRemark
+    from camgeo.measures.rule_remark import RuleRemark
     from camgeo.recipe.recipe import Recipe
-    from kin.judge.check import Check
     from kin.numeric.arrays import Array
+    from kin.numeric.check import Check
 
 MOTION = "[{rise: 24, over: 100, law: modified-sine}, {dwell: 40}, {return: 24, over: 140, law: modified-trapezoid}, "
 MOTION += "{dwell: 80}]"
@@ -299,6 +299,7 @@ def test_a_failure_names_its_key() -> None:
 
 
 # needs: dynamics
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("rpm", [900.0, 37.5])
 def test_peaks_at_a_speed(rpm: float) -> None:
     names = [f"peak-{name}-at-speed" for name in ("velocity", "acceleration", "jerk")]

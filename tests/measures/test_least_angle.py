@@ -88,6 +88,7 @@ def test_the_angle_found_holds_and_a_hundredth_less_does_not(name: str) -> None:
     assert recipe.settled.bound
 
 
+@pytest.mark.slow
 def test_the_angle_of_a_harmonic_return_is_that_of_its_formula() -> None:
     text = STEM.replace("modified-sine", "harmonic").replace(
         "pressure-angle: {at_most: 35}", "peak-velocity: {at_most: 30}"
@@ -133,7 +134,8 @@ def test_an_angle_is_found_though_longer_ones_fail() -> None:
 def test_no_shorter_angle_of_a_fine_grid_is_allowed(name: str) -> None:
     recipe = camgeo.load(CASES[name])
     angle = recipe.settled.least.degrees
-    shorter = np.arange(1.0, angle - 0.02, 0.5).tolist()
+    near = np.arange(angle - 8.0, angle - 0.02, 0.5)  # farther off, what is allowed would be allowed over degrees
+    shorter = [*np.arange(1.0, near[0], 2.0), *near]
     assert len(shorter) > 30
 
     def allowed(other: float) -> bool:

@@ -174,9 +174,12 @@ def test_round_tappet() -> None:
         found = designed(load_text(text % repr(diameter), "r")).checks
         assert next(check.ok for check in found if check.name == "face-width") is ok
     for given, wanted in (
-        (", diameter: 18, axial_offset: 2", "the lobe reaches beyond the tappet, given 18 mm; give more than 18 mm"),
-        (", diameter: 30, width: 20", "cannot be combined with diameter"),
-        (", axial_offset: 2", "belongs to a round tappet"),
+        (
+            ", diameter: 18, axial_offset: 2",
+            r"follower\.diameter: the lobe reaches beyond the tappet, given 18 mm; give more than 18 mm",
+        ),
+        (", diameter: 30, width: 20", r"follower\.width: cannot be combined with diameter; give one of them"),
+        (", axial_offset: 2", r"follower\.axial_offset: belongs to a round tappet; give diameter, or leave it out"),
         (", diameter: 30, arm: {pivot: 60}", "diameter: belongs to a stem, not to an arm"),
     ):
         with pytest.raises(RecipeErrors, match=wanted):

@@ -18,7 +18,7 @@ from camgeo.synthesis.design import designed
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.measures.remarks import RuleRemark
+    from camgeo.measures.rule_remark import RuleRemark
 
 FLAT = "cam: {kind: support, p: 30 + 3*cos(2*t)}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"

@@ -1,10 +1,13 @@
 """The motion of a follower on a drawing that exists: what was exported comes back, whoever follows it."""
 
 import math
+import os
 
 import numpy as np
 import pytest
 
+from camgeo.motions import motion
+from camgeo.motions.contour_motion import ContourPlacing, ContourReading
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
@@ -74,7 +77,9 @@ def test_a_drawing_in_another_unit(tmp_path):
 def test_the_report_of_a_contour_has_its_distance_and_no_line(tmp_path):
     exported(tmp_path, "roller")
     report = pipeline.check(recipe("{contour: out/cam/cam.dxf, reading: 0.003}", tmp_path, "roller")).report
-    assert report["table"] == {"distance": pytest.approx(0.003, rel=0.1), "unit": "mm", "line": None}
+    table = report["table"]
+    assert table["distance"] == pytest.approx(0.003, rel=0.1)
+    assert (table["unit"], table["line"]) == ("mm", None)
     assert report["ok"]
 
 
@@ -154,9 +159,17 @@ def test_points_in_a_file_without_a_unit_are_in_that_beside_it(tmp_path):
         ("{contour: out/cam/cam.dxf, reading: 0.01, columns: [1, 2]}", "columns: cannot stand without a table"),
         ("{contour: mixed.csv, reading: 0.01}", "cross near "),
         ("{contour: lifts.csv, reading: 0.01}", "angles and lifts make no contour; give them as table, or points x, y"),
-        ("{contour: out, reading: 0.01}", "contour: out: "),
+        ("{contour: out, reading: 0.01}", "contour: a folder, given 'out'; give its path as seen"),
+        ("{contour: %s, reading: 0.01}" % ("x" * 300), "contour: cannot be read: "),
         ("{contour: few.csv, reading: 0.01}", "contour: few.csv: points: 20, and at least 36 are needed"),
         ("{formula: 1 - cos(t), curve: pitch}", "curve: cannot stand without a contour; leave it out"),
+        ("{formula: 1 - cos(t), turn: 12}", "turn: cannot stand without a contour; leave it out"),
+        ("{contour: old.csv, reading: 0.01, gap: 0.1}", "old.csv: a gap is one between ends in a drawing; leave gap"),
+        ("{contour: old.csv, reading: 0.01, across: arc}", "old.csv: the contour is closed; leave across out"),
+        (
+            "{contour: part.csv, reading: 0.01}",
+            "a stretch of the contour is left out; give the points between them, or",
+        ),
     ],
 )
 def test_what_is_no_contour_is_refused(motion, message, tmp_path):
@@ -164,6 +177,7 @@ def test_what_is_no_contour_is_refused(motion, message, tmp_path):
     exported(tmp_path, "roller")
     heading, *rows = (tmp_path / "old.csv").read_text().splitlines()
     (tmp_path / "mixed.csv").write_text("\n".join([heading, *rows[::2], *rows[1::2]]))
+    (tmp_path / "part.csv").write_text("\n".join([heading, *rows[:150], *rows[180:]]))
     (tmp_path / "few.csv").write_text("\n".join([heading, *rows[:20]]))
     (tmp_path / "lifts.csv").write_text("\n".join(["angle_deg,lift_mm", *(f"{k},1" for k in range(360))]))
     square = "M 60 60 L 70 60 L 70 70 L 60 70 Z"
@@ -176,9 +190,69 @@ def test_what_is_no_contour_is_refused(motion, message, tmp_path):
     assert message in str(caught.value)
 
 
+def test_a_gap_is_refused_with_the_key_that_closes_it_and_a_contour_is_placed(tmp_path):
+    """A disc of two arcs about (3, 0), one of which begins 0.0025 mm too late, mirrored and turned about the shaft."""
+    bow, late = "A 20 20 0 0 0", 0.0025
+    begin = f"{3 - 20 * math.cos(late / 20):.9f} {20 * math.sin(late / 20):.9f}"
+    paths = f'<path d="M 23 0 {bow} -17 0"/><path d="M {begin} {bow} 23 0"/>'
+    size = 'width="99mm" height="99mm" viewBox="0 0 99 99"'
+    (tmp_path / "gap.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{paths}</svg>')
+    keys = "contour: gap.svg, reading: 0.005"
+    with pytest.raises(RecipeErrors, match=r"0\.0025 apart.*; give gap: 0\.002[56] beside it to join them") as refused:
+        recipe(f"{{{keys}}}", tmp_path, "roller")
+    gap = str(refused.value).partition("give gap: ")[2].partition(" ")[0]
+    made = recipe(f"{{{keys}, gap: {gap}, mirror: y, turn: 30}}", tmp_path, "roller").cam.exact()
+    (told,) = made.kept.remarks
+    assert told.sentence == "gap.svg: ends up to 0.0025 mm apart are joined, as asked"
+    top = (np.argmax(moved(made)[0]) + 0.3) / 2.0
+    assert top == pytest.approx(210.0, abs=1.0)
+    assert np.ptp(moved(made)[0]) == pytest.approx(6.0, abs=0.012)
+
+
+def test_points_that_leave_a_stretch_out_are_closed_across_and_that_is_told(tmp_path):
+    intended = contacts(tmp_path, "roller")
+    heading, *rows = (tmp_path / "old.csv").read_text().splitlines()
+    (tmp_path / "part.csv").write_text("\n".join([heading, *rows[:300], *rows[330:]]))  # of the base circle
+    made = recipe("{contour: part.csv, reading: 0.02, across: arc}", tmp_path, "roller").cam.exact()
+    (told,) = made.kept.remarks
+    assert "part.csv: nothing is known of the contour from " in told.sentence
+    assert moved(made)[0] == pytest.approx(moved(intended)[0], abs=0.04)
+
+
 def test_a_flat_face_has_no_pitch_curve(tmp_path):
     contacts(tmp_path, "flat")
     with pytest.raises(
         RecipeErrors, match=r"old\.csv: a flat face has no centre and so no pitch curve; give the cam's"
     ):
         pipeline.check(recipe("{contour: old.csv, curve: pitch, reading: 0.02}", tmp_path, "flat"))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+@pytest.mark.parametrize("name", ["pipe.dxf", "pipe.csv"])
+def test_a_pipe_is_not_waited_for(name, tmp_path):
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(RecipeErrors, match="a pipe, a socket or a device, not a file"):
+        recipe(f"{{contour: {name}, reading: 0.01}}", tmp_path, "roller")
+
+
+class ReadAsError(Exception):
+    """What a contour was to be read as."""
+
+
+@pytest.mark.parametrize(("rotation", "mirrored"), [("", False), ("rotation: cw\n", False), ("rotation: ccw\n", True)])
+def test_a_contour_is_placed_as_the_keys_beside_it_say(rotation, mirrored, monkeypatch, tmp_path):
+    def read(_reader, name, _path, how):
+        raise ReadAsError(name, how)
+
+    monkeypatch.setattr(motion, "read_contours", read)
+    with pytest.raises(ReadAsError) as asked:
+        recipe(
+            "{contour: c.dxf, reading: 0.01, mirror: x, turn: 30, units: thou, gap: 0.1}",
+            tmp_path,
+            "flat",
+            "dxf",
+            rotation,
+        )
+    name, how = asked.value.args
+    assert name == "c.dxf"
+    assert how == ContourReading(0.0254, ContourPlacing("x", math.radians(30.0), mirrored), False, 0.1, None)

@@ -16,7 +16,7 @@ from camgeo.motions.motion import TableMotion
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load
 from camgeo.schema.errors import RecipeErrors
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.sources.laws import named
 from kin.law.sources.programme import Dwell, Move, programme
 
@@ -40,7 +40,8 @@ def test_a_table_says_the_same_in_every_way_of_writing(form, head, comma, tmp_pa
     asked = recipe("{table: lift.csv}", tmp_path).cam.motion
     assert isinstance(asked, TableMotion)
     assert asked.rows.s == tuple(np.round(sampled(HALF), 3).tolist())
-    assert asked.reading == pytest.approx(0.0005)
+    assert asked.reading is None
+    assert np.array(asked.rows.rounding) == pytest.approx(0.0005)
 
 
 def test_crank_degrees_and_inches_of_a_table(tmp_path):
@@ -69,7 +70,7 @@ def test_a_file_of_several_columns_in_crank_degrees_and_thousandths(tmp_path):
         assert made.kept.distance <= 0.05 * 0.0254
     scaled = recipe("{table: lift.csv, columns: [1, 2], scale: 1.5, offset: 3}", tmp_path, head=head).cam.motion
     assert scaled.rows.s == pytest.approx(0.0254 * (1.5 * np.round(lifts[0], 1) + 3))
-    assert scaled.reading == pytest.approx(1.5 * 0.05 * 0.0254)
+    assert np.array(scaled.rows.rounding) == pytest.approx(1.5 * 0.05 * 0.0254)
 
 
 @pytest.mark.parametrize(
@@ -147,7 +148,7 @@ def with_angle_twice(rows):
 
 def with_slip(rows):
     return [*rows[:30], f"60,{float(rows[30].split(',')[1]) + 0.2:.3f}", *rows[31:]], (
-        r"lift\.csv, line 31: the row stands out: it is 10\.2 mm, about 10 mm fits the others; .* suspect: keep"
+        r"lift\.csv, line 31: the row stands out: it is 10\.2 mm, about 10 mm fits the others; .* suspect: keep or drop"
     )
 
 
@@ -161,20 +162,29 @@ def begun_above(rows):
 def test_a_table_that_is_none_is_refused_with_its_line(harm, tmp_path):
     rows, message = harm(written(tmp_path, HALF, sampled(HALF)))
     (tmp_path / "lift.csv").write_text("\n".join(rows), encoding="utf-8")
-    error = fault("{table: lift.csv, reading: 0.001}", tmp_path)
+    error = fault("{table: lift.csv, reading: 0.001, suspect: refuse}", tmp_path)
     assert (error.line, error.path) == (2, "cam.motion.table")
     assert re.search(message, str(error)), str(error)
 
 
-def test_a_row_that_stands_out_is_kept_where_the_recipe_says_so(tmp_path):
+@pytest.mark.slow
+def test_a_row_that_stands_out_is_told_wherever_the_cam_is_and_may_be_left_out(tmp_path, capsys):
     rows, _ = with_slip(written(tmp_path, HALF, sampled(HALF)))
     (tmp_path / "lift.csv").write_text("\n".join(rows), encoding="utf-8")
-    made = recipe("{table: lift.csv, suspect: keep}", tmp_path)
-    assert lift(made, np.array([60.0]))[0] == pytest.approx([float(rows[30].split(",")[1])], abs=0.0005)
+    value = float(rows[30].split(",")[1])
+    (tmp_path / "case.yaml").write_text("cam: {kind: constant-breadth, base_radius: 900, motion: {table: lift.csv}}\n")
+    made = recipe("{table: lift.csv}", tmp_path)
+    assert lift(made, np.array([60.0]))[0] == pytest.approx([value], abs=0.0005)
     (remark,) = (one for one in pipeline.check(made).report["remarks"] if one["name"] == "table-row")
-    assert "line 31: the row stands out" in remark["sentence"]
+    told = f"line 31: the row stands out: it is {value} mm, about {value - 0.2:g} mm fits the others"
+    assert remark["sentence"].startswith(told)
+    assert main(["check", str(tmp_path / "case.yaml")]) == 0
+    assert told in capsys.readouterr().out.splitlines()[-1]
+    dropped = recipe("{table: lift.csv, suspect: drop}", tmp_path)
+    assert lift(dropped, np.array([60.0]))[0] == pytest.approx([value - 0.2], abs=0.001)
 
 
+@pytest.mark.slow
 def test_the_report_tells_the_greatest_distance_from_the_rows(tmp_path):
     written(tmp_path, HALF, sampled(HALF), "{:g},{:.1f}")
     report = pipeline.check(recipe("{table: lift.csv}", tmp_path)).report
@@ -184,6 +194,7 @@ def test_the_report_tells_the_greatest_distance_from_the_rows(tmp_path):
     assert "table" not in pipeline.check(recipe("{formula: 5 - 5*cos(t)}", tmp_path)).report
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("head", "units", "key"),
     [
@@ -195,7 +206,7 @@ def test_the_report_tells_the_greatest_distance_from_the_rows(tmp_path):
 def test_faults_of_rows_are_told_as_the_table_has_them(head, units, key, tmp_path):
     angles = np.arange(0.0, 361.0, 2.0)
     values = 5.0 * (1.0 - np.cos(np.radians(angles)))
-    reading = f"{{table: lift.csv, reading: {0.001 if not key else 0.0254}{key}}}"
+    reading = f"{{table: lift.csv, suspect: refuse, reading: {0.001 if not key else 0.0254}{key}}}"
 
     def told(change):
         written(tmp_path, angles, change(values.copy()))
@@ -211,12 +222,12 @@ def test_faults_of_rows_are_told_as_the_table_has_them(head, units, key, tmp_pat
 
     unit = "deg" if "arm" in head else "in"
     assert f"line 46: the row stands out: it is 5.2 {unit}, about 5 {unit} fits the others" in told(slipped)
-    assert f"line 181: the motion does not close: 0.5 {unit} off the first row, a turn later" in told(unclosed)
+    assert f"line 181: the motion does not close: 0.5 {unit} off the first row, 360 degrees earlier" in told(unclosed)
     angles, values = angles[:100], values[:100]
     assert f"{values[-1]:.3f} {unit} off its first row: the rest of the turn can be no dwell" in told(np.copy)
 
 
-@pytest.mark.thin(5)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("units", "stem", "unit", "key"),
     [
@@ -239,7 +250,7 @@ def test_an_advised_reading_does_in_the_unit_in_which_it_is_told(units, stem, un
 
     def told(reading, pattern):
         given = f", reading: {reading}" if reading else ""
-        (tmp_path / "c.yaml").write_text(f"{base}{{table: lift.csv{key}{given}, suspect: keep}}}}\n", encoding="utf-8")
+        (tmp_path / "c.yaml").write_text(f"{base}{{table: lift.csv{key}{given}}}}}\n", encoding="utf-8")
         exact = load(tmp_path / "c.yaml").cam.exact
         if pattern is None:
             return exact()
@@ -267,8 +278,8 @@ def test_a_table_that_is_no_file_is_one_error_at_the_recipe_s_line(tmp_path):
     looked = "give its path as seen from the recipe's folder"
     assert found == {
         "none.csv": f"{where}the file does not exist, given 'none.csv'; {looked}",
-        ".": f"{where}cannot be read: Is a directory, given '.'; {looked}",
-        "pipe": f"{where}a pipe or a device, not a file, given 'pipe'; save the table as a file",
+        ".": f"{where}a folder, given '.'; {looked}",
+        "pipe": f"{where}a pipe, a socket or a device, not a file, given 'pipe'; save the table as a file",
         "bytes.csv": f"{where}not a text, given 'bytes.csv'; save the table as CSV",
     }
     assert "empty.csv, no row of numbers is among its lines" in str(fault("{table: empty.csv}", tmp_path))
@@ -315,4 +326,15 @@ def test_a_table_of_more_rows_than_any_motion_needs(tmp_path, monkeypatch):
         with pytest.raises(RecipeErrors, match=r"motion\.table: more than 400 rows, given 'lift\.csv'; leave rows out"):
             load(recipe)
         (tmp_path / "lift.csv").write_bytes(end.join(rows[::3]).encode())
+        load(recipe)
+        # rows alone are counted: neither a heading, nor a comment, nor an empty line
+        text = ["deg;mm", "# as measured", "", *rows[:400], ""]
+        (tmp_path / "lift.csv").write_bytes(end.join(text).encode())
+        load(recipe)
+        (tmp_path / "lift.csv").write_bytes(end.join([*text, rows[400]]).encode())
+        with pytest.raises(RecipeErrors, match=r"motion\.table: more than 400 rows, given 'lift\.csv'; leave rows out"):
+            load(recipe)
+    monkeypatch.setattr("camgeo.motions.lift_table.MAX_LINES", 800)
+    (tmp_path / "lift.csv").write_text("\n\n\n".join(rows[:400]), encoding="utf-8")
+    with pytest.raises(RecipeErrors, match=r"motion\.table: more than 800 lines, given 'lift\.csv'; leave rows out"):
         load(recipe)

@@ -55,42 +55,49 @@ def test_sides_take_what_they_lack_from_the_lobe(tmp_path):
     assert (tappet(uneven)[1:14] > tappet(even)[1:14]).all()
 
 
+FAULTS = [
+    (
+        "lift: 9",
+        "cam.motion.lobe: needs powers or duration; give half and powers, or duration: [{at_lift: 1.27 mm, ",
+        "lift: 9, duration: [{at_lift: 1.27 mm, degrees: 228}]",
+    ),
+    (
+        "lift: 9, powers: [2, 8, 14, 20, 26]",
+        "cam.motion.lobe: powers need half; give half, an angle above 0 up to 180 in degrees",
+        "lift: 9, powers: [2, 8, 14, 20, 26], half: 66",
+    ),
+    (
+        f"lift: 9, half: 66, powers: [2, 8, 14, 20, 26], {CARD}",
+        "cam.motion.lobe.duration: cannot be combined with powers; give exactly one of them",
+        f"lift: 9, {CARD}",
+    ),
+    (
+        f"lift: 9, closing: {{{CARD}}}",
+        "cam.motion.lobe: needs powers or duration",
+        f"lift: 9, {CARD}",
+    ),
+    (
+        "lift: 9, duration: {at_lift: 12, degrees: 228}",
+        "cam.motion.lobe.duration[0].at_lift: a lift of a card lies between 0 and the lift of the lobe",
+        "lift: 9, duration: {at_lift: 1.2, degrees: 228}",
+    ),
+    (
+        f"lift: 9.2, {CARD.replace('270}', '250}, {at_lift: 5, degrees: 140}')}",
+        "cam.motion.lobe.duration: no lobe of the family is above these lifts for so long; the nearest has ",
+        "",
+    ),
+]
+
+
+def test_faults_of_a_card_are_told_as_it_is_read(tmp_path):
+    for keys, message, _ in FAULTS[:-2]:  # the last ones are of the motion
+        with pytest.raises(RecipeErrors) as caught:
+            recipe(f"{{lobe: {{{keys}}}}}", tmp_path, head=FLAT)
+        assert message in str(caught.value)
+
+
 @pytest.mark.thin(6)
-@pytest.mark.parametrize(
-    ("lobe", "message", "remedy"),
-    [
-        (
-            "lift: 9",
-            "cam.motion.lobe: needs powers or duration; give half and powers, or duration: [{at_lift: 1.27 mm, ",
-            "lift: 9, duration: [{at_lift: 1.27 mm, degrees: 228}]",
-        ),
-        (
-            "lift: 9, powers: [2, 8, 14, 20, 26]",
-            "cam.motion.lobe: powers need half; give half, an angle above 0 up to 180 in degrees",
-            "lift: 9, powers: [2, 8, 14, 20, 26], half: 66",
-        ),
-        (
-            f"lift: 9, half: 66, powers: [2, 8, 14, 20, 26], {CARD}",
-            "cam.motion.lobe.duration: cannot be combined with powers; give exactly one of them",
-            f"lift: 9, {CARD}",
-        ),
-        (
-            f"lift: 9, closing: {{{CARD}}}",
-            "cam.motion.lobe: needs powers or duration",
-            f"lift: 9, {CARD}",
-        ),
-        (
-            "lift: 9, duration: {at_lift: 12, degrees: 228}",
-            "cam.motion.lobe.duration[0].at_lift: a lift of a card lies between 0 and the lift of the lobe",
-            "lift: 9, duration: {at_lift: 1.2, degrees: 228}",
-        ),
-        (
-            f"lift: 9.2, {CARD.replace('270}', '250}, {at_lift: 5, degrees: 140}')}",
-            "cam.motion.lobe.duration: no lobe of the family is above these lifts for so long; the nearest has ",
-            "",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("lobe", "message", "remedy"), FAULTS)
 def test_faults_of_a_card_and_what_mends_them(lobe, message, remedy, tmp_path):
     with pytest.raises(RecipeErrors) as caught:
         pipeline.check(recipe(f"{{lobe: {{{lobe}}}}}", tmp_path, head=FLAT))

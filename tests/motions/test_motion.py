@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from support.motion_recipes import HALF, ROLLER, fault, lift, rad, read_motion, recipe, sampled, written
 
+from camgeo.motions.inputs import TURN
 from camgeo.motions.motion import FormulaMotion, Segments, motion_field
 from camgeo.output import pipeline
 from camgeo.recipe.keys import recipe_table
@@ -15,10 +16,10 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.json_schema import table_schema
 from camgeo.synthesis.design import designed
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     "motion",
     [
@@ -113,7 +114,7 @@ def test_keys_of_a_mapping_that_do_not_go_together(text, message):
 
 
 def test_the_schema_takes_what_the_reader_takes():
-    field = motion_field("motion", Kind.LENGTH, "a turn", whole_turn=True)
+    field = motion_field("motion", Kind.LENGTH, "a turn", over=TURN)
     segments, sources = field.form.schema(field)["anyOf"]
     assert segments["items"]["properties"]["over"]["anyOf"][0]["maximum"] == 360
     assert sources == table_schema(field.form.instead)
@@ -127,7 +128,20 @@ def test_the_schema_takes_what_the_reader_takes():
     ]
     part = motion_field("law", Kind.ANGLE, "a part of a turn")
     assert set(table_schema(part.form.instead)["properties"]) == {
-        *("formula", "table", "angle", "columns", "scale", "offset", "reading", "rest", "suspect", "points", "lobe"),
+        *(
+            "formula",
+            "table",
+            "angle",
+            "period",
+            "columns",
+            "scale",
+            "offset",
+            "reading",
+            "rest",
+            "suspect",
+            "points",
+            "lobe",
+        ),
     }
 
 

@@ -9,7 +9,7 @@ import pytest
 from camgeo.motions.segments import MotionSegment, PointsLaw, SccaLaw, UniformLaw
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.sources.programme import Dwell, Move
 
 
@@ -50,6 +50,25 @@ def test_laws_of_a_recipes_own():
     assert through.derivatives(np.array([0.4]), 0)[0, 0] == pytest.approx(0.25, abs=1e-14)
 
 
+@pytest.mark.parametrize("kind", ["rise", "return", "to"])
+def test_a_segment_without_a_law_has_that_of_the_starters(kind):
+    cam = "{{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 8}}, motion: [{}]}}"
+    moves = {"rise": "{rise: 9, over: 90%s}", "return": "{return: 9, over: 90%s}", "to": "{to: 9, over: 90%s}"}
+    others = {
+        "rise": "{return: 9, over: 90, law: cycloidal}",
+        "return": "{rise: 9, over: 90, law: cycloidal}",
+        "to": "{to: 0, over: 90, law: cycloidal}",
+    }
+    segments = [moves[kind], "{dwell: 90}", others[kind], "{dwell: 90}"]
+    if kind == "return":
+        segments = segments[2:] + segments[:2]
+    text = f"cam: {cam.format(', '.join(segments))}\nexport: {{tolerance: 0.01, files: [dxf]}}\n"
+    bare, given = (load_text(text % law, Path("case.yaml")) for law in ("", ", law: modified-sine"))
+    assert bare.cam == given.cam
+    with pytest.raises(RecipeErrors, match="needs a law"):
+        load_text(text % ", split: 0.4", Path("case.yaml"))
+
+
 @pytest.mark.parametrize(
     ("segments", "message"),
     [
@@ -65,3 +84,13 @@ def test_segments_that_are_refused(segments, message):
     cam = f"{{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 8}}, motion: {segments}}}"
     with pytest.raises(RecipeErrors, match=message):
         load_text(f"cam: {cam}\nexport: {{tolerance: 0.01, files: [dxf]}}\n", Path("case.yaml"))
+
+
+@pytest.mark.parametrize(("word", "key"), [("fall", "return"), ("raise", "rise"), ("hold", "dwell")])
+def test_other_words_for_a_segment_name_its_key(word, key):
+    more = "" if key == "dwell" else ", over: 90, law: cycloidal"
+    motion = f"[{{rise: 9, over: 90, law: cycloidal}}, {{{word}: 9{more}}}]"
+    with pytest.raises(RecipeErrors) as caught:
+        load_text(f"cam: {{kind: disc, base_radius: 30, follower: {{kind: flat}}, motion: {motion}}}", "cam.yaml")
+    (error,) = caught.value.errors
+    assert (error.path, error.remedy) == (f"cam.motion[1].{word}", f"did you mean {key}?")

@@ -6,7 +6,7 @@ from math import comb
 import numpy as np
 import pytest
 
-from kin.numeric.bernstein import bernstein_product, halves, restrict, rising_root, split, values
+from kin.numeric.bernstein import bernstein_product, halves, restrict, rising_root, split, values, values_and_slopes
 from kin.numeric.errors import UnsettledError
 
 EPS = float(np.finfo(float).eps)
@@ -15,7 +15,7 @@ EPS = float(np.finfo(float).eps)
 def exact(row, t):
     """Value of a polynomial at a number, in fractions."""
     k, t = len(row) - 1, Fraction(float(t))
-    return sum(Fraction(float(c)) * comb(k, i) * t**i * (1 - t) ** (k - i) for i, c in enumerate(row))
+    return sum(Fraction(c) * comb(k, i) * t**i * (1 - t) ** (k - i) for i, c in enumerate(row))
 
 
 @pytest.mark.parametrize("degree", [0, 1, 3, 25, 49])
@@ -31,6 +31,19 @@ def test_values_are_exact_to_rounding_and_at_both_ends_to_the_bit(degree):
             size = float(exact(np.abs(rows[n, :, c]), t[n]))
             assert abs(Fraction(float(found[n, c])) - exact(rows[n, :, c], t[n])) <= (4 * degree + 4) * EPS * size
     assert np.array_equal(values(rows[:, :, 0], t), found[:, 0])
+
+
+@pytest.mark.parametrize("degree", [1, 2, 5, 25])
+def test_slopes_come_with_the_same_values_and_are_exact_to_rounding(degree):
+    rng = np.random.default_rng(degree)
+    rows = rng.normal(size=(11, degree + 1))
+    t = np.concatenate([[0.0, 1.0, 0.5, 1e-12, 1.0 - 1e-12], rng.random(6)])
+    found, slopes = values_and_slopes(rows, t)
+    assert np.array_equal(found, values(rows, t))
+    for row, at, slope in zip(rows, t, slopes, strict=True):
+        true = degree * exact(np.diff([Fraction(float(c)) for c in row]), at)
+        size = degree * float(np.abs(row).max())
+        assert abs(Fraction(float(slope)) - true) <= (4 * degree + 4) * EPS * size
 
 
 @pytest.mark.parametrize(("j", "k"), [(0, 3), (1, 1), (5, 2), (2, 5), (20, 19)])

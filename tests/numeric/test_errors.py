@@ -11,7 +11,7 @@ import pytest
 
 import camgeo
 import kin
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:

@@ -21,6 +21,7 @@ def test_rows_that_cannot_be_met_are_missed_by_the_least():
     assert found.missed == pytest.approx(1.0, abs=1e-14)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("seed", range(24))
 def test_the_least_value_is_that_of_another_solver(seed):
     pytest.importorskip("scipy")
@@ -39,7 +40,11 @@ def test_the_least_value_is_that_of_another_solver(seed):
     if other.status == 2:
         assert found.value == np.inf
         assert found.missed > 1e-9
+        assert found.multipliers @ right == pytest.approx(found.missed, rel=1e-8)
+        assert (found.multipliers @ rows <= 1e-8).all()
     else:
         assert found.value == pytest.approx(other.fun, rel=1e-8, abs=1e-10)
+        assert found.multipliers @ right == pytest.approx(other.fun, rel=1e-8, abs=1e-10)
+        assert (found.multipliers @ rows <= cost + 1e-8).all()
         assert rows @ found.x == pytest.approx(right, abs=1e-10)
         assert (found.x >= 0.0).all()

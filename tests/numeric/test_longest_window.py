@@ -220,6 +220,14 @@ def test_a_wiggle_of_exactly_the_band():
     assert found[0].length == pytest.approx(2.0 + 2 * 0.05 / 0.3, abs=1e-9)
 
 
+def test_a_valley_and_a_plateau_that_differ_by_exactly_the_band_are_one_window():
+    """Extremes and ends to 15 digits by mpmath; the nodes are some 1e-13 off them."""
+    cos, sin = [0.35, 0.31, -0.99, 0.02, 0.45, 0.52], [0.41, 0.77, 0.51, 0.84, -0.17, -0.93]
+    (longest,) = dwells(wave(cos, sin), [], 0.15436937015341767, most=1)
+    assert longest.length == pytest.approx(0.439430292512221, abs=1e-9)
+    assert longest.start == pytest.approx(TURN - 0.0917996456136898, abs=1e-9)
+
+
 def test_a_rest_between_two_rises_is_found_with_the_faster_neighbour_left_out():
     """0 to 1 at slope 1, rest, 1 to 2 at slope 2: the band is best spent on the slower side."""
     f = through([(0, 0), (1, 1), (2, 1), (2.5, 2), (TURN, 0)])

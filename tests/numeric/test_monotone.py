@@ -80,6 +80,16 @@ def test_a_run_along_a_level_gives_both_its_ends():
     assert len(of.crossings(0.1)) == 1
 
 
+def test_round_a_turn_its_end_is_its_beginning():
+    assert cut(np.sin).crossings_round(0.0) == pytest.approx([0, math.pi], abs=1e-14)
+    assert cut(np.cos).crossings_round(0.0) == pytest.approx([math.pi / 2, 3 * math.pi / 2], abs=1e-14)
+    # along the level from 300 degrees on to 60: no end of that run is at 0
+    third = math.pi / 3
+    of = cut(lambda x: np.maximum(0.5 - np.cos(x), 0.0), (0.0, third, 5 * third, TURN))
+    assert of.crossings_round(0.0) == pytest.approx([third, 5 * third], abs=1e-12)
+    assert cut(np.zeros_like).crossings_round(0.0).tolist() == []
+
+
 def test_extremes_at_ends_inside_and_at_a_corner_nobody_declared():
     of = cut(lambda x: np.sin(x) + 0.1 * x)
     at = math.acos(-0.1)
@@ -88,6 +98,37 @@ def test_extremes_at_ends_inside_and_at_a_corner_nobody_declared():
     value, place = cut(lambda x: -np.abs(x - 1.234)).greatest()
     assert value == pytest.approx(0, abs=1e-9)
     assert place == pytest.approx(1.234, abs=1e-8)
+
+
+@pytest.mark.parametrize("share", [1e-5, 1e-3, 0.004])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_corner_between_the_outermost_point_of_a_cell_and_its_end(side, share):
+    """No point of the cell is beyond it: what shows is that the neighbours do not meet."""
+    cell = TURN / 32.0
+    at = 7.0 * cell + side * share * cell
+    value, place = cut(lambda x: np.abs(x - at) - 0.3 * (x - at)).least()
+    assert value == pytest.approx(0.0, abs=1e-9)
+    assert place == pytest.approx(at, abs=1e-8)
+
+
+@pytest.mark.parametrize("share", [1e-4, 2e-3, 0.0045])
+@pytest.mark.parametrize(("end", "side"), [(0, 1.0), (1, -1.0), (1, 1.0), (2, -1.0), (2, 1.0), (3, -1.0)])
+def test_a_corner_beside_a_break_or_an_end_of_the_range(end, side, share):
+    """There is no neighbour there, or none that must meet: the function leaps at the breaks."""
+    places = TURN / 3.0 * np.arange(4)
+    at = places[end] + side * share * TURN / 33.0
+    of = cut(lambda x: np.abs(x - at) - 0.3 * (x - at) + 10.0 * np.floor(3.0 * x / TURN) ** 2, places)
+    level = 10.0 * math.floor(3.0 * at / TURN) ** 2
+    beside = np.array([at - 1e-5, at, at + 1e-5])
+    piece = np.clip(np.searchsorted(of.x, beside, side="right") - 1, 0, len(of.x) - 2)
+    assert of.at(piece, beside) - level == pytest.approx([1.3e-5, 0.0, 0.7e-5], abs=1e-9)
+
+
+@pytest.mark.parametrize("count", [22, 29, 47])
+def test_corners_that_nobody_declared_are_all_found(count):
+    of = cut(lambda x: np.abs(np.sin(0.5 * count * (x - 0.01))))
+    assert of.least()[0] == pytest.approx(0.0, abs=1e-8)
+    assert len(of.crossings(1e-3)) == 2 * count
 
 
 def test_what_has_no_smooth_stretch_is_refused():

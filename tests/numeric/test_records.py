@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import pickle
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import pytest
 
@@ -128,6 +128,147 @@ def test_the_standard_library_sees_a_class_before_and_after_its_first_record() -
         assert Fresh.__match_args__ == ("x", "y")
         assert replace(Fresh(1.0), z=2.0) == Fresh(1.0, z=2.0) != Fresh(1.0)
         assert repr(Fresh(1.0, z=2.0)).endswith("Fresh(x=1.0, y=0.0)")
+
+
+def test_the_init_of_an_heir_calls_that_of_its_base_first_of_all():
+    class Own(Late):
+        """Arguments of its own."""
+
+        def __init__(self) -> None:
+            super().__init__(1.0, y=2.0)
+
+    for _ in range(2):
+
+        @dataclass(frozen=True)
+        class Base:
+            """Never made before."""
+
+            x: float
+
+        class Doubled(Base):
+            """As much again."""
+
+            def __init__(self, x: float) -> None:
+                super().__init__(2.0 * x)
+
+        assert Doubled(1.5).x == Doubled(1.5).x == 3.0
+    assert Own().ends == [3.0]
+
+
+def test_threads_that_use_a_class_first_find_it_whole():
+    import sys
+    from concurrent.futures import ThreadPoolExecutor
+
+    def used() -> list[object]:
+        @dataclass(frozen=True)
+        class Shared(Point):
+            """A base has fewer fields: what a class lacks for a moment is read from there."""
+
+            weight: float = field(default=1.0)
+            name: str = "cam"
+
+        def use(number: int) -> object:
+            changed = replace(Shared(1.0, weight=2.0), name=str(number))
+            return changed.weight, changed.name, len(dataclasses.fields(Shared)), Shared.__match_args__
+
+        with ThreadPoolExecutor(8) as pool:
+            return list(pool.map(use, range(8)))
+
+    expected = [(2.0, str(number), 5, ("x", "y", "weight", "name")) for number in range(8)]
+    interval = sys.getswitchinterval()
+    try:
+        sys.setswitchinterval(1e-6)
+        for _ in range(40):
+            assert used() == expected
+    finally:
+        sys.setswitchinterval(interval)
+
+
+def test_the_standard_library_takes_a_default_that_only_it_would_refuse():
+    from types import MappingProxyType
+
+    @dataclass(frozen=True)
+    class Viewed:
+        """A read-only view of a dictionary cannot be altered through a record."""
+
+        shown: object = MappingProxyType({"x": 1.0})
+
+    assert dataclasses.fields(Viewed)[0].default == {"x": 1.0}
+    assert dataclasses.is_dataclass(Viewed())
+    assert replace(Viewed(), shown=None).shown is None
+
+
+def test_defaults_that_the_standard_library_refuses_for_a_reason_are_refused():
+    @dataclass(frozen=True)
+    class Alterable:
+        """Each record would have the same list."""
+
+        seen: list[float] = []  # noqa: RUF012 - what is refused
+
+    @dataclass(frozen=True)
+    class Behind:
+        """Python gives defaults to the last arguments."""
+
+        x: float = 1.0
+        y: float  # type: ignore[misc]
+
+    cases: list[tuple[Any, type[Exception], str]] = [(Alterable, ValueError, "seen"), (Behind, TypeError, "y")]
+    for kind, error, name in cases:
+        with pytest.raises(error, match=rf"{kind.__name__}\.{name}"):
+            kind()
+
+
+def test_a_standard_dataclass_is_a_base_and_an_heir():
+    @dataclasses.dataclass(frozen=True)
+    class Base:
+        """Made by the standard library."""
+
+        unit: ClassVar[str] = "mm"
+        x: float
+
+    @dataclass(frozen=True)
+    class Middle(Base):
+        """A record."""
+
+        y: float = 2.0
+
+    @dataclasses.dataclass(frozen=True)
+    class Last(Middle):
+        """Made by the standard library, which asks whether its base is frozen."""
+
+        z: float = 3.0
+
+    assert repr(Middle(1.0)).endswith("Middle(x=1.0, y=2.0)")
+    assert replace(Last(1.0, z=4.0), y=5.0) == Last(1.0, 5.0, 4.0)
+    assert [entry.name for entry in dataclasses.fields(Last)] == ["x", "y", "z"]
+
+
+@pytest.mark.slow  # loads both packages
+def test_the_standard_library_sees_every_record_of_both_packages():
+    import pkgutil
+    from importlib import import_module
+
+    import camgeo
+    import kin
+    from kin.numeric import records
+
+    for package in (camgeo, kin):
+        for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+            if not module.name.endswith("__main__"):
+                import_module(module.name)
+    kinds: list[Any] = [kind for kind in records._SHAPES if kind.__module__.startswith(("camgeo.", "kin."))]
+    assert len(kinds) > 400
+    for kind in kinds:
+        names = [
+            name
+            for base in reversed(kind.__mro__)
+            for name, text in vars(base).get("__annotations__", {}).items()
+            if dataclasses.is_dataclass(base) and not str(text).startswith("ClassVar") and text != "KW_ONLY"
+        ]
+        described = dataclasses.fields(kind)
+        assert [entry.name for entry in described] == list(dict.fromkeys(names)), kind
+        by_place = tuple(entry.name for entry in described if entry.init and not entry.kw_only)
+        assert kind.__match_args__ == by_place, kind
 
 
 def test_a_class_of_a_module_that_is_unloaded_is_still_a_dataclass(monkeypatch):

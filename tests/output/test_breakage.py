@@ -15,8 +15,10 @@ from camgeo.cli.exit_status import SURROUNDINGS, WRONG
 from camgeo.cli.main import main
 from camgeo.common import workers
 from camgeo.output import pipeline
+from camgeo.output.output_folder import RunFolder
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
 FILES = "export: {tolerance: 0.001, files: [dxf, stl]}\n"
@@ -103,6 +105,7 @@ def test_a_number_of_processes_that_is_none_is_refused(
     assert f"a whole number from 1, not {jobs}" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="closes streams as a POSIX shell does")
 @pytest.mark.parametrize(("closed", "status"), few([(">&-", 0), ("2>&-", 0), (">&- 2>&-", 0)], 3))
 def test_closed_streams_change_nothing(tmp_path: Path, closed: str, status: int) -> None:
@@ -113,6 +116,7 @@ def test_closed_streams_change_nothing(tmp_path: Path, closed: str, status: int)
     assert (tmp_path / "out" / "round" / "round.dxf").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is always full")  # noqa: PTH110
 def test_a_full_disk_under_the_output_is_the_surroundings() -> None:
     with open("/dev/full", "w", encoding="utf-8") as full:  # noqa: PTH123
@@ -122,7 +126,7 @@ def test_a_full_disk_under_the_output_is_the_surroundings() -> None:
     assert done.stderr == "camgeo: the output cannot be written: No space left on device\n"
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="limits a process as a POSIX shell does")
 @pytest.mark.parametrize("kind", few(["stl", "3mf", "dxf", "glb"], 2))
 def test_a_file_that_does_not_fit_is_told_in_the_words_of_the_system(tmp_path: Path, kind: str) -> None:
@@ -154,6 +158,37 @@ def test_a_killed_process_is_told_for_each_recipe(
     assert all("a process was killed" in line for line in said)
 
 
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="the killed function reaches the workers by fork")
+def test_the_recipes_beside_a_killed_one_are_made_and_nothing_partial_stays(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`twice` always kills its process as its files are written, `once` only the first time."""
+    names = ["here", "a", "once", "b", "twice", "c"]
+    for name in names:
+        text = "cam: {kind: support, p: '25'}\nexport: {tolerance: 0.1, files: [csv]}\n"
+        (tmp_path / f"{name}.yaml").write_text(text, encoding="utf-8")
+    commit, mark, out = RunFolder.commit, tmp_path / "mark", tmp_path / "out"
+
+    def killed(run: RunFolder, names: Iterable[str], *, keep: Iterable[str] = ()) -> Path:
+        if "twice" in run.folder.name or ("once" in run.folder.name and not mark.exists()):
+            mark.touch()
+            os._exit(9)
+        return commit(run, names, keep=keep)
+
+    monkeypatch.setattr(RunFolder, "commit", killed)
+    monkeypatch.setattr(batch, "FORKED", -1.0)
+    monkeypatch.setattr(workers, "may_fork", lambda: True)
+    paths = [str(tmp_path / f"{name}.yaml") for name in names]
+    assert main(["export", *paths, "--jobs", "2", "--out", str(out)]) == SURROUNDINGS
+    said = capsys.readouterr()
+    assert [line.partition(":")[0] for line in said.out.splitlines()] == ["here", "a", "once", "b", "c"]
+    assert said.err.startswith("camgeo: twice: a process was killed before this recipe was done")
+    assert mark.exists()
+    assert sorted(path.name for path in out.iterdir()) == ["a", "b", "c", "here", "once"]
+
+
+@pytest.mark.slow
 def test_a_spline_of_many_metres_is_judged_as_finely_as_rounding_allows(tmp_path):
     path = tmp_path / "big.yaml"
     path.write_text(

@@ -185,6 +185,7 @@ def test_a_table_that_is_none_is_no_points_of_a_pair_either(made, tmp_path, caps
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_files_by_other_names_are_taken_in_their_order(made, tmp_path, capsys):
     recipe, report = made
     paths = [tmp_path / name for name in ("left.dxf", "right.dxf")]

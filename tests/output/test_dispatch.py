@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from support.groove import CAM, grooved
 from support.heavy import ezdxf
 
+from camgeo.checks.declared import MOTION, RATIO
 from camgeo.output import pipeline
+from camgeo.output.job import Job
 from camgeo.registry.formats import FORMATS
 from camgeo.report import document
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
+from kin.numeric.check import Check
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -103,7 +107,7 @@ def test_a_drawing_of_two_flanks_is_judged_on_both(kind: str, how: str | None, t
     assert "perimeter" not in file
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "how"), HELD)
 def test_a_flank_that_is_another_is_seen(kind: str, how: str | None, tmp_path: Path) -> None:
     """A file of another clearance fails on the outer flank alone, by what it is off."""
@@ -118,6 +122,7 @@ def test_a_flank_that_is_another_is_seen(kind: str, how: str | None, tmp_path: P
     assert off == pytest.approx(0.005, abs=0.001)
 
 
+@pytest.mark.slow
 def test_layers_and_columns_are_those_of_the_flanks(tmp_path: Path) -> None:
     folder = exported("dxf, {csv: {as: contacts}}", tmp_path).folder
     assert folder is not None
@@ -136,6 +141,7 @@ def test_a_contact_knows_its_surface_and_one_roller_is_one() -> None:
         _ = design.only_surface
 
 
+@pytest.mark.slow
 def test_a_page_draws_every_surface() -> None:
     recipe = grooved(f"{CAM}\npart: {{bore: 10}}\nexport: {{tolerance: 0.001, files: [dxf]}}\n")
     outcome, found = pipeline.check_and_show(recipe)
@@ -152,3 +158,16 @@ def test_a_page_draws_every_surface() -> None:
         assert 0.0003 < error.high.max() <= 0.001
     rows = [row for row in document.table(outcome.report).splitlines() if row.startswith("groove.dxf")]
     assert [row.split()[1] for row in rows] == ["inner", "outer"]
+
+
+@pytest.mark.parametrize(("ratio", "told"), [(0.9995, True), (0.9985, False), (None, False)])
+def test_a_motion_that_misses_the_contour_is_explained_where_the_follower_moves_almost_along_it(
+    ratio: float | None, told: bool
+) -> None:
+    checks = [] if ratio is None else [SimpleNamespace(name=RATIO.name, value=ratio)]
+    cam = SimpleNamespace(advice=SimpleNamespace(less_swing=lambda _: "a smaller swing"))
+    job: Any = SimpleNamespace(design=SimpleNamespace(checks=checks), recipe=SimpleNamespace(cam=cam, mm=1.0))
+    lost = Check(MOTION.name, ok=False, value=None, limit=0.1, unit="mm", detail="a roller meets nothing")
+    assert ("reaches 0.9995, so the follower moves almost along" in Job._why_lost(job, lost).detail) == told
+    kept = Check(MOTION.name, ok=True, value=0.01, limit=0.1, unit="mm")
+    assert Job._why_lost(job, kept) is kept

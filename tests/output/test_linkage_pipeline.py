@@ -79,6 +79,7 @@ def test_a_dwell_is_told_over_the_angle_that_was_asked_for() -> None:
     assert detail.endswith(" deg of the relative angle")
 
 
+@pytest.mark.slow
 def test_the_report_has_what_its_contract_names(exported: tuple[Path, dict]) -> None:
     folder, report = exported
     assert json.loads((folder / "report.json").read_text(encoding="utf-8")) == report
@@ -149,11 +150,13 @@ def test_a_linkage_that_binds_fails_with_the_angles_and_keeps_the_last_good_set(
     assert sorted(path.name for path in (tmp_path / "four-bar").iterdir()) == kept
 
 
+@pytest.mark.slow
 def test_a_dwell_that_is_too_short_fails_the_intent_and_every_file(tmp_path: Path) -> None:
     outcome = pipeline.export(recipe("at_least: 36", "at_least: 37.06"), tmp_path)
     assert failed(outcome.report) == {("dwell", None), ("dwell", "four-bar.dxf")}
 
 
+@pytest.mark.slow
 def test_a_dwell_that_only_the_file_misses_fails_the_file(tmp_path: Path) -> None:
     outcome = pipeline.export(recipe("at_least: 36", "at_least: 37.0485"), tmp_path)
     assert failed(outcome.report) == {("dwell", "four-bar.dxf")}
@@ -233,6 +236,7 @@ def test_the_dwell_over_the_angle_asked_for_comes_first(over: str, length: float
     assert f"dwell {made:.2f} deg" in summary(report)
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_output_error_of_one_s_own(tmp_path: Path) -> None:
     outcome = pipeline.export(recipe("{angles: 360}", "{angles: 360, output_error: 1.0e-5}"), tmp_path)
     assert failed(outcome.report) == {("linkage-error", "four-bar.dxf")}

@@ -66,6 +66,7 @@ def test_killed_before_the_last_rename(recipe: Path, capsys: pytest.CaptureFixtu
     assert said_of(capsys, "check", "cam.yaml") == ""
 
 
+@pytest.mark.slow
 def test_changed_or_taken_away_by_hand(recipe: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = recipe.parent / "out" / "cam" / "cam.csv"
     table.write_text("mine\n", encoding="utf-8")
@@ -74,6 +75,22 @@ def test_changed_or_taken_away_by_hand(recipe: Path, capsys: pytest.CaptureFixtu
     table.unlink()
     assert said_of(capsys, "check", "cam.yaml", "--out", "out").endswith(f"cam.csv {why}\n")
     assert said_of(capsys, "check", "cam.yaml", "--out", "elsewhere") == ""
+
+
+def test_what_is_no_more_as_its_report_lists_it_is_told_where_a_file_beside_it_is_judged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "cam.yaml").write_text(RECIPE.replace("[dxf, csv]", "[dxf, svg]"), encoding="utf-8")
+    path, folder = str(tmp_path / "cam.yaml"), tmp_path / "out" / "cam"
+    assert main(["export", path, "--out", str(tmp_path / "out")]) == 0
+    capsys.readouterr()
+    assert said_of(capsys, "verify", path, str(folder / "cam.dxf")) == ""
+    drawing = folder / "cam.svg"
+    drawing.write_text(drawing.read_text("utf-8") + "\n", encoding="utf-8")
+    told = said_of(capsys, "verify", path, str(folder / "cam.dxf"))
+    assert told.startswith(f"camgeo: {folder}/report.json: cam.svg is not the file that it lists")
+    (folder / "mine.dxf").write_bytes((folder / "cam.dxf").read_bytes())  # of which the report says nothing
+    assert said_of(capsys, "verify", path, str(folder / "mine.dxf")) == ""
 
 
 # needs: study

@@ -52,6 +52,39 @@ def test_sets_replace_one_another_and_leave_other_files_alone(tmp_path):
         assert hidden(tmp_path) == []
 
 
+def rejected(out, generation):
+    with RunFolder(out, NAME) as run:
+        write(run.folder, generation)
+        return run.reject()
+
+
+def test_a_failed_set_goes_when_a_good_one_comes(tmp_path):
+    failed = rejected(tmp_path, 2)
+    assert generation_of(failed) == 2
+    with RunFolder(tmp_path, NAME) as run:  # a part of the set is new: the other may be what failed
+        write(run.folder, 1)
+        run.commit(names_of(1), keep=("cam-other.txt",))
+    assert generation_of(failed) == 2
+    export(tmp_path, 3)
+    assert not failed.exists()
+    assert generation_of(tmp_path / NAME) == 3
+
+
+def test_of_a_failed_set_goes_what_its_report_lists(tmp_path):
+    failed = rejected(tmp_path, 2)
+    (failed / "cam-mine.txt").write_text("mine")
+    export(tmp_path, 3)
+    assert [path.name for path in failed.iterdir()] == ["cam-mine.txt"]
+    (failed / "report.json").write_text("mine")
+    assert export(tmp_path, 4) == tmp_path / NAME
+    assert sorted(path.name for path in failed.iterdir()) == ["cam-mine.txt", "report.json"]
+    shutil.rmtree(failed)
+    failed.symlink_to(tmp_path / NAME)
+    export(tmp_path, 5)
+    assert failed.is_symlink()
+    assert generation_of(tmp_path / NAME) == 5
+
+
 def stopped(out, error):
     with RunFolder(out, NAME) as run:
         write(run.folder, 3)

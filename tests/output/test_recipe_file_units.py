@@ -130,6 +130,7 @@ def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest
     assert inches.contour.area == pytest.approx(millimetres.contour.area, rel=1e-13)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "kind",
     [
@@ -253,7 +254,7 @@ def test_the_columns_of_a_table(table: str, tmp_path: Path) -> None:
             assert (a == b == "") or float(a) == pytest.approx(INCH * float(b), rel=1e-9, abs=1e-12)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "changed", "failing"),
     [
@@ -281,6 +282,7 @@ def failures(recipe: Recipe, path: Path) -> set[str]:
     return {check["name"] for check in pipeline.judge_files(recipe, [path])["checks"] if not check["ok"]}
 
 
+@pytest.mark.slow
 def test_a_shifted_vertex_of_an_inch_drawing(made: Made, tmp_path: Path) -> None:
     inches = paths(made, "dxf")[1]
     drawing = ezdxf.readfile(inches)

@@ -13,8 +13,8 @@ from camgeo.part.chamfer import Chamfer
 from camgeo.part.hub import Hub
 from camgeo.part.set_screw import SetScrew
 from camgeo.part.shapes import disc
-from kin.judge.layers import CrossHole
 from kin.numeric.records import replace
+from kin.read.layers import CrossHole
 
 BORE = disc("bore", "BORE", (0.0, 0.0), 6.0)
 FAR = disc("dowel hole", "HOLES", (20.0, 0.0), 2.0)

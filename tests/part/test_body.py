@@ -15,7 +15,7 @@ from camgeo.part.body import body_of
 from camgeo.part.walls import Looks
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
-from kin.judge.check import as_drawn
+from kin.numeric.check import as_drawn
 
 
 def opening(design, name):

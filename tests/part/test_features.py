@@ -40,7 +40,8 @@ def test_every_file_with_a_record_is_a_feature():
 def test_its_key_is_read_and_on_both_pages(feature):
     assert PART.inner.field(feature.name) is feature.field
     assert (
-        f"<!-- part.{feature.name} -->" in (ROOT / "docs" / "recipe.md").read_text("utf-8") or not feature.field.table
+        f"<!-- part.{feature.name} -->" in (ROOT / "docs" / "recipe-part.md").read_text("utf-8")
+        or not feature.field.table
     )
     assert f"`{feature.name}`" in (ROOT / "docs" / "part.md").read_text(encoding="utf-8")
 
@@ -56,6 +57,7 @@ def names_in(path):
             yield from (name for name in NAMES if re.search(rf"\bpart\.{name}\b", node.value))
 
 
+@pytest.mark.slow
 def test_the_core_names_no_feature_outside_its_file():
     own = {FOLDER / f"{name}.py" for name in NAMES} | {FOLDER / "features.py"}
     core = {path for path in (ROOT / "camgeo").rglob("*.py") if "capabilities" not in path.parts} - own

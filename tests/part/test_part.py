@@ -52,6 +52,7 @@ def test_the_least_feature_is_made(part: str) -> None:
     assert report.ok, report.table()
 
 
+@pytest.mark.slow
 def test_a_hub_without_a_wall_is_refused() -> None:
     text = CAM + "part: {thickness: 8, bore: 10, wall: 1e-12, hub: {diameter: SIZE, height: 4}}\n"
     text += "export: {tolerance: 0.001, files: [stl, 3mf]}\n"

@@ -55,6 +55,7 @@ def test_it_takes_its_mass_away_and_moves_the_centre():
     assert balance.direction == pytest.approx(220, abs=1e-6)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_other_readers_find_it(tmp_path, rotation):
     _, files = files_of(recipe_of(PART, cam=ROUND, more=f"rotation: {rotation}\n"), tmp_path)
@@ -87,7 +88,7 @@ def test_a_kernel_reads_its_volume_from_a_step(tmp_path):
     assert properties.Mass() == pytest.approx(8 * (math.pi * (30**2 - 6**2) - AREA), rel=1e-6)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", ["dxf", "stl"])
 @pytest.mark.parametrize("change", [{"at": math.radians(40.2)}, {"length": 12.1}, {"circle": 36.1}, None])
 def test_a_planted_fault_is_caught(tmp_path, kind, change):

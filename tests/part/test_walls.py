@@ -10,10 +10,12 @@ from support.cases import examples
 from support.heavy import shapely
 from support.places import RECIPES
 
+from camgeo.curve.curvature import roots
 from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
+from camgeo.part import walls as part_walls
 from camgeo.part.checks import ROUNDING, thinnest, walls
 from camgeo.part.din6885 import TABLE, key_for
 from camgeo.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
@@ -50,6 +52,21 @@ def test_reuleaux_about_its_middle():
 def test_point_in_a_circle():
     inside, _ = distance_inside(Looks.of(circle((3.0, 4.0))), (7.0, -4.0))
     assert inside == pytest.approx(25.0 - math.hypot(7.0 + 3.0, -4.0 + 4.0), abs=1e-12)
+
+
+def test_a_least_distance_is_sought_only_where_it_may_be(monkeypatch):
+    """A cam of eleven lobes comes near in eleven places, of which one is by far the nearest from beside the middle."""
+    looks = Looks.of(Curve.whole(SupportShape(lift_from_fourier(25.0, {11: 0.15}, {}))))
+    sought = []
+    monkeypatch.setattr(part_walls, "roots", lambda f, low, *rest: sought.append(low.size) or roots(f, low, *rest))
+    t = np.linspace(0.0, 2.0 * np.pi, 200_001)
+    points = looks.contour.sample(t).point
+    for place in ((0.9, 0.2), (-0.5, 0.8)):
+        distance, _ = distance_inside(looks, place)
+        assert distance == pytest.approx(np.hypot(*(points - place).T).min(), abs=1e-7)
+        gap = contour_gap(looks, disc("hole", "HOLES", place, 3.0).chain)
+        assert gap.wall == pytest.approx(distance - 3.0, abs=1e-9)
+    assert max(sought) <= 3
 
 
 # --- shapes ---------------------------------------------------------------------------------------------------------
@@ -182,7 +199,7 @@ def test_the_table_is_whole_and_its_keys_have_play_in_the_hub():
         assert row.shaft > row.hub
 
 
-@pytest.mark.thin(5)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

@@ -14,7 +14,6 @@ from kin.contour.arcs import unit
 from kin.read.bodies import Sought
 from kin.read.errors import ReadError
 from kin.read.files import read_bodies, read_drawing, read_solid
-from kin.read.mesh.stl import read_stl
 
 T = np.arange(24) * 2.0 * np.pi / 24
 PLACES = {
@@ -56,10 +55,10 @@ def test_a_body_beside_the_cam_is_named(tmp_path, name, heights, write):
 def test_many_bodies_and_bodies_that_touch(tmp_path):
     many = [small((60.0 + 6.0 * k, 0.0), 0.0, 2.0) for k in range(30)]
     with pytest.raises(ReadError, match=r"it holds 31 bodies.*, and 26 more"):
-        read_stl(binary(tmp_path / "many.stl", np.concatenate([ring(), *many])))
+        read_solid(binary(tmp_path / "many.stl", np.concatenate([ring(), *many])))
     # a hub that stands on the disc as a shell of its own hangs together with it, as a printer sees it
     hub = ring(8.0 * unit(T), 6.0 * unit(T), HEIGHT, 14.0)
-    solid = read_stl(binary(tmp_path / "hub.stl", np.concatenate([ring(), hub])))
+    solid = read_solid(binary(tmp_path / "hub.stl", np.concatenate([ring(), hub])))
     assert (solid.z_max, solid.faces) == (14.0, (0.0, 8.0, 14.0))
 
 
@@ -69,7 +68,7 @@ def test_a_void_between_heights_that_are_asked_for(tmp_path):
     path = binary(tmp_path / "open.stl", np.concatenate([ring()[4:], open_below]))
     for heights in ((), (14.0,)):
         with pytest.raises(ReadError, match=r"nothing is at z = 14|open"):
-            read_stl(path, heights)
+            read_solid(path, heights)
 
 
 def test_two_solids_in_a_step_file(tmp_path):
@@ -107,7 +106,7 @@ def test_the_order_of_triangles_does_not_matter(tmp_path):
     solid = np.concatenate([ring(), small((60.0, 0.0), 0.0, 1.0)])
     rng = np.random.default_rng(1)
     with pytest.raises(ReadError, match="it holds 2 bodies"):
-        read_stl(binary(tmp_path / "shuffled.stl", solid[rng.permutation(len(solid))]))
+        read_solid(binary(tmp_path / "shuffled.stl", solid[rng.permutation(len(solid))]))
 
 
 @pytest.mark.parametrize("write", [binary, in_3mf])

@@ -52,6 +52,7 @@ def saved_anew(folder, *, unit=0, scale=1.0, version="R12", name="anew.dxf", blo
     return name
 
 
+@pytest.mark.slow
 def test_a_drawing_that_states_no_unit(exported, capsys):
     name = saved_anew(exported)
     assert read_drawing(exported / name).units_mm is None
@@ -63,6 +64,7 @@ def test_a_drawing_that_states_no_unit(exported, capsys):
     assert verified(exported, name, "--units", "inch") == 1
 
 
+@pytest.mark.slow
 def test_a_drawing_that_is_converted(exported, capsys):
     inch = saved_anew(exported, unit=1, scale=1 / 25.4, version="R2010", name="inch.dxf")
     assert verified(exported, inch) == 0
@@ -76,6 +78,7 @@ def test_a_drawing_that_is_converted(exported, capsys):
     assert "units (wrong.dxf): 24.4, at most 1e-09 allowed: a drawing unit is 25.4 mm" in capsys.readouterr().out
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["cam/cam.dxf", "cam/cam.3mf", "cam/cam.svg"])
 def test_a_unit_that_is_given_beside_another_that_is_stated(exported, capsys, name):
     assert verified(exported, name, "--units", "mm") == 0
@@ -104,7 +107,7 @@ def test_a_mesh_in_inches(exported):
     assert [one.height for one in large.sections] == [4.0]
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "block",
     [
@@ -142,7 +145,7 @@ def test_a_block_that_moves_the_contour_is_caught(exported, outer):
     assert verified(exported, name) == 1
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     "transform",
     ["rotate(360)", "rotate(-90) rotate(90)", "rotate(20, 7, -3) rotate(-20, 7, -3)", "skewX(30) skewX(-30)",

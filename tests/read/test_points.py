@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
 from kin.read.errors import ReadError
-from kin.read.points import heading_of, read_points
+from kin.read.points import heading_of, read_contour_points, read_points
 
 ANGLE = np.radians(np.arange(0.0, 360.0, 5.0))
 X, Y = 40.0 * np.cos(ANGLE), 40.0 * np.sin(ANGLE)
@@ -132,3 +134,43 @@ def test_bytes_that_are_no_text(tmp_path):
     path.write_bytes(b"\x00\x01\x02" * 100)
     with pytest.raises(ReadError, match="not a text"):
         read_points(path)
+
+
+def listed(path, points):
+    path.write_text("x_mm,y_mm\n" + "".join(f"{x:.6f},{y:.6f}\n" for x, y in points))
+    return path
+
+
+def around(degrees, radius=50.0):
+    angle = np.radians(degrees)
+    return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+@pytest.mark.parametrize(("step", "out"), [(2, 40), (5, 90), (8, 40)])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_points_that_leave_a_stretch_out_are_refused_unless_it_is_closed_across(step, out, backwards, tmp_path):
+    degrees = np.arange(100, 100 + 360 - out + 1, step)
+    points = around(degrees)[:: -1 if backwards else 1]
+    path = listed(tmp_path / "cam.csv", np.roll(points, 7, axis=0))  # wherever the file begins
+    with pytest.raises(ReadError, match="lines 8 and 9") as refused:
+        read_contour_points(path, 1.0)
+    assert "a stretch of the contour is left out; give the points between them, or across: arc" in str(refused.value)
+    (arc,) = read_contour_points(path, 1.0, "arc")
+    assert arc.bridge is not None
+    assert np.degrees(np.diff(arc.bridge.angles))[0] == pytest.approx(out, abs=1e-3)
+    assert arc.contour.area == pytest.approx(math.pi * 2500.0, rel=6e-3)
+
+
+def test_a_straight_flank_needs_no_points_between_its_ends(tmp_path):
+    """Two circles and their tangents, points every 3 degrees of the circles; a flank is 17 times as long as a step."""
+    half = math.degrees(math.acos(14.0 / 24.0))
+    base = around(np.linspace(half, 360.0 - half, 85), 20.0)
+    nose = around(np.linspace(-half, half, 37), 6.0) + np.array([24.0, 0.0])
+    (cam,) = read_contour_points(listed(tmp_path / "cam.csv", np.vstack([base, nose])), 1.0)
+    assert cam.bridge is None
+
+
+def test_points_of_uneven_steps_are_no_stretch_that_is_left_out(tmp_path):
+    """Dense on one half, every 8 degrees on the other, as scanners thin out what is round."""
+    degrees = np.concatenate([np.arange(0.0, 180.0, 1.0), np.arange(180.0, 360.0, 8.0)])
+    assert read_contour_points(listed(tmp_path / "cam.csv", around(degrees)), 1.0)[0].bridge is None

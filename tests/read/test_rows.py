@@ -59,3 +59,44 @@ def test_an_empty_cell_is_nan_where_it_may_be():
 def test_what_other_readers_take_for_a_number_is_none(cell):
     with pytest.raises(RowError, match="is not a number"):
         read_rows(f"0,0\n1,{cell}\n").values([0, 1])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "2\n0;1\n2;3\n",
+        "angle;lift\n2\n0;1\n2;3\n",
+        "2\nangle;lift\n0;1\n2;3\n",
+        "! exported\n% by a machine\n// today\n0 1\n2 3\n",
+        "0;1 # at rest\n2;3  // moving\n",
+        "a;b;note\n0;1;\n2;3;the nose\n",
+        "0 1\n2 3 the nose\n",
+        "0;1;;\n2;3;;\n;;;\n",
+        "| a | b |\n|---:|:--|\n| 0 | 1 |\n| 2 | 3 |\n",
+        "0 deg,1 mm\n2 deg,3 mm\n",
+        "Report\nspeed;1500\nangle;lift\n0;1\n2;3\n",
+        " 0.0D+00  1.0D0\n 2.0d0 3\n",
+    ],
+)
+def test_what_stands_beside_rows_is_no_row(text):
+    assert read_rows(text).values([0, 1]).tolist() == [[0.0, 1.0], [2.0, 3.0]]
+
+
+def test_units_behind_numbers_are_told_and_a_number_of_rows_is_compared():
+    assert read_rows("0 deg, 1.5mm\n2 deg, 3.0mm\n").units == ("deg", "mm")
+    with pytest.raises(RowError, match=r"^3 rows are stated, and 2 follow; add the others, or begin this line with #"):
+        read_rows("3\n0;1\n2;3\n")
+    assert read_rows("#3\n0;1\n2;3\n").numbers.tolist() == [2, 3]
+    # above one column it is that of the rows, or a row itself
+    assert [read_rows(f"{first}\n1\n2\n").values([0]).tolist() for first in (2, 0)] == [
+        [[1.0], [2.0]],
+        [[0.0], [1.0], [2.0]],
+    ]
+
+
+def test_columns_may_end_before_others():
+    rows = read_rows("a;b;c;d\n0;1;5;6\n2;3;;\n4;5\n")
+    assert rows.filled([2, 3]).values([2, 3]).tolist() == [[5.0, 6.0]]
+    assert rows.filled([0, 1]) is rows
+    with pytest.raises(RowError, match="these columns are empty"):
+        read_rows("a;b;c;d\n0;1;;\n2;3;;\n").filled([2, 3])

@@ -27,6 +27,7 @@ from camgeo.measures.figures import design_figures
 from camgeo.measures.limits import limit_checks
 from camgeo.output import pipeline
 from camgeo.recipe import figures as needs
+from camgeo.recipe.design_figure import NOTHING
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.loading import load_text
@@ -174,7 +175,7 @@ def test_every_figure_has_a_recipe_here() -> None:
     assert set(HAVE) == set(FIGURES)
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize(
     ("text", "sign", "sense"),
     few([(text, *side) for side in ((1.0, "at_most"), (-1.0, "at_least")) for text in sorted(set(HAVE.values()))], 4),
@@ -200,7 +201,7 @@ def test_limits_hold_and_fail_at_the_figure_itself(text: str, sign: float, sense
         assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("text", sorted(set(HAVE.values())))
 def test_limits_are_foreseen(text: str) -> None:
     recipe = loaded(text, wide(text))
@@ -231,6 +232,7 @@ def test_what_a_figure_is_against_the_motion_itself() -> None:
         assert at == pytest.approx(values[name]["value"], rel=1e-6), name
 
 
+@pytest.mark.slow
 def test_a_roller_s_figures_against_the_pitch_curve() -> None:
     values = {one["name"].removeprefix(LIMIT): one["value"] for one in held(ROLLER, wide(ROLLER))}
     checks = {one["name"]: one["value"] for one in report_of(ROLLER)["checks"]}
@@ -247,6 +249,7 @@ def test_a_roller_s_figures_against_the_pitch_curve() -> None:
     assert convex == pytest.approx(values["pitch-radius"] - 8, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_roller_s_motion_is_that_of_the_table() -> None:
     from camgeo.synthesis.motion_table import motion_table
 
@@ -259,6 +262,7 @@ def test_a_roller_s_motion_is_that_of_the_table() -> None:
     assert values == pytest.approx([np.ptp(table[:, 1]), *np.abs(table[:, 2:]).max(axis=0)], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_flat_faces_have_no_pressure_angle() -> None:
     for text in (FLAT, PAIR):
         (one,) = held(text, "{pressure-angle: {at_most: 0}}")
@@ -283,6 +287,7 @@ def test_both_bounds_are_a_check_each() -> None:
 # --- what there is not ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("text", "name", "why"),
     [
@@ -295,6 +300,7 @@ def test_a_figure_that_cannot_be_had_fails(text: str, name: str, why: str) -> No
     assert (one["ok"], one["value"], one["detail"]) == (False, None, why)
 
 
+@pytest.mark.slow
 def test_a_contour_without_a_hollow_keeps_any_least_radius_of_one() -> None:
     ellipse = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 10}}}\n" + VERIFY
     least, most = held(ellipse, "{hollow-radius: {at_least: 5, at_most: 6}}")
@@ -318,6 +324,7 @@ def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
     assert told(FLAT, "{presure-angle: {at_most: 1}}")[0].endswith("did you mean pressure-angle?")
 
 
+@pytest.mark.slow
 def test_a_figure_that_a_recipe_has_not() -> None:
     missing = {
         needs.OF_FOLLOWER: LINKED,
@@ -331,7 +338,7 @@ def test_a_figure_that_a_recipe_has_not() -> None:
     }
     offered: dict[str, set[str]] = {}
     for name, figure in FIGURES.items():
-        if figure.needs is not needs.NOTHING:
+        if figure.needs is not NOTHING:
             (one,) = told(missing.get(figure.needs, FLAT), f"{{{name}: {{at_most: 1}}}}")
             assert f"limits.{name}: {name} needs " in one
             assert "; the figures of this recipe are " in one
@@ -371,7 +378,7 @@ SLIGHT = ROLLER.replace("625", "20")
 FINE = "export: {tolerance: 0.0001, "
 
 
-@pytest.mark.thin(5)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "name", "bound", "said", "change"),
     [
@@ -599,7 +606,7 @@ REMEDIES = [
 ]
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(32)
 @pytest.mark.parametrize(
     ("text", "name", "bound", "said", "change"),
     [row for row in REMEDIES if row[1] in FIGURES],  # those of a capability are where it is
@@ -671,6 +678,7 @@ sweep:
 
 
 # needs: sweep
+@pytest.mark.slow
 def test_a_sweep_limits_and_ranks_by_the_pressure_angle() -> None:
     recipe = loaded(ROLLER + SWEEP)
     values = np.array([[200.0], [300.0], [400.0], [500.0], [600.0]])

@@ -16,13 +16,13 @@ from support.places import SHIPPED as SHIPPED_FILES
 from support.starters import OF_CAMS
 
 from camgeo.recipe.cam import CAMS
+from camgeo.recipe.extension import KEYS as OF_CAPABILITIES
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.recipe.loading import read
 from camgeo.recipe.starter import starter
-from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.schema.edit import remove_section
 from camgeo.schema.errors import RecipeErrors
@@ -164,7 +164,7 @@ PATHS = ["cam.shaft[0]", "cam.base_radius", "linkage.rocker", "linkage.dyads[0].
 ranges = st.fixed_dictionaries({"from": numbers, "to": numbers}, optional={"steps": st.integers(0, 9)})
 vary = st.dictionaries(st.sampled_from(PATHS), ranges | st.lists(numbers, max_size=3) | structures, max_size=4)
 known = {
-    **{name: tabled(name, vary=vary) for name in registry.names_with_record() if name in recipe_table().keys},
+    **{name: tabled(name, vary=vary) for name in OF_CAPABILITIES.answering() if name in recipe_table().keys},
     "cam": kinded(CAMS),
     "linkage": linkages,
     "dwell": tabled("dwell"),
@@ -174,7 +174,7 @@ recipes = st.fixed_dictionaries({}, optional={key: known.get(key, structures) fo
 
 
 @pytest.mark.slow
-@settings(max_examples=examples(300), deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(recipes | structures)
 def test_structures_near_the_schema(structure: object) -> None:
     outcome(json.dumps(structure).encode())  # a JSON text is a YAML one
@@ -227,6 +227,7 @@ def test_both_readers_of_yaml_agree(data: bytes) -> None:
         assert outcome(data) == fast
 
 
+@pytest.mark.slow
 @settings(max_examples=examples(300), deadline=None)
 @given(mutated())
 def test_blanks_and_comments_that_are_passed_at_once_change_no_place(data: bytes) -> None:

@@ -59,9 +59,20 @@ def faults(text: str) -> list[str]:
             f"[{{rise: 10, over: 180, law: constant-velocity}}, {BACK}]",
             (
                 "cam.motion: the motion does not join: S' jumps from 0 to 3.1831 mm/rad at 0 degrees; let both sides "
-                "meet at one velocity, as laws from rest to rest do, or give one of them law: match"
+                "meet at one velocity, as laws from rest to rest and law: {uniform: {blend: 10}} do, or give one of "
+                "them law: match"
             ),
             "[{rise: 10, over: 180, law: constant-velocity}, {return: 10, over: 180, law: match}]",
+        ),
+        (
+            DISC,
+            f"[{{rise: 10, over: 180, law: constant-velocity}}, {BACK}]",
+            (
+                "cam.motion: the motion does not join: S' jumps from 0 to 3.1831 mm/rad at 0 degrees; let both sides "
+                "meet at one velocity, as laws from rest to rest and law: {uniform: {blend: 10}} do, or give one of "
+                "them law: match"
+            ),
+            f"[{{rise: 10, over: 180, law: {{uniform: {{blend: 10}}}}}}, {BACK}]",
         ),
         (
             DISC,

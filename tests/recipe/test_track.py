@@ -100,6 +100,7 @@ def test_a_hub_below_goes_with_it():
     assert recipe(GROOVE.replace("bore: 10", f"bore: 10, {HUB}, side: bottom}}")).part.of(Hub).side == "bottom"
 
 
+@pytest.mark.slow
 def test_a_groove_is_sized_as_the_disc_within_it():
     """Both flanks are parallels of one path, whose pressure angle is sized."""
     sizing = "sizing: {pressure-angle: {at_most: 30}, radius-of-curvature: {at_least: 12}}"
@@ -116,6 +117,7 @@ def test_a_linkage_is_refused():
     assert faults(GROOVE + more) == [("linkage", "cannot be combined with a cam of kind disc")]
 
 
+@pytest.mark.slow
 def test_no_roller_is_advised_that_leaves_no_base_circle(tmp_path):
     """Hollows of the outer flank grow with the roller, on the same pitch curve; a base radius below 0 is no advice."""
     for least, advised in ((200.0, False), (48.0, True)):

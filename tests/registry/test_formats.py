@@ -6,6 +6,7 @@ Holds: camgeo.formats.csv, camgeo.formats.meshes.
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -13,12 +14,15 @@ import numpy as np
 import pytest
 
 import camgeo
+from camgeo.checks.extension import Holes
 from camgeo.formats import csv
-from camgeo.formats.meshes import mesh_format
+from camgeo.formats.meshes import mesh_format, mesh_making
 from camgeo.formats.tables import polar
+from camgeo.output.extension import MAKING, Making, numbers_of
 from camgeo.registry import formats, registry
-from camgeo.registry.formats import FORMATS, MODULES
+from camgeo.registry.formats import FORMATS, MODULES, Format
 from camgeo.schema.errors import RecipeErrors
+from camgeo.synthesis.intent import FileIntent
 from kin.numeric.records import replace
 from kin.read import formats as read
 
@@ -29,7 +33,7 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Item
 
 CAM = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8, bore: 12}\nmanufacture: {wheel: 400}\n"
-MANY = ["dxf", "svg", "stl", "ply", "3mf", "glb", "csv", "html"]
+MANY = [name for name in MODULES if name != "step"]  # which needs a package of its own
 
 
 @pytest.fixture(autouse=True)
@@ -61,7 +65,7 @@ def test_every_record_has_an_entry_where_its_files_are_read() -> None:
         assert record.program == (entry.contents == "program")
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MANY)
 def test_without_a_format_all_others_are_made(name: str, tmp_path: Path) -> None:
     del MODULES[name]
@@ -75,6 +79,7 @@ def test_without_a_format_all_others_are_made(name: str, tmp_path: Path) -> None
     assert {file.kind for file in report.files} == set(others)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["motion", "polar", "inspection", "grinding"])
 def test_without_a_table_its_word_is_unknown(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     kept = tuple(other for other in csv.MODULES if other != name)
@@ -88,6 +93,7 @@ def test_without_a_table_its_word_is_unknown(name: str, tmp_path: Path, monkeypa
     assert camgeo.export(recipe("{csv: {as: contacts}}, dxf"), tmp_path).ok
 
 
+@pytest.mark.slow
 def test_a_made_up_format_is_one_of_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Triangles as plain numbers: a record with a writer, an entry with a reader, and nothing else."""
 
@@ -99,7 +105,8 @@ def test_a_made_up_format_is_one_of_all(tmp_path: Path, monkeypatch: pytest.Monk
         return np.array(raw.split(), dtype=np.float64).reshape(-1, 3, 3), "text"
 
     module = ModuleType("made_up")
-    vars(module)["FORMAT"] = mesh_format("raw", numbers=FORMATS["ply"].numbers, write=write, units=False)
+    vars(module)["FORMAT"] = mesh_format("raw", units=False)
+    vars(module)["MAKING"] = mesh_making(MAKING["ply"].numbers, write)
     monkeypatch.setitem(sys.modules, "made_up", module)
     MODULES["raw"] = "made_up"
     read.FORMATS["raw"] = read.mesh("raw", 10**8, (".raw", ".tri"), triangles, units=False)
@@ -127,5 +134,26 @@ def test_a_made_up_table_is_one_of_all(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def test_a_format_that_makes_nothing_says_so() -> None:
-    with pytest.raises(ValueError, match="page holds no mesh"):
-        formats.numbers_of(replace(FORMATS["html"], name="page"), 1.0)
+    with pytest.raises(ValueError, match="html holds no mesh"):
+        numbers_of("html", 1.0)
+
+
+def test_what_layers_ask_of_formats_bears_the_name_by_which_they_ask() -> None:
+    names = {Format: "FORMAT", Making: "MAKING", Holes: "HOLES", FileIntent: "INTENT"}
+    for path in (MODULES | registry.formats()).values():
+        stated = {name: names[type(value)] for name, value in vars(import_module(path)).items() if type(value) in names}
+        assert all(name == asked for name, asked in stated.items())
+        assert {"FORMAT", "MAKING"} <= stated.keys()
+
+
+def test_a_summary_and_a_mesh_are_made_as_such() -> None:
+    for name, record in FORMATS.items():
+        making = MAKING[name]
+        assert record.summary == (making.summarise is not None) == (making.make is None)
+        assert record.mesh == (making.numbers is not None)
+
+
+def test_what_a_format_states_of_another_class_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv, "HOLES", "all", raising=False)
+    with pytest.raises(TypeError, match=r"camgeo\.formats\.csv: HOLES is no Holes"):
+        formats.of_formats("HOLES", Holes())["csv"]

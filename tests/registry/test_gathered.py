@@ -1,14 +1,9 @@
-"""Tables that capabilities add to: order by the places that entries state, and no import for what the core has.
+"""Tables that capabilities add to: order by the places that entries state, and no import for what the core has."""
 
-Holds: camgeo.registry.registry, camgeo.registry.capability, camgeo.registry.label.
-"""
-
-from types import SimpleNamespace
 from typing import NamedTuple
 
 import pytest
 
-from camgeo.registry import registry
 from camgeo.registry.gathered import Gathered
 
 
@@ -19,20 +14,31 @@ class Place(NamedTuple):
 ADDED = {"early": {"x": Place("a"), "y": Place()}, "late": {"z": Place("a"), "w": Place("b")}}
 
 
+class Asked:
+    """A question that two capabilities answer, with the names of those that were asked."""
+
+    def __init__(self):
+        self.names = []
+
+    def __getitem__(self, name):
+        self.names.append(name)
+        return ADDED[name]
+
+    def answering(self):
+        return tuple(ADDED)
+
+    def loaded(self):
+        return ()
+
+    def of(self, names):
+        return [self[name] for name in ADDED if name in names]
+
+
 @pytest.fixture
-def table(monkeypatch):
-    asked = []
-
-    def record(name):
-        asked.append(name)
-        return SimpleNamespace(name=name)
-
-    monkeypatch.setattr(registry, "names_with_record", lambda: ("early", "late"))
-    monkeypatch.setattr(registry, "names_loaded", lambda: ())
-    monkeypatch.setattr(registry, "capability", record)
-    monkeypatch.setattr(registry, "in_order", lambda names: [record(name) for name in ADDED if name in names])
+def table():
+    slot = Asked()
     core = {"a": Place(), "b": Place(), "c": Place()}
-    return Gathered(core, lambda capability: ADDED[vars(capability)["name"]]), asked
+    return Gathered(core, slot, lambda answers: answers), slot.names
 
 
 def test_entries_stand_behind_the_ones_they_name(table):

@@ -15,7 +15,7 @@ import camgeo
 from camgeo.output import pipeline
 from camgeo.part.hub import Hub
 from camgeo.recipe.loading import load, load_text
-from kin.judge.check import at_most, less_sure
+from kin.numeric.check import at_most, less_sure
 from kin.numeric.lengths import UNIT, in_unit, length_words, place_words, span_words
 
 if TYPE_CHECKING:
@@ -65,6 +65,7 @@ FIGURES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(RECIPES, 2))
 def test_details_of_an_inch_recipe_are_in_inches(name: str) -> None:
     """No figure is left in mm; those of some checks make the check's own value, which is in inches."""
@@ -96,6 +97,7 @@ def test_a_place_is_in_inches_too() -> None:
         assert 5.0 < scale * (x * x + y * y) ** 0.5 < 30.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_places_of_a_file_are_in_the_axes_of_that_file(tmp_path: Path, rotation: str) -> None:
     """What is wrong at a place of a drawing is reported at that place, mirrored drawing or not."""

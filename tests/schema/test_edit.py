@@ -121,7 +121,7 @@ def test_a_second_change_finds_its_way_after_the_first() -> None:
     assert with_values(once, {"cam.fourier.mean": 25, "cam.shaft[1]": 2}) == TEXT
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(32)
 @pytest.mark.parametrize("path", few(SHIPPED, 3), ids=lambda path: path.stem)
 def test_every_number_of_a_shipped_recipe_can_be_replaced(path: Path) -> None:
     text = path.read_text(encoding="utf-8")

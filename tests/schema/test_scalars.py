@@ -34,6 +34,8 @@ TEXT = (
         ("1/2/4", 0.125),
         ("180/7", 180 / 7),
         ("10-1", 9.0),
+        ("2**3", 8.0),
+        ("3*2 ** -1", 1.5),
     ],
 )
 def test_what_it_comes_to(text: str, value: float) -> None:
@@ -52,7 +54,10 @@ def test_a_whole_number() -> None:
         ("5/(2 - 2)", "divides by zero, given '5/(2 - 2)'; give a length above 0 in mm"),
         ("1e308*10", "too large, given '1e308*10'; give a length above 0 in mm"),
         ("1 - 3", "not above 0, given '1 - 3'; give a length above 0 in mm"),
-        ("2**3", "not a number, given '2**3'; numbers are joined by + - * / and parentheses alone"),
+        ("2* *3", "not a number, given '2* *3'; numbers are joined by + - * / ** and parentheses alone"),
+        ("10**1000", "not a number: the exponent 1000 is too large; exponents run from -199 to 199, given '10**1000'"),
+        ("9**9**9", "not a number: the exponent 3.8742e+08 is too large"),
+        ("0**-1", "divides by zero"),
         ("(1 + 2", "not a number: this parenthesis is never closed, given '(1 + 2'; give a length above 0 in mm"),
         ("1/3/", "not a number: it ends where a number, a name or a parenthesis should follow, given '1/3/'"),
         ("010 + 1", "a leading zero, which some read as octal, given '010 + 1'; leave the zero out"),

@@ -139,7 +139,11 @@ class Browser:
             self.problems.append(json.dumps(parameters["exceptionDetails"])[:800])
         elif method == "Runtime.consoleAPICalled" and parameters["type"] in {"error", "warning", "assert"}:
             self.problems.append(json.dumps(parameters["args"])[:800])
-        elif method == "Log.entryAdded" and parameters["entry"]["level"] in {"error", "warning"}:
+        elif (
+            method == "Log.entryAdded"
+            and parameters["entry"]["level"] in {"error", "warning"}
+            and parameters["entry"]["source"] != "rendering"  # what a machine without a graphics card says of that
+        ):
             self.problems.append(json.dumps(parameters["entry"])[:800])
         elif method == "Network.requestWillBeSent":
             self.requests.append(parameters["request"]["url"])
@@ -193,6 +197,13 @@ class Browser:
         for x, y in rest:
             self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, button="left", buttons=1)
         self.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, button="left", clickCount=1)
+
+    def touch(self, points: list[tuple[float, float]]) -> None:
+        """Put a finger at the first point, move it through the others, lift it."""
+        kinds = ["touchStart", *("touchMove" for _ in points[1:]), "touchEnd"]
+        for kind, place in zip(kinds, [*points, None], strict=True):
+            fingers = [] if place is None else [{"x": place[0], "y": place[1]}]
+            self.call("Input.dispatchTouchEvent", type=kind, touchPoints=fingers)
 
     def screenshot(self, *, whole: bool = False) -> bytes:
         """The window, or the whole page, as PNG."""

@@ -1,4 +1,4 @@
-"""The repository without a capability: its folder, tests, pages, shipped recipes, and what is marked as needing it.
+"""The repository without a capability: its folders here and in kin, tests, pages, shipped recipes, what is marked.
 
 A mark is a comment, `# needs: sweep` in Python and TOML, `<!-- needs: sweep -->` in Markdown. Behind a line it is of
 that line. On the first line of a module it is of the whole. On a line of its own it is of what follows: in Python of a
@@ -10,18 +10,20 @@ line of a recipe that is.
 from __future__ import annotations
 
 import ast
+import functools
 import re
 import shutil
 import subprocess
-from functools import cache
 from typing import TYPE_CHECKING
 
+from camgeo.recipe.recipe import root_key
 from camgeo.recipe.words import words_of
 from camgeo.registry import registry
 from camgeo.schema.yaml_source import read_source
 from support.places import ROOT
 
 if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
     from pathlib import Path
 
 MARK = re.compile(r"(?P<before>.*?)\s*(?:#|<!--) needs: (?P<names>[a-z_, ]+?)(?: -->)?$")
@@ -69,16 +71,26 @@ def _behind_page(lines: list[str], start: int) -> int:
     return len(lines)
 
 
-@cache
+@functools.cache
 def _words(path: Path) -> frozenset[str]:
-    """Keys, formats and options of files that a shipped recipe has: each is read once for all capabilities."""
-    return frozenset(words_of(read_source(path.read_bytes(), str(path)).root))
+    """Keys, formats, options of files and kind of a shipped recipe: each is read once for all capabilities."""
+    source = read_source(path.read_bytes(), str(path))
+    return frozenset({*words_of(source.root), f"kind: {root_key(source)}"})
 
 
 def uses(path: Path, name: str) -> bool:
-    """Whether a shipped recipe has a key, a format or an option of files of a capability."""
+    """Whether a shipped recipe has a key, a format or an option of files of a capability, or is of its kind."""
     label = registry.labels()[name]
-    return not _words(path).isdisjoint({*label.words, *label.roots})
+    return not _words(path).isdisjoint({*label.words, *label.roots, *(f"kind: {kind}" for kind in label.kinds)})
+
+
+def covering(paths: Sequence[Path], words: Collection[str]) -> list[Path]:
+    """Few of these recipes that together have every one of these words that any of them has."""
+    left, chosen = frozenset[str]().union(*map(_words, paths)) & {*words}, []
+    while left:
+        chosen.append(max(paths, key=lambda path: len(_words(path) & left)))
+        left -= _words(chosen[-1])
+    return chosen
 
 
 def unshipped(name: str) -> list[Path]:
@@ -86,21 +98,23 @@ def unshipped(name: str) -> list[Path]:
     return [path for path in (ROOT / "recipes").rglob("*.yaml") if uses(path, name)]
 
 
-def copy_without(name: str, folder: Path) -> Path:
-    """Copy what the repository holds, but for a capability, into a folder."""
+def copy_without(names: Collection[str], folder: Path) -> Path:
+    """Copy what the repository holds, but for these capabilities, into a folder."""
     told = subprocess.run(
         ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT,
         capture_output=True,
         check=True,
     )
-    gone = {path.name for path in unshipped(name)}
-    own = (f"camgeo/capabilities/{name}/", f"tests/capabilities/{name}/", f"docs/{name}.md", f"web/{name}.")
+    gone = {path.relative_to(ROOT).as_posix() for name in names for path in unshipped(name)}
+    own = tuple(f"kin/{half}/" for name in names for half in registry.labels()[name].kin)
+    for name in names:
+        own += (f"camgeo/capabilities/{name}/", f"tests/capabilities/{name}/", f"docs/{name}.md", f"web/{name}.")
     for place in told.stdout.decode().split("\0"):
         path = ROOT / place
         if not place or place.startswith(own) or not path.is_file():
             continue
-        if place.startswith("recipes/") and path.name in gone:
+        if place in gone:
             continue
         copied = folder / place
         copied.parent.mkdir(parents=True, exist_ok=True)
@@ -108,10 +122,10 @@ def copy_without(name: str, folder: Path) -> Path:
         if "needs: " not in whole and place != "docs/gallery.md":
             shutil.copy2(path, copied)
             continue
-        text = without_marked(whole, name)
+        text = functools.reduce(without_marked, names, whole)
         if place == "docs/gallery.md":
             lines = text.split("\n")
-            text = "\n".join(line for line in lines if not any(f"recipes/{recipe}" in line for recipe in gone))
+            text = "\n".join(line for line in lines if not any(recipe in line for recipe in gone))
         if text:
             copied.write_text(text, encoding="utf-8")
     return folder

@@ -1,3 +1,4 @@
+# needs: dynamics
 """A second opinion on a follower train's motion: the same law of contact, integrated step by step by scipy.
 
 It shares the train and the motion with the exact solution, and nothing else: no series, no closed form, no events. The
@@ -64,7 +65,7 @@ def integrated(
     size[0] = max(size[0], abs(start[0]), running.inertia / train.stiffness * 1e-3)
     size[1] = max(size[0] * running.bound.natural, 1e-300)
     y = np.array(start, dtype=float)
-    found = np.empty((2, len(places)))
+    found = np.full((2, len(places)), np.nan)
     steps = 0
     knots = _knots(faces, float(places[-1]))
     implicit = {"jac": law.jacobian} if bonded and method in ("Radau", "BDF") else {}
@@ -141,12 +142,13 @@ class _Law:
 
 
 def _knots(faces: Sequence[Excitation | None], end: float) -> Array:
-    """0, `end`, and all breaks between them."""
+    """0, `end`, and all breaks between them; a break within 1e-9 of 0 is the one at 0."""
     breaks = np.concatenate([np.mod(face.breaks, TURN) for face in faces if face is not None] + [[0.0]])
     turns = TURN * np.arange(math.ceil(end / TURN) + 1)
     every = np.unique(np.concatenate([(breaks + turns[:, None]).ravel(), [end]]))
     every = every[every <= end]
     apart: Array = every[np.append(np.diff(every) > 1e-9, True)]
+    apart[0] = 0.0
     return apart
 
 

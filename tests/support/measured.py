@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -68,11 +69,12 @@ def nothing(t: Array) -> Array:
     return np.zeros_like(t)
 
 
-def surfaces(text: str) -> list[tuple[int, Any, Any]]:
+@cache
+def surfaces(text: str) -> tuple[tuple[int, Any, Any], ...]:
     """Disc, part and surface of each surface that the recipe of a text has."""
     recipe = read(text.encode(), "part.yaml")
     parts = intents(recipe, designed(recipe))
-    return [(k, part, surface) for k, part in enumerate(parts) for surface in part.surfaces]
+    return tuple((k, part, surface) for k, part in enumerate(parts) for surface in part.surfaces)
 
 
 def points(

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from camgeo.motions.inputs import TURN
 from camgeo.motions.motion import check_whole_turn, motion_field
 from camgeo.output import pipeline
 from camgeo.recipe.keys import recipe_table
@@ -66,7 +67,7 @@ def reader_of(text):
 
 def read_motion(text):
     reader, node = reader_of(text)
-    asked = reader.field(motion_field("motion", Kind.LENGTH, "a turn", whole_turn=True), node, "motion")
+    asked = reader.field(motion_field("motion", Kind.LENGTH, "a turn", over=TURN), node, "motion")
     if asked is not None:
         check_whole_turn(asked, "motion", reader)
     if reader.errors:

@@ -1,3 +1,4 @@
+# needs: mechanism
 """Motions of bodies by formulas, of which clearances are known in closed form."""
 
 from __future__ import annotations
@@ -7,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.clearance.pose import PoseCourse
+from kin.mechanism.pose import PoseCourse
 from kin.numeric.elementary import BallJet, Jet
 
 if TYPE_CHECKING:

@@ -1,6 +1,7 @@
 """Where things are in a checkout."""
 
 import importlib.util
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,9 @@ SHIPPED = sorted(RECIPES.glob("*.yaml"))
 
 
 def script(name: str) -> Any:
-    """A script of web/ as a module."""
+    """A script of web/ as a module; those that it imports lie beside it."""
+    if str(ROOT / "web") not in sys.path:
+        sys.path.append(str(ROOT / "web"))
     spec = importlib.util.spec_from_file_location(f"web_{name}", ROOT / "web" / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None

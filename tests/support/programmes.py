@@ -10,7 +10,7 @@ from kin.law.sources.laws import named as law
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.law.programme import Law
+    from kin.law.normalised import Law
     from kin.law.sources.motion import Motion
 
 __all__ = ["Segment", "law", "programme"]

@@ -15,9 +15,10 @@ from camgeo.synthesis.intent import intended
 from support.measured import nothing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from camgeo.capabilities.camshaft.lobes import PlacedLobe
     from kin.numeric.arrays import Array
 
 HEAD = "lobe,z_mm,x_mm,y_mm"
@@ -70,6 +71,19 @@ def camshaft(folder: Path, *, more: str = "", limits: str = "", files: str = "[s
     return path
 
 
+_KNOWN: dict[tuple[str, ...], tuple[CamshaftRecipe, Sequence[PlacedLobe]]] = {}
+
+
+def _placed(recipe: Path) -> tuple[CamshaftRecipe, Sequence[PlacedLobe]]:
+    """A shaft and its lobes, designed once however many folders hold recipes of the same text."""
+    key = (recipe.read_text("utf-8"), *(path.read_text("utf-8") for path in sorted(recipe.parent.glob("*.yaml"))))
+    if key not in _KNOWN:
+        order = load_order(recipe)
+        assert isinstance(order, CamshaftRecipe)
+        _KNOWN[key] = order, placed(order, Clock())
+    return _KNOWN[key]
+
+
 def shaft_points(
     recipe: Path,
     planted: Mapping[str, Planted] | None = None,
@@ -79,11 +93,10 @@ def shaft_points(
     count: int = 360,
 ) -> list[tuple[str, float, float, float]]:
     """Rows of lobe, z, x and y, mm, as the shaft is drawn; all is late by `late` degrees."""
-    order = load_order(recipe)
-    assert isinstance(order, CamshaftRecipe)
+    order, lobes = _placed(recipe)
     rng, rows = np.random.default_rng(1), []
     mirrored = -1.0 if order.rotation == "ccw" else 1.0
-    for lobe in placed(order, Clock()):
+    for lobe in lobes:
         cam = lobe.on_shaft(order.engine)
         fault = (planted or {}).get(cam.name, Planted())
         (surface,) = intended(cam.recipe, cam.design).surfaces

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from support.browser import Browser
+    from support.firefox import Firefox
 
 PATIENCE = 240.0  # seconds that Python's start may take on a busy machine
 
@@ -38,6 +39,9 @@ def built(folder: Path) -> Path:
     return folder
 
 
+ASKED: list[str] = []  # names of the files that browsers have asked servers for
+
+
 class _Strict(http.server.SimpleHTTPRequestHandler):
     """A static server that says nothing, and sends the page's own policy with every file, the worker's among them."""
 
@@ -46,6 +50,11 @@ class _Strict(http.server.SimpleHTTPRequestHandler):
         (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', index)
         self.send_header("Content-Security-Policy", policy)
         super().end_headers()
+
+    def do_GET(self) -> None:
+        """Send a file, and note it."""
+        ASKED.append(self.path.partition("?")[0])
+        super().do_GET()
 
     def log_message(self, *_: object) -> None:
         """Say nothing."""
@@ -66,7 +75,7 @@ def served(folder: Path) -> Iterator[str]:
 class Tab:
     """The page in a browser, as somebody at the keyboard has it."""
 
-    def __init__(self, browser: Browser, address: str) -> None:
+    def __init__(self, browser: Browser | Firefox, address: str) -> None:
         self.browser, self.address = browser, address
 
     def open(self, fragment: str = "") -> Tab:

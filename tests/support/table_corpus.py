@@ -1,4 +1,4 @@
-"""A corpus of tables: laws at rows of any step, rounded to any digits in any unit, with noise, or spoilt."""
+"""A corpus of tables: laws at rows of any step, rounded to any digits in any unit, with noise."""
 
 from __future__ import annotations
 
@@ -29,7 +29,6 @@ UNITS = {"mm": 1.0, "inch": 25.4, "thou": 0.0254, "degrees": math.radians(1.0)}
 STROKES = {"mm": (4.0, 40.0), "inch": (0.15, 1.5), "thou": (150.0, 1500.0), "degrees": (4.0, 30.0)}
 JUMP = 1e-3  # of the greatest value of a derivative: less is no jump
 LOOKS = 7200  # places of a turn at which accelerations are compared
-SPOILT = {1: 8.0, 5: 0.005, 10: 0.02, 20: 0.1}  # readings at 1 degree to 3 decimals, then shares of the stroke
 
 
 @dataclass(frozen=True)

@@ -1,3 +1,4 @@
+# needs: dynamics
 """Oscillators and follower trains by their ratios, and states of a response at places."""
 
 import math

@@ -37,7 +37,7 @@ def free(design: Design, words: str) -> float:
     return float(found[1])
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("rise", [37.2, 39.8, 42.4, 45.0, 47.6, 50.2])
 def test_the_base_radius_that_is_told_is_free_of_undercut(rise: float) -> None:
     larger = free(sharp(BREADTH, size=5.0, of=rise), "a base radius larger by more than")

@@ -84,6 +84,7 @@ def test_a_ring_without_hollows_has_no_limit():
     assert told.detail == "the pitch curve of the ring has no hollow"
 
 
+@pytest.mark.slow
 def test_the_roller_that_would_do_does():
     found = checks(ring(9.0))["undercut-local"]
     assert not found.ok
@@ -95,7 +96,7 @@ def test_the_roller_that_would_do_does():
     assert all(check.ok for check in checks(ring(radius, base=float(said[2]) + radius)).values())
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("part", "wall", "pair"),
     [

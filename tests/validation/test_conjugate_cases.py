@@ -114,7 +114,7 @@ def numbers(keys):
     return {key: float(value) for key, value in re.findall(r"(\w+): (-?[\d.]+)", keys)}
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", PAIRS)
 def test_each_contact_touches_its_disc_all_round(name):
     """The nearest point of each contour is a radius from the roller's centre, or lies on the face and none beyond."""

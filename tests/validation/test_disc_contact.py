@@ -86,6 +86,7 @@ def test_d13_matched():
     holds(follower, fitted(Parallel(CentreShape(s, Translating.on(60.0)), 10.0), 1e-6), 1e-6)
 
 
+@pytest.mark.slow
 def test_d14_valve():
     s = Displacement.of(lobe(8.0, 68 * DEGREE, (2, 8, 14, 20, 26)))
     tappet, roller = on_face(s, 18.0), on_stem(s, 27.0, 0.0, 9.0)

@@ -64,7 +64,7 @@ def motions(draw: st.DrawFn, stroke: float) -> list[tuple[float, float, str]]:
 
 
 @settings(
-    max_examples=examples(40),
+    max_examples=examples(24),
     suppress_health_check=[HealthCheck.function_scoped_fixture],
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
 )

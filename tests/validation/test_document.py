@@ -6,7 +6,7 @@ import ledger
 import pytest
 from support.page_tables import Row
 
-LONG = ("test_wunderlich", "test_linkages")  # seconds each
+LONG = ("test_wunderlich", "test_linkages", "test_support_functions")  # seconds each
 
 
 @pytest.mark.thin(3)
@@ -25,6 +25,7 @@ def test_published_values_hold_and_the_page_shows_them(workshop, topic):
         assert float(line[4].lstrip("< ")) <= max(row.within, 2e-9 * max(1.0, abs(row.value))), line
 
 
+@pytest.mark.slow
 def test_the_page_shows_what_is_misprinted(workshop):
     lines = ledger.shown("misprints")
     found = ledger.misprints(workshop)
@@ -40,6 +41,7 @@ def test_the_page_has_no_table_besides():
     assert len(re.findall(r"^\| ---", text, re.MULTILINE)) == len(marks)
 
 
+@pytest.mark.slow
 def test_a_wrong_figure_is_caught(workshop):
     row = ledger.measured("test_rabinowitz", workshop)[2]
     spoilt = Row(row.quantity, row.source, row.published, row.value, row.ours + 2 * row.within, row.within)

@@ -13,12 +13,14 @@ import numpy as np
 import pytest
 
 from camgeo.capabilities.dynamics.force_figures import extremes_of, forces_section, forces_table
+from camgeo.capabilities.dynamics.load_formula import Sampled
 from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.measures.figures import design_figures
 from camgeo.output.pipeline import check, export
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
+from kin.numeric.records import replace
 
 LOBE = """
 cam:
@@ -99,6 +101,13 @@ def test_a_roller_under_a_spring():
     assert np.abs(run.state(np.linspace(0.0, 2.0 * math.pi, 3601)).roller_rpm).max() <= 5400.0 * (1.0 + 1e-9)
 
 
+def test_a_change_at_the_turns_beginning_is_given_once():
+    """Inertia alone presses: F is -m w^2 10 sin(t), which is 0 at 0 and 180 degrees."""
+    cam = "cam: {kind: disc, base_radius: 36, follower: {kind: roller, radius: 9}, track: {groove: {clearance: 0.03}}"
+    run = running(f"{cam}, motion: {{formula: 10*sin(t)}}}}\npart: {{thickness: 10, bore: 20}}\n", "mass: 1, rpm: 900")
+    assert run.own_section()["changes_at_deg"] == pytest.approx([0.0, 180.0], abs=1e-9)
+
+
 def test_a_groove():
     """f02 and f11: which flank bears, forces, torque, pressure, and the mean force on the one roller."""
     run = running(GROOVE, "mass: 1.2, rpm: 900, load: 40, material: steel")
@@ -144,6 +153,17 @@ def test_a_yoke_loses_its_faces():
     (first, low, _), (second, high, _) = run.lost_rpm()
     assert (first, second) == ("flat face A", "flat face B")
     assert (high, low) == (pytest.approx(1509.876363135, rel=1e-9), pytest.approx(1849.213332184, rel=1e-9))
+
+
+def test_a_load_that_is_sampled_lets_faces_go_at_the_lower_speed():
+    """Its true value lies between 33 and 47 N: each face is lost as early as under the worse of the two."""
+    runs = {load: running(YOKE, f"mass: 2, rpm: 1500, load: '{load}'") for load in (33, 40, 47)}
+    alone = {load: [loss.rpm for loss in run.lost_rpm()] for load, run in runs.items()}
+    sampled = running(YOKE, "mass: 2, rpm: 1500, load: '40'")
+    sampled.__dict__["_followed"] = replace(sampled._followed, sampled=Sampled(1.0, 7.0))
+    for face, (_, rpm, _) in enumerate(sampled.lost_rpm()):
+        assert rpm == pytest.approx(min(alone[33][face], alone[47][face]), rel=1e-12)
+        assert rpm < 0.999 * alone[40][face]
 
 
 @pytest.mark.thin(2)
@@ -227,6 +247,7 @@ def test_report_table_and_figures(tmp_path):
     assert float(written[100][1]) == pytest.approx(rows[99, 1], rel=1e-9)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("text", "contacts"), [(GROOVE, ("inner", "outer")), (DISCS, ("disc_1", "disc_2"))])
 def test_the_table_of_two_surfaces(text, contacts, tmp_path):
     """One table has both contacts; one of them bears at a time."""
@@ -278,7 +299,7 @@ def test_what_is_refused(text, dynamics, field, words):
     assert words in str(error)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("load", ["sqrt(1 - cos(t))", "abs(sin(t))", "5 + 1/(2 + sin(t))", "40"])
 def test_loads_that_are_bounded(load):
     """Corners and roots of 0 are no poles."""

@@ -135,6 +135,7 @@ def test_a_four_bar():
     assert "guide" not in state.reactions
 
 
+@pytest.mark.slow
 def test_the_extremes_of_a_four_bar():
     """f06: greatest and least V, H and torque over the turn, the faces that bear, and where V changes its face."""
     run = running(FOUR_BAR, F06)
@@ -286,7 +287,7 @@ class Bench:
 NUMBERS = {F06: (0.02, 120, 12), F07: (0.02, 120, 12, (0.8, 6e-4)), F08: (0.03, 100, 9), F09: (1.5, 120, 200)}
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize(("text", "dynamics"), WORKED)
 def test_equilibrium_in_the_plane(text, dynamics):
     """Four equations for frame and output link at positions found by bisection, to what differences leave of them."""
@@ -480,6 +481,7 @@ def test_what_is_refused(text, dynamics, field, words, remedied):
 # --- report, page, table, figures -------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_report_page_table_and_figures(tmp_path):
     """f07 through a recipe: the same in the report, on the page, in the CSV file and as limits."""
     text = FOUR_BAR + (

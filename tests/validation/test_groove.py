@@ -71,6 +71,7 @@ def test_the_exact_flanks_of_the_case():
         assert math.degrees(low.at) == pytest.approx(217.01549, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_the_play_of_the_case_from_its_file(stem):
     """Within what two contours off by the tolerance make of it."""
     recipe, path = stem
@@ -84,6 +85,7 @@ def test_the_play_of_the_case_from_its_file(stem):
     assert max(abs(closure.gauges.least), abs(closure.gauges.most)) < off
 
 
+@pytest.mark.slow
 def test_the_play_is_reported_and_limited(tmp_path):
     """By what is left to the roller itself, not to the rollers that fill the groove."""
     report = export(
@@ -188,7 +190,7 @@ def test_a_planted_fault_is_refused(fault, stem, tmp_path):
     assert failed(recipe, tmp_path / "spoilt.dxf") >= FAULTS[fault]
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("clearance", [0.0, 0.0302, -0.03])
 def test_the_file_of_another_clearance_is_refused(clearance, stem, tmp_path):
     """0: the outer flank with the inner's offset; of the wrong sign: a groove that its roller does not fill up to."""
@@ -214,6 +216,7 @@ def test_the_blank_stands_on_cut(tmp_path):
     assert {check["name"] for check in outcome.report["checks"]} >= {"outer", "wall"}
 
 
+@pytest.mark.slow
 def test_a_blank_that_the_groove_breaks_through_is_refused(tmp_path):
     recipe = recipe_of(part=", outer: 150")
     outcome = export(recipe, tmp_path)
@@ -226,6 +229,7 @@ def test_a_blank_that_the_groove_breaks_through_is_refused(tmp_path):
     assert export(recipe_of(part=f", outer: {150 + 1.001 * float(more[1])}"), tmp_path).ok
 
 
+@pytest.mark.slow
 def test_undercut_of_a_flank_is_named_and_its_remedy_helps(tmp_path):
     """The outer flank's gauge is wider: what frees it is a roller smaller by the clearance too."""
     steep = text(clearance=1.0).replace("over: 100", "over: 40").replace("dwell: 80", "dwell: 140")

@@ -73,7 +73,7 @@ def written(source, folder):
     return json.loads(next(folder.rglob("report.json")).read_text(encoding="utf-8")), rows
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("source", "at", "alpha", "force"), ROLLERS)
 def test_f25_of_a_roller(source, at, alpha, force, tmp_path):
     report, rows = written(source, tmp_path)
@@ -154,6 +154,7 @@ def test_equilibrium_in_the_plane(name):
         assert (state.normal[1] > 0.0).any()
 
 
+@pytest.mark.slow
 def test_what_jams(tmp_path):
     """Beyond B/(2 mu) from the axis, or the angle of d20, no force moves the stem: a check fails."""
     flat = {"base": 40.0, "follower": "kind: flat", "motion": WAVE.format(a=9.0)}
@@ -175,6 +176,7 @@ def test_what_jams(tmp_path):
     assert sum(",," in row for row in rows) > 10
 
 
+@pytest.mark.slow
 def test_the_second_disc_jams_first():
     """Its roller stands the distance of the rollers further from the guide."""
     values, apart = PLANE["discs"]

@@ -69,6 +69,7 @@ def test_least_count_against_mpmath(figure_1):
     assert least_vertices(figure_1.design.only_surface.surface.curve, E) == pytest.approx(formula(E), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_file_has_no_vertex_too_many(figure_1):
     assert figure_1.drawing.pieces == math.ceil(formula(E))
 
@@ -79,7 +80,7 @@ def test_the_file_straddles_the_curve_and_wastes_nothing(figure_1):
     assert 0.97 * E < high <= E
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("e", [0.01, 0.0001])
 def test_the_count_grows_as_the_root_of_the_tolerance(workshop, e):
     made = workshop.shipped("as-figure-1", "polyline", e)

@@ -12,6 +12,7 @@ def page():
     return linkage_page.PAGE.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "mark", [pytest.param(mark, marks=pytest.mark.slow if mark == "files" else []) for mark in linkage_page.TABLES]
 )
@@ -27,7 +28,7 @@ def test_every_table_of_the_page_is_measured_anew(workshop, page, mark):
             assert linkage_page.same(cell, other, allowed), (line[0], cell, other)
 
 
-@pytest.mark.thin(16)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*linkage_page.PAPER, *linkage_page.OURS])
 def test_every_shipped_linkage_is_within_its_limits(workshop, name):
     """And by no luck: the limit of the output's error is not more than thrice what is reached."""

@@ -117,7 +117,7 @@ def simulated_rows():
     return found
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "wrong"), [("as-figure-9-2a", 5.0), ("as-figure-13-2a", 2.6)])
 def test_theta_is_not_the_shaft_angle(name, wrong):
     """The paper's theta_4 read over the simulated shaft's angle, degrees."""
@@ -150,6 +150,7 @@ def test_velocity_and_acceleration_over_the_shaft_angle(drawn):
     assert apart(motion.over_shaft(motion.output)[1][1:-1], middle) < 1e-6
 
 
+@pytest.mark.slow
 def test_the_motion_table_is_over_the_shaft_angle(workshop):
     made, figure = workshop.shipped("as-figure-9-2a"), FIGURES["as-figure-9-2a"]
     table, loop = made.motion, figure.loop(FINE)
@@ -163,7 +164,7 @@ def test_the_motion_table_is_over_the_shaft_angle(workshop):
     assert np.abs(np.degrees(mistaken) - table["output_deg"]).max() > 4
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DWELLING)
 @pytest.mark.parametrize("band", BANDS)
 def test_dwells_over_either_angle(name, band):

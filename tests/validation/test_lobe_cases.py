@@ -34,6 +34,7 @@ def at(table: list[dict[str, float]], key: str, angle: float) -> dict[str, float
     return next(row for row in table if row[key] == pytest.approx(angle, abs=1e-9))
 
 
+@pytest.mark.slow
 def test_f18_lifts_of_the_valve_are_stated_at_the_tappet() -> None:
     """Ratio 1.6, lash 0.30 at the valve: the valve's lift is 1.6 S - 0.30, so that S is (lift + lash)/ratio."""
     lifts = "[{at_lift: 0.30/1.6, at_least: 1}, {at_lift: (1 + 0.30)/1.6, at_least: 1}, {at_lift: 0.30, at_least: 1}]"

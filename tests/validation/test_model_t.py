@@ -52,6 +52,7 @@ def test_the_published_durations_are_met() -> None:
     assert found == pytest.approx(list(AT), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_lobe_lies_near_the_arcs_and_has_no_jump() -> None:
     """Within 4 thousandths of an inch, where three arcs jump in acceleration four times."""
     design = camgeo.design(camgeo.load(text()))

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from support.page_tables import Row
 
-from kin.law.programme import LAWS
+from kin.law.sources.laws import named
+from kin.law.sources.peaks import peaks as law_peaks
 
 PI = mp.pi
 INFINITE = float("inf")
@@ -80,7 +81,7 @@ WORDS = ("velocity", "acceleration", "jerk")
 
 def peaks(name):
     """Greatest |s'|, |s''|, |s'''| of the product's law, inside and as limits at its knots; (3,)."""
-    law = LAWS[name]
+    law = named(name)
     knots = law.motion.knots
     u = np.unique(np.concatenate([np.linspace(0, 1, 24_001), knots]))
     right = law.derivatives(u[:-1], 3, 1)
@@ -109,7 +110,7 @@ def rebuilt(name):
     return float(top / stroke), float(peak / stroke)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_peaks_follow_from_the_shape_of_the_acceleration(name):
     velocity, acceleration, _ = peaks(name)
@@ -119,11 +120,12 @@ def test_peaks_follow_from_the_shape_of_the_acceleration(name):
     assert acceleration == pytest.approx(peak, rel=1e-6)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_acceleration_is_the_rebuilt_one_everywhere(name):
     breaks, shapes = SHAPES[name]
     u = np.linspace(0, 1, 97)[1:-1] + 1e-3
-    found = LAWS[name].derivatives(u, 2)[2]
+    found = named(name).derivatives(u, 2)[2]
     spans = list(zip(breaks[:-1], breaks[1:], shapes, strict=True))
     stroke = sum(mp.quad(lambda x, a=a: (1 - x) * a(x), [b, c]) for b, c, a in spans)
     wanted = [float(shapes[np.searchsorted(breaks, x, "right") - 1](mp.mpf(x)) / stroke) for x in u]
@@ -134,18 +136,18 @@ def test_acceleration_is_the_rebuilt_one_everywhere(name):
 def test_derivatives_against_difference_quotients(name):
     """Central quotients of each derivative give the next, away from the knots."""
     h = 1e-5
-    knots = LAWS[name].motion.knots
+    knots = named(name).motion.knots
     u = np.linspace(0.003, 0.997, 331)
     u = u[np.abs(u[:, None] - knots).min(axis=1) > 2 * h]
-    rows_ = LAWS[name].derivatives(u, 3)
-    quotient = (LAWS[name].derivatives(u + h, 2) - LAWS[name].derivatives(u - h, 2)) / (2 * h)
+    rows_ = named(name).derivatives(u, 3)
+    quotient = (named(name).derivatives(u + h, 2) - named(name).derivatives(u - h, 2)) / (2 * h)
     for k in range(3):
         assert quotient[k] == pytest.approx(rows_[k + 1], abs=2e-6 * max(1.0, np.abs(rows_[k + 1]).max()))
 
 
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_ends_and_continuity(name):
-    law = LAWS[name]
+    law = named(name)
     start, end = law.derivatives(np.array([0.0]), 3, 1)[:, 0], law.derivatives(np.array([1.0]), 3, -1)[:, 0]
     assert start[:2] == pytest.approx([0, 0], abs=1e-15)
     assert end[:2] == pytest.approx([1, 0], abs=1e-14)
@@ -157,10 +159,10 @@ def test_ends_and_continuity(name):
         assert (jumps[2] < 1e-12).all()
         assert abs(start[2]) + abs(end[2]) < 1e-12
     # the table of peaks tells which laws step
-    assert (law.peaks.jerk == INFINITE) is not smooth
+    assert (law_peaks(law.motion).jerk == INFINITE) is not smooth
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", sorted(set(SHAPES) - {"parabolic", "harmonic"}))
 def test_peaks_in_the_motion_table_of_a_cam(workshop, name):
     """h C_v/beta and h C_a/beta^2 for 5 mm in 120 degrees, read from the CSV."""

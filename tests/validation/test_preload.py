@@ -21,7 +21,7 @@ from camgeo.recipe.loading import load, read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended, permitted
-from kin.dynamics.contact_forces import preloaded
+from kin.follower.contact_forces import preloaded
 from kin.follower.contact_lines import contact_line
 from kin.judge.verify import verify
 from kin.law.contacts import Contact, Roller, Translating
@@ -342,6 +342,7 @@ def test_a_limit_of_its_force():
         recipe_of("yoke", 0.0, more="limits: {preload-force-least: {at_least: 541}}")
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("interference", [1e-6, 5.0])
 def test_extremes(interference, tmp_path):
     """A millionth of a millimetre is held by a finer tolerance still; metres of stroke take millimetres."""

@@ -129,7 +129,7 @@ def test_what_is_made_interferes(made):
         assert [play["min"], play["max"]] == pytest.approx(ends, abs=3.0 * TOLERANCE)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "share", [0.0, pytest.param(0.5, marks=pytest.mark.slow), pytest.param(1.5, marks=pytest.mark.slow), 2.0]
 )

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import brentq
 from support.cases import examples
+from support.heavy import optimize
 
 from camgeo.capabilities.dynamics.running_forces import running_of
 from camgeo.output.pipeline import check
@@ -109,7 +109,7 @@ class Stem:
             push = sum(n * normal[0] for n, (_, normal) in zip(pressed, touches, strict=True))
             return push - q * self.friction * (abs(near) + abs(far)) - force
 
-        return forces(brentq(along, -5.0, 5.0, xtol=1e-15, rtol=1e-14))
+        return forces(optimize.brentq(along, -5.0, 5.0, xtol=1e-15, rtol=1e-14))
 
 
 def recipe_of(name, stiffness, guide, dynamics):
@@ -194,6 +194,7 @@ export: {tolerance: 0.002}
 """
 
 
+@pytest.mark.slow
 def test_the_discs_of_the_case():
     """Forces at 195 degrees, and the speeds from which either disc is lost."""
     recipe = read(CASE.encode(), Path("case.yaml"))

@@ -15,7 +15,7 @@ from support.page_tables import Row
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 
 PI = np.pi
 DOUBLE_ROLLERS = ("w-booth", "w-figure-5", "w-figure-9", "w-law", "w-rosette")
@@ -306,7 +306,7 @@ def test_equation_7_1_on_the_file(pitch):
     assert np.abs(curve.closing(np.linspace(0, 2 * PI, 3601))).max() <= 3 * e
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 def test_section_6_chord_polygon_closes_from_any_start(pitch):
     curve, e = pitch
     # each chord may add e / cos(75 deg)
@@ -335,7 +335,7 @@ def test_equation_6_3_quartic_on_the_file(figure_8):
     assert (np.abs(f) / slope).max() <= 1.01e-3
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(("share", "is_oval"), [(0.32, True), (0.345, False)])
 def test_oval_limit_on_the_file(workshop, share, is_oval):
     """The cam is the parallel curve of the lemniscate: convex with it."""
@@ -346,6 +346,7 @@ export: {{tolerance: 0.0001}}
     assert workshop.written(f"booth-{share}", text).contour.is_convex is is_oval
 
 
+@pytest.mark.slow
 def test_ellipse_of_the_file(goldberg):
     """x^2/48^2 + y^2/36^2 = 1 within the tolerance, to first order."""
     x, y = goldberg.contour.sample(100).T
@@ -353,6 +354,7 @@ def test_ellipse_of_the_file(goldberg):
     assert (np.abs(f) / np.hypot(2 * x / 48**2, 2 * y / 36**2)).max() <= 1.01e-3
 
 
+@pytest.mark.slow
 def test_isoptic_circles(workshop, goldberg):
     assert isoptic_radii(goldberg.contour, PI / 2) == pytest.approx(np.full(721, 60.0), abs=2e-3)
     assert isoptic_radii(three(workshop).contour, PI / 3) == pytest.approx(np.full(721, 60.0), abs=4e-3)
@@ -360,7 +362,7 @@ def test_isoptic_circles(workshop, goldberg):
     assert np.ptp(isoptic_radii(goldberg.contour, PI / 2 + 0.05)) > 0.1
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("ratio", sorted(CONVEX))
 def test_convexity_limit(ratio):
     value, within = CONVEX[ratio]
@@ -387,6 +389,7 @@ def test_figure_9_angles():
     assert np.sin(PI / 4 - alpha / 2) == pytest.approx(-0.383, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_figure_9_curve_is_equation_5_10(workshop):
     curve = Pitch.of(workshop.shipped("w-figure-9"))
     t = np.linspace(0, 2 * PI, 3601)

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import re
+import sys
 from collections import Counter
+from importlib import import_module
+from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
 
+import ezdxf
+import numpy as np
 import pytest
+from support.drawn import polygon  # needs: follow
 from support.places import RECIPES, SHIPPED, script
 from support.starters import OF_CAMS
 
@@ -50,12 +58,21 @@ def test_every_value_stands_where_its_field_says_and_another_one_leaves_all_else
     for field in fields:
         path = field["path"]
         shown = part(text, field)
+        if "before" in field:  # a default, which the text has not
+            assert shown == ""
+            continue
         assert shown.strip("'\"") == field["text"]
         if field["kind"] == "number":
             after = {path: node.text for path, node in scalars(Source.of(put(text, field, "7.25"), name).root)}
             assert {where for where in after if after[where] != before[where]} <= {path}
             assert after[path].startswith("7.25")
-            assert float(shown) == field["value"] or "/" in shown or "*" in shown or "pi" in shown
+            assert (
+                field["value"] is None
+                or float(shown) == field["value"]
+                or "/" in shown
+                or "*" in shown
+                or "pi" in shown
+            )
 
 
 def test_numbers_have_units_and_bounds_words_have_their_choices() -> None:
@@ -110,6 +127,15 @@ def test_a_camshaft_is_made_by_the_command_which_is_named(call: str) -> None:
     assert "here give the recipe of a lobe" in fault["text"]
 
 
+# needs: linear
+@pytest.mark.parametrize("call", ["picture", "design", "make", "absent"])
+def test_a_linear_cam_is_made_by_the_command_too(call: str) -> None:
+    text = (RECIPES / "linear" / "plate-feed.yaml").read_text("utf-8")
+    (fault,) = json.loads(live.answer(call, json.dumps({"name": "feed", "text": text})))["faults"]
+    assert (fault["line"], fault["path"]) == (3, "cam.kind")
+    assert "this page makes no linear cam, which the command `camgeo export feed.yaml` does" in fault["text"]
+
+
 def test_a_fault_of_its_own_is_told_and_not_raised() -> None:
     answer = json.loads(live.answer("design", json.dumps({"name": "x"})))
     assert answer["faults"][0]["text"] == "camgeo has failed"
@@ -123,7 +149,7 @@ def test_a_check_that_fails_comes_with_its_remedy_and_the_line_of_its_field() ->
     assert failed["line"] == text.count("\n")
     assert failed["path"] == "limits.pressure-angle.at_most"
     assert "a larger base radius" in failed["text"]
-    assert 'data-deg="226.42' in failed["place"]
+    assert 'data-at="226.42' in failed["place"]
 
 
 @pytest.mark.thin(3)
@@ -168,7 +194,7 @@ def test_a_failed_set_gives_no_file_to_make_from() -> None:
     text = TEXTS["support"].replace("[dxf, svg, stl, csv, html]", "[dxf]") + "limits: {size: {at_most: 20}}\n"
     answer = live.make("failed", text)
     assert not answer["ok"]
-    assert {file["name"].rpartition(".")[2] for file in answer["files"]} == {"html", "json", "zip"}
+    assert {file["name"].rpartition(".")[2] for file in answer["files"]} == {"html", "json"}
 
 
 def test_what_cannot_be_made_for_want_of_a_package_is_named_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -182,8 +208,10 @@ def test_what_cannot_be_made_for_want_of_a_package_is_named_with_it(monkeypatch:
 
 # needs: follow
 FOLLOWER: dict[str, Any] = {
-    **dict.fromkeys(("roller", "shoe", "width", "offset", "pivot", "arm", "x", "y", "reading", "units"), ""),
-    **dict.fromkeys(("flat", "leading", "yoke"), False),
+    **dict.fromkeys(
+        ("roller", "shoe", "width", "offset", "pivot", "arm", "x", "y", "reading", "units", "gap", "across"), ""
+    ),
+    **dict.fromkeys(("diameter", "flat", "leading", "yoke"), False),
     "track": "external",
     "rotation": "cw",
 }
@@ -213,43 +241,180 @@ def test_a_file_is_followed_by_what_the_page_offers(name: str, follower: dict[st
 
 
 # needs: follow
+def test_ends_that_do_not_meet_are_joined_where_the_page_is_told_how_near() -> None:
+    drawing = ezdxf.new(units=4)
+    corners = [(30.0 * math.cos(k * math.pi / 18), 25.0 * math.sin(k * math.pi / 18)) for k in range(37)]
+    corners[-1] = (30.0, -0.02)
+    for line in pairwise(corners):
+        drawing.modelspace().add_line(*line)
+    drawing.saveas(Path(live.FOLDER) / "open.dxf")
+    follower = FOLLOWER | {"roller": "8", "reading": "0.2"}
+    refused = json.loads(live.answer("follow", json.dumps({"file": "open.dxf", "follower": follower})))
+    (asked,) = set(re.findall(r"let ends of its lines meet within (\S+) mm", json.dumps(refused)))
+    answer = json.loads(live.answer("follow", json.dumps({"file": "open.dxf", "follower": follower | {"gap": asked}})))
+    assert "lift" in answer.get("verdict", ""), answer
+    judged = json.loads(
+        live.answer(
+            "verify",
+            json.dumps({"name": "c", "text": TEXTS["disc-roller"], "file": "open.dxf", "units": "", "gap": asked}),
+        )
+    )
+    assert judged["ok"] is False  # a figure of each, for another cam
+
+
+# needs: follow
+def test_a_file_that_is_not_judged_has_the_curves_of_its_motion_and_says_why(tmp_path: Path) -> None:
+    design = camgeo.export(camgeo.load(TEXTS["disc-roller"]), tmp_path, only=["dxf"])
+    (Path(live.FOLDER) / "cam.dxf").write_bytes((design.path / "recipe.dxf").read_bytes())
+    follower = FOLLOWER | {"roller": "9", "x": "1"}
+    answer = json.loads(live.answer("follow", json.dumps({"file": "cam.dxf", "follower": follower})))
+    assert answer["verdict"].endswith("Not judged is the file: a page judges a file about its own origin")
+    assert "Acceleration" in answer["page"]
+    assert "leave" not in answer["verdict"]
+    follower = FOLLOWER | {"roller": ""}
+    (fault,) = json.loads(live.answer("follow", json.dumps({"file": "cam.dxf", "follower": follower})))["faults"]
+    assert fault["told"] == "say how large the touch is: its box is empty"
+
+
+# needs: follow
+def test_a_roller_goes_by_its_diameter_and_a_polygon_has_the_reading_that_it_allows() -> None:
+    design = camgeo.design(camgeo.load(TEXTS["disc-roller"]))
+    polygon(Path(live.FOLDER) / "points.dxf", design.contour(120))
+    follower = FOLLOWER | {"roller": "18", "diameter": True, "offset": "8"}
+    answer = json.loads(live.answer("follow", json.dumps({"file": "points.dxf", "follower": follower})))
+    assert "roller of radius 9 mm" in answer.get("verdict", ""), answer
+    reading = float(re.search(r"reading: ([\d.]+)", answer["recipe"])[1])
+    assert 0.01 < reading < 0.05
+    (Path(live.FOLDER) / next(iter(answer["tables"]))).write_text(next(iter(answer["tables"].values())), "utf-8")
+    motion = camgeo.design(live._recipe("points", answer["recipe"])).motion
+    shaft = np.linspace(0.0, 6.2, 300)
+    law = design.motion(shaft, derivative=2)
+    assert np.abs(motion(shaft, derivative=2)).max() == pytest.approx(np.abs(law).max(), rel=0.1)
+    assert "smoothed_acceleration" in Path(answer["files"][0]["path"]).read_text("utf-8")
+
+
+@pytest.mark.parametrize("name", ["disc-roller", "support"])
+def test_a_table_becomes_the_motion(name: str) -> None:
+    rows = "".join(f"{angle},{10 - 10 * np.cos(np.radians(angle)):.6f}\n" for angle in range(0, 361, 2))
+    (Path(live.FOLDER) / "lift.csv").write_text(f"angle,lift\n{rows}", "utf-8")
+    text = live.with_table("x", TEXTS[name], "lift.csv")["text"]
+    answer = live.design("x", text)
+    assert answer["faults"] == []
+    assert "table: lift.csv" in text
+    assert camgeo.design(live._recipe("x", text)).motion(np.pi) == pytest.approx(20.0, abs=1e-4)
+
+
+# needs: follow
 def test_a_length_that_is_none_is_named() -> None:
     call = {"file": "cam.dxf", "follower": FOLLOWER | {"roller": "9 ell"}}
     answer = json.loads(live.answer("follow", json.dumps(call)))
     assert answer["faults"][0]["text"].startswith("roller: 9 ell is no length")
 
 
-@pytest.mark.parametrize("kept", ["", "__init__.py"])
-def test_modules_are_compiled_and_all_else_stays(tmp_path: Path, kept: str) -> None:
+@pytest.mark.slow
+def test_modules_are_compiled_and_all_else_stays(tmp_path: Path) -> None:
     build = script("build")
     archive = tmp_path / "numpy.whl"
+    texts = {"a/__init__.py": "b = 1", "a/c.py": "d = 2", "a/c.pyi": "d: int", "a/e.so": "binary", "a/tests/f.py": ""}
+    texts |= {"a/g/__init__.py": "", "a/g/h.py": "", "i.py": ""}
     with ZipFile(archive, "w") as wheel:
-        for name, text in {
-            "a/__init__.py": "b = 1",
-            "a/c.py": "d = 2",
-            "a/c.pyi": "d: int",
-            "a/e.so": "binary",
-        }.items():
-            wheel.writestr(name, text)
+        for name, content in texts.items():
+            wheel.writestr(name, content)
     with ZipFile(archive) as wheel:
         wheel.extractall(tmp_path / "folder")
     if build.python_of_pyodide() is None:
         pytest.skip("no Python of the version of Pyodide's here, which compiles")
-    packed = build.compiled(tmp_path / "folder", kept) if kept else build.repacked(archive)
-    with ZipFile(io.BytesIO(packed)) as made:
-        names = made.namelist()
-        assert made.read("a/e.so") == b"binary"
-    package = "a/__init__.py" if kept else "a/__init__.pyc"
-    assert names == ([package, "a/c.pyc", "a/c.pyi", "a/e.so"] if kept else [package, "a/c.pyc", "a/e.so"])
+    first, rare = (ZipFile(io.BytesIO(one)) for one in build.repacked(archive, ("a.g", "i")))
+    assert first.read("a/e.so") == b"binary"
+    assert first.namelist() == ["a/__init__.pyc", "a/c.pyc", "a/e.so"]
+    assert rare.namelist() == ["a/g/__init__.pyc", "a/g/h.pyc", "i.pyc"]
+    whole = ZipFile(io.BytesIO(build.compiled(tmp_path / "folder", "__init__.py")))
+    assert {"a/__init__.py", "a/c.pyc", "a/c.pyi", "i.pyc"} <= set(whole.namelist())
+
+
+def test_a_module_comes_when_it_is_imported_and_not_when_it_is_looked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "meta_path", [*sys.meta_path])
+    fetched = []
+
+    def fetch() -> None:
+        fetched.append(True)
+        if len(fetched) == 1:
+            raise OSError("later.zip: the server answers 404")
+        (tmp_path / "a_late_one").mkdir()
+        (tmp_path / "a_late_one" / "__init__.py").write_text("from a_late_one.inner import VALUE\n", "utf-8")
+        (tmp_path / "a_late_one" / "inner.py").write_text("VALUE = 3\n", "utf-8")
+
+    (tmp_path / "listed").write_text("a_late_one\nanother\n", "utf-8")
+    script("later").install(fetch, tmp_path / "listed")
+    assert find_spec("a_late_one") is not None
+    assert find_spec("a_third") is None
+    assert fetched == []
+    with pytest.raises(ConnectionError, match="404"):
+        import_module("a_late_one")
+    assert import_module("a_late_one").VALUE == 3
+    assert import_module("a_late_one.inner").VALUE == 3
+    with pytest.raises(ModuleNotFoundError):
+        import_module("another")  # the archive has come without it
+    assert len(fetched) == 2
+    for name in ("a_late_one", "a_late_one.inner"):
+        monkeypatch.delitem(sys.modules, name)
 
 
 def test_a_capability_that_is_gone_takes_its_part_of_the_page_along(monkeypatch: pytest.MonkeyPatch) -> None:
     build = script("build")
     parts = build.with_parts()
     assert "follow" in parts  # needs: follow
-    core = "".join((build.WEB / name).read_text("utf-8") for name in ("index.html", "tab.js", "tab.css"))
+    core = "".join((build.WEB / name).read_text("utf-8") for name in ("index.html", *build.scripts_of([]), "tab.css"))
     for name in parts:
         ids = re.findall(r' id="([\w-]+)"', (build.WEB / f"{name}.html").read_text("utf-8"))
         assert [one for one in ids if re.search(rf"(id=\"|byId\(\"|#){one}\b", core)] == []
     monkeypatch.setattr("camgeo.registry.registry.labels", dict)
     assert build.with_parts() == []
+
+
+@pytest.mark.thin(5)
+@pytest.mark.parametrize("name", TEXTS)
+def test_without_comments_a_recipe_says_the_same(name: str) -> None:
+    source = Source.of(TEXTS[name], name)
+    bare = live.bare(source)
+    before, after = ([(path, node.text) for path, node in scalars(one.root)] for one in (source, Source.of(bare, name)))
+    assert before == after
+    assert not re.search(r"^\s*#", bare, re.MULTILINE)
+
+
+def test_what_looks_like_a_comment_and_is_none_stays() -> None:
+    text = "# whole\n'a # b': \"c # d\" # e\nf: g#h # i\nj: |\n  k # l\n\n  # m\nn: [1, # o\n  2] # p"
+    bare = live.bare(Source.of(text, "x"))
+    assert bare == "'a # b': \"c # d\"\nf: g#h\nj: |\n  k # l\n\n  # m\nn: [1,\n  2]"
+
+
+def test_faults_are_told_in_words_of_the_page() -> None:
+    text = TEXTS["disc-roller"].replace("rise: 20", "rise: 15")
+    (fault,) = live.design("x", text)["faults"]
+    assert "the lift jumps from 0 to 5 mm" in fault["told"]
+    assert fault["text"] == f"cam.motion: {fault['told']}"
+    said = live.in_words_of_the_page("S(t + 180) = S(180) - S(t): S' is 3; give it by --units, such as --units inch")
+    assert said.startswith("the lift at t + 180 = the lift at 180 - the lift at t: the velocity is 3; ")
+    assert said.endswith("choose the unit of the file, such as inch")
+    said = live.in_words_of_the_page("the contour is open; give across arc or chord to close it there")
+    assert said == "the contour is open; choose how the contour goes on where it is open"
+    (empty,) = live.design("x", "")["faults"]
+    assert "camgeo" not in empty["told"]
+
+
+def test_a_segment_without_a_law_has_its_default_as_a_field() -> None:
+    text = starter("toy").replace("    - {rise: 15, over: 80}\n", "    - rise: 15\n      over: 80  # slow\n", 1)
+    fields = {field["path"]: field for field in live.fields(Source.of(text, "x"))}
+    for path, after in (
+        ("cam.motion[0].law", "    - rise: 15\n      over: 80\n      law: cycloidal  # slow\n"),
+        ("cam.motion[1].law", "    - {return: 15, over: 80, law: cycloidal}\n"),
+    ):
+        field = fields[path]
+        assert (field["text"], part(text, field)) == ("modified-sine", "")
+        changed = put(text, field, f"{field['before']}cycloidal")
+        assert after in changed
+        assert camgeo.design(camgeo.load(changed)).ok
+    assert "cam.motion[2].law" not in fields  # of a dwell

@@ -7,4 +7,5 @@ LABEL = Label(
     words=("budget",),
     commands={"budget": "What each dimension of a cam may be off; a simulation of made parts."},
     absent="budget is not given",
+    kin=("budget",),
 )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.cli.arguments import name_of
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS
+from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
 
 if TYPE_CHECKING:
@@ -31,7 +32,11 @@ def run(arguments: argparse.Namespace) -> int:
 
     try:
         recipe = load(arguments.recipe)
-        entry = budget(recipe, *arguments.files)
+        progress = Progress(recipe.name)
+        try:
+            entry = budget(recipe, *arguments.files, progress=progress)
+        finally:
+            progress.clear()
     except OSError as error:
         complain(f"camgeo: {error}")
         return SURROUNDINGS

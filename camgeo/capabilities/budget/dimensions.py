@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
 PROFILE, BORE, ANGLE, GUIDE = "profile", "bore", "angle", "guide"
+CONTOUR = "contour"  # in shares: the error of a contour that is not exact
 CONJUGATE, LINKAGE = "two discs", "linkage"  # traits
 
 

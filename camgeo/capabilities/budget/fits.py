@@ -1,40 +1,24 @@
 """Fits of ISO 286 between bore and shaft, and of parallel keys: limits of size in mm.
 
-Limits of ISO 286-2 for sizes up to 120 mm; H7, h6, JS9 and the widths of P9 follow from the standard tolerances of
-ISO 286-1, IT6 = 10 i, IT7 = 16 i, IT9 = 40 i with i = 0.45 D^(1/3) + 0.001 D in micrometres, D the geometric mean
-of the range in mm.
+Limits of ISO 286-2 for sizes up to 120 mm. Those of bores and keyways are the part's; those of shafts follow from the
+standard tolerance IT6 = 10 i of ISO 286-1.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from typing import TYPE_CHECKING, NamedTuple
 
+from camgeo.part.iso286 import HOLES, KEYWAYS, deviations
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-UPPER_ENDS = (3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0)  # of the ranges of sizes, inclusive, mm
-MICROMETRE = 1e-3  # in mm
-
-
-def _mirrored(*limits: float) -> tuple[tuple[float, float], ...]:
-    return tuple((-limit, limit) for limit in limits)
-
-
 # lower and upper deviation from the nominal size in each range, micrometres
-HOLES: Mapping[str, tuple[tuple[float, float], ...]] = {
-    "H7": ((0, 10), (0, 12), (0, 15), (0, 18), (0, 21), (0, 25), (0, 30), (0, 35)),
-}
 SHAFTS: Mapping[str, tuple[tuple[float, float], ...]] = {
     "h6": ((-6, 0), (-8, 0), (-9, 0), (-11, 0), (-13, 0), (-16, 0), (-19, 0), (-22, 0)),
     "g6": ((-8, -2), (-12, -4), (-14, -5), (-17, -6), (-20, -7), (-25, -9), (-29, -10), (-34, -12)),
     "k6": ((0, 6), (1, 9), (1, 10), (1, 12), (2, 15), (2, 18), (2, 21), (3, 25)),
-}
-KEYWAYS: Mapping[str, tuple[tuple[float, float], ...]] = {
-    "JS9": _mirrored(12.5, 15, 18, 21.5, 26, 31, 37, 43.5),
-    "P9": ((-31, -6), (-42, -12), (-51, -15), (-61, -18), (-74, -22), (-88, -26), (-106, -32), (-124, -37)),
 }
 
 
@@ -50,8 +34,8 @@ def clearance(hole: str, shaft: str, diameter: float) -> Clearance:
 
     Raises ValueError for a diameter, mm, that is not above 0 and at most 120, KeyError for another class.
     """
-    low, high = _limits(HOLES[hole], diameter)
-    least, most = _limits(SHAFTS[shaft], diameter)
+    low, high = deviations(HOLES[hole], diameter)
+    least, most = deviations(SHAFTS[shaft], diameter)
     return Clearance(low - most, high - least)
 
 
@@ -60,25 +44,17 @@ def key_clearance(keyway: str, width: float) -> Clearance:
 
     Raises ValueError for a width, mm, that is not above 0 and at most 120, KeyError for another class.
     """
-    low, high = _limits(KEYWAYS[keyway], width)
-    key = _limits(KEYWAYS["JS9"], width)  # as wide as h9, whose upper limit is 0
+    low, high = deviations(KEYWAYS[keyway], width)
+    key = deviations(KEYWAYS["JS9"], width)  # as wide as h9, whose upper limit is 0
     return Clearance(low, high + key[1] - key[0])
-
-
-def _limits(ranges: tuple[tuple[float, float], ...], size: float) -> tuple[float, float]:
-    """Lower and upper deviation of a size, mm; raises ValueError outside the table."""
-    if not 0.0 < size <= UPPER_ENDS[-1]:
-        raise ValueError(f"the table of fits reaches to {UPPER_ENDS[-1]:g} mm")
-    low, high = ranges[bisect_left(UPPER_ENDS, size)]
-    return low * MICROMETRE, high * MICROMETRE
 
 
 @dataclass(frozen=True)
 class ShaftFit:
-    """Greatest play of a cam on its shaft.
+    """How far a cam may stand off its place on its shaft: by half the greatest clearances of bore and key.
 
-    `bore` is how far the cam's axis may stand off the shaft's, mm. `angle` is how far the cam may turn to either side
-    of the key's middle, rad; None without a key.
+    `bore` is the distance of the cam's axis from the shaft's, mm. `angle` is the turn to either side of the key's
+    middle, rad; None without a key.
     """
 
     bore: float
@@ -88,7 +64,7 @@ class ShaftFit:
 def fit_of(
     diameter: float, hole: str, shaft: str, keyways: tuple[str, str] | None = None, width: float | None = None
 ) -> ShaftFit:
-    """Greatest play of a cam on a shaft, 0 where a fit is always tight.
+    """How far a cam may stand off its place on a shaft, 0 where a fit is always tight.
 
     `hole` and `shaft` are the tolerance classes at a `diameter`, mm. `keyways` are the classes of the hub's and the
     shaft's keyway of a `width`, mm; without them, or without a width, the angle is None. Raises ValueError for a

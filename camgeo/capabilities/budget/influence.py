@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from camgeo.capabilities.budget.keys import Budget
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.follower.influence import Bearing
+    from kin.budget.frame_influence import FrameBearing
+    from kin.budget.influence import Bearing
     from kin.law.contacts import Contact, Guide, Touch
-    from kin.linkage.influence import FrameBearing
     from kin.numeric.arrays import Array, Complexes
 
 COMPONENTS = (1.0, 1j)  # of a displacement in any direction
@@ -50,19 +50,22 @@ class Output:
     """A figure of the motion: the position by one contact, the middle of two positions, or the play between them.
 
     `weights` (c, n) are the greatest changes of the figure by each contribution, not below 0, mm or rad of the motion
-    per mm or rad of the tolerance.
+    per mm or rad of the tolerance. `contour` (n,) is the error of the figure by the contour alone, mm or rad, made less
+    intended; 0 for an exact contour.
     """
 
     name: str
     weights: Array
+    contour: Array
 
 
 @dataclass(frozen=True, eq=False)
 class Influence:
     """All contributions at the shaft angles `shaft` (n,), rad, and the names of the contacts.
 
-    Of two contacts `upper` is the index of the contact that bounds the position from above, and `play` (n,) the nominal
-    play between both, mm or rad. Both are None for one contact; `play` is None for velocities.
+    Of two contacts `upper` is the index of the contact that bounds the position from above, and `play` (n,) the play
+    between both with all sizes as intended, mm or rad. Both are None for one contact; `play` is None for velocities.
+    `contour` (m, n) are the errors of the positions by a contour that is not exact, mm or rad; None for an exact one.
     """
 
     shaft: Array
@@ -70,6 +73,7 @@ class Influence:
     contacts: tuple[str, ...]
     upper: int | None = None
     play: Array | None = None
+    contour: Array | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -78,18 +82,23 @@ class Influence:
 
     def outputs(self) -> tuple[Output, ...]:
         """The position by each contact, in the order of `contacts`."""
-        return tuple(Output(name, self._weights(itemgetter(i))) for i, name in enumerate(self.contacts))
+        return tuple(self._output(name, itemgetter(i)) for i, name in enumerate(self.contacts))
 
     def middle(self) -> Output | None:
         """The middle between the positions by two contacts; None for a follower with one contact."""
-        return None if self.upper is None else Output("middle", self._weights(lambda rows: rows.mean(axis=0)))
+        return None if self.upper is None else self._output("middle", lambda rows: rows.mean(axis=0))
 
     def play_between(self) -> Output | None:
-        """The play between two contacts; None for a follower with one contact."""
+        """The play between two contacts, by the sizes alone; None for a follower with one contact."""
         upper = self.upper
         if upper is None:
             return None
-        return Output("play", self._weights(lambda rows: rows[upper] - rows[1 - upper]))
+        return Output("play", self._weights(lambda rows: rows[upper] - rows[1 - upper]), np.zeros(len(self.shaft)))
+
+    def _output(self, name: str, figure: Callable[[Array], Array]) -> Output:
+        """A figure of the motion, which takes rows by the contacts, (m, n) or (m, k, n), to (n,) or (k, n)."""
+        contour = np.zeros(len(self.shaft)) if self.contour is None else figure(self.contour)
+        return Output(name, self._weights(figure), contour)
 
     def _weights(self, figure: Callable[[Array], Array]) -> Array:
         """Greatest changes (c, n) of a figure, which takes rows (m, k, n) to (k, n), by each contribution."""
@@ -103,7 +112,7 @@ class SizeInfluences(NamedTuple):
 
     `rows` takes the word of a dimension and gives the influence (m, k, n) of each of its made sizes. `contacts` has the
     names of the m contacts. Of two, `upper` is the index of the contact that bounds the position from above, and `play`
-    (n,) the nominal play between both, mm or rad; both are None for one contact.
+    (n,) the play between both with all sizes as intended, mm or rad; both are None for one contact.
     """
 
     rows: Callable[[str], list[Array]]
@@ -112,8 +121,22 @@ class SizeInfluences(NamedTuple):
     play: Array | None
 
 
-def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> Influence:
-    """Influences of the dimensions of a budget at shaft angles (n,), rad.
+class ContourErrors(NamedTuple):
+    """Errors of a contour that is not exact, made less intended, with all sizes as intended.
+
+    They are at n shaft angles, behind which the angle comes at which the machine is set, if any. `positions` (m, n) are
+    those of the position by each contact, mm or rad. `breadths` (2, n) are those of the contour's breadth along and
+    across a linkage's frame, mm; None for a follower.
+    """
+
+    positions: Array
+    breadths: Array | None
+
+
+def influence(
+    recipe: Recipe, design: Design, budget: Budget, shaft: Array, contour: ContourErrors | None = None
+) -> Influence:
+    """Influences of the dimensions of a budget at shaft angles (n,), rad, on a `contour` with errors, or an exact one.
 
     Where the budget states the angle `zero` at which the machine is set, each influence is less its value there. The
     profile's errors there and at other angles are independent, so each of its influences gives two contributions, one
@@ -123,9 +146,9 @@ def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> I
     # the angle at which the machine is set comes last
     places = shaft if zero is None else np.append(shaft, zero)
     if recipe.linkage:
-        cam = _linkage_influences(design, places)
+        cam = _linkage_influences(design, places, contour)
     else:
-        cam = _follower_influences(design, places, budget.guide or 0.0)
+        cam = _follower_influences(design, places, budget.guide or 0.0, contour)
     contributions = []
     for name, tolerance in budget.tolerances:
         for rows in cam.rows(name):
@@ -139,7 +162,10 @@ def influence(recipe: Recipe, design: Design, budget: Budget, shaft: Array) -> I
             else:
                 contributions.append(Contribution(name, tolerance, rows[:, :, :-1] - at_zero))
     play = None if cam.play is None else cam.play[: len(shaft)]
-    return Influence(shaft, tuple(contributions), cam.contacts, cam.upper, play)
+    errors = None if contour is None else contour.positions
+    if errors is not None and zero is not None:
+        errors = errors[:, :-1] - errors[:, -1:]
+    return Influence(shaft, tuple(contributions), cam.contacts, cam.upper, play, errors)
 
 
 def velocities(influence: Influence, waves: int) -> Influence:
@@ -150,16 +176,22 @@ def velocities(influence: Influence, waves: int) -> Influence:
     velocity by t dw/dphi, w its influence and phi the shaft angle. A profile that is off by t sin(j phi + phase), j the
     waves, changes it by at most t hypot(dw/dphi, j w); its rows are these two components.
     """
-    # central differences, round the turn
     step = float(influence.shaft[1] - influence.shaft[0])
+
+    def slope_of(rows: Array) -> Array:
+        """Derivative by the shaft angle, along the last axis: central differences, round the turn."""
+        slope: Array = (np.roll(rows, -1, axis=-1) - np.roll(rows, 1, axis=-1)) / (2.0 * step)
+        return slope
+
     contributions = []
     for contribution in influence.contributions:
         rows = contribution.rows
-        slope = (np.roll(rows, -1, axis=2) - np.roll(rows, 1, axis=2)) / (2.0 * step)
+        slope = slope_of(rows)
         wavy = contribution.name == PROFILE and not contribution.constant
         rows = np.concatenate([slope, waves * rows], axis=1) if wavy else slope
         contributions.append(replace(contribution, rows=rows))
-    return replace(influence, contributions=tuple(contributions), play=None)
+    contour = None if influence.contour is None else slope_of(influence.contour)
+    return replace(influence, contributions=tuple(contributions), play=None, contour=contour)
 
 
 # --- a follower -------------------------------------------------------------------------------------------------------
@@ -236,9 +268,9 @@ class HeldFollower:
         return whole
 
 
-def _follower_influences(design: Design, shaft: Array, guide: float) -> SizeInfluences:
-    """Influences on a follower at shaft angles (n,); `guide` is that of `HeldFollower`."""
-    from kin.follower.influence import bearing
+def _follower_influences(design: Design, shaft: Array, guide: float, contour: ContourErrors | None) -> SizeInfluences:
+    """Influences on a follower at shaft angles (n,) on a contour with errors; `guide` is that of `HeldFollower`."""
+    from kin.budget.influence import bearing
 
     follower = design.follower
     position = design.motion.travel(shaft, 1)
@@ -256,6 +288,8 @@ def _follower_influences(design: Design, shaft: Array, guide: float) -> SizeInfl
         # a preload presses both contacts into the metal: a play below 0
         overlaps = zip(bearings, design.exact.preload.overlaps, strict=True)
         play = play - np.sum([overlap * np.abs(bearing.grown) for bearing, overlap in overlaps], axis=0)
+    if contour is not None:
+        play = play + contour.positions[upper] - contour.positions[1 - upper]
     return SizeInfluences(lambda name: FOLLOWER[name](held), names, upper, play)
 
 
@@ -296,21 +330,23 @@ FOLLOWER: Mapping[str, Callable[[HeldFollower], list[Array]]] = {
 FRAME_CONTACTS = ("+y and -x", "-y and +x")  # faces of a square frame in its axes; face 1 is at +y, face 2 at -x
 
 
-def _linkage_influences(design: Design, shaft: Array) -> SizeInfluences:
+def _linkage_influences(design: Design, shaft: Array, contour: ContourErrors | None) -> SizeInfluences:
     """Influences on the output of a linkage, whose frame bears with two faces, or with the two opposite to them.
 
-    Each pair of opposite faces has its own play. Since influences are added by their magnitudes, those of the two
-    `FRAME_CONTACTS` give the play of both pairs together. Raises PlaceError for a linkage that does not turn right
-    round, ValueError for dyads.
+    Each pair of opposite faces has its own play, less by what the contour is too broad there. As influences are added
+    by their magnitudes, those of the two `FRAME_CONTACTS` give the play of both pairs together. Raises PlaceError for a
+    linkage that does not turn right round, ValueError for dyads.
     """
-    from kin.linkage.influence import frame_bearing
+    from kin.budget.frame_influence import frame_bearing
 
     if design.driven is None:
         raise ValueError("there is no linkage")
     mechanism = design.driven.mechanism
     frame = frame_bearing(mechanism, mechanism.relative(shaft))
     overlap = 0.0 if design.exact.preload is None else design.exact.preload.overlaps[0]
-    play = -2.0 * overlap * (np.abs(frame.output(along=1.0)) + np.abs(frame.output(across=1.0)))
+    wider = np.zeros((2, 1)) if contour is None or contour.breadths is None else contour.breadths
+    along, across = wider + 2.0 * overlap
+    play = -along * np.abs(frame.output(along=1.0)) - across * np.abs(frame.output(across=1.0))
     return SizeInfluences(lambda name: FRAME[name](frame), FRAME_CONTACTS, 0, play)
 
 

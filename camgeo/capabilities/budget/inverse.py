@@ -8,8 +8,9 @@ one optimum:
 
     least sum c_i/t_i^k   with   sum_i w_ij^q t_i^q <= T_j^q  at every angle j,  q = 1 worst case, 2 squares,
 
-T_j^q = T^q - rest_j^q. Its dual has a multiplier for each angle, which is 0 where the angle does not bind (Boyd,
-Vandenberghe, Convex Optimization, 2004, 4.5 and 5.5). With multipliers m_j the tolerances are
+T_j^q = T^q - rest_j^q; the error of a contour that is not exact is taken from T beforehand. The problem's dual has a
+multiplier for each angle, which is 0 where the angle does not bind (Boyd, Vandenberghe, Convex Optimization, 2004, 4.5
+and 5.5). With multipliers m_j the tolerances are
 
     t_i = (k c_i/(q sum_j m_j w_ij^q))^(1/(k + q)).
 
@@ -23,7 +24,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.budget.sums import POWERS, by_name, powers
+from camgeo.capabilities.budget.dimensions import CONTOUR
+from camgeo.capabilities.budget.sums import POWERS, by_name, powers, total
 from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
@@ -42,17 +44,19 @@ MOST_STEPS = 200  # of Newton's method; ten are usual
 
 
 class TakenError(CamgeoError, ValueError):
-    """The stated dimensions leave nothing of the permitted error.
+    """The stated dimensions, or the contour, leave nothing of the permitted error.
 
-    `name` is the word of the dimension that takes most, `taken` what it takes, mm or rad of the motion, and `at` the
-    shaft angle, rad.
+    `name` is the word of the dimension that takes most, or CONTOUR, `taken` what it takes, mm or rad of the motion, and
+    `at` the shaft angle, rad. `needed` is the greatest sum of all that is stated, mm or rad: more permitted leaves
+    something.
     """
 
-    def __init__(self, name: str, taken: float, at: float) -> None:
+    def __init__(self, name: str, taken: float, at: float, needed: float) -> None:
         super().__init__(f"{name} takes most of it")
         self.name = name
         self.taken = taken
         self.at = at
+        self.needed = needed
 
 
 class Split(NamedTuple):
@@ -71,7 +75,8 @@ class Constraints(NamedTuple):
 
     q is the power of the sum: 1 for the worst case, 2 for the root of the sum of squares. There are n rows: all shaft
     angles of the first contact, then of the next. `weights` (n, f) are influences to the power q. `left` (n,) is T^q
-    less the addends of the other dimensions, T the permitted error in mm or rad. `at` (n,) are the shaft angles, rad.
+    less the addends of the other dimensions, T the permitted error less that of the contour, mm or rad. `at` (n,) are
+    the shaft angles, rad.
     """
 
     names: tuple[str, ...]
@@ -83,19 +88,22 @@ class Constraints(NamedTuple):
 def constraints(influence: Influence, permitted: float, sum_: Sum) -> Constraints:
     """The constraints on the free dimensions, those without a tolerance, by the permitted error, mm or rad.
 
-    Raises TakenError where the stated dimensions take all that is permitted at some angle.
+    Raises TakenError where the stated dimensions and the contour take all that is permitted at some angle.
     """
     q = POWERS[sum_]
     free = tuple(dict.fromkeys(row.name for row in influence.contributions if row.tolerance is None))
     weights, left = [], []
     for output in influence.outputs():
         spent = by_name(influence, powers(influence, output, sum_))
-        unspent = permitted**q - np.sum([*spent.values()], axis=0)
+        contour = np.abs(output.contour)
+        unspent = np.maximum(permitted - contour, 0.0) ** q - np.sum([*spent.values()], axis=0)
         if not unspent.min() > 0.0:
             place = int(unspent.argmin())
-            name = max(spent, key=lambda name: spent[name][place])
-            taken = float(spent[name][place]) ** (1.0 / q)
-            raise TakenError(name, taken, float(influence.shaft[place]))
+            taken = {name: float(added[place]) ** (1.0 / q) for name, added in spent.items()}
+            taken[CONTOUR] = float(contour[place])
+            name = max(taken, key=taken.__getitem__)
+            needed = max(float(total(influence, each, sum_).max()) for each in influence.outputs())
+            raise TakenError(name, taken[name], float(influence.shaft[place]), needed)
         per_tolerance = by_name(influence, output.weights**q)
         weights.append(np.stack([per_tolerance[name] for name in free], axis=1))
         left.append(unspent)
@@ -106,7 +114,7 @@ def left_for(influence: Influence, permitted: float, sum_: Sum) -> Array:
     """Greatest tolerance of the only free dimension at each shaft angle, (n,), mm or rad, the least by any contact.
 
     It is infinite where the dimension has no influence. `permitted` is the permitted error, mm or rad. Raises
-    TakenError where the stated dimensions take all that is permitted at some angle.
+    TakenError where the stated dimensions and the contour take all that is permitted at some angle.
     """
     limits = constraints(influence, permitted, sum_)
     (column,) = limits.weights.T
@@ -121,9 +129,9 @@ def widest(
 ) -> Split:
     """Tolerances t of the free dimensions at which the sum of c/t^exponent is least; `cost` has c by the dimension.
 
-    `permitted` is the permitted error, mm or rad. A dimension without influence at all angles gets an infinite
-    tolerance. Raises TakenError where the stated dimensions take all that is permitted at some angle, ArithmeticError
-    where the search does not end.
+    The costs are those of tolerances in mm or rad. `permitted` is the permitted error, mm or rad. A dimension without
+    influence at all angles gets an infinite tolerance. Raises TakenError where the stated dimensions and the contour
+    take all that is permitted at some angle, ArithmeticError where the search does not end.
     """
     limits = constraints(influence, permitted, sum_)
     weights = limits.weights / limits.left[:, None]

@@ -16,8 +16,10 @@ from camgeo.capabilities.budget.dimensions import (
     dimension_names,
     traits,
 )
-from camgeo.capabilities.budget.fits import KEYWAYS, SHAFTS, UPPER_ENDS, ShaftFit, fit_of
+from camgeo.capabilities.budget.fits import SHAFTS, ShaftFit, fit_of
+from camgeo.part.bore import diameter_of
 from camgeo.part.din6885 import key_for
+from camgeo.part.iso286 import KEYWAYS, UPPER_ENDS
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either
 from camgeo.schema.json_schema import number_schema
@@ -34,7 +36,7 @@ if TYPE_CHECKING:
 
 FREE, NO_ZERO = "free", "none"
 RUNS, MOST_RUNS = 10_000, 1_000_000  # half a second for a roller cam, and 50
-MOST_SEED = 2**63 - 1  # greatest signed integer of 64 bits
+MOST_SEED = 2**32 - 1  # as of a sweep; a number of a recipe is exact to it
 MOST_WAVES = 1000  # a bound against slips
 MOST_EXPONENT = 10  # of costs; known ones of machining lie between 0.5 and 3
 MOST_OFF = 45  # degrees of an angle's tolerance: a bound against slips
@@ -60,10 +62,11 @@ class Budget:
 
     `permitted` is the greatest error of the follower or of the linkage's output, mm or rad. `tolerances` are plus and
     minus, with the words of their dimensions; None marks a free dimension, whose tolerance is to be found. `cost` has c
-    by the words of the free dimensions: a tolerance costs c/tolerance^`exponent`. `zero` is the shaft angle, rad, at
+    by the words of the free dimensions: a tolerance in the recipe's unit of length, or in degrees, costs
+    c/tolerance^`exponent`. `zero` is the shaft angle, rad, at
     which the machine is set, None without one. `play` is the greatest permitted play of a follower that is held from
     both sides, mm or rad, None for any. `guide` is the distance from the middle of a stem's guide to the foot of the
-    perpendicular from the shaft on the line of travel. `fit` is the play of bore and key by their fits, which
+    perpendicular from the shaft on the line of travel. `fit` is half the play of bore and key by their fits, which
     `tolerances` hold too. `sums` says which sum must stay within `permitted`. `waves` is the number of waves per turn
     of the profile's error, None where it is not stated. `runs` made parts are simulated, 0 for none, by random numbers
     from `seed`.
@@ -211,7 +214,13 @@ BUDGET = FieldTable(
         Field(
             "tolerances", Kind.OWN, "what each dimension may be off, plus and minus", required=True, form=_TOLERANCES
         ),
-        Field("cost", Kind.OWN, "cost c of each free dimension, c/tolerance^exponent", default="none", form=_COST),
+        Field(
+            "cost",
+            Kind.OWN,
+            "cost c of each free dimension: c/tolerance^exponent, lengths in the recipe's unit, angles in degrees",
+            default="none",
+            form=_COST,
+        ),
         Field("exponent", Kind.NUMBER, "of the tolerance in the costs", default="1", above=0, at_most=MOST_EXPONENT),
         Field("zero", Kind.OWN, "where the machine is set: its error there is subtracted", default="none", form=_ZERO),
         Field("sum", Kind.CHOICE, "the sum that must stay within", default="worst", choices=("worst", "rss")),
@@ -262,6 +271,12 @@ def check_budget(values: Values, reader: Reader) -> None:
         reader.fault_at("budget.tolerances", "no tolerance is given", None, "give profile: 0.01 or another one")
 
 
+def _place(name: str, reader: Reader) -> str:
+    """Path of a dimension of the budget: that of its tolerance, or of its cost where it has no more."""
+    tolerance = join("budget.tolerances", name)
+    return tolerance if tolerance in reader.marks else join("budget.cost", name)
+
+
 def _check_costs(budget: Values, tolerances: Values, reader: Reader) -> None:
     """Note costs of dimensions with a stated tolerance, free dimensions without a cost, an exponent without costs.
 
@@ -274,9 +289,9 @@ def _check_costs(budget: Values, tolerances: Values, reader: Reader) -> None:
             reader.fault_at(where, "its tolerance is stated", None, f"give tolerances.{name}: free, or no cost")
         elif name not in tolerances:
             tolerances[name] = None
-    if "exponent" in budget and "cost" not in budget:
+    if "exponent" in budget and "budget.cost" not in reader.marks:
         reader.fault_at("budget.exponent", "without a cost it has no use", None, "leave it out, or give cost")
-    without = [name for name in free if name not in budget.get("cost", {})]
+    without = [name for name in free if join("budget.cost", name) not in reader.marks]
     if without and (len(free) > 1 or "cost" in budget):
         where = join("budget.tolerances", without[0])
         reader.fault_at(where, "free, and without a cost", FREE, f"give cost.{without[0]}, or a tolerance")
@@ -284,10 +299,10 @@ def _check_costs(budget: Values, tolerances: Values, reader: Reader) -> None:
 
 def _check_guide(budget: Values, tolerances: Values, reader: Reader) -> None:
     """Note a tolerance of the guide's direction without the guide's place, and the place without the tolerance."""
-    if GUIDE in tolerances and GUIDE not in budget and f"budget.{GUIDE}" not in reader.marks:
+    if GUIDE in tolerances and f"budget.{GUIDE}" not in reader.marks:
         problem, remedy = "the guide's place is not known", f"give budget.{GUIDE}: from the shaft to its middle"
-        reader.fault_at(f"budget.tolerances.{GUIDE}", problem, None, remedy)
-    elif GUIDE in budget and GUIDE not in tolerances:
+        reader.fault_at(_place(GUIDE, reader), problem, None, remedy)
+    elif GUIDE in budget and GUIDE not in tolerances and f"budget.tolerances.{GUIDE}" not in reader.marks:
         problem, remedy = f"without tolerances.{GUIDE} it has no use", "leave it out"
         reader.fault_at(f"budget.{GUIDE}", problem, None, remedy)
 
@@ -317,35 +332,35 @@ def _check_fit(values: Values, reader: Reader) -> None:
 
     A tolerance that the fit or the key states already is noted too.
     """
-    budget, part = values["budget"], values.get("part", {})
-    # the fit needs a bore with a tolerance class
-    tolerances, bore = budget.get("tolerances", {}), part.get("bore")
-    hole = bore.get("fit") if isinstance(bore, dict) else None
-    if "fit" not in budget:
+    budget, diameter = values["budget"], diameter_of(values.get("part", {}))
+    tolerances = budget.get("tolerances", {})
+    if "budget.fit" not in reader.marks:
         if "key" in budget:
             reader.fault_at("budget.key", "needs budget.fit, that of the shaft", None, "give fit: h6, or leave it out")
         return
-    if hole is None:
-        if "part.bore.fit" not in reader.marks:
-            remedy = "give part.bore: {diameter: 20, fit: H7}, or leave it out"
-            reader.fault_at("budget.fit", "the bore has no tolerance class", None, remedy)
+    if "part.bore.fit" not in reader.marks:
+        remedy = "give part.bore: {diameter: 20, fit: H7}, or leave it out"
+        reader.fault_at("budget.fit", "the bore has no tolerance class", None, remedy)
         return
-    if bore["diameter"] > UPPER_ENDS[-1]:
+    if diameter is not None and diameter > UPPER_ENDS[-1]:
         most = f"{UPPER_ENDS[-1] / reader.mm:.6g} {reader.units}"
         problem, remedy = f"the table of fits reaches to {most}", f"leave it out, and give tolerances.{BORE}"
-        reader.fault_at("budget.fit", problem, f"{bore['diameter'] / reader.mm:.6g}", remedy)
+        reader.fault_at("budget.fit", problem, f"{diameter / reader.mm:.6g}", remedy)
         return
     if BORE in tolerances:
-        remedy = "leave it out, or budget.fit"
-        reader.fault_at(f"budget.tolerances.{BORE}", "the fit says it already", None, remedy)
-    # the key needs a keyway
+        reader.fault_at(_place(BORE, reader), "the fit says it already", None, "leave it out, or budget.fit")
     if "key" not in budget:
         return
     if "part.keyway" not in reader.marks:
         reader.fault_at("budget.key", "the part has no keyway", None, "give part.keyway: din6885, or leave it out")
+    keyway, hub = values.get("part", {}).get("keyway", {}), budget["key"].get("hub")
+    if "fit" in keyway and hub not in {None, keyway["fit"]}:
+        problem = f"part.keyway.fit in line {reader.marks['part.keyway.fit'][0]} makes it {keyway['fit']}"
+        remedy = f"give {keyway['fit']}, or part.keyway.fit: {hub}"
+        reader.fault_at("budget.key.hub", problem, hub, remedy)
     if ANGLE in tolerances:
         remedy = "leave it out, or budget.key"
-        reader.fault_at(f"budget.tolerances.{ANGLE}", "the play of the key says it already", None, remedy)
+        reader.fault_at(_place(ANGLE, reader), "the play of the key says it already", None, remedy)
 
 
 # --- the value --------------------------------------------------------------------------------------------------------
@@ -376,7 +391,7 @@ def build_budget(values: Values) -> Budget | None:
 
 
 def _fit(budget: Values, part: Values) -> ShaftFit | None:
-    """The greatest play by the fits of bore and key; None where no fit is stated."""
+    """How far the cam may stand off its place by the fits of bore and key; None where no fit is stated."""
     if "fit" not in budget:
         return None
     bore, key = part["bore"], budget.get("key")

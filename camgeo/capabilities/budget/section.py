@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.budget.dimensions import DIMENSIONS
+from camgeo.capabilities.budget.dimensions import CONTOUR, DIMENSIONS
 from camgeo.capabilities.budget.influence import velocities
 from camgeo.capabilities.budget.outcome import SUMS, motion_unit, size_unit
 from camgeo.capabilities.budget.sums import Sum, Worst, by_name, powers, total, worst
@@ -15,7 +15,9 @@ from camgeo.measures.units import UNIT_NAMES
 from kin.numeric.angles import TURN, degrees
 
 if TYPE_CHECKING:
-    from camgeo.capabilities.budget.influence import Output
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.budget.influence import Influence, Output
     from camgeo.capabilities.budget.inverse import Split
     from camgeo.capabilities.budget.outcome import BudgetOutcome
     from camgeo.recipe.recipe import Recipe
@@ -25,8 +27,11 @@ SHARES_STEP = 5  # degrees from one angle of the shares to the next
 LEFT_STEP = 10  # degrees from one angle of what is left to the next
 
 
-def section(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
-    """Entry `budget` of a report as plain data: lengths in the recipe's unit, angles in degrees."""
+def section(recipe: Recipe, outcome: BudgetOutcome, files: Sequence[str] = ()) -> dict[str, Any]:
+    """Entry `budget` of a report as plain data: lengths in the recipe's unit, angles in degrees.
+
+    `files` are the names of the files whose contours the outcome has.
+    """
     budget, (scale, unit) = outcome.budget, motion_unit(recipe)
     # what each budget has; further keys below need a field of the budget or a second contact
     entry: dict[str, Any] = {
@@ -43,6 +48,8 @@ def section(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
         "dimensions": [_dimension(recipe, outcome, name, size) for name, size in budget.tolerances],
         "over_turn": _over_turn(recipe, outcome),
     }
+    if outcome.influence.contour is not None:
+        entry["contour"] = {"files": list(files), **_contour_error(recipe, outcome.influence)}
     if budget.waves is not None:
         rates = velocities(outcome.influence, budget.waves)
         entry["velocity"] = {"waves": budget.waves, **{kind: _rate(recipe, worst(rates, kind)) for kind in SUMS}}
@@ -74,6 +81,16 @@ def _rate(recipe: Recipe, rate: Worst) -> dict[str, Any]:
     entry = _sum(recipe, rate)
     del entry["contact"]
     return {**entry, "unit": f"{entry['unit']}/rad"}
+
+
+def _contour_error(recipe: Recipe, rows: Influence) -> dict[str, Any]:
+    """The greatest error of the motion by the contour alone, over the angles and contacts, and its place."""
+    scale, unit = motion_unit(recipe)
+    outputs = rows.outputs()
+    errors = np.abs([output.contour for output in outputs])
+    contact, place = np.unravel_index(int(errors.argmax()), errors.shape)
+    at = {"at_deg": degrees(float(rows.shaft[place])), "contact": outputs[contact].name}
+    return {"error": scale * float(errors[contact, place]), "unit": unit, **at}
 
 
 def _greatest(recipe: Recipe, outcome: BudgetOutcome, output: Output) -> dict[str, float]:
@@ -123,15 +140,20 @@ def _split(recipe: Recipe, split: Split) -> dict[str, Any]:
         {"name": name, "tolerance": units[name][0] * value, "unit": units[name][1]}
         for name, value in split.tolerances.items()
     ]
-    return {"tolerances": rows, "binding_deg": [degrees(at) for at in split.binding]}
+    return {"tolerances": rows, "cost": split.cost, "binding_deg": [degrees(at) for at in split.binding]}
 
 
 def _over_turn(recipe: Recipe, outcome: BudgetOutcome) -> dict[str, Any]:
-    """What each dimension adds to the worst case, in the report's unit, by the worst contact, every 5 degrees."""
+    """What each dimension and the contour add to the worst case, every 5 degrees, by the worst contact.
+
+    It is in the motion's unit of the report.
+    """
     rows, (scale, _) = outcome.influence, motion_unit(recipe)
     step = max(len(rows.shaft) * SHARES_STEP // 360, 1)
     # in a worst case the powers are the influences times the tolerances themselves
     added = by_name(rows, powers(rows, outcome.worst_output, "worst")[:, ::step])
+    if rows.contour is not None:
+        added = {CONTOUR: np.abs(outcome.worst_output.contour[::step]), **added}
     at = [degrees(float(angle)) for angle in rows.shaft[::step]]
     return {"at_deg": at, "worst": {name: (scale * values).tolist() for name, values in added.items()}}
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from camgeo.recipe.starter import Starter
+from camgeo.recipe.starter import Starter, Starters
 
-STARTERS = {
+_STARTERS = {
     "disc-budget": Starter(
         "A disc cam whose roller may be off by 0.05, and what that leaves for the cam's profile.",
         "disc",
@@ -26,6 +26,10 @@ STARTERS = {
                 "fit": "h6",
             },
         },
-        after="disc-groove",
+        after="disc-conjugate",
+        task="what each size may be off",
+        also="tolerance budget error play production accuracy",
     ),
 }
+
+ANSWERS = Starters(starters=_STARTERS)

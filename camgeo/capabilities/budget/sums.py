@@ -1,5 +1,7 @@
 """Sums of errors over the shaft angle, in the worst case and as the root of the sum of squares, and their shares.
 
+The error of a contour that is not exact is known, and adds to either sum.
+
 In shapes c is the number of contributions and n that of shaft angles.
 """
 
@@ -9,6 +11,8 @@ import math
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
+
+from camgeo.capabilities.budget.dimensions import CONTOUR
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,7 +36,7 @@ def powers(influence: Influence, output: Output, sum_: Sum) -> Array:
 
 def total(influence: Influence, output: Output, sum_: Sum) -> Array:
     """The sum of errors at each angle (n,), mm or rad of the motion: worst case, or root of the sum of squares."""
-    added: Array = powers(influence, output, sum_).sum(axis=0) ** (1.0 / POWERS[sum_])
+    added: Array = powers(influence, output, sum_).sum(axis=0) ** (1.0 / POWERS[sum_]) + np.abs(output.contour)
     return added
 
 
@@ -58,8 +62,9 @@ def by_name(influence: Influence, rows: Array) -> dict[str, Array]:
 class Worst(NamedTuple):
     """The greatest sum of errors over all angles and contacts: `value`, mm or rad of the motion.
 
-    `at` is its shaft angle, rad, and `contact` the name of its contact. `shares` has the fraction of the sum, or of the
-    sum of squares, that each dimension makes; all are 0 where the sum is 0.
+    `at` is its shaft angle, rad, and `contact` the name of its contact. `shares` has the fraction of the sum that each
+    dimension makes, and CONTOUR where it is not exact; what the dimensions add as a root of squares is shared by the
+    squares. All are 0 where the sum is 0.
     """
 
     value: float
@@ -76,6 +81,8 @@ def worst(influence: Influence, sum_: Sum) -> Worst:
     added = {
         name: float(row[place]) for name, row in by_name(influence, powers(influence, outputs[contact], sum_)).items()
     }
-    whole = math.fsum(added.values()) or 1.0
-    shares = {name: value / whole for name, value in added.items()}
-    return Worst(float(sums[contact, place]), float(influence.shaft[place]), outputs[contact].name, shares)
+    whole, value = math.fsum(added.values()) or 1.0, float(sums[contact, place])
+    known = abs(float(outputs[contact].contour[place])) / (value or 1.0)
+    shares = {} if influence.contour is None else {CONTOUR: known}
+    shares |= {name: (1.0 - known) * part / whole for name, part in added.items()}
+    return Worst(value, float(influence.shaft[place]), outputs[contact].name, shares)

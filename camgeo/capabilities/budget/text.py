@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from camgeo.capabilities.budget.dimensions import CONTOUR
 from camgeo.capabilities.budget.outcome import SUMS
 from camgeo.common.rounding import downward
 from camgeo.report.document import align
@@ -25,6 +26,9 @@ def table(recipe: Recipe, entry: dict[str, Any]) -> str:
         largest = max(chosen["shares"], key=lambda name: chosen["shares"][name])
         lines.append(f"  {largest} takes most of it, {chosen['shares'][largest]:.0%}")
     rows = [HEAD, *map(_row, entry["dimensions"])]
+    if CONTOUR in entry["worst"]["shares"]:
+        share = entry["worst"]["shares"][CONTOUR]
+        rows.append((CONTOUR, f"{share * entry['worst']['value']:.4g} {unit}", "", f"{share:.1%}"))
     lines += [f"  {line}" for line in align(rows).splitlines()]
     if "left" in entry:
         left = entry["left"]

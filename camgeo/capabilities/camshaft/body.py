@@ -71,7 +71,7 @@ def camshaft_mesh(
     bound, edges = Bound(0.0, 0.0), 0
     for lobe in lobes:
         polygon = _placed(fits(lobe).within("polyline", fine), lobe.at, recipe.rotation)
-        loop, moved, _ = rounded_contour(polygon, precision)
+        loop, moved = rounded_contour(polygon, precision)
         bound, edges = bound.wider(polygon.bound.widened(moved)), edges + len(loop)
         precision.within("the contour", bound.worst, tolerance)
         body += manifold(*prism(loop, lobe.lobe.low, lobe.lobe.high, precision))

@@ -187,10 +187,8 @@ def _crank_wheel(
         ends = on_wheel(middle, RIM - (6.0 if degree % 30 else 10.0), degree), on_wheel(middle, RIM, degree)
         parts.append(line("faint" if degree % 90 else "ink", *ends[0], *ends[1]))
         if degree % 30 == 0:
-            place = on_wheel(middle, 76.0, degree)
-            parts.append(text(place[0], place[1] + 3.5, f"{degree}", size=10.0, anchor="middle"))
-    parts.append(text(middle[0], middle[1] - RIM - 8.0, "TDC", anchor="middle"))
-    parts.append(text(middle[0], middle[1] + RIM + 18.0, "BDC", anchor="middle"))
+            place, words = on_wheel(middle, 76.0, degree), {0: "TDC", 180: "BDC"}.get(degree, f"{degree}")
+            parts.append(text(place[0], place[1] + 3.5, words, size=10.0, anchor="middle"))
     # an arc for each valve, its opening and closing labelled outside the rim, its duration in the middle
     labels, inside = [], []
     for rank, (valve, opens, lasts) in enumerate(events):
@@ -201,18 +199,32 @@ def _crank_wheel(
             x, y = on_wheel(middle, RIM + 14.0, angle)
             labels.append((y, x, words, valve))
         inside.append((f"{valve} {lasts:.1f}°", valve))
-    # labels on one side are moved down so that none covers another
+    lowest = middle[1] + RIM
     for right in (False, True):
-        last = -math.inf
-        for y, x, words, valve in sorted(label for label in labels if (label[1] > middle[0]) == right):
-            last = max(y, last + APART)
-            parts.append(text(x, last + 4.0, words, size=11.0, anchor="start" if right else "end", colour=valve))
+        side = [label for label in labels if (label[1] > middle[0]) == right]
+        for y, (_, x, words, valve) in zip(_apart([label[0] for label in side], middle[1]), side, strict=True):
+            parts.append(text(x, y + 4.0, words, size=11.0, anchor="start" if right else "end", colour=valve))
+            lowest = max(lowest, y)
     spans = {valve: (opens, opens + lasts) for valve, opens, lasts in events}
     inside += [(words, "ink") for words in _overlap(spans, 1.0)]  # in crank degrees, as all of this wheel
     for row, (words, colour) in enumerate(inside):
         y = middle[1] + ROW * (row - 0.5 * len(inside) + 0.75)
         parts.append(text(middle[0], y, words, size=11.0, anchor="middle", colour=colour))
-    return sheet(middle[1] + RIM + 34.0, f"{recipe.name}: valve events of {named} over one turn of the crank", parts)
+    return sheet(lowest + 34.0, f"{recipe.name}: valve events of {named} over one turn of the crank", parts)
+
+
+def _apart(heights: Sequence[float], middle: float) -> list[float]:
+    """Heights of labels beside a wheel, px, moved from its middle so that none covers another, nor the rim."""
+    moved = list(heights)
+    order = sorted(range(len(moved)), key=heights.__getitem__)
+    upper = [k for k in order if heights[k] < middle]
+    last = math.inf
+    for k in reversed(upper):
+        last = moved[k] = min(heights[k], last - APART)
+    last = max((moved[k] for k in upper), default=-math.inf)
+    for k in order[len(upper) :]:
+        last = moved[k] = max(heights[k], last + APART)
+    return moved
 
 
 def cam_wheel(recipe: CamshaftRecipe, lobes: Sequence[PlacedLobe], engine: Engine) -> str:

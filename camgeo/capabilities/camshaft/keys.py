@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
-from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.camshaft.extension import writers
 from camgeo.formats.tables.tabled import check_step
 from camgeo.motions.lift_table import read_path
 from camgeo.part.bore import LEAST_SIZE
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export, export_of
-from camgeo.recipe.keys import CORE, UNITS, recipe_table
+from camgeo.recipe.keys import CORE, UNITS, read_units, recipe_table
 from camgeo.recipe.machining import COARSEST, FINEST
-from camgeo.recipe.recipe import ANGLES, Order, Verify, file_bytes, of_source
+from camgeo.recipe.recipe import (
+    ANGLES,
+    Order,
+    ShaftOrder,
+    Verify,
+    file_bytes,
+    name_by_stem,
+    of_source,
+    reader_of_kind,
+)
 from camgeo.registry.formats import FORMATS
-from camgeo.schema.errors import RecipeErrors, suggestion
+from camgeo.schema.errors import RecipeErrors, quote, suggestion
 from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, coordinate, length, mapping
-from camgeo.schema.json_schema import table_schema
-from camgeo.schema.reader import Reader
-from camgeo.schema.readers import READERS
-from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
-from camgeo.schema.yaml_source import Mapping, Scalar, entries, join, read_source
+from camgeo.schema.file_bytes import path_fault
+from camgeo.schema.lists import list_of
+from camgeo.schema.yaml_source import Mapping, entries, read_source
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
 
@@ -32,8 +39,8 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
     from camgeo.registry.formats import Format
-    from camgeo.schema.reader import Values
-    from camgeo.schema.yaml_source import Node, Source
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Source
 
 MOST_LOBES = 64
 MOST_CYLINDERS = 16
@@ -97,7 +104,7 @@ class Lobe:
 
 
 @dataclass(frozen=True)
-class CamshaftRecipe(Order):
+class CamshaftRecipe(ShaftOrder):
     """A recipe of a camshaft; its `bars` are the shaft, the first, and its journals."""
 
     lobes: tuple[Lobe, ...]
@@ -120,25 +127,6 @@ class CamshaftRecipe(Order):
 
 
 # --- keys -------------------------------------------------------------------------------------------------------------
-
-
-def _rows(table: FieldTable, reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Rows of a list of mappings with the keys of one table; None where a row is faulty."""
-    row = Field("", Kind.TABLE, field.about, table=table)
-    items = enumerate(reader.items(field, node, path, MOST_LOBES))
-    rows = [reader.mapping(row, item, join(path, i)) for i, item in items]
-    whole = [values for values in rows if values is not None]
-    return whole if len(whole) == len(rows) else None
-
-
-def _list_of(name: str, table: FieldTable, about: str, example: str, *, required: bool = False) -> Field:
-    form = OwnForm(
-        f"a list of {name}",
-        f"a list of {name} such as {example}",
-        partial(_rows, table),
-        lambda _: {"type": "array", "items": table_schema(table), "minItems": 1, "maxItems": MOST_LOBES},
-    )
-    return Field(name, Kind.OWN, about, required, default="" if required else "none", form=form)
 
 
 def _angle(name: str, about: str, least: float, most: float, *, required: bool = False, default: str = "") -> Field:
@@ -213,8 +201,8 @@ CAMSHAFT = Field(
                 coordinate("to", "height of its upper end", required=True),
                 length("bore", "diameter of a hole all through it", default="none"),
             ),
-            _list_of("journals", JOURNAL, "its bearings", "[{z: 0, length: 20, diameter: 30}]"),
-            _list_of("lobes", LOBE, "the lobes", "[{recipe: intake.yaml, at: 234, z: 30}]", required=True),
+            list_of("journals", JOURNAL, "its bearings", "[{z: 0, length: 20, diameter: 30}]", MOST_LOBES),
+            list_of("lobes", LOBE, "the lobes", "[{recipe: intake.yaml, at: 234, z: 30}]", MOST_LOBES, required=True),
             Field(
                 "engine",
                 Kind.TABLE,
@@ -260,21 +248,18 @@ STEP = Field(
     at_least=FINEST,
     at_most=COARSEST,
 )
-OF_A_LOBE = tuple(  # listed to say what to do instead
-    name for name, record in FORMATS.items() if record.contour and not record.solid and name != DRAWN
-)
 SHAFT_FILES = {
     **{name: _plain(name) for name in FORMATS if FORMATS[name].solid},
     "csv": _own("csv", "motion", "events", INSPECTION, more=(STEP,)),
-    **{name: record for name, record in FORMATS.items() if record.shaft is not None},
+    **{name: FORMATS[name] for name in writers()},
     DRAWN: _own(DRAWN, *DIAGRAMS),
-    **{name: replace(FORMATS[name], options=FieldTable(())) for name in ("html", *OF_A_LOBE)},
+    "html": replace(FORMATS["html"], options=FieldTable(())),
 }
 SHAFT = FieldTable(
     (
         *(CORE.field(name) for name in ("name", "about", "units", "rotation")),
         CAMSHAFT,
-        export_of(SHAFT_FILES, "{csv: {as: events}}", "[stl]", unfit=OF_A_LOBE),
+        export_of(SHAFT_FILES, "{csv: {as: events}}", "[stl]"),
         _only(CORE.field("verify"), "angles"),  # the motion of a lobe is judged as its own recipe has it
     )
 )
@@ -289,20 +274,11 @@ def read_camshaft(source: Source, path: Path) -> CamshaftRecipe:
     Raises RecipeErrors with all faults of the camshaft's own fields, else of the first lobe's recipe that has any, and
     for lobes or journals that overlap or reach beyond the shaft.
     """
-    reader = Reader(source, READERS, SHAFT)
+    reader = reader_of_kind(source, "camshaft")
     root = source.root
-    reader.survey(root, "")
-    top = entries(root) if isinstance(root, Mapping) else {}
-    units = top.get("units")
-    if isinstance(units, Scalar) and units.text in UNITS:
-        reader.units, reader.mm = units.text, UNITS[units.text]
+    read_units(reader)
     values = reader.table(SHAFT, root, "") if isinstance(root, Mapping) else {}
-    if "name" not in reader.marks:
-        try:
-            values["name"] = read_name(path.stem)
-        except Complaint as complaint:
-            remedy = f"give `name:` with {NAME_RULE}"
-            reader.fault(root.mark, "name", f"the file's stem is {complaint.problem}", repr(path.stem), remedy)
+    name_by_stem(values, reader, path)
     if not reader.errors:
         _check(values, reader)
     if reader.errors:
@@ -314,9 +290,7 @@ def _check(values: Values, reader: Reader) -> None:
     """Note the faults between fields."""
     camshaft = values["camshaft"]
     for file in values.get("export", {}).get("files", []):
-        if file["kind"] in OF_A_LOBE:
-            reader.fault_at(file["path"], f"a camshaft has no {file['kind']}", None, "export the lobe's own recipe")
-        elif "step" in file and file["kind"] == "csv" and file.get("as") != INSPECTION:
+        if "step" in file and file["kind"] == "csv" and file.get("as") != INSPECTION:
             reader.fault_at(f"{file['path']}.csv.step", "belongs to a table as inspection", None, "leave it out")
         elif file.get("as") in OF_AN_ENGINE and "engine" not in camshaft:
             remedy = "give camshaft.engine, or {svg: {as: bars}}"
@@ -448,8 +422,8 @@ def _cam(document: Document, name: str, field: str) -> Recipe:
     No message repeats text of a file that is no recipe: its reader need not be allowed to read the file.
     """
     path, remedy = document.path.parent / name, "give the recipe of a cam"
-    if not path.is_file():
-        raise document.error(field, "no such file", f"'{name}'", f"give the path of a recipe from {path.parent}")
+    if fault := path_fault(path):
+        raise document.error(field, fault, quote(name), f"give the path of a recipe from {path.parent}")
     try:
         source = read_source(file_bytes(path), str(path))
         top = entries(source.root) if isinstance(source.root, Mapping) else {}

@@ -15,6 +15,7 @@ from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
 from camgeo.common.arguments import numbers_of, short_repr, whole_of
 from camgeo.common.clock import Clock
 from camgeo.common.errors import CallError
+from camgeo.common.terminal import escaped
 from camgeo.report import failure
 from kin.numeric.records import dataclass, field
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.camshaft.keys import CamshaftRecipe
     from camgeo.capabilities.camshaft.lobes import PlacedLobe
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
     from kin.numeric.arrays import Array
 
 MOST_DERIVATIVE = 6  # of a lobe's motion by the shaft angle
@@ -124,6 +125,16 @@ def designed(recipe: CamshaftRecipe) -> CamshaftDesign:
 
 
 def failure_text(check: Entry, recipe: CamshaftRecipe, shown: str | None = None) -> str:
-    """Text of a failed check of a report, several lines, with the lobe's place in the recipe of the camshaft."""
-    fields = {lobe.name: f"camshaft.lobes[{i}].recipe" for i, lobe in enumerate(recipe.lobes)}
-    return failure.failure_at(check, recipe, fields.get(check.get("surface", ""), "camshaft"), "", shown)
+    """Text of a failed check of a report, several lines, with the lobe's place in the recipe of the camshaft.
+
+    A check of a lobe's exact cam has the remedy that its own recipe would have.
+    """
+    lobes = {lobe.name: (i, lobe) for i, lobe in enumerate(recipe.lobes)}
+    field, remedy = "camshaft", ""
+    if (named := lobes.get(check.get("surface", ""))) is not None:
+        field = f"camshaft.lobes[{named[0]}].recipe"
+        own, alone = named[1].recipe, {**check, "surface": ""}
+        report = {"checks": [alone], "files": []}
+        if "file" not in check and (would_do := failure.remedy(alone, report, own)):
+            remedy = f"{would_do}, in {escaped(own.path.name)}"
+    return failure.failure_at(check, recipe, field, remedy, shown)

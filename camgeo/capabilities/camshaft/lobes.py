@@ -15,9 +15,9 @@ from camgeo.curve.measures import nearest
 from camgeo.measures.limits import limit_checks
 from camgeo.measures.lobe import moved_by
 from camgeo.part.part import THINNEST
-from camgeo.registry.capability import ShaftCam
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
+from camgeo.synthesis.shaft_cam import ShaftCam
 from kin.numeric.angles import TURN
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, field, replace
@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.keys import Bar, CamshaftRecipe, Engine, Lobe
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
-    from camgeo.registry.capability import MovedBody
+    from camgeo.measures.extension import MovedBody
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.expected_checks import Foreseen
-    from kin.judge.check import Check
     from kin.numeric.arrays import Array
+    from kin.numeric.check import Check
 
 STROKE_STEPS = 3600  # of a turn, over which the ends of a stroke are looked for
 
@@ -59,12 +59,11 @@ class PlacedLobe:
     def on_shaft(self, engine: Engine | None) -> ShaftCam:
         """Lobe as a ShaftCam for capabilities that judge files.
 
-        Its event lift is None without an engine, or where its follower swings. Where the engine's lift is the valve's,
-        raises RecipeErrors and EventError as `moved` does.
+        Its event lift is None without an engine, where its follower swings, and where the engine's lift is the valve's
+        and it has none. Where the engine's lift is the valve's, raises RecipeErrors and EventError as `moved` does.
         """
-        lobe = self.lobe
-        events = None if engine is None or self.swings else self.event_lift(engine)
-        return ShaftCam(lobe.name, lobe.recipe, self.design, self.at, self.zero, lobe.low, lobe.high, events)
+        lobe, stated = self.lobe, self._stated_lift(engine)
+        return ShaftCam(lobe.name, lobe.recipe, self.design, self.at, self.zero, lobe.low, lobe.high, stated)
 
     @property
     def contour(self) -> Curve | None:
@@ -97,14 +96,24 @@ class PlacedLobe:
     def event_lift(self, engine: Engine | None) -> float:
         """Lift of the lobe's follower, mm or rad, at which its events are stated.
 
-        It is the engine's lift, converted to the follower where it is a valve's lift; without an engine, or for a
-        follower that swings, the middle of the stroke. Where the engine's lift is the valve's, raises RecipeErrors and
-        EventError as `moved` does.
+        It is the engine's lift, converted to the follower where it is a valve's lift. Without an engine, for a follower
+        that swings, and without a valve where the lift is a valve's, it is the middle of the stroke. Where the engine's
+        lift is the valve's, raises RecipeErrors and EventError as `moved` does.
         """
+        stated = self._stated_lift(engine)
+        if stated is not None:
+            return stated
+        lift = self.design.motion.rows(equal_steps(STROKE_STEPS), 0)[0]
+        return 0.5 * float(np.ptp(lift)) + float(lift.min())
+
+    def _stated_lift(self, engine: Engine | None) -> float | None:
+        """Lift of the lobe's follower, mm, at the engine's lift; None where that is no lift of this lobe."""
         if engine is None or self.swings:
-            lift = self.design.motion.rows(equal_steps(STROKE_STEPS), 0)[0]
-            return 0.5 * float(np.ptp(lift)) + float(lift.min())
-        return self.moved.follower_lift(engine.lift) if engine.at_valve and self.moved is not None else engine.lift
+            return None
+        if not engine.at_valve:
+            return engine.lift
+        moved = self.moved
+        return None if moved is None else moved.follower_lift(engine.lift)
 
     @property
     def stretches(self) -> tuple[Stretch, ...]:

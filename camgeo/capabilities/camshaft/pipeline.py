@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from camgeo.capabilities.camshaft.extension import ON_SHAFT, writers
 from camgeo.capabilities.camshaft.keys import DRAWN, SHAFT_FILES
 from camgeo.capabilities.camshaft.lobes import lobe_checks, placed
 from camgeo.common.clock import Clock
@@ -13,9 +14,8 @@ from camgeo.files.mesh import Item
 from camgeo.fit.cache import Fits, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
+from camgeo.output.extension import MAKING, numbers_of
 from camgeo.output.pipeline import REPORT, Outcome, demand_any
-from camgeo.registry import registry
-from camgeo.registry.formats import numbers_of
 from camgeo.report.document import Findings, as_json, document
 from camgeo.schema.fields import either
 from camgeo.synthesis.intent import intended, permitted
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from camgeo.capabilities.camshaft.keys import CamshaftRecipe
     from camgeo.capabilities.camshaft.lobes import PlacedLobe
     from camgeo.fit.bound import Bound
+    from camgeo.output.extension import FileCall
     from camgeo.recipe.export import FileRequest
-    from camgeo.registry.capability import FileCall
     from kin.judge.camshaft import CamshaftIntent
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 COLOUR = "#d08a3c"
 
@@ -133,13 +133,17 @@ def judged(
 def judged_by(recipe: CamshaftRecipe, name: str, call: FileCall) -> dict[str, Any]:
     """Report on files that the capability `name` claims, such as points: `call` has their paths and options.
 
-    Raises CallError for files that cannot be judged, RecipeErrors for a lobe without a curve.
+    Raises CallError for files that cannot be judged, RecipeErrors for a lobe without a curve, KeyError for a capability
+    that judges no files of a shaft.
     """
+    judge = ON_SHAFT[name].judge
+    if judge is None:
+        raise KeyError(name)
     clock = Clock()
     lobes = placed(recipe, clock)
     with clock.stage(name):
         cams = [lobe.on_shaft(recipe.engine) for lobe in lobes]
-        results = registry.judges()[name].judge_shaft(recipe, cams, call, clock)
+        results = judge(recipe, cams, call, clock)
     findings = _findings(recipe, lobes, [*lobe_checks(recipe, lobes), *results.checks], [], clock)
     return _report(recipe, replace(findings, sections=results.sections), lobes)
 
@@ -171,7 +175,7 @@ def _produced(
     findings = _findings(recipe, lobes, checks, files, clock)
     findings = replace(findings, missing=tuple((names[request], why) for request, why in missing.items()))
     for request in pages:
-        from camgeo.capabilities.camshaft.page import page
+        from camgeo.capabilities.camshaft.shaft_page import page
 
         path = folder / request.filename(recipe.name, recipe.export.files)
         path.write_text(page(recipe, lobes, _report(recipe, findings, lobes)), encoding="utf-8", newline="\n")
@@ -183,7 +187,7 @@ def _demand_packages(request: FileRequest) -> None:
     """Raise MissingExtraError where a package is missing that makes the requested solid."""
     if not SHAFT_FILES[request.kind].solid:
         return
-    if request.format.numbers is None:  # not a mesh, but a STEP
+    if not request.format.mesh:  # but a STEP
         from camgeo.files.brep import need_kernel
 
         need_kernel()
@@ -197,7 +201,7 @@ def _made(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tupl
     """Write one file; a solid is read back and judged."""
     if request.kind in _UNJUDGED:
         return _UNJUDGED[request.kind](job, request, path), ()
-    recipe, write = job.recipe, request.format.shaft
+    recipe, write = job.recipe, writers().get(request.kind)
     if write is None:
         return _solid(job, request, path)
     with job.clock.stage(request.kind):
@@ -250,8 +254,8 @@ def _solid(job: _Job, request: FileRequest, path: Path) -> tuple[FileResult, tup
 
 def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
     """Write a solid; return the bound on the error of its lobes' contours, mm, and the number of their pieces."""
-    recipe, tolerance, mm, record = job.recipe, job.tolerance(request), _unit(request), request.format
-    if record.numbers is None:
+    recipe, tolerance, mm, record = job.recipe, job.tolerance(request), _unit(request), MAKING[request.kind]
+    if not request.format.mesh:
         from camgeo.capabilities.camshaft.body import camshaft_outlines, circle
         from camgeo.formats.step import write_stack
 
@@ -262,7 +266,7 @@ def _written(job: _Job, request: FileRequest, path: Path) -> tuple[Bound, int]:
         return bound.widened(more), pieces
     from camgeo.capabilities.camshaft.body import camshaft_mesh
 
-    numbers = numbers_of(record, mm)
+    numbers = numbers_of(request.kind, mm)
     with job.clock.stage(f"mesh {request.kind}"):
         mesh, bound, pieces = camshaft_mesh(recipe, job.lobes, job.fits_of, tolerance=tolerance, precision=numbers)
     with job.clock.stage(f"write {request.kind}"):

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from camgeo.recipe.starter import Starter
+from camgeo.recipe.starter import Starter, Starters
 
-STARTERS = {
+_STARTERS = {
     "camshaft": Starter(
         "Lobes of other recipes on one shaft: `camgeo new disc-lobe lobe.yaml` makes theirs.",
         "",
@@ -24,3 +24,5 @@ STARTERS = {
         root="camshaft",
     ),
 }
+
+ANSWERS = Starters(starters=_STARTERS)

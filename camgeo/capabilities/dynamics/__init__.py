@@ -2,4 +2,4 @@
 
 from camgeo.registry.label import Label
 
-LABEL = Label(rank=30, words=("dynamics",), absent="dynamics is not given")
+LABEL = Label(rank=30, words=("dynamics",), absent="dynamics is not given", kin=("dynamics",))

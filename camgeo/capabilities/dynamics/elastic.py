@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from camgeo.capabilities.dynamics.checks import FLOAT, LEAST_BACKLASH
+from camgeo.capabilities.dynamics.declared import FLOAT, LEAST_BACKLASH
 from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.checks.declared import STANDS
-from kin.judge.check import Check, about, failed
 from kin.numeric.angles import degrees
+from kin.numeric.check import Check, about, failed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -207,14 +207,11 @@ def _drives(scene: _Scene, design: Design, file: FileResult | None) -> list[Driv
 
 
 def _lowest(motion: Excitation) -> float:
-    """Least position of a motion, m or rad, among 65 places of each stretch."""
-    import numpy as np
-
-    from kin.dynamics.drive import drives
-    from kin.numeric.chebyshev import together
+    """Least position of a motion, m or rad."""
+    from kin.dynamics.drive import drives, lowest
 
     (drive,) = drives([motion])
-    return float(together(drive.position, np.linspace(-1.0, 1.0, 65)).min())
+    return lowest(drive.knots, [drive.position], lambda row: row[0])[0]
 
 
 def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[dict[str, Any], Check]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.figures import ON_RETURN, PEAKS, PRELOAD_GREATEST, DesignFigure, Need
+from camgeo.recipe.design_figure import DesignFigure, Need
+from camgeo.recipe.figures import ON_RETURN, PEAKS, PRELOAD_GREATEST
 from camgeo.schema.fields import MOST, Field, Kind
 
 if TYPE_CHECKING:

@@ -6,21 +6,22 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.dynamics.checks import FLOAT
+from camgeo.capabilities.dynamics.declared import FLOAT
 from camgeo.capabilities.dynamics.figures import FORCE_GREATEST, FORCE_LEAST, GUIDE_FORCE, MEAN_FORCE, PRESSURE, TORQUE
 from camgeo.capabilities.dynamics.keys import BOUNDS
 from camgeo.capabilities.dynamics.running_forces import running_of
-from camgeo.measures.forces import ExtremeAtAngle
+from camgeo.measures.forces import PER_MM, ExtremeAtAngle
 from camgeo.measures.measured import ABRUPT, Measured
 from camgeo.measures.units import pounds
-from kin.judge.check import Check
-from kin.numeric.angles import TURN
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.check import Check
 from kin.numeric.monotone import RoughError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from camgeo.capabilities.dynamics.moved_train import MovedTrain
     from camgeo.capabilities.dynamics.running import Running
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
@@ -52,16 +53,33 @@ class Extremes:
 def extremes_of(running: Running) -> Extremes:
     """Find the extremes of all forces over the whole turn, for a stem that does not jam.
 
+    Where a valve's seat carries the spring while it is shut, the least force of the contacts and along the travel are
+    those of the open valve. Of a load that is sampled they are those of the least and the greatest that it may be.
     Raises RoughError for too abrupt a motion, RecipeErrors for a load without a finite value.
     """
     count = len(running.turn.names)
 
     def values(t: Array) -> Array:
-        state = running.at(t)
-        more = [] if state.pressure is None else [*state.pressure]
-        return np.stack([*state.normal, state.torque, state.force, *state.reactions.values(), *more])
+        states = [running.at(t, more) for more in running.doubts]
+        more = [() if state.pressure is None else state.pressure for state in states]
+        rows = [
+            [*state.normal, state.torque, state.force, *state.reactions.values(), *pressure]
+            for state, pressure in zip(states, more, strict=True)
+        ]
+        return np.stack([row for own in zip(*rows, strict=True) for row in own])
 
-    extremes = running.turn.extremes(values)
+    def found(stretch: tuple[float, float]) -> list[tuple[ExtremeAtAngle, ExtremeAtAngle]]:
+        each = iter(running.turn.extremes(values, stretch))
+        return [
+            (min(least for least, _ in group), max(most for _, most in group))
+            for group in zip(*[each] * len(running.doubts), strict=True)
+        ]
+
+    extremes = found((0.0, TURN))
+    if judged := judged_stretches(running):
+        held = [found(stretch) for stretch in judged]
+        for k in (*range(count), count + 1):
+            extremes[k] = min(own[k][0] for own in held), extremes[k][1]
     names = tuple(running.at(running.turn.places[:1]).reactions)
     beside = extremes[count + 2 :]  # reactions, then pressures
     # with two contacts a least force below 0 is rounding
@@ -77,14 +95,64 @@ def extremes_of(running: Running) -> Extremes:
     )
 
 
+def judged_stretches(running: Running) -> list[tuple[float, float]]:
+    """Stretches of the turn, rad, in which the spring is to hold the follower; empty where that is all of it."""
+    moved = running.moved
+    if moved is None or moved.coil is None:
+        return []
+    return [(event.opening, event.closing) for event in moved.stretches]
+
+
 def float_check(running: Running, extremes: Extremes) -> Check | None:
     """Check that F is at 0 or above, so that a single contact stays on the cam; None with several contacts."""
     if len(extremes.contacts) > 1:
         return None
     least, most = extremes.along
+    unit, sampled = running.turn.unit, running.sampled
     detail = f"greatest {most.value:.6g}; of a rigid follower"
-    held, unit = least.value >= 0.0, running.turn.unit
-    return Check(FLOAT.name, held, least.value, 0.0, unit, least.at_deg, "at_least", detail=detail)
+    if running.moved is not None and running.moved.coil is not None:
+        where = " and ".join(f"{opens:.6g} to {closes:.6g}" for opens, closes in _open_deg(running.moved))
+        detail += f", while the {running.moved.body.name} is open, {where} degrees; before and after, its seat "
+        detail += f"carries the spring, and {_held_shut(running)} holds the tappet"
+    if sampled is not None:
+        place = f"{degrees(sampled.at):.6g} degrees"
+        detail += f"; the load, sampled near {place}, may be off by {sampled.within:.2g} {unit}, which is counted"
+    return Check(FLOAT.name, least.value >= 0.0, least.value, 0.0, unit, least.at_deg, "at_least", detail=detail)
+
+
+def _open_deg(moved: MovedTrain) -> list[tuple[float, float]]:
+    """Shaft angles, degrees, at which the body leaves its seat and meets it again."""
+    return [(degrees(event.opening % TURN), degrees(event.closing % TURN)) for event in moved.stretches]
+
+
+def _held_shut(running: Running) -> str:
+    """Words for what holds the tappet on the cam while the body is shut."""
+    return "its load alone" if running.train.load != "0" else "nothing"
+
+
+def _moved_section(running: Running, moved: MovedTrain) -> dict[str, object]:
+    """Entry of the report on what the follower moves: where it is open, and what the follower feels of it there."""
+
+    def felt(t: Array) -> Array:
+        position = running.turn.rows(t)[0]
+        ratio = moved.ratio(position)
+        rows = [ratio[0], running.train.mass + moved.mass * ratio[0] ** 2]
+        if moved.coil is not None:  # N/m: R^2 k + R' F
+            force = moved.spring(t, position) / ratio[0]
+            rows.append(ratio[0] ** 2 * moved.coil.rate + ratio[1] * force / PER_MM)
+        return np.array(rows)
+
+    stretches = [running.turn.extremes(felt, (event.opening, event.closing)) for event in moved.stretches]
+    entry: dict[str, object] = {
+        "on": moved.body.name if moved.coil is not None else "tappet",
+        "open": [{"from_deg": opens, "to_deg": closes} for opens, closes in _open_deg(moved)],
+    }
+    if moved.coil is not None:
+        entry["shut"] = {"carried_by": "seat", "tappet_held_by": _held_shut(running)}
+    names = (("ratio", ""), ("mass_at_tappet", "kg"), ("rate_at_tappet", "N/m"))
+    for (name, unit), *each in zip(names, *stretches, strict=False):
+        entry[name] = _range((min(least for least, _ in each), max(most for _, most in each)), unit)
+    return entry
 
 
 def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
@@ -101,8 +169,13 @@ def forces_section(running: Running, extremes: Extremes) -> dict[str, object]:
         ],
         "torque": _range(extremes.torque, "N m"),
     }
+    if running.moved is not None:
+        section["moved"] = _moved_section(running, running.moved)
     if running.train.least_force is not None:
         section |= {"preload": running.preload, "preload_unit": turn.unit}
+    if running.sampled is not None:
+        at, within = running.sampled
+        section["load_sampled"] = {"at_deg": degrees(at), "within": within, "unit": turn.unit}
     ends = {"guide_a": "near", "guide_b": "far"}  # a stem's guide; other reactions are a linkage's
     if guide := [
         {"end": ends[name], **_range(entry, "N")} for name, entry in extremes.reactions.items() if name in ends

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import DesignedLinkage
-    from kin.dynamics.contact_forces import Elastic
+    from kin.follower.contact_forces import Elastic
     from kin.linkage.mechanism import LinkageMotion, Mechanism
     from kin.linkage.statics import FrameForces
     from kin.numeric.arrays import Array
@@ -85,6 +85,11 @@ class FrameRunning(Running):
 
     mechanism: Mechanism
 
+    @property
+    def swings(self) -> bool:
+        """Whether the linkage's output swings."""
+        return self.mechanism.unit == "deg"
+
     @cached_property
     def turn(self) -> FrameTurn:
         """Motion of the linkage's output over the turn."""
@@ -92,14 +97,17 @@ class FrameRunning(Running):
 
     def position(self, rows: Array) -> Array:
         """Output y, m or rad, and two derivatives by the shaft angle, (3, n), from `rows` in mm or rad."""
-        return rows if self.turn.swings else PER_MM * rows
+        return rows if self.swings else PER_MM * rows
 
-    def at(self, t: Array) -> State:
-        """State of motion and forces at relative angles t (n,), rad; RecipeErrors for a load without finite value."""
+    def at(self, t: Array, more: float = 0.0) -> State:
+        """State of motion and forces at relative angles t (n,), rad, with `more` load than the recipe's, N or N m.
+
+        Raises RecipeErrors for a load without a finite value.
+        """
         motion = self.mechanism.at(t, 2)
         rows = motion.over_shaft(motion.output)
         y = self.position(rows)
-        force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
+        force = self.inertia(t, rows, self.speed) + self.rest(t, y[0], more) + self.preload
         forces = self._given(motion, force, self.speed)
         (one, three), (two, four) = map(self._faces, forces.pairs)
         normal = np.array([one, two, three, four])
@@ -117,7 +125,7 @@ class FrameRunning(Running):
         coupler = None
         if body is not None:
             coupler = Coupler(body.centre, PER_MM * body.mass * speed**2, body.inertia * speed**2 / PER_MM)
-        return frame_forces(self.mechanism, motion, force / PER_MM if self.turn.swings else force, coupler)
+        return frame_forces(self.mechanism, motion, force / PER_MM if self.swings else force, coupler)
 
     @cached_property
     def pressed(self) -> Elastic | None:
@@ -125,7 +133,7 @@ class FrameRunning(Running):
 
         None with play, and where the recipe gives no stiffness.
         """
-        from kin.dynamics.contact_forces import preloaded
+        from kin.follower.contact_forces import preloaded
 
         preload = self.design.exact.preload
         if preload is None or preload.stiffness is None:
@@ -150,14 +158,16 @@ class FrameRunning(Running):
         if pressed is None:
             return []
 
-        def pull(t: Array, rank: int) -> Pull:  # forces are linear in the demand and in the coupler's inertia
+        # forces are linear in the demand and in the coupler's inertia
+        def pull(t: Array, more: float, rank: int) -> Pull:
             motion = self.mechanism.at(t, 2)
             rows = motion.over_shaft(motion.output)
-            moved = self._given(motion, self.inertia(rows, 1.0), 1.0).pairs[rank]
-            still = self._given(motion, self.rest(t, self.position(rows)[0]) + self.preload, 0.0).pairs[rank]
+            moved = self._given(motion, self.inertia(t, rows, 1.0), 1.0).pairs[rank]
+            still = self._given(motion, self.rest(t, self.position(rows)[0], more) + self.preload, 0.0).pairs[rank]
             return Pull(moved, still, pressed.loses_first, pressed.loses_second)
 
-        first, second = (lost(self.turn, self.turn.names[k::2], partial(pull, rank=k)) for k in range(2))
+        names = self.turn.names
+        first, second = (lost(self.turn, names[k::2], partial(pull, rank=k), self.doubts) for k in range(2))
         return sorted(first + second)
 
     def _joints(self, motion: LinkageMotion, force: Array) -> dict[str, Array]:
@@ -184,7 +194,7 @@ class FrameRunning(Running):
 
     def _changes(self, name: str, piece: MonotonePieces) -> dict[str, object]:
         both = piece.least()[0] < 0.0 < piece.greatest()[0]
-        places = {self.turn.degrees(at) for at in piece.crossings(0.0)} if both else set()
+        places = [self.turn.degrees(at) for at in piece.crossings_round(0.0)] if both else []
         return {"pair": name, "faces": PAIRS[name], "changes_at_deg": sorted(places)}
 
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.cams.flat_faced import spread
-from camgeo.capabilities.dynamics.checks import JAM
+from camgeo.capabilities.dynamics.declared import JAM
 from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.synthesis.checks import greatest
-from kin.judge.check import Check
 from kin.numeric.angles import degrees
+from kin.numeric.check import Check
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,14 +10,16 @@ from camgeo.common.rounding import downward
 from camgeo.part.features import edge_of, values_read
 from camgeo.recipe.discs import is_pair
 from camgeo.recipe.linkage import TURNING
+from camgeo.recipe.materials import material
 from camgeo.recipe.track import is_groove
-from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either, length, mapping
-from camgeo.schema.json_schema import table_schema
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, length, mapping
+from camgeo.schema.json_schema import number_schema, table_schema
 from camgeo.schema.yaml_source import Mapping, Sequence, describe, join
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from camgeo.capabilities.dynamics.load_table import LoadTable
+    from camgeo.recipe.materials import Material
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
 
@@ -64,22 +66,10 @@ class CouplerBody:
 
 
 @dataclass(frozen=True)
-class Material:
-    """Young's modulus, N/mm^2, Poisson's ratio, and the contact pressure that the material bears, N/mm^2.
-
-    `limit` is None where the recipe states none.
-    """
-
-    modulus: float
-    poisson: float
-    limit: float | None = None
-
-
-@dataclass(frozen=True)
 class Dynamics:
     """A follower train: N, kg and m; of a follower that turns N m, kg m^2 and rad. Lengths named below are in mm.
 
-    mass         driven by the contact
+    mass         driven by the contact; beside `moved_mass` that of the tappet alone
     stiffness    of the contact or train, N/m; None for a rigid train
     rpm          speed of the shaft, turns a minute
     damping      N s/m
@@ -91,7 +81,8 @@ class Dynamics:
     least_force  least force along the travel from which the preload follows; None where that is given
     width        of the contacts along the shaft, mm; None for the width of the metal
     roller_material  of what touches the cam; None where it is the cam's `material`
-    spring       the coil spring from which preload and rate follow, if one is given
+    spring       the coil spring, if one is given: preload and rate follow from it, unless it is on a valve
+    moved_mass   of the body that the tappet moves besides itself, kg, such as a valve
     """
 
     mass: float
@@ -110,24 +101,26 @@ class Dynamics:
     material: Material | None = None
     roller_material: Material | None = None
     spring: Coil | None = None
+    moved_mass: float = 0.0
 
 
 @dataclass(frozen=True)
 class Coil:
-    """A coil spring on the stem: its lengths, mm, and its rate, N/m.
+    """A coil spring on the stem, or with `on_body` on the valve that it works: its lengths, mm, and its rate, N/m.
 
-    `free` is the length without a load, `seat` at the follower's lowest position, `solid` with the coils on one
-    another, None where it is not given.
+    `free` is the length without a load, `seat` at the lowest position of what carries it, `solid` with the coils on one
+    another, None where it is not given. Lifts are of what carries it.
     """
 
     free: float
     seat: float
     rate: float
     solid: float | None = None
+    on_body: bool = False
 
     @property
     def preload(self) -> float:
-        """Force at the follower's lowest position, N."""
+        """Force at the lowest position, N."""
         return self.load(0.0)
 
     def load(self, lift: float) -> float:
@@ -170,42 +163,6 @@ def contact_width(
     return min(lengths, default=None)
 
 
-MATERIALS = {
-    "steel": Material(206_000.0, 0.3),
-    "nodular-iron": Material(169_000.0, 0.275),
-    "grey-iron": Material(110_000.0, 0.26),
-    "bronze": Material(110_000.0, 0.34),
-    "aluminium": Material(71_000.0, 0.33),
-    "pom": Material(3_000.0, 0.35),
-    "pa66": Material(3_000.0, 0.39),
-}
-"""Round figures of handbooks, for the pressure of contacts alone; none has a limit of its own."""
-
-
-OWN_MATERIAL = FieldTable(
-    (
-        Field("E", Kind.NUMBER, "Young's modulus, N/mm²", required=True, above=0, at_most=MOST, unit=Kind.PRESSURE),
-        Field("nu", Kind.NUMBER, "Poisson's ratio", required=True, at_least=0, at_most=0.5),
-        Field(
-            "limit",
-            Kind.NUMBER,
-            "pressure that it bears, N/mm²: reported, and not judged",
-            above=0,
-            at_most=MOST,
-            unit=Kind.PRESSURE,
-        ),
-    )
-)
-
-
-def _read_material(reader: Reader, field: Field, node: Node, path: str) -> Material | None:
-    """Read a material's name, or a mapping with its figures; None after a fault."""
-    if isinstance(node, Mapping):
-        values = reader.table(OWN_MATERIAL, node, path)
-        return Material(values["E"], values["nu"], values.get("limit")) if {"E", "nu"} <= values.keys() else None
-    return MATERIALS.get(reader.readers[Kind.CHOICE](reader, field, node, path))
-
-
 def _read_loads(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[float, float], ...] | None:
     """Read two pairs of a length, mm, and a force, N, the greater at the shorter length; None after a fault."""
     parts = (length("", ""), Field("", Kind.NUMBER, "", at_least=0, at_most=_MOST, unit=Kind.FORCE))
@@ -237,18 +194,52 @@ _LOADS: OwnForm[Reader] = OwnForm(
     _read_loads,
     lambda _: {"type": "array", "items": {"type": "array", "minItems": 2, "maxItems": 2}, "minItems": 2, "maxItems": 2},
 )
-_MATERIAL: OwnForm[Reader] = OwnForm(
-    "a material",
-    f"{either(tuple(MATERIALS))}, or {{E: 210000, nu: 0.3}}",
-    _read_material,
-    lambda _: {"anyOf": [{"enum": list(MATERIALS)}, table_schema(OWN_MATERIAL)]},
-    instead=OWN_MATERIAL,
+
+
+def _read_mass(reader: Reader, _: Field, node: Node, path: str) -> float | tuple[float, float] | None:
+    """Read a mass or inertia, or the masses of tappet and valve, kg; None after a fault."""
+    if isinstance(node, Mapping):
+        values = reader.table(MASSES, node, path)
+        return (values[TAPPET], values[VALVE]) if {TAPPET, VALVE} <= values.keys() else None
+    number: float | None = reader.readers[Kind.NUMBER](reader, _MASS, node, path)
+    return number
+
+
+TAPPET, VALVE = "tappet", "valve"
+_MASS = Field("mass", Kind.NUMBER, "", required=True, above=0, at_most=_MOST, unit=Kind.INERTIA)
+MASSES = FieldTable(
+    (
+        Field(
+            TAPPET,
+            Kind.NUMBER,
+            "mass of what moves with the tappet, and the rocker's as felt there, kg",
+            required=True,
+            above=0,
+            at_most=_MOST,
+            unit=Kind.MASS,
+        ),
+        Field(
+            VALVE,
+            Kind.NUMBER,
+            "mass of what moves with the valve: retainer, keys and a third of its spring too, kg",
+            required=True,
+            at_least=0,
+            at_most=_MOST,
+            unit=Kind.MASS,
+        ),
+    )
 )
-
-
+_MASS_FORM: OwnForm[Reader] = OwnForm(
+    "a mass",
+    "a number above 0, or beside valve {tappet: 0.08, valve: 0.11}",
+    _read_mass,
+    lambda _: {"anyOf": [*number_schema(_MASS)["anyOf"], table_schema(MASSES)]},
+    instead=MASSES,
+)
 COIL = FieldTable(
     (
-        length("seat_length", "length where the follower is lowest", required=True),
+        Field("on", Kind.CHOICE, "what carries it; required beside valve", default=TAPPET, choices=(VALVE, TAPPET)),
+        length("seat_length", "length where the follower is lowest, or the valve is on its seat", required=True),
         Field("rate", Kind.RATE, "its rate, N/m; a unit may stand behind it: 30 N/mm", above=0, at_most=_MOST),
         length("free_length", "length without a load, with the rate"),
         Field("loads", Kind.OWN, "two lengths with the forces there, in place of both", form=_LOADS),
@@ -260,12 +251,11 @@ DYNAMICS = FieldTable(
     (
         Field(
             "mass",
-            Kind.NUMBER,
+            Kind.OWN,
             "mass that the contact drives, kg; where the follower turns its moment of inertia, kg m²",
             required=True,
-            above=0,
-            at_most=_MOST,
             unit=Kind.INERTIA,
+            form=_MASS_FORM,
         ),
         Field(
             "damping",
@@ -318,17 +308,10 @@ DYNAMICS = FieldTable(
             unit=Kind.THRUST,
             form=LOAD,
         ),
-        Field("spring", Kind.TABLE, "a coil spring on the stem, in place of preload and rate", table=COIL),
+        Field("spring", Kind.TABLE, "a coil spring on the stem or the valve, in place of preload and rate", table=COIL),
         length("width", "width of the contacts, of which their pressure is found", default="that of the metal"),
-        Field("material", Kind.OWN, "material of the cam", choices=tuple(MATERIALS), form=_MATERIAL),
-        Field(
-            "roller_material",
-            Kind.OWN,
-            "that of what touches it",
-            default="that of the cam",
-            choices=tuple(MATERIALS),
-            form=_MATERIAL,
-        ),
+        material("material", "material of the cam"),
+        material("roller_material", "that of what touches it", default="that of the cam"),
         Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
         Field("transient", Kind.TRUTH, "whether the train is followed from rest, with its impacts", default="false"),
         mapping(
@@ -375,6 +358,7 @@ def fields() -> tuple[Field, ...]:
 
 def check(values: Values, reader: Reader) -> None:
     """Note the faults of a follower train and of keys that do not go with it; a coil spring gives preload and rate."""
+    _take_masses(values.get("dynamics", {}), reader)
     _take_spring(values.get("dynamics", {}), reader)
     _check_train(values.get("dynamics", {}), reader)
     _check_guide(values, reader)
@@ -383,8 +367,39 @@ def check(values: Values, reader: Reader) -> None:
     _check_elastic(values, reader)
 
 
+def _take_masses(train: Values, reader: Reader) -> None:
+    """Part the masses of tappet and valve, or note their faults."""
+    masses = train.get("mass")
+    if not isinstance(masses, tuple):
+        return
+    train["mass"], train["moved_mass"] = masses
+    path = "dynamics.mass"
+    if VALVE not in reader.marks:
+        reader.fault_at(path, "masses of tappet and valve without a valve", None, "give one number, or valve")
+    elif "dynamics.stiffness" in reader.marks:
+        what = "an elastic train has one mass"
+        reader.fault_at(path, what, None, "give one number, tappet + ratio^2 valve, or leave stiffness out")
+
+
+def _check_carrier(path: str, spring: Values, reader: Reader) -> bool:
+    """Whether it is told what carries a coil spring; notes its faults."""
+    beside, carrier = VALVE in reader.marks, spring.get("on")
+    if beside and f"{path}.on" not in reader.marks:
+        remedy = "give on: valve, whose travel it has, or on: tappet for one that presses the tappet itself"
+        reader.fault(reader.marks[path], f"{path}.on", "missing, needed beside valve", None, remedy)
+    elif carrier == VALVE and not beside:
+        reader.fault_at(f"{path}.on", "there is no valve", "'valve'", "give valve, or leave this out")
+    elif carrier == VALVE and "dynamics.stiffness" in reader.marks:
+        what = "the seat carries its spring while the valve is shut, which an elastic train does not follow"
+        remedy = "leave stiffness out, or give preload and rate as the tappet feels them in place of spring"
+        reader.fault_at(f"{path}.on", what, "'valve'", remedy)
+    else:
+        return True
+    return False
+
+
 def _take_spring(train: Values, reader: Reader) -> None:
-    """Set preload and rate of the train to those of its coil spring, or note the spring's faults."""
+    """Set preload and rate of the train to those of its coil spring on the stem, or note the spring's faults."""
     spring = train.get("spring")
     if spring is None:
         return
@@ -396,6 +411,8 @@ def _take_spring(train: Values, reader: Reader) -> None:
     if "dynamics.rate" in reader.marks:
         reader.fault_at("dynamics.rate", "cannot be combined with spring", None, "leave one of the two out")
         return
+    if not _check_carrier(path, spring, reader):
+        return
     free, rate = spring.get("free_length"), spring.get("rate")
     if "loads" in spring:  # the straight line through two loads: its slope, and the length at which it is 0
         (long, low), (short, high) = sorted(spring["loads"], reverse=True)
@@ -403,7 +420,7 @@ def _take_spring(train: Values, reader: Reader) -> None:
         free = long + low / (PER_MM * rate)
     if seat is None or free is None or rate is None:
         return
-    coil = Coil(free, seat, rate, spring.get("solid_length"))
+    coil = Coil(free, seat, rate, spring.get("solid_length"), spring.get("on") == VALVE)
     if not seat < free:
         length = f"{free / reader.mm:.6g} {reader.units}"
         reader.fault_at(f"{path}.seat_length", "the spring is slack there", None, f"give less than {length}")
@@ -411,7 +428,7 @@ def _take_spring(train: Values, reader: Reader) -> None:
         length = f"{seat / reader.mm:.6g} {reader.units}"
         reader.fault_at(f"{path}.solid_length", "its coils touch before it moves", None, f"give less than {length}")
     else:
-        train.update(spring=coil, preload=coil.preload, rate=rate)
+        train.update(spring=coil, **({} if coil.on_body else {"preload": coil.preload, "rate": rate}))
         reader.marks["dynamics.preload"] = reader.marks[path]  # figures and checks of a preload now apply
 
 
@@ -481,7 +498,7 @@ def _check_spring(train: Values, reader: Reader) -> None:
     if "dynamics" not in reader.marks or not train:
         return
     if "dynamics.stiffness" in reader.marks:
-        if not keys and "cam.preload" not in reader.marks:
+        if not keys and {"cam.preload", "dynamics.spring"}.isdisjoint(reader.marks):
             reader.fault(
                 reader.marks["dynamics"], "dynamics", "needs preload or backlash", None, "give exactly one of them"
             )
@@ -508,7 +525,7 @@ def _check_preloaded(values: Values, reader: Reader) -> None:
     train = values.get("dynamics", {})
     if values.get("cam", {}).get("preload") is None:
         return
-    spring = next((name for name in ("preload", "least_force") if name in train), None)
+    spring = next((name for name in ("spring", "preload", "least_force") if name in train), None)
     if "backlash" in train:
         remedy = "leave cam.preload out, or dynamics"
         reader.fault_at("dynamics.backlash", "clearance beside an interference", None, remedy)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.motions.lift_table import SHEET, TABLE, read_rows
-from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm
+from camgeo.schema.errors import quote
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.quantity import split_unit
 from camgeo.schema.yaml_source import Mapping, Scalar, join
@@ -80,21 +81,27 @@ def _read(reader: Reader, field: Field, node: Node, path: str) -> str | LoadTabl
 
 def _table(reader: Reader, values: Values, path: str) -> LoadTable | None:
     """Read the rows of a load's table; None after a fault."""
-    from kin.law.programme import IntentError
+    from kin.law.normalised import IntentError
     from kin.law.sources.table import periodic, straightened
+    from kin.read.tables import UNITS
 
     file, own = values["table"].name, reader.unit(Kind.THRUST)
     quantity: Quantity = "force" if own == "N" else "moment"
+    units = tuple(UNITS[quantity])
+    if values.get("units", units[0]) not in units:
+        where = f"{path.rpartition('.')[0]}.units"
+        reader.fault_at(where, f"no unit of a {quantity}", quote(values["units"]), f"give {either(units)}")
+        return None
     table = read_rows(reader, values, path, quantity=quantity, instead="N" if own == "N" else "Nm")
     if table is None:
         return None
     try:
-        rows = periodic(table[0].samples(), TURN, path, reader.unit(Kind.THRUST))
+        rows = periodic(table.samples(), TURN, path, reader.unit(Kind.THRUST))
     except IntentError as error:
         reader.fault_at(path, f"{file}, {error.message}")
         return None
     if len(rows.s) > _MANY:
-        rows = straightened(rows, 0.5 * table[1])
+        rows = straightened(rows, min(table.rounding))
     largest, line = max(zip(map(abs, rows.s), rows.lines, strict=True))
     if largest > MOST_LOAD:
         reader.fault_at(

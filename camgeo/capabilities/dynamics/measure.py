@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.capabilities.dynamics.checks import LEAST_BACKLASH
+from camgeo.capabilities.dynamics.declared import LEAST_BACKLASH
 from camgeo.capabilities.dynamics.figures import AT_SPEED, COIL_BIND, FIGURES, JAM_MARGIN, OPEN_LOAD, SEAT_LOAD
 from camgeo.capabilities.dynamics.guide import jam_angle
 from camgeo.capabilities.dynamics.keys import Dynamics
+from camgeo.capabilities.dynamics.moved_train import greatest_travel, moved_body
 from camgeo.measures.figures import figure_of_check, motion_figures
 from camgeo.measures.measured import Measured
 from camgeo.recipe.figures import PEAKS
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.dynamics.keys import Coil
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 ORDERS = {name: order for order, name in enumerate(AT_SPEED, 1)}
 
@@ -45,6 +46,8 @@ def measure(recipe: Recipe, design: Design, names: Sequence[str], speeds: Mappin
     coils = [name for name in names if name in _OF_COIL]
     if coils and train is not None and train.spring is not None:
         lift = motion_figures(design, 0)["swing"].value or 0.0
+        if train.spring.on_body and (body := moved_body(recipe, design)) is not None:
+            lift = greatest_travel(body, lift)
         for name in coils:
             figures[name] = _OF_COIL[name](train.spring, lift)
     if not {*names} <= {*ORDERS, JAM_MARGIN, *_OF_COIL}:

@@ -36,6 +36,18 @@ def forces(report: dict[str, Any]) -> str:
     for name, entry in ranges:
         for word, key in (("least", "min"), ("greatest", "max")):
             rows.append((f"{word} {name}", entry[key], entry["unit"], entry[f"{key}_at_deg"]))
+    if (moved := section.get("moved")) is not None:
+        held = moved.get("shut", {}).get("tappet_held_by")
+        for stretch in moved["open"]:
+            caption += f" The valve is open from {number(stretch['from_deg'])}° to {number(stretch['to_deg'])}°."
+        caption += "" if held is None else f" Before and after, its seat carries the spring: {held} holds the tappet."
+        felt = (("ratio", "ratio of the open valve"), ("mass_at_tappet", "mass that the tappet feels"))
+        for key, name in (*felt, ("rate_at_tappet", "spring rate that it feels")):
+            if (entry := moved.get(key)) is not None:
+                for word, end in (("least", "min"), ("greatest", "max")):
+                    rows.append((f"{word} {name}", entry[end], entry["unit"], entry[f"{end}_at_deg"]))
+    if (sampled := section.get("load_sampled")) is not None:
+        rows.append(("load is sampled, and may be off by", sampled["within"], sampled["unit"], sampled["at_deg"]))
     # contacts: width, pressure, mean forces of rollers, speeds that lift contacts off
     if (width := section.get("width")) is not None:
         rows.append((f"width of the contacts: {width['bound_by']}", width["value"], width["unit"], None))

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from camgeo.capabilities.dynamics.figures import FORCE_GREATEST, FORCE_LEAST, PRESSURE, TORQUE
 from camgeo.capabilities.dynamics.running_forces import running_of
-from camgeo.report.page.curves import Plot, Series, limits, short, shown_unit
+from camgeo.report.page.curves import limits, short, shown_unit
 from camgeo.report.page.followers import SHAFT
+from camgeo.report.plot import Plot, Series
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:

@@ -21,21 +21,28 @@ from camgeo.checks.remedies import worst
 from camgeo.common.rounding import downward, upward
 
 if TYPE_CHECKING:
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
     from camgeo.recipe.recipe import Recipe
 
 
 def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
-    """Words with the preload at which contact holds as intended and with every file.
+    """Words with the preload, or the coil spring's force, at which contact holds as intended and with every file.
 
-    Empty where contact holds, and for a train without preload. In an elastic train the contact gets k/(k + k_p) of a
-    greater preload, with k the stiffness of the train and k_p the rate of the spring.
+    Empty where contact holds, and for a train without a spring. In an elastic train the contact gets k/(k + k_p) of a
+    greater preload, with k the stiffness of the train and k_p the rate of the spring; a spring on a valve is felt by
+    the tappet times the ratio, of which the least counts.
     """
     train, least = recipe.of(Dynamics), worst(check, report)
-    if train is None or train.preload is None or not least < 0.0:
+    if train is None or not least < 0.0:
         return ""
     yields = 0.0 if train.stiffness is None else train.rate / train.stiffness
-    return f"a dynamics.preload of {upward(train.preload - least * (1.0 + yields))}"
+    lacking = -least * (1.0 + yields)
+    if train.spring is not None:
+        felt = report["forces"]["moved"]["ratio"]["min"] if train.spring.on_body else 1.0
+        return (
+            f"a dynamics.spring of {upward(train.spring.preload + lacking / felt)} N at its seat_length, its rate kept"
+        )
+    return "" if train.preload is None else f"a dynamics.preload of {upward(train.preload + lacking)}"
 
 
 def of_limit(recipe: Recipe, figure: str, value: float, bound: float) -> str:
@@ -48,18 +55,19 @@ def of_limit(recipe: Recipe, figure: str, value: float, bound: float) -> str:
     if figure == BACKLASH_LEFT:
         return "a greater dynamics.backlash, or a lower dynamics.rpm" if value < bound else ""
     if figure == JAM_MARGIN:
-        advice, less = recipe.cam.advice, "a longer guide, less overhang or friction of it"
+        advice, shorter = recipe.cam.advice, "a longer guide, less overhang or friction of it"
         larger = f", or {advice.larger}, {advice.less_steep}" if advice.larger and not recipe.cam.sizes else ""
-        return less + larger if value < bound else ""
-    held = ("dynamics.preload", "dynamics.least_force", "cam.preload.interference")
+        return shorter + larger if value < bound else ""
+    held = ("dynamics.spring", "dynamics.preload", "dynamics.least_force", "cam.preload.interference")
     spring = next((path for path in held if path in recipe.marks), "")
+    more, less = ("stronger", "weaker") if spring == "dynamics.spring" else ("greater", "smaller")
     if figure in {FORCE_LEAST, LEAST_FORCE}:
-        return f"a greater {spring}, or a lower dynamics.rpm" if spring and value < bound else ""
+        return f"a {more} {spring}, or a lower dynamics.rpm" if spring and value < bound else ""
     if figure not in {PRESSURE, FORCE_GREATEST, PEAK_FORCE, TORQUE, GUIDE_FORCE, MEAN_FORCE}:
         return ""
     raised = value < bound
     forces = "more mass or load" if raised else "less mass or load"
-    forces = f"a {'greater' if raised else 'smaller'} {spring}, {forces}" if spring else forces
+    forces = f"a {more if raised else less} {spring}, {forces}" if spring else forces
     if figure == PRESSURE:  # Hertz's pressure grows with the root of force over width
         share = (value / bound) ** 2
         if raised:

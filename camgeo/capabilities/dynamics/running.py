@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.dynamics.keys import contact_width
-from camgeo.capabilities.dynamics.load_table import MOST_LOAD
+from camgeo.capabilities.dynamics.load_table import MOST_LOAD, LoadTable
+from camgeo.measures.hertz import bearable, line_pressure
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.records import dataclass
 
@@ -24,15 +25,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from camgeo.capabilities.dynamics.keys import Dynamics, Width
+    from camgeo.capabilities.dynamics.load_formula import FormulaLoad, Sampled
+    from camgeo.capabilities.dynamics.moved_train import MovedTrain
     from camgeo.measures.forces import Turn
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.follower.contact_lines import ContactLine
-    from kin.law.formula.formula import Formula
     from kin.numeric.arrays import Array
-
-STRETCHES, MOST_OPEN = 256, 64  # of a turn in which a load is enclosed; at most so many unsettled ones are halved
-NARROW, LARGE = 1e-9, 1e6  # a load that exceeds LARGE times its usual size within NARROW, rad, has a pole there
 
 
 class State(NamedTuple):
@@ -79,6 +78,11 @@ class Running(ABC):
 
     @property
     @abstractmethod
+    def swings(self) -> bool:
+        """Whether forces along the travel are moments."""
+
+    @property
+    @abstractmethod
     def turn(self) -> Turn:
         """Motion of the follower over the turn."""
 
@@ -87,12 +91,20 @@ class Running(ABC):
         """Position y, m or rad, and two derivatives by the shaft angle (3, n), from the turn's `rows`, mm or rad."""
 
     @abstractmethod
-    def at(self, t: Array) -> State:
-        """State of motion and forces at parameters t of the turn (n,); RecipeErrors for a load without finite value."""
+    def at(self, t: Array, more: float = 0.0) -> State:
+        """State of motion and forces at parameters t of the turn (n,), with `more` load than the recipe's, N or N m.
+
+        Raises RecipeErrors for a load without a finite value.
+        """
 
     @abstractmethod
     def own_section(self) -> dict[str, object]:
         """Entries of the report's section in addition to the extremes and the speeds of loss, by name."""
+
+    @property
+    def moved(self) -> MovedTrain | None:
+        """Mass and spring of what the follower moves beside itself; None without either."""
+        return None
 
     @property
     def jam_deg(self) -> float | None:
@@ -125,9 +137,28 @@ class Running(ABC):
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Shaft angles, rad, at which a load from a table changes its slope; empty for a formula."""
-        load = self.train.load
-        return () if isinstance(load, str) else tuple(load.corners.tolist())
+        """Shaft angles, rad, at which the load is not smooth, or is cut so that no narrow feature of it is missed.
+
+        Raises RecipeErrors as `load` does.
+        """
+        return tuple(self._followed.corners.tolist())
+
+    @property
+    def doubts(self) -> tuple[float, ...]:
+        """Loads beside the one computed, N or N m, between which the true one lies: 0 alone, unless it is sampled.
+
+        Raises RecipeErrors as `load` does.
+        """
+        sampled = self.sampled
+        return (0.0,) if sampled is None else (-sampled.within, 0.0, sampled.within)
+
+    @property
+    def sampled(self) -> Sampled | None:
+        """Where a load is sampled, and by how much it may be off; None for a load of which all is proved.
+
+        Raises RecipeErrors as `load` does.
+        """
+        return None if isinstance(self._followed, LoadTable) else self._followed.sampled
 
     @cached_property
     def lowest(self) -> float:
@@ -136,46 +167,54 @@ class Running(ABC):
         return least.value
 
     @cached_property
-    def load(self) -> Callable[[Array], Array]:
-        """The load as a function of shaft angles (n,), rad: N or N m (n,), above 0 where it presses towards the cam.
-
-        Raises RecipeErrors for a formula that somewhere has no value or no bound, or exceeds MOST_LOAD in magnitude.
-        """
-        from kin.law.formula.formula import Formula, FormulaDomainError
+    def _followed(self) -> LoadTable | FormulaLoad:
+        """The load with its corners; raises RecipeErrors as `load` does."""
+        from camgeo.capabilities.dynamics.load_formula import LoadError, followed
+        from kin.law.formula.formula import FormulaDomainError
 
         load = self.train.load
         if not isinstance(load, str):
             return load
-        formula = Formula(load)
         try:
-            at, beyond = unbounded(formula), place_beyond(formula, MOST_LOAD)
-            formula(self.turn.shaft(self.turn.places))
+            return followed(load)
         except FormulaDomainError as error:
             raise self.recipe.error("dynamics.load", str(error)) from error
-        if at is not None:
-            why = f"it has no bound near {degrees(at):.6g} degrees"
-            raise self.recipe.error("dynamics.load", why, f"'{load}'", "give a load that is finite")
-        if beyond is not None:
-            value = abs(float(formula(np.array([beyond]))[0]))
-            why = f"it reaches {value:.4g} {self.turn.unit} at {degrees(beyond):.6g} degrees, above {MOST_LOAD:.0f}"
-            raise self.recipe.error("dynamics.load", why, f"'{load}'", "give a smaller load")
-        return lambda phi: np.asarray(formula(np.asarray(phi, dtype=np.float64)))
+        except LoadError as error:
+            place = f"{degrees(error.at):.6g} degrees"
+            if error.size is None:
+                why, remedy = f"it has no bound near {place}", "give a load that is finite"
+                raise self.recipe.error("dynamics.load", why, f"'{load}'", remedy) from error
+            unit = "N m" if self.swings else "N"
+            why = f"it reaches {error.size:.4g} {unit} at {place}, above {MOST_LOAD:.0f}"
+            raise self.recipe.error("dynamics.load", why, f"'{load}'", "give a smaller load") from error
 
-    def rest(self, t: Array, y: Array) -> Array:
-        """Part of F without inertia and preload, N or N m (n,): k (y - least y) + load.
+    def load(self, phi: Array) -> Array:
+        """The load at shaft angles (n,), rad: N or N m (n,), above 0 where it presses towards the cam.
+
+        Raises RecipeErrors for a formula that somewhere has no value or no bound, or exceeds MOST_LOAD in magnitude.
+        """
+        from kin.law.formula.formula import FormulaDomainError
+
+        try:
+            return self._followed(phi)
+        except FormulaDomainError as error:
+            raise self.recipe.error("dynamics.load", str(error)) from error
+
+    def rest(self, t: Array, y: Array, more: float = 0.0) -> Array:
+        """Part of F without inertia and preload, N or N m (n,): k (y - least y) + load + `more`.
 
         `t` (n,) are parameters of the turn, `y` (n,) positions there, m or rad. Raises RecipeErrors for a load without
         a finite value, RoughError for too abrupt a motion.
         """
-        load = self.load(self.turn.shaft(t))
+        load = self.load(self.turn.shaft(t)) + more
         rest: Array = self.train.rate * (y - self.lowest) + load if self.train.rate else load
         return rest
 
-    def inertia(self, rows: Array, speed: float) -> Array:
+    def inertia(self, t: Array, rows: Array, speed: float) -> Array:  # noqa: ARG002 - where a seat bears a mass
         """Part of F that accelerates the mass, m Omega^2 y'', N or N m (n,), at the speed Omega, rad/s.
 
-        It is above 0 where the follower accelerates in the direction in which y grows. `rows` (3, n) are position and
-        derivatives of the turn, mm or rad.
+        It is above 0 where the follower accelerates in the direction in which y grows. `t` (n,) are parameters of the
+        turn, `rows` (3, n) position and derivatives there, mm or rad.
         """
         force: Array = self.train.mass * speed**2 * self.position(rows)[2]
         return force
@@ -184,14 +223,15 @@ class Running(ABC):
     def preload(self) -> float:
         """Force of the spring at the lowest position, N or N m: as stated, or the least that keeps `least_force`.
 
-        0 without a spring. Raises RecipeErrors for a load without a finite value, RoughError for too abrupt a motion.
+        It keeps that with the least of the `doubts` too. 0 without a spring. Raises RecipeErrors for a load without a
+        finite value, RoughError for too abrupt a motion.
         """
         if self.train.least_force is None:
             return self.train.preload or 0.0
 
         def without(t: Array) -> Array:
             rows = self.turn.rows(t)
-            force: Array = self.inertia(rows, self.speed) + self.rest(t, self.position(rows)[0])
+            force: Array = self.inertia(t, rows, self.speed) + self.rest(t, self.position(rows)[0], self.doubts[0])
             return force[None]
 
         ((least, _),) = self.turn.extremes(without)
@@ -200,8 +240,7 @@ class Running(ABC):
     @property
     def most_pressure(self) -> float | None:
         """The lower of the pressures that both materials bear, N/mm^2; None where the recipe states none."""
-        bodies = (self.train.material, self.train.roller_material)
-        return min((body.limit for body in bodies if body is not None and body.limit is not None), default=None)
+        return bearable(self.train.material, self.train.roller_material)
 
     @cached_property
     def width(self) -> Width | None:
@@ -213,19 +252,15 @@ class Running(ABC):
         return contact_width(self.train.width, part.thickness, part.edge, depth)
 
     def hertz(self, normal: Array, curvature: Array) -> Array | None:
-        """Greatest pressure of line contacts, N/mm^2 (m, n), by Hertz: p = sqrt(N kappa/(pi B C)).
+        """Greatest pressure of the contacts, N/mm^2 (m, n), by `line_pressure`; None without material or width.
 
-        `normal` (m, n) is the force N, N; `curvature` (m, n) is kappa, the sum of both bodies' curvatures, 1/mm, with
-        pressure 0 where it is below 0. B is the width and C the sum of (1 - nu^2)/E of both. None without material or
-        width.
+        `normal` (m, n) is the force, N; `curvature` (m, n) the sum of both bodies' curvatures, 1/mm.
         """
         train = self.train
         if train.material is None or self.width is None:
             return None
-        bodies = [train.material, train.roller_material or train.material]
-        compliance = sum((1.0 - body.poisson**2) / body.modulus for body in bodies)
-        pressure: Array = np.sqrt(np.maximum(normal * curvature, 0.0) / (math.pi * self.width.length * compliance))
-        return pressure
+        touching = train.roller_material or train.material
+        return line_pressure(normal, curvature, self.width.length, train.material, touching)
 
 
 class Pull(NamedTuple):
@@ -241,72 +276,40 @@ class Pull(NamedTuple):
     loses_second: Array
 
 
-def lost(turn: Turn, names: Sequence[str], pull: Callable[[Array], Pull]) -> list[LossSpeed]:
+def lost(
+    turn: Turn, names: Sequence[str], pull: Callable[[Array, float], Pull], doubts: Sequence[float]
+) -> list[LossSpeed]:
     """Speed from which each of two preloaded contacts is lost; `names` has their names, the first contact's first.
 
-    `pull` gives the load at parameters of the turn (n,). With J its `inertia`, W its `rest` and L the load at which a
-    contact is lost, that contact is lost from Omega^2 = (L - W)/J on; the least over the turn counts. Raises RoughError
-    where the motion changes too abruptly, RecipeErrors where `pull` does.
+    `pull` gives the load at parameters of the turn (n,), with more load than the recipe's, N or N m. With J its
+    `inertia`, W its `rest` and L the load at which a contact is lost, that contact is lost from Omega^2 = (L - W)/J on;
+    the least over the turn, and over the `doubts`, counts. Raises RoughError where the motion changes too abruptly,
+    RecipeErrors where `pull` does.
     """
+    losses = [_lost(turn, names, pull, more) for more in doubts]
+    return [min(own, key=lambda loss: math.inf if loss.rpm is None else loss.rpm) for own in zip(*losses, strict=True)]
+
+
+def _lost(turn: Turn, names: Sequence[str], pull: Callable[[Array, float], Pull], more: float) -> list[LossSpeed]:
+    """The speeds of `lost` under `more` load than the recipe's, N or N m."""
+
+    def left(pull_at: Pull) -> Array:
+        return np.array([pull_at.rest - pull_at.loses_first, pull_at.loses_second - pull_at.rest])
+
+    held = [least for least, _ in turn.extremes(lambda t: left(pull(t, more)))]
+    holds = np.array([[least.value > 0.0] for least in held])
 
     def shares(t: Array) -> Array:
-        pull_at = pull(t)
-        upper, lower = pull_at.loses_second - pull_at.rest, pull_at.rest - pull_at.loses_first
-        return np.array([-pull_at.inertia / lower, pull_at.inertia / upper, upper, lower])
+        pull_at = pull(t, more)
+        share: Array = np.array([-pull_at.inertia, pull_at.inertia]) / np.where(holds, left(pull_at), 1.0)
+        return share  # of a contact that is lost at rest it says nothing
 
-    (_, first), (_, second), (upper, _), (lower, _) = turn.extremes(shares)
     losses = []
-    for name, share, left in zip(names, (first, second), (lower, upper), strict=True):
-        if left.value <= 0.0:  # the contact is lost at rest
-            losses.append(LossSpeed(name, 0.0, left.at_deg))
+    for name, least, (_, share) in zip(names, held, turn.extremes(shares), strict=True):
+        if least.value <= 0.0:
+            losses.append(LossSpeed(name, 0.0, least.at_deg))
         elif share.value > 0.0:
             losses.append(LossSpeed(name, 60.0 / TURN / math.sqrt(share.value), share.at_deg))
         else:
             losses.append(LossSpeed(name, None, None))
     return losses
-
-
-def unbounded(formula: Formula) -> float | None:
-    """A shaft angle, rad, near which a formula grows beyond all bounds; None where none is found.
-
-    Stretches of the turn over which intervals give no finite enclosure are halved down to NARROW; there the formula is
-    evaluated on both sides. Of more than MOST_OPEN the rest is given up, so None is no proof. Raises FormulaDomainError
-    where it has no value at a place that is evaluated.
-    """
-    low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
-    high: Array = low + TURN / STRETCHES
-    usual = float(np.median(np.abs(formula(0.5 * (low + high))))) + 1.0
-    while True:
-        value = formula.ball(low, high, 0)
-        open_ = ~np.isfinite(value.rad[0])
-        low, high = low[open_][:MOST_OPEN], high[open_][:MOST_OPEN]
-        if not len(low) or float((high - low).max()) < NARROW:
-            break
-        middle = 0.5 * (low + high)
-        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
-    for at in low:
-        sides = np.array([at - NARROW, at + 2.0 * NARROW])
-        if float(np.abs(formula(sides)).max()) > LARGE * usual:
-            return float(at)
-    return None
-
-
-def place_beyond(formula: Formula, most: float) -> float | None:
-    """A shaft angle, rad, at which the magnitude of a formula exceeds `most`; None where none is found.
-
-    Stretches over which intervals do not prove the magnitude to be within `most` are halved down to NARROW, and their
-    middles evaluated; of more than MOST_OPEN the rest is given up. None is no proof where any is left. Raises
-    FormulaDomainError where the formula has no value at a place that is evaluated.
-    """
-    low: Array = TURN / STRETCHES * np.arange(STRETCHES, dtype=np.float64)
-    high: Array = low + TURN / STRETCHES
-    while len(low) and float((high - low).max()) > NARROW:
-        middle = 0.5 * (low + high)
-        beyond = np.abs(formula(middle)) > most
-        if beyond.any():
-            return float(middle[np.argmax(beyond)])
-        enclosure = formula.ball(low, high, 0)
-        within = np.abs(enclosure.mid[0]) + enclosure.rad[0] <= most
-        low, middle, high = (row[~within][:MOST_OPEN] for row in (low, middle, high))
-        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
-    return None

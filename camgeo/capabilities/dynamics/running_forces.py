@@ -15,9 +15,10 @@ import numpy as np
 
 from camgeo.capabilities.dynamics.frame_forces import frame_running
 from camgeo.capabilities.dynamics.keys import Dynamics
+from camgeo.capabilities.dynamics.moved_train import moved_train
 from camgeo.capabilities.dynamics.running import LossSpeed, Pull, Running, State, lost
 from camgeo.measures.forces import PER_MM, FollowerTurn, elastic_contacts
-from kin.dynamics.contact_forces import Guided
+from kin.follower.contact_forces import Guided
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.records import dataclass
@@ -26,9 +27,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.cams.family import Preload
+    from camgeo.capabilities.dynamics.moved_train import MovedTrain
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.dynamics.contact_forces import Elastic
+    from kin.follower.contact_forces import Elastic
     from kin.follower.contact_lines import ContactLine
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
@@ -40,6 +42,11 @@ PANELS, NODES = 48, 8  # of Gauss's rule between two neighbouring places where t
 @dataclass(frozen=True, eq=False)
 class FollowerRunning(Running):
     """Forces of a follower without a linkage."""
+
+    @property
+    def swings(self) -> bool:
+        """Whether forces along the travel are moments."""
+        return self.design.follower.arrangement.unit == "deg"
 
     @cached_property
     def turn(self) -> FollowerTurn:
@@ -62,7 +69,7 @@ class FollowerRunning(Running):
     @property
     def unit(self) -> float:
         """Metres, or radians, in one unit of the follower's position: 0.001 for mm, 1 for rad."""
-        return 1.0 if self.turn.swings else PER_MM
+        return 1.0 if self.swings else PER_MM
 
     def position(self, rows: Array) -> Array:
         """Position y, m or rad, and two derivatives by the shaft angle (3, n), above 0 as the first contact pushes.
@@ -72,12 +79,42 @@ class FollowerRunning(Running):
         position: Array = self.senses[0] * self.unit * rows
         return position
 
-    def at(self, t: Array) -> State:
-        """State of motion and forces at shaft angles t (n,), rad; RecipeErrors for a load without finite value."""
-        return self.in_motion(t, self.turn.rows(t))
+    @cached_property
+    def moved(self) -> MovedTrain | None:
+        """Mass and spring of what the follower moves beside itself; None without either.
 
-    def in_motion(self, t: Array, rows: Array, gap: Array | None = None) -> State:
-        """State of motion and forces at shaft angles t (n,), rad, for a given motion.
+        Raises RecipeErrors for a valve that never opens or does not fit the follower's lift.
+        """
+        return moved_train(self.recipe, self.design, self.train)
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Shaft angles, rad, of the load's corners, and where a valve is taken up or put down.
+
+        Raises RecipeErrors as `load` and `moved` do.
+        """
+        ends = () if self.moved is None else tuple(angle % TURN for angle in self.moved.ends)
+        return (*super().corners, *ends)
+
+    def inertia(self, t: Array, rows: Array, speed: float) -> Array:
+        """Part of F that accelerates the follower and what it moves, N or N m (n,), at the speed Omega, rad/s."""
+        own = super().inertia(t, rows, speed)
+        return own if self.moved is None else own + self.senses[0] * speed**2 * self.moved.inertia(t, rows)
+
+    def rest(self, t: Array, y: Array, more: float = 0.0) -> Array:
+        """Part of F without inertia and preload, N or N m (n,), with the force of a spring on a valve."""
+        rest, sense = super().rest(t, y, more), self.senses[0]
+        return rest if self.moved is None else rest + sense * self.moved.spring(t, sense * y / self.unit)
+
+    def at(self, t: Array, more: float = 0.0) -> State:
+        """State of motion and forces at shaft angles t (n,), rad, with `more` load than the recipe's, N or N m.
+
+        Raises RecipeErrors for a load without a finite value.
+        """
+        return self.in_motion(t, self.turn.rows(t), more=more)
+
+    def in_motion(self, t: Array, rows: Array, gap: Array | None = None, more: float = 0.0) -> State:
+        """State of motion and forces at shaft angles t (n,), rad, for a given motion, with `more` load, N or N m.
 
         `rows` (3, n) are position, mm or rad, and two derivatives by the shaft angle. `gap` (n,), mm or rad along the
         travel, is how much less than intended two preloaded contacts overlap with made metal. Normal forces are nan
@@ -85,7 +122,7 @@ class FollowerRunning(Running):
         """
         lines = self.turn.lines(rows)
         y = self.position(rows)
-        force = self.inertia(rows, self.speed) + self.rest(t, y[0]) + self.preload
+        force = self.inertia(t, rows, self.speed) + self.rest(t, y[0], more) + self.preload
         normal = self._normal(force, rows, lines, gap)
         shaft = np.array([side * line.shaft for side, line in zip(self.sides, lines, strict=True)])
         torque: Array = PER_MM * np.sum(normal * shaft, axis=0)
@@ -94,7 +131,7 @@ class FollowerRunning(Running):
 
     def _normal(self, force: Array, rows: Array, lines: Sequence[ContactLine], gap: Array | None = None) -> Array:
         """Normal force of each contact, N (m, n); nan where the stem jams in its guide."""
-        scale = PER_MM if self.turn.swings else 1.0
+        scale = PER_MM if self.swings else 1.0
         levers = scale * np.array([line.lever for line in lines])  # m about a pivot
         if self.held_by is not None:
             normal: Array = self._pressed(self.held_by, rows, lines, gap).split(force / scale) * scale / levers
@@ -120,7 +157,7 @@ class FollowerRunning(Running):
         """
         if self.held_by is None:
             return None
-        scale = PER_MM if self.turn.swings else 1.0
+        scale = PER_MM if self.swings else 1.0
         force: Array = scale * elastic_contacts(self.turn, self.held_by, rows).apart(gap).preload
         return force
 
@@ -226,12 +263,14 @@ class FollowerRunning(Running):
 
     @cached_property
     def changes(self) -> Array:
-        """Shaft angles (k,), rad, at which F changes sign: with clearance the other contact begins to bear.
+        """Shaft angles (k,), rad, from 0 to below a turn, at which F changes sign.
+
+        With clearance the other contact begins to bear there.
 
         Raises RecipeErrors for a load without a finite value, RoughError for too abrupt a motion.
         """
         (piece,) = self.turn.pieces(lambda phi: self.state(phi).force[None])
-        return piece.crossings(0.0)
+        return piece.crossings_round(0.0)
 
     def mean_force(self, index: int) -> tuple[float, float] | None:
         """Equivalent force, N, on the roller of contact `index`, and its turns per turn of the shaft.
@@ -292,15 +331,15 @@ class FollowerRunning(Running):
         preload = self.held_by
         if preload is None:
             return []
-        scale = PER_MM if self.turn.swings else 1.0
+        scale = PER_MM if self.swings else 1.0
 
-        def held(phi: Array) -> Pull:
+        def held(phi: Array, more: float) -> Pull:
             rows = self.turn.rows(phi)
             pair = self._pressed(preload, rows, self.turn.lines(rows))
-            rest = self.rest(phi, self.position(rows)[0]) + self.preload
-            return Pull(self.inertia(rows, 1.0), rest, scale * pair.loses_first, scale * pair.loses_second)
+            rest = self.rest(phi, self.position(rows)[0], more) + self.preload
+            return Pull(self.inertia(phi, rows, 1.0), rest, scale * pair.loses_first, scale * pair.loses_second)
 
-        return lost(self.turn, self.turn.names, held)
+        return lost(self.turn, self.turn.names, held, self.doubts)
 
 
 def running_of(recipe: Recipe, design: Design) -> Running | None:
@@ -320,7 +359,7 @@ def running_of(recipe: Recipe, design: Design) -> Running | None:
 
 def follower_running(recipe: Recipe, design: Design, train: Dynamics) -> FollowerRunning:
     """Forces of a follower without a linkage; RecipeErrors for a single contact that nothing holds on the cam."""
-    held = train.preload is not None or train.least_force is not None
+    held = train.preload is not None or train.least_force is not None or train.spring is not None
     if not held and len(design.follower.contacts) == 1:
         why = f"a single {design.follower.name} is held on the cam by a spring"
         raise recipe.error("dynamics", why, None, "give preload or least_force")

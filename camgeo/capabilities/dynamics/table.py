@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.formats.extension import Table
 from camgeo.formats.tables.tabled import table_maker
-from camgeo.registry.formats import Form
 
 if TYPE_CHECKING:
     from camgeo.formats.tables.tabled import Columns
@@ -34,4 +34,4 @@ def _columns(job: Job, request: FileRequest) -> Columns:
 
 
 # forces are nan where the stem jams: such rows have gaps
-FORM = Form(name="forces", surfaces=2, discs=2, check=_check, make=table_maker("forces", _columns, gaps=True))
+FORM = Table(name="forces", surfaces=2, discs=2, check=_check, make=table_maker("forces", _columns, gaps=True))

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from camgeo.capabilities.follow.follower import TRACKS, describe_follower
-from camgeo.capabilities.follow.outline import read_outline
+from camgeo.capabilities.follow.outline import Reading, read_outline
 from camgeo.common.arguments import demand_type, number_of, path_of, short_repr, text_of, whole_of
 from camgeo.common.errors import CallError, with_packages
 from camgeo.common.rounding import upward
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.schema.fields import MOST
+from kin.contour.pieces import LINE
 from kin.follower.measured import measured
 from kin.follower.motion_error import ContactError
-from kin.numeric.records import dataclass, field
+from kin.follower.unknown import across_words, stretches, unknown_angles
+from kin.numeric.records import dataclass, field, replace
+from kin.read.points import SUFFIXES
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -28,12 +32,16 @@ if TYPE_CHECKING:
     from camgeo.capabilities.follow.outline import Outline
     from camgeo.common.units import Units
     from kin.follower.measured import MeasuredMotion
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
 
 READING = 0.01  # mm: default tolerance of dwells about their level, and of a recipe's motion about the rows
 STEPS = 720  # of a turn by default
 LEAST_STEPS, MOST_STEPS = 36, 100_000
+MOST_TURN = 360
 LENGTHS = 2  # coordinates of a place
+# A contour is a polygon drawn for a curve where so many lines meet by turns below this angle, rad; it stands off the
+# curve as far as this share of them do at most.
+LEAST_FACETS, FACET_TURN, MOST_FACETS = 12, math.radians(15.0), 0.95
 OPENINGS = "verify: {openings: ignore}  # those of the file are not made: name in part what is wanted of them"
 
 
@@ -59,8 +67,9 @@ class Followed:
     `position` (n,) is the distance of the touch along the line of travel from its point nearest to the shaft, or the
     angle at the pivot between the line to the shaft and the arm; `velocity` and `acceleration` (n,) are by radian of
     the shaft. `pressure_angle` (n,) is above 0 where the cam drives a rise, `radius` (n,) the contour's radius of
-    curvature at the contact, negative in a hollow, 0 at a corner. `bore` is the diameter of a round hole about the
-    shaft, `blank` that of a round outline of a ring or of a groove's blank; None without one.
+    curvature at the contact, negative in a hollow, 0 at a corner. Of a polygon, which has `facets`, `acceleration` and
+    `radius` are those of its corners: tables and figures leave them out. `bore` is the diameter of a round hole about
+    the shaft, `blank` that of a round outline of a ring or of a groove's blank; None without one.
     """
 
     path: Path
@@ -69,6 +78,7 @@ class Followed:
     at: tuple[float, float]
     units: float | None
     reading: float
+    _asked: Reading = field(repr=False)
     _outline: Outline = field(repr=False)
     _motion: MeasuredMotion = field(repr=False)
 
@@ -91,6 +101,60 @@ class Followed:
     def openings(self) -> int:
         """Number of other closed contours in the file, such as a bore with a keyway; the motion disregards them."""
         return self._outline.openings
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Sentences on what was done with the file: ends that were joined, and what was left out."""
+        bridge = self._outline.bridge
+        told = [] if bridge is None else [across_words(bridge, self.unknown)]
+        return (*self._outline.remarks, *told)
+
+    @property
+    def gap(self) -> float | None:
+        """Gap of the call within which ends of a drawing were joined, mm; None where it gave none."""
+        return self._asked.gap
+
+    @property
+    def unknown(self) -> tuple[tuple[float, float], ...]:
+        """Stretches of shaft angles, (begin, end), rad, at which the contact is where `across` closes the contour."""
+        return tuple(stretches(self.theta, ~self.known))
+
+    @property
+    def unjudged(self) -> str:
+        """Why the file cannot be judged as it is by the recipe of this motion, with a remedy; empty where it can."""
+        asked = self._asked
+        if self.at != (0.0, 0.0):
+            return "a page judges a file about its own origin: move the shaft there, or leave page out"
+        if self.path.suffix.lower() in SUFFIXES:
+            return "a page judges drawings and solids, and these are points: leave page out"
+        if asked.mirror is not None or asked.turn:
+            return "a page judges a file as it is drawn: leave mirror and turn out, or page"
+        if self._outline.bridge is not None:
+            return "a page judges a whole contour, and this one is closed across: leave page out"
+        return (
+            "" if asked.body is None else "a page judges all bodies of a file: save this one alone, or leave page out"
+        )
+
+    @cached_property
+    def known(self) -> Mask:
+        """Whether the contact at each shaft angle is on the contour of the file, not where `across` closes it, (n,).
+
+        Raises CallError where that cannot be told, as across ends that all but meet.
+        """
+        bridge, follower = self._outline.bridge, self.follower
+        if bridge is None:
+            return np.ones(len(self.theta), dtype=np.bool_)
+        try:
+            unknown = [
+                unknown_angles(self._outline.contour, bridge, contact, follower.side, self.theta)
+                for contact in follower.contacts
+            ]
+        except ContactError as error:
+            apart = upward(math.dist(*bridge), 2)
+            remedy = f"give gap {apart} to join its ends, and leave across out"
+            raise CallError(f"{escaped(str(self.path))}: the contour is open by {apart} mm: {remedy}") from error
+        known: Mask = ~np.any(unknown, axis=0)
+        return known
 
     @property
     def theta(self) -> Array:
@@ -124,6 +188,43 @@ class Followed:
     def radius(self) -> Array:
         """Radius of curvature of the contour at the contact (n,), mm, negative in a hollow, 0 at a corner."""
         return self._motion.radius
+
+    @property
+    def facets(self) -> float | None:
+        """How far the edges of a polygon stand off the curve that it is drawn for, mm; None of any other contour."""
+        contour = self._outline.contour
+        line = contour.kind == LINE
+        length = np.linalg.norm(contour.end - contour.start, axis=1)
+        turn = np.abs(contour.joints)  # at the start of each piece
+        facet = line & np.roll(line, 1) & (turn < FACET_TURN)
+        if np.count_nonzero(facet & (turn > 0.0)) < LEAST_FACETS:
+            return None
+        heights = turn * (length + np.roll(length, 1)) / 16.0
+        return float(np.quantile(heights[facet], MOST_FACETS))
+
+    @cached_property
+    def smoothed(self) -> Array | None:
+        """Acceleration (n,) of the recipe's motion, within the reading and a polygon's facets of the positions.
+
+        mm/rad^2 or rad/rad^2; None where the motion makes no recipe.
+        """
+        import tempfile
+        from pathlib import Path
+
+        from camgeo.recipe.loading import load_text
+        from camgeo.synthesis.design import sketched
+        from kin.numeric.errors import CamgeoError
+
+        wide = replace(self, reading=max(self.reading, self.facets or 0.0))
+        with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
+            (Path(folder) / "lift.csv").write_text(wide.lifts(), encoding="utf-8")
+            try:
+                recipe = load_text(wide.recipe("lift.csv"), Path(folder) / "follow.yaml")
+                motion = sketched(recipe).motion
+            except CamgeoError:
+                return None
+        acceleration: Array = motion.rows(self.theta, 2)[2]
+        return acceleration
 
     @property
     def breadth(self) -> tuple[float, float] | None:
@@ -179,16 +280,20 @@ class Followed:
         """Motion over the turn as CSV text: a header, then a row for each step; lengths in mm, angles in degrees.
 
         The columns are the shaft angle, position, velocity and acceleration by radian of the shaft, pressure angle, and
-        radius of curvature, empty on a straight line; then the breadth of a yoke, or the play in a groove.
+        radius of curvature, empty on a straight line; then the breadth of a yoke, or the play in a groove. Of a polygon
+        the acceleration is that of the smoothed motion, under that name, and there is no radius.
         """
-        arm = self.unit == "rad"
+        arm, polygon = self.unit == "rad", self.facets is not None
         scale, unit = (math.degrees(1.0), "deg") if arm else (1.0, "mm")
-        finite = np.where(np.isfinite(self.radius), self.radius, np.nan)
+        none = np.full(len(self.theta), np.nan)
+        finite = none if polygon else np.where(np.isfinite(self.radius), self.radius, np.nan)
+        smoothed = self.smoothed if polygon else self.acceleration
+        acceleration = none if smoothed is None else smoothed
         columns = {
             "shaft_deg": np.degrees(self.theta),
             f"position_{unit}": scale * self.position,
             f"velocity_{unit}_per_rad": scale * self.velocity,
-            f"acceleration_{unit}_per_rad2": scale * self.acceleration,
+            f"{'smoothed_' if polygon else ''}acceleration_{unit}_per_rad2": scale * acceleration,
             "pressure_angle_deg": np.degrees(self.pressure_angle),
             "radius_of_curvature_mm": finite,
         }
@@ -228,7 +333,7 @@ class Followed:
         if not table.isprintable() or not table:
             raise CallError(f"table is the name of a file of lifts, not {short_repr(table)}")
         reading = self.reading if self.unit == "mm" else math.degrees(self._reading)
-        about = f"The motion of {self.path.name} under a {self.follower.words}, within {self.reading:.6g} mm"
+        about = f"The motion of {escaped(self.path.name)} under a {self.follower.words}, within {self.reading:.6g} mm"
         cam = self._yoke_keys() if self.follower.yoke else self._disc_keys()
         part = {"bore": self.bore, "outer": self.blank if self.follower.track != "external" else None}
         keys = ", ".join(f"{key}: {value:.9g}" for key, value in part.items() if value is not None)
@@ -237,9 +342,9 @@ class Followed:
             f"rotation: {self.rotation}",
             "cam:",
             *(f"  {key}: {value}" for key, value in cam.items()),
-            f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}, suspect: keep}}",
+            f"  motion: {{table: {_quoted(table)}, angle: cam, reading: {reading:.6g}}}",
             *([f"part: {{{keys}}}"] if keys else []),
-            *([OPENINGS] if self.openings else []),
+            *([OPENINGS] if self.openings or self._outline.passed else []),
             "export:",
             f"  tolerance: {2.0 * self.reading:.6g}",
             "  files: [dxf, csv, html]",
@@ -267,8 +372,8 @@ class Followed:
         narrow, wide = self.breadth or (0.0, 0.0)
         if wide - narrow > 2.0 * self.reading:
             raise CallError(
-                f"the breadth varies by {wide - narrow:.6g} mm, and a recipe's cam has one: give reading "
-                f"{upward(0.5 * (wide - narrow))} or more, or leave yoke out"
+                f"{escaped(str(self.path))}: the breadth varies by {wide - narrow:.6g} mm, and a recipe's cam has one: "
+                f"give reading {upward(0.5 * (wide - narrow))} or more, or leave yoke out"
             )
         if len(self.theta) % 2:
             raise CallError("a recipe of a yoke has a table over half a turn: give an even number of steps")
@@ -301,6 +406,11 @@ def follow(
     yoke: bool = False,
     track: Track = "external",
     units: Units | None = None,
+    gap: float | None = None,
+    across: Literal["arc", "chord"] | None = None,
+    mirror: Literal["x", "y"] | None = None,
+    turn: float = 0.0,
+    body: int | str | None = None,
     at: tuple[float, float] = (0.0, 0.0),
     rotation: Literal["cw", "ccw"] = "cw",
     reading: float = READING,
@@ -313,7 +423,11 @@ def follow(
     on an `arm`: the distance of its pivot from the shaft, and with a round touch the length. The arm trails, or is
     `leading`. A `yoke` has a second contact opposite. By its `track` a roller runs in the opening of a ring
     ("internal") or in a "groove", where its motion is that on the inner flank. The shaft is `at` a place of the file
-    and turns by `rotation`; the follower is along x at shaft angle 0. `units` is the unit of a file that states none. A
+    and turns by `rotation`; the follower is along x at shaft angle 0. `units` is the unit of a file that states none.
+    Ends of a drawing within `gap` are joined, by default those that the file's digits or its size explain. `across`
+    closes a contour that is open, by an arc about the shaft or a chord. The contour is mirrored in the axis `mirror`
+    through the shaft, then turned counter-clockwise by `turn`, degrees. Of a solid with several bodies `body` is the
+    number, from 1, or the name of one. A
     dwell is within `reading` of its level. The motion is given at `steps` equal steps of a turn, from 36 to 100,000.
 
     Raises CallError for a file that cannot be read or has no such contour, for arguments that are wrong or do not go
@@ -342,6 +456,18 @@ def follow(
     place = _numbers("at", at)
     if len(place) != LENGTHS or not all(math.isfinite(value) and abs(value) <= MOST for value in place):
         raise CallError("at is the place of the shaft in the file: two lengths in mm, x and y")
+    bridged = None if gap is None else number_of("gap", gap)
+    if bridged is not None and not 0.0 < bridged <= MOST:
+        raise CallError(f"a gap is a length above 0, not {short_repr(gap)}")
+    if across is not None:
+        text_of("across", across, ("arc", "chord"), "a way to close a contour")
+    if mirror is not None:
+        text_of("mirror", mirror, ("x", "y"), "an axis")
+    if body is not None and not isinstance(body, str):
+        whole_of("body", body)
+    turned = number_of("turn", turn)
+    if not abs(turned) <= MOST_TURN:
+        raise CallError(f"a contour is turned by at most {MOST_TURN} degrees, not {short_repr(turn)}")
     level, count = number_of("reading", reading), whole_of("steps", steps)
     if not 0.0 < level <= MOST:
         raise CallError(f"a reading is a length above 0, not {short_repr(reading)}")
@@ -349,14 +475,25 @@ def follow(
         raise CallError(f"a turn is looked at in {LEAST_STEPS} to {MOST_STEPS} steps, not {short_repr(steps)}")
     # the contour, and the follower by contact on it
     unit = None if units is None else UNIT_MM[units]
-    outline = read_outline(path, unit, (place[0], place[1]), track, mirrored=rotation == "ccw")
+    asked = Reading(
+        unit,
+        (place[0], place[1]),
+        track,
+        bridged,
+        across,
+        mirror,
+        math.radians(turned),
+        mirrored=rotation == "ccw",
+        body=body,
+    )
+    outline = read_outline(path, asked)
     try:
         motion = measured(outline.contour, follower.contacts, count, follower.side, outline.outer)
     except ContactError as error:
         raise CallError(f"{escaped(str(path))}: {error}") from error
     _require_on_face(escaped(str(path)), motion, width)
     _require_groove(escaped(str(path)), motion, follower)
-    return Followed(path, follower, rotation, (place[0], place[1]), unit, level, outline, motion)
+    return Followed(path, follower, rotation, (place[0], place[1]), unit, level, asked, outline, motion)
 
 
 def _require_on_face(name: str, motion: MeasuredMotion, width: float | None) -> None:
@@ -393,20 +530,20 @@ def _numbers(name: str, values: object) -> tuple[float, ...]:
 def judged_by_recipe(followed: Followed) -> Report:
     """Report, with a page, of the file judged by the recipe of its motion.
 
-    Raises CallError where the shaft is not at the file's origin, and CallError or RecipeErrors where the motion makes
-    no recipe.
+    Raises CallError where `unjudged` says why, and CallError or RecipeErrors where the motion makes no recipe.
     """
     import tempfile
     from pathlib import Path
 
-    from camgeo.api.loading import load
     from camgeo.api.run import verify
+    from camgeo.recipe.loading import load_text
 
-    if followed.at != (0.0, 0.0):
-        raise CallError("a page judges a file about its own origin: move the shaft there, or leave page out")
+    if followed.unjudged:
+        raise CallError(followed.unjudged)
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
         (Path(folder) / "lift.csv").write_text(followed.lifts(), encoding="utf-8")
-        recipe = Path(folder) / f"{followed.path.stem}.yaml"
-        recipe.write_text(followed.recipe("lift.csv"), encoding="utf-8")
+        # no file has this text, and the name stands on the page alone: that of the contour's file, whatever it is
+        text, name = followed.recipe("lift.csv"), escaped(followed.path.stem)
+        recipe = replace(load_text(text, Path(folder) / "follow.yaml", escaped(str(followed.path))), name=name)
         units = next((name for name, mm in UNIT_MM.items() if mm == followed.units), None)
-        return verify(load(recipe), followed.path, units=units, page=True)
+        return verify(recipe, followed.path, units=units, gap=followed.gap, page=True)

@@ -6,6 +6,7 @@ LABEL = Label(
     rank=80,
     words=("made", "dmis"),
     formats={"dmis": "dmis"},
+    kin=("made",),
     suffixes=(".csv", ".txt", ".xyz", ".asc", ".dmo", ".dmi", ".dms"),
     sources={"from": "points of a cam (repeatable): KIND is then a recipe of its follower and part, FILE the new one"},
 )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from camgeo.checks.declared import Declared
+from camgeo.capabilities.made.keys import ZONE_PATH
+from camgeo.checks.declaration import Declared
+from camgeo.checks.extension import Checks
 
-PROFILE = Declared("made-profile", ("mm",), field="made.profile")
+PROFILE = Declared("made-profile", ("mm",), field=ZONE_PATH)
 MOTION = Declared("made-motion", ("mm", "deg"), field="verify.motion_error")
 OUTPUT = Declared("made-output", ("mm", "deg"), field="verify.output_error")
-CHECKS = (PROFILE, MOTION, OUTPUT)
+ANSWERS = Checks(checks=(PROFILE, MOTION, OUTPUT))

@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.cams.family import AlteredCam
-from camgeo.capabilities.made.keys import POINTS_PATH, Made, files_of_run
+from camgeo.capabilities.made.keys import LOCAL, POINTS_PATH, TAKE, Made, files_of_run
 from camgeo.capabilities.made.options import Probing
 from camgeo.capabilities.made.part_points import demand_points, part_points, read_tables
 from camgeo.capabilities.made.refusal import refused_at
+from camgeo.capabilities.made.run_faults import counted
 from camgeo.common.errors import CallError
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
@@ -35,10 +36,13 @@ if TYPE_CHECKING:
     from camgeo.cams.family import ExactCam
     from camgeo.cams.surface import Surface
     from camgeo.capabilities.made.keys import Run
+    from camgeo.capabilities.made.run_faults import CountedRun
+    from camgeo.recipe.machining import Altered
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.follower.base import Follower as Gauge
     from kin.made.points import Deviations
+    from kin.made.smooth import SmoothFit
 
 
 BELOW = 0.9  # of the greatest share to first order: a margin
@@ -52,7 +56,8 @@ class RunMade:
     `points` is the number of points. `curves` are the smoothed deviations, means over the files, mm; they have the same
     spans in all runs, so that they can be added. `scatter` is the standard deviation of the files' curves about their
     mean, mm, root mean square all round; None for a single file. `error` is the greatest expanded uncertainty (k = 2)
-    of a point that the files state, mm, 0 without; it is common to all points and does not average.
+    of a point that the files state, mm, 0 without; it is common to all points and does not average. `counted` is what
+    counts of the run for a correction that leaves local faults of a single run out, and these faults.
     """
 
     files: tuple[str, ...]
@@ -60,6 +65,7 @@ class RunMade:
     curves: Mapping[str, Smooth]
     scatter: Mapping[str, float | None]
     error: float
+    counted: Mapping[str, CountedRun]
 
 
 class _FilePoints(NamedTuple):
@@ -70,14 +76,14 @@ class _FilePoints(NamedTuple):
     name: str
     deviations: Mapping[str, Deviations]
 
-    def smooth(self, surface: str, spans: int | None = None) -> Smooth:
-        """Smoothed deviation of a surface, mm, over a number of spans, by default that of cross-validation.
+    def smooth(self, surface: str, spans: int | None = None) -> SmoothFit:
+        """Curve of a surface's smoothed deviation, mm, on a number of spans, by default that of cross-validation.
 
         Raises RecipeErrors where the points are too few for it or leave a gap.
         """
         points = self.deviations[surface]
         with refused_at(self.recipe, self.place, self.name):
-            return fit(points.parameter, points.e, spans).curve
+            return fit(points.parameter, points.e, spans)
 
 
 def runs_made(recipe: Recipe, design: Design) -> list[RunMade]:
@@ -92,19 +98,28 @@ def runs_made(recipe: Recipe, design: Design) -> list[RunMade]:
     every = [file for run in runs for file in run]
     spans = {surface.name: _spans(surface.name, every) for surface in design.exact.surfaces}
     errors = [max(file.error or 0.0 for file in files) for files in listed]
-    return [_run(run, spans, error) for run, error in zip(runs, errors, strict=True)]
-
-
-def _run(files: Sequence[_FilePoints], spans: Mapping[str, int], error: float) -> RunMade:
-    """Average the smoothed deviations of a run's files by surface; their scatter is None for a single file."""
-    points, curves, scatter = {}, {}, {}
-    for name, count in spans.items():
-        own = [file for file in files if name in file.deviations]
-        smoothed = [file.smooth(name, count) for file in own]
-        points[name] = sum(len(file.deviations[name].e) for file in own)
-        curves[name] = Smooth.total(smoothed).times(1.0 / len(own))
-        scatter[name] = _scatter(smoothed) if len(own) > 1 else None
-    return RunMade(tuple(file.name for file in files), points, curves, scatter, error)
+    smoothed = {
+        name: [[(file, file.smooth(name, count)) for file in run if name in file.deviations] for run in runs]
+        for name, count in spans.items()
+    }
+    counts = {
+        name: counted([[(file.deviations[name], fitted) for file, fitted in run] for run in own])
+        for name, own in smoothed.items()
+    }
+    made_runs = []
+    for k, (run, error) in enumerate(zip(runs, errors, strict=True)):
+        curves = {name: [fitted.curve for _, fitted in own[k]] for name, own in smoothed.items()}
+        made_runs.append(
+            RunMade(
+                tuple(file.name for file in run),
+                {name: sum(len(file.deviations[name].e) for file, _ in own[k]) for name, own in smoothed.items()},
+                {name: Smooth.total(own).times(1.0 / len(own)) for name, own in curves.items()},
+                {name: _scatter(own) if len(own) > 1 else None for name, own in curves.items()},
+                error,
+                {name: own[k] for name, own in counts.items()},
+            )
+        )
+    return made_runs
 
 
 def _scatter(curves: Sequence[Smooth]) -> float:
@@ -117,7 +132,7 @@ def _spans(surface: str, files: Sequence[_FilePoints]) -> int:
     """Spans of a surface's curves: the most of any file by cross-validation, as far as all have the points."""
     own = [file for file in files if surface in file.deviations]
     return min(
-        max(file.smooth(surface).spans for file in own),
+        max(file.smooth(surface).curve.spans for file in own),
         *(len(file.deviations[surface].e) // POINTS_A_SPAN for file in own),
     )
 
@@ -139,9 +154,15 @@ def _files(recipe: Recipe, design: Design, run: Run, place: str) -> list[_FilePo
     return files
 
 
-def total_deviations(runs: Sequence[RunMade]) -> dict[str, Smooth]:
-    """Sum over at least one run of the smoothed deviation of each surface, by its name, mm."""
-    return {name: Smooth.total([run.curves[name] for run in runs]) for name in runs[0].curves}
+def total_deviations(runs: Sequence[RunMade], *, local: bool = False) -> dict[str, Smooth]:
+    """Sum over at least one run of the smoothed deviation of each surface, by its name, mm.
+
+    Local faults that a single run has are left out, with `local` taken.
+    """
+    return {
+        name: Smooth.total([run.curves[name] if local else run.counted[name].curve for run in runs])
+        for name in runs[0].curves
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,17 +210,23 @@ class CorrectedCam(AlteredCam):
         return CorrectedCam(self.nominal.grow(out, scale), curves)
 
 
-def corrected(recipe: Recipe, design: Design, exact: ExactCam, share: float, scale: float) -> ExactCam:
+def takes_local(by: Altered) -> bool:
+    """Whether a correction takes local faults of a single run off too."""
+    return by.beside == (LOCAL.name, TAKE)
+
+
+def corrected(recipe: Recipe, design: Design, exact: ExactCam, by: Altered, scale: float) -> ExactCam:
     """The cam `exact` less a share of the summed deviations of a recipe's runs, which are scaled as `exact` is.
 
-    Raises CallError where there are sharp corners, or where the follower would not reach into a hollow; RecipeErrors
-    for points of a run that are not of this part or cannot be smoothed.
+    `by` has the share, and the word for the local faults of a single run. Raises CallError where there are sharp
+    corners, or where the follower would not reach into a hollow; RecipeErrors for points of a run that are not of this
+    part or cannot be smoothed.
     """
     if not all(surface.curve.closed for surface in exact.surfaces):
         raise CallError(
             "a contour with sharp corners is not corrected: give `reuleaux.rounding`, or leave `correct` out"
         )
-    totals = total_deviations(runs_made(recipe, design))
+    share, totals = by.value, total_deviations(runs_made(recipe, design), local=takes_local(by))
     curves = {name: total.times(-share * scale) for name, total in totals.items()}
     cam = CorrectedCam(exact, curves)
     for name, follower in cam.on_metal.items():

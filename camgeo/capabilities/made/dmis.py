@@ -16,6 +16,7 @@ from camgeo.files.markup import one_line
 from camgeo.formats.options import RECIPE_UNITS
 from camgeo.formats.tables.tabled import check_step
 from camgeo.measures.contact_points import contact_points
+from camgeo.output.extension import Making
 from camgeo.recipe.machining import COARSEST, FINEST
 from camgeo.registry.formats import Format
 from camgeo.schema.fields import Field, FieldTable, Kind
@@ -30,10 +31,10 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest, Length
-    from camgeo.recipe.recipe import Order, Recipe
-    from camgeo.registry.capability import ShaftCam
+    from camgeo.recipe.recipe import Recipe, ShaftOrder
     from camgeo.schema.reader import Reader, Values
     from camgeo.synthesis.design import Design
+    from camgeo.synthesis.shaft_cam import ShaftCam
     from kin.numeric.arrays import Array
 
 WORDS, MM = {"mm": "MM", "inch": "INCH"}, {"mm": 1.0, "inch": 25.4}
@@ -80,7 +81,7 @@ def program(recipe: Recipe, design: Design, step: float | None = None) -> Iterat
 
 
 def shaft_program(
-    recipe: Order, cams: Sequence[ShaftCam], step: float | None = None, units: Length | None = None
+    recipe: ShaftOrder, cams: Sequence[ShaftCam], step: float | None = None, units: Length | None = None
 ) -> Iterator[str]:
     """Lines of a DMIS program for all cams of a shaft, each turned to its angle and measured halfway along its length.
 
@@ -93,12 +94,7 @@ def shaft_program(
     return _program(recipe, discs, step, units or recipe.units)
 
 
-def _write_shaft(recipe: Order, cams: Sequence[ShaftCam], request: FileRequest, path: Path) -> None:
-    text = "\n".join(shaft_program(recipe, cams, request.own.get("step"), request.units)) + "\n"
-    path.write_bytes(text.encode("ascii", "replace"))
-
-
-def _program(recipe: Order, discs: Iterable[_Disc], step: float | None, units: Length) -> Iterator[str]:
+def _program(recipe: ShaftOrder, discs: Iterable[_Disc], step: float | None, units: Length) -> Iterator[str]:
     # header, and a tolerance for each width of zone: plus and minus half of it
     name, mm = one_line(escaped(recipe.name)).replace("'", " "), MM[units]
     yield f"DMISMN/'{name}'"
@@ -127,7 +123,7 @@ def _program(recipe: Order, discs: Iterable[_Disc], step: float | None, units: L
     yield "ENDFIL"
 
 
-def _places(recipe: Order, disc: _Disc, shaft: Array) -> Iterator[tuple[list[float], list[float]]]:
+def _places(recipe: ShaftOrder, disc: _Disc, shaft: Array) -> Iterator[tuple[list[float], list[float]]]:
     """Places [x, y], mm, and outward unit normals where a disc is touched over a turn, as drawn, each once."""
     known: set[tuple[float, ...]] = set()
     for points in contact_points(disc.design, shaft, disc.contours):
@@ -159,6 +155,5 @@ FORMAT = Format(
     contour=False,
     part=False,
     turning=True,
-    make=_make,
-    shaft=_write_shaft,
 )
+MAKING = Making(make=_make)

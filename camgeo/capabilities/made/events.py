@@ -12,18 +12,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from camgeo.measures.extension import MEASURES
 from camgeo.measures.lobe import CRANK, EventError, event_of, lift_pieces
 from camgeo.measures.units import report_unit
+from camgeo.recipe.extension import KEYS
 from camgeo.recipe.figures import FIGURES
-from camgeo.registry import registry
 from kin.made.events import MadeMotion
 from kin.made.motion import COVERAGE
 
 if TYPE_CHECKING:
     from camgeo.capabilities.made.made_part import PartMade
     from camgeo.capabilities.made.options import PointOptions
+    from camgeo.measures.extension import MovedBody
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.capability import MovedBody
     from camgeo.synthesis.design import Design
     from kin.made.events import Estimate
     from kin.numeric.arrays import Array
@@ -49,7 +50,7 @@ def stated_lifts(recipe: Recipe, design: Design, events: float | None = None) ->
 
     Lifts of the follower come first, then those of moved bodies, each rising.
     """
-    moved = {name: registry.capability(name).moved(recipe, design) for name in recipe.uses}
+    moved = {name: MEASURES[name].moved(recipe, design) for name in recipe.uses}
     lifts: list[tuple[MovedBody | None, float]] = []
     for limit in recipe.limits:
         if FIGURES[limit.figure].at_lift is not None:
@@ -57,7 +58,7 @@ def stated_lifts(recipe: Recipe, design: Design, events: float | None = None) ->
             lifts.append((moved.get(owner) if owner else None, limit.lift))
     for name, own in moved.items():
         if own is not None:
-            usual = (figure.at_lift for figure in registry.capability(name).figures.values())
+            usual = (figure.at_lift for figure in KEYS[name].figures.values())
             lifts += [(own, lift) for lift in usual if lift is not None]
     lifts += [] if events is None else [(None, events)]
     rows = [StatedLift(own, lift, lift if own is None else own.follower_lift(lift)) for own, lift in lifts]

@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING
 
 from camgeo.motions.lift_table import read_path
 from camgeo.part.features import with_records
+from camgeo.registry.formats import FORMATS
+from camgeo.schema.errors import quote
 from camgeo.schema.fields import MOST_FILES, Field, FieldTable, Kind, OwnForm, either, length, mapping
+from camgeo.schema.file_bytes import path_fault
 from camgeo.schema.scalars import MOST_TEXT
 from camgeo.schema.yaml_source import Mapping, describe, join
 from camgeo.schema.yaml_source import Sequence as YamlSequence
@@ -18,8 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.part.part import Part
-    from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.recipe import Recipe
     from camgeo.registry.formats import Form as TableForm
     from camgeo.registry.formats import Format
     from camgeo.schema.fields import Schema
@@ -144,6 +145,7 @@ POINTS = Field(
 )
 
 POINTS_PATH = f"made.{POINTS.name}"
+ZONE_PATH = "made.profile"
 
 
 def files_of_run(run: Run, place: str) -> list[tuple[str, PointFile]]:
@@ -186,6 +188,16 @@ CORRECT = Field(
 )
 
 
+LEAVE, TAKE = "leave", "take"
+LOCAL = Field(
+    "local",
+    Kind.CHOICE,
+    "whether local faults that a single run has are left on the contour, or taken off with the rest",
+    default=LEAVE,
+    choices=(LEAVE, TAKE),
+)
+
+
 def offered(record: Format) -> bool:
     """Whether files of a format may be corrected: files with the contour, and tables of which a form has it."""
     return record.contour or any(_is_contour(form) for form in record.forms.values())
@@ -197,23 +209,22 @@ def _is_contour(form: TableForm) -> bool:
 
 
 def check(values: Values, reader: Reader) -> None:
-    """Note entries of `made.points` whose file does not exist."""
+    """Note entries of `made.points` that lead to no file."""
     for i, run in enumerate(values.get("made", {}).get("points", ())):
         for place, file in files_of_run(run, f"{POINTS_PATH}[{i}]"):
-            if not (Path(reader.source.file).parent / file.file).is_file():
+            if fault := path_fault(Path(reader.source.file).parent / file.file):
                 remedy = "give its path as seen from the recipe's folder"
-                reader.fault_at(place, "no such file", repr(file.file), remedy)
+                reader.fault_at(place, fault, quote(file.file), remedy)
 
 
-def check_corrected(request: FileRequest, values: Values, reader: Reader, path: str) -> None:
+def check_corrected(file: Values, values: Values, reader: Reader) -> None:
     """Note faults of a file that is to be corrected.
 
     They are a file without a contour, a recipe without points of earlier runs, and a contour whose undercut is cut off.
-    `path` is that of the file's entry in the recipe.
     """
-    place = f"{path}.{request.kind}.{CORRECT.name}"
-    if not (request.format.contour or _is_contour(request.form)):
-        kinds = either(tuple(name for name, form in request.format.forms.items() if _is_contour(form)))
+    place, record = f"{file['path']}.{file['kind']}.{CORRECT.name}", FORMATS[file["kind"]]
+    if not (record.contour or _is_contour(record.form(file.get("as")))):
+        kinds = either(tuple(name for name, form in record.forms.items() if _is_contour(form)))
         reader.fault_at(place, f"belongs to a table as {kinds}", None, "leave it out")
     if "made.points" not in reader.marks:
         remedy = "give made.points, such as `made: {points: [run1.csv]}`, or leave it out"
@@ -226,12 +237,6 @@ def check_corrected(request: FileRequest, values: Values, reader: Reader, path: 
 def build(values: Values) -> Made | None:
     """Value of the key `made`; None for a recipe without it."""
     return Made(**values["made"]) if "made" in values else None
-
-
-def zone_of(recipe: Recipe) -> float | None:
-    """Width of the tolerance zone of the profile, mm; None for a recipe without `made.profile`."""
-    made = recipe.of(Made)
-    return None if made is None else made.profile
 
 
 def datum_of(made: Made | None, part: Part) -> Datum:

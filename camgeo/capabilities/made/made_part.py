@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.made.checks import MOTION, OUTPUT, PROFILE
-from camgeo.capabilities.made.keys import Made, datum_of, zone_of
+from camgeo.capabilities.made.keys import ZONE_PATH, Made, datum_of
 from camgeo.capabilities.made.part_points import demand_points, name_of, part_points, read_tables
+from camgeo.measures.units import UNIT_NAMES
 from camgeo.synthesis.intent import closures_between, permitted
-from kin.judge.check import Check
+from kin.made.causes import causes
 from kin.made.motion import COVERAGE, Errors, MadePlay, OutputErrors, between, contact_errors, output_errors, paired
 from kin.made.points import FREE, profile, settled
 from kin.made.smooth import SmoothFit, fit
 from kin.numeric.angles import degrees
+from kin.numeric.check import Check
 from kin.numeric.feet import equal_steps
 from kin.numeric.records import dataclass, replace
 
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
     from kin.follower.base import Follower as Gauge
     from kin.judge.intent import PartIntent
+    from kin.made.causes import Cause
     from kin.made.points import Datum, Placing, Profile
     from kin.numeric.arrays import Array
 
@@ -64,6 +67,7 @@ class DiscMade:
     turned       known turn of the disc, rad: its points are turned back by it, its motion is not
     uncertain    expanded uncertainty of the deviation of all points (n,), surface by surface, mm
     smoothed     greatest magnitude of the smoothed deviation as the datum places it, mm
+    causes       certain causes of the deviations of the points as they stand, by falling effect
     """
 
     part: PartIntent
@@ -73,6 +77,7 @@ class DiscMade:
     turned: float
     uncertain: Array
     smoothed: float
+    causes: tuple[Cause, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,11 +155,13 @@ def _disc(recipe: Recipe, points: DiscPoints, options: PointOptions, datum: Datu
     ]
     profiled = profile(standing, datum)
     shaft = equal_steps(recipe.verify.angles) + math.pi / recipe.verify.angles
+    deviations = [surface.deviations for surface in points.surfaces]
+    fits = [fit(own.parameter, own.e, options.spans) for own in deviations]
+    named = causes(deviations, fits, points.turned)
     surfaces = []
-    for surface in points.surfaces:
-        deviations = surface.deviations
-        smooth = fit(deviations.parameter, deviations.e, options.spans)
-        errors = contact_errors(surface.gauge, surface.intent.side, smooth.curve, shaft, points.turned)
+    for rank, (surface, smooth) in enumerate(zip(points.surfaces, fits, strict=True)):
+        faults = [cause.fault for cause in named if cause.fault is not None and cause.surface == rank]
+        errors = contact_errors(surface.gauge, surface.intent.side, smooth.curve, shaft, points.turned, faults=faults)
         surfaces.append(SurfaceMade(surface, smooth, *paired(surface.gauge, errors)))
     # smoothed deviations once more, of the points as the datum places them
     smoothed = [
@@ -162,7 +169,16 @@ def _disc(recipe: Recipe, points: DiscPoints, options: PointOptions, datum: Datu
         for placed, own in zip(profiled.deviations, surfaces, strict=True)
     ]
     uncertain = np.concatenate([_uncertain(surface, options) for surface in surfaces])
-    return DiscMade(points.part, tuple(surfaces), profiled, points.placing, points.turned, uncertain, max(smoothed))
+    return DiscMade(
+        points.part,
+        tuple(surfaces),
+        profiled,
+        points.placing,
+        points.turned,
+        uncertain,
+        smoothed=max(smoothed),
+        causes=tuple(named),
+    )
 
 
 def _uncertain(surface: SurfaceMade, options: PointOptions) -> Array:
@@ -214,7 +230,7 @@ def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[
     Verdicts are by the name of the check, for a disc with its name: `ok`, `failed` or `not proved`.
     """
     checks, verdicts = [], {}
-    zone, limits = zone_of(recipe), permitted(recipe, recipe.export.tolerance)
+    zone, limits = recipe.profile, permitted(recipe, recipe.export.tolerance)
     if zone is not None:
         for disc in result.discs:
             off, name = np.abs(disc.profile.e), name_of(disc.part)
@@ -229,7 +245,7 @@ def checks_of(recipe: Recipe, result: PartMade, options: PointOptions) -> tuple[
         off, uncertain = np.abs(result.motion.remaining), motion_uncertainty(result, options)
         judged.append((MOTION.name, off, uncertain, limits.motion, result.motion_unit, result.motion.shaft))
     if limits.output is not None and result.output is not None:
-        off, uncertain = np.abs(result.output.worst), COVERAGE * result.output.sds
+        off, uncertain = np.abs(result.output.worst), result.output.uncertainty(options.systematic, options.axes_turn)
         judged.append((OUTPUT.name, off, uncertain, limits.output, result.output_unit, result.output.shaft))
     for name, off, uncertain, limit, unit, shaft in judged:
         scale, at = math.degrees(1.0) if unit == "deg" else 1.0, shaft[int(np.argmax(off))]
@@ -257,9 +273,13 @@ def _remarks(
 ) -> list[str]:
     """Remarks in sentences: what is assumed, what the points cannot show, and which points are outliers."""
     remarks = []
-    limits = permitted(recipe, recipe.export.tolerance)
-    if zone_of(recipe) is None and limits.motion is None:
-        remarks.append("no limit is given, so nothing fails: made.profile, verify.motion_error")
+    zone, limits = recipe.zone, permitted(recipe, recipe.export.tolerance)
+    output = None if discs[0].part.linkage is None else limits.output
+    if zone is None and limits.motion is None and output is None:
+        remarks.append(f"no limit is given, so nothing fails: {ZONE_PATH}, verify.motion_error")
+    elif zone is not None and zone[0] != ZONE_PATH:
+        words = f"{zone[1] / recipe.mm:.6g} {UNIT_NAMES[recipe.units]} wide by {zone[0]}"
+        remarks.append(f"no {ZONE_PATH} is given: the zone of the profile is {words}")
     if options.error is None:
         remarks.append("without --probe-error the scatter of the points alone is known, and no common error")
     if options.axes is None:
@@ -278,15 +298,15 @@ def _remarks(
         if profile.free != FREE[profile.datum]:
             remarks.append("its contour is so nearly round that a turn cannot be told from a shift")
         if profile.datum == "part" and not options.probing.align:
-            turned = settled([surface.measured.points for surface in disc.surfaces], "g")
-            first = disc.surfaces[0].measured.points
+            turned = settled([surface.measured.points.on_metal for surface in disc.surfaces], "g")
+            first = disc.surfaces[0].measured.points.on_metal
             gain = float(np.abs(first.deviations.e).max() - np.abs(first.placed(turned).deviations.e).max())
             if gain > 0.25 * profile.greatest and abs(turned.turn) > 0.0:
                 remarks.append(f"the points look turned by {math.degrees(turned.turn):.3g} degrees: `--align rotation`")
     for surface in (surface for disc in discs for surface in disc.surfaces):
         if surface.fit.outliers.any():
             count = int(surface.fit.outliers.sum())
-            lines = ", ".join(str(line) for line in surface.measured.lines[surface.fit.outliers][:5].tolist())
+            lines = ", ".join(str(line) for line in surface.measured.lines[surface.fit.worst[:5]].tolist())
             remarks.append(
                 f"{count} outlier{'s' * (count > 1)} (line {lines}{', ...' if count > 5 else ''}) "
                 "counted in the profile, left out of smoothing and motion"

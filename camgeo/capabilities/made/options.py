@@ -11,9 +11,9 @@ from camgeo.common.arguments import short_repr
 from camgeo.common.errors import CallError
 from camgeo.schema.quantity import read_quantity
 from camgeo.schema.scalars import Complaint
-from kin.judge.drive import is_drive
 from kin.made.motion import COVERAGE
 from kin.numeric.records import dataclass
+from kin.read.drive_tables import is_drive
 from kin.read.formats import FORMATS
 from kin.read.point_list import is_point_list
 from kin.read.points import heading_of

@@ -11,6 +11,7 @@ import numpy as np
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.measures.units import UNIT_NAMES
+from camgeo.schema.file_bytes import path_fault
 from camgeo.synthesis.intent import intents
 from kin.law.contacts import Flat, KnifeEdge, Roller
 from kin.made.points import (
@@ -117,10 +118,14 @@ def read_tables(paths: Sequence[Path]) -> list[tuple[Path, PointTable]]:
     """Path and table of each file; raises CallError, with a line for each file that holds no points."""
     tables, faults = [], []
     for path in paths:
+        fault = path_fault(path)
         try:
-            tables.append((path, read_points(path)))
+            if not fault:
+                tables.append((path, read_points(path)))
         except ReadError as error:
-            faults.append(f"{escaped(str(path))}: {error.message}")
+            fault = error.message
+        if fault:
+            faults.append(f"{escaped(str(path))}: {fault}")
     if faults:
         raise CallError(*faults)
     return tables
@@ -314,12 +319,13 @@ def _placed_disc(recipe: Recipe, part: PartIntent, surfaces: Sequence[MeasuredSu
     placing, turned = Placing(), probing.turned or 0.0
     points = [surface.points.placed(Placing(turned)) for surface in surfaces]
     demand_round(points)
+    on_metal = [own.on_metal for own in points]
     if align:
-        placing = turned_at(points, "g")
+        placing = turned_at(on_metal, "g")
         if align != "g":
-            placing = settled([own.placed(placing) for own in points], align)
-        points = [own.placed(placing) for own in points]
-    demand_alike(points, aligned=bool(align), shiftable=probing.turned is None)
+            placing = settled([own.placed(placing) for own in on_metal], align)
+        points, on_metal = ([own.placed(placing) for own in some] for some in (points, on_metal))
+    demand_alike(on_metal, aligned=bool(align), shiftable=probing.turned is None)
     averages = [_average_repeats(replace(surface, points=own)) for surface, own in zip(surfaces, points, strict=True)]
     return DiscPoints(part, tuple(averages), placing, turned)
 

@@ -29,17 +29,17 @@ def as_call_errors(paths: Sequence[Path], name: str = "") -> Iterator[None]:
     """Turn errors of points, ContactError and FrameError into CallErrors that name the files of points.
 
     Those of points are UnlikePointsError, GapError, SpansError and UnsettledError. With the `name` of a cam they name
-    it too, also in CallErrors that pass through. Other errors pass unchanged.
+    it too. A CallError that names none of the files gets their names. Other errors pass unchanged.
     """
-    files, lobe = ", ".join(escaped(str(path)) for path in paths), f"{name}: " if name else ""
+    names, lobe = [escaped(str(path)) for path in paths], f"{name}: " if name else ""
+    files = ", ".join(names)
     try:
         yield
     except (ContactError, FrameError) as error:
         raise CallError(f"{files}: {lobe}on the metal that these points tell, {error}") from error
     except CallError as error:
-        if not name:
-            raise
-        raise CallError(*(f"{lobe}{fault}" for fault in error.faults)) from error
+        heads = ["" if any(each in fault for each in names) else f"{files}: " for fault in error.faults]
+        raise CallError(*(f"{head}{lobe}{fault}" for head, fault in zip(heads, error.faults, strict=True))) from error
     except _OF_POINTS as error:
         raise CallError(f"{files}: {lobe}{error}") from error
 

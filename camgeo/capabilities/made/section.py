@@ -7,13 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.made.keys import zone_of
+from camgeo.capabilities.made.extension import ON_METAL, MadeMotion
 from camgeo.capabilities.made.made_part import motion_uncertainty
 from camgeo.capabilities.made.part_points import name_of
 from camgeo.measures.units import UNIT_NAMES, report_unit
-from camgeo.registry import registry
-from camgeo.registry.capability import MadeMotion
-from kin.made.causes import causes
 from kin.made.motion import COVERAGE, least_fault
 from kin.numeric.angles import degrees
 from kin.numeric.feet import equal_steps
@@ -25,12 +22,11 @@ if TYPE_CHECKING:
     from camgeo.capabilities.made.made_part import DiscMade, PartMade, SurfaceMade
     from camgeo.capabilities.made.options import PointOptions
     from camgeo.capabilities.made.shaft import Phase, ShaftMade
-    from camgeo.recipe.recipe import Order, Recipe
+    from camgeo.recipe.recipe import Recipe, ShaftOrder
     from camgeo.synthesis.design import Design
     from kin.made.points import Placing
-    from kin.numeric.arrays import Array
 
-MOST_OUTLIERS = 50  # listed one by one
+MOST_OUTLIERS = 50  # listed one by one, the worst first
 DERIVATIVES = ("error", "velocity", "acceleration")
 
 
@@ -53,7 +49,7 @@ def section(
         for key, worst in (("least", int(np.argmin(play.gap))), ("most", int(np.argmax(play.gap)))):
             entry["play"][key] = scale * float(play.gap[worst])
             entry["play"][f"{key}_at_deg"] = degrees(float(play.shaft[worst]))
-        entry["play"]["uncertainty"] = scale * COVERAGE * float(play.sds.max())
+        entry["play"]["uncertainty"] = scale * float(play.uncertainty(options.error or 0.0, options.axes_shift).max())
     if (output := result.output) is not None:
         factor, output_unit = report_unit(recipe, result.output_unit)
         worst = int(np.argmax(np.abs(output.worst)))
@@ -62,7 +58,7 @@ def section(
             "max": factor * abs(float(output.worst[worst])),
             "at_deg": degrees(float(output.shaft[worst])),
             "centred": factor * float(np.abs(output.centred).max()),
-            "uncertainty": factor * COVERAGE * float(output.sds[worst]),
+            "uncertainty": factor * float(output.uncertainty(options.systematic, options.axes_turn)[worst]),
         }
     if result.lifts is not None:
         entry["lifts"] = {"zero": scale * result.lifts[0], "turned_deg": math.degrees(result.lifts[1])}
@@ -79,7 +75,7 @@ def add_figures(entry: dict[str, Any], recipe: Recipe, design: Design, result: P
     rows = np.stack([errors.remaining, errors.rows[1], errors.rows[2]])
     gap = None if result.play is None else np.stack([result.play.gap, result.play.sds])
     motion = MadeMotion(errors.shaft, rows, errors.sds, lambda weights: errors.influence(weights).sd, gap)
-    made = [capability.on_metal(recipe, design, motion) for capability in registry.in_order(recipe.uses)]
+    made = [answers.figures(recipe, design, motion) for answers in ON_METAL.of(recipe.uses)]
     if figures := [figure._asdict() for metal in made for figure in metal.figures]:
         entry["figures"] = figures
     entry["remarks"] += [remark for metal in made for remark in metal.remarks]
@@ -111,7 +107,7 @@ def _disc(recipe: Recipe, disc: DiscMade) -> dict[str, Any]:
         entry["multipliers"] = profile.certified.multipliers.tolist()
     entry["causes"] = _causes(recipe, disc)
     # more than half the zone of metal is lacking: all round it could only be made smaller
-    zone = zone_of(recipe)
+    zone = recipe.profile
     lack = 0.0 if zone is None else -float(profile.e.min()) - 0.5 * zone
     if lack > 0.0:
         entry["reduction"] = _reduction(recipe, disc, lack)
@@ -139,8 +135,7 @@ def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
     The points are taken as they stand, before they are placed by a datum.
     """
     rows = []
-    deviations = [surface.measured.deviations for surface in disc.surfaces]
-    for cause in causes(deviations, [surface.fit.curve for surface in disc.surfaces], disc.turned):
+    for cause in disc.causes:
         mirrored = cause.names in {("turned",), ("shifted along y",)}
         scale, unit = report_unit(recipe, "deg" if cause.names == ("turned",) else "mm")
         scale *= _drawn(recipe) if mirrored else 1.0
@@ -151,9 +146,13 @@ def _causes(recipe: Recipe, disc: DiscMade) -> list[dict[str, Any]]:
             "unit": unit,
             "effect": cause.effect / recipe.mm,
         }
-        if cause.at is not None:
-            gauge = disc.surfaces[0].gauge
-            row["at_deg"] = degrees(float(gauge.shaft_angle(np.array([cause.at]))[0]))
+        surface = disc.surfaces[cause.surface]
+        if (fault := cause.fault) is not None:
+            places = surface.gauge.shaft_angle(np.array([fault.at, fault.begin, fault.end]))
+            row |= {key: degrees(float(at)) for key, at in zip(("at_deg", "from_deg", "to_deg"), places, strict=True)}
+            row["metal"] = "too much" if fault.height > 0.0 else "missing"
+        if fault is not None or cause.waves is not None:
+            row["surface"] = surface.measured.intent.name
         if cause.waves is not None:
             row["waves"] = cause.waves
         rows.append(row)
@@ -192,7 +191,7 @@ def _surface(recipe: Recipe, paths: Sequence[Path], surface: SurfaceMade) -> dic
             "line": int(surface.measured.lines[i]),
             "residual": float(surface.fit.residuals[i]) / mm,
         }
-        for i in np.flatnonzero(surface.fit.outliers)[:MOST_OUTLIERS].tolist()
+        for i in surface.fit.worst[:MOST_OUTLIERS].tolist()
     ]
     return {
         "name": surface.measured.intent.name,
@@ -216,15 +215,15 @@ def _motion(recipe: Recipe, result: PartMade, options: PointOptions) -> dict[str
 
     Each error and the phase have their expanded uncertainty; lengths in the recipe's unit, angles in degrees.
     """
-    # position less its offset, velocity and acceleration; a common error moves the offset by its mean effect
+    # position less its offset, velocity and acceleration
     scale, unit = report_unit(recipe, result.motion_unit)
     errors = result.motion
     uncertain = motion_uncertainty(result, options)
     phase, remaining = errors.phase
     rows = np.stack([errors.remaining, errors.rows[1], errors.rows[2]])
-    common: Array = np.abs(errors.gain) * options.systematic
+    even = np.full(len(errors.shaft), 1.0 / len(errors.shaft))
     entry: dict[str, Any] = {"unit": unit, "offset": scale * errors.offset}
-    entry["offset_uncertainty"] = scale * float(common.mean())
+    entry["offset_uncertainty"] = scale * options.expanded(errors.influence(even))
     for k, name in enumerate(DERIVATIVES):
         worst = int(np.nanargmax(np.abs(rows[k])))
         own = uncertain[worst] if k == 0 else COVERAGE * errors.sds[k, worst]
@@ -247,7 +246,7 @@ def _motion(recipe: Recipe, result: PartMade, options: PointOptions) -> dict[str
 
 
 def shaft_section(
-    recipe: Order, paths: Sequence[Path], result: ShaftMade, sections: Sequence[dict[str, Any]]
+    recipe: ShaftOrder, paths: Sequence[Path], result: ShaftMade, sections: Sequence[dict[str, Any]]
 ) -> dict[str, Any]:
     """Section `made` of the report on a shaft, from the sections of its cams; angles are degrees of the shaft."""
     entry: dict[str, Any] = {

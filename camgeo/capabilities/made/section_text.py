@@ -6,12 +6,17 @@ from typing import Any
 
 from camgeo.common.terminal import escaped
 
+METAL = {"too much": "metal to grind off", "missing": "metal is missing"}
+OF_PROFILE = "by the profile"  # as the phase is by the motion: two measurands
+NO_LIMIT = "measured, no limit given"
 PER = {"error": "motion, error", "velocity": "  velocity", "acceleration": "  acceleration"}
 
 
 def shown(report: dict[str, Any], *, everything: bool) -> str:
     """Text of several lines on a report with measured points; `everything` adds spans, multipliers and outliers."""
     section, verdict = report["made"], "ok" if report["ok"] else "FAILED"
+    if report["ok"] and not section["verdicts"]:
+        verdict = NO_LIMIT
     if not report["ok"] and "failed" not in section["verdicts"].values():
         if any(not check["ok"] and not check["name"].startswith("made-") for check in report["checks"]):
             verdict = "FAILED"
@@ -62,22 +67,30 @@ def table_rows(section: dict[str, Any], *, everything: bool) -> list[tuple[str, 
             rows.append(("  certified by", f"{disc['certificate']:.6g} {unit}, multipliers {weights}"))
         for cause in disc["causes"]:
             words = f"{cause['value']:+.4g} +- {cause['uncertainty']:.2g} {cause['unit']}"
-            words += f" at {cause['at_deg']:.1f} degrees" if "at_deg" in cause else ""
-            words += f", {cause['waves']} a turn" if "waves" in cause else ""
-            rows.append((f"  cause: {cause['cause']}", f"{words}; makes {cause['effect']:.3g} {unit}"))
+            if "at_deg" in cause:
+                words += f" at {cause['at_deg']:.1f} degrees, {METAL[cause['metal']]}"
+            else:
+                words += f", {cause['waves']} a turn" if "waves" in cause else ""
+                words += f"; makes {cause['effect']:.3g} {unit}"
+            on = f", {cause['surface']}" if cause.get("surface") and len(section["surfaces"]) > 1 else ""
+            by = f" {OF_PROFILE}" if "turned" in cause["cause"] else ""
+            rows.append((f"  cause: {cause['cause']}{by}{on}", words))
         if "reduction" in disc:
             cure = disc["reduction"]
             words = f"{cure['size']:.3g} {unit}: the motion by {cure['offset']:+.3g} {cure['unit']}"
-            rows.append(("  good if smaller all round by", f"{words}, within {cure['change']:.2g} of that"))
+            rows.append(("  good if reground smaller by", f"{words}, within {cure['change']:.2g} of that"))
     # motion, figures, events, play and output
     motion = section["motion"]
     for name, label in PER.items():
         error = motion[name]
         words = f"{error['max']:+.4g} +- {error['uncertainty']:.2g} {error['unit']}"
         rows.append((label, f"{words} at {error['at_deg']:.2f} degrees"))
-    rows.append(("  constant offset", f"{motion['offset']:+.4g} {motion['unit']}, set on assembly"))
+    offset = f"{motion['offset']:+.4g} +- {motion['offset_uncertainty']:.2g} {motion['unit']}"
+    rows.append(("  constant offset", f"{offset}, set on assembly"))
     phase = f"{motion['phase_deg']:+.4g} +- {motion['phase_uncertainty_deg']:.2g} degrees"
-    rows.append(("  phase", f"{phase}; {motion['without_phase']:.4g} {motion['unit']} remain without it"))
+    rows.append(
+        ("  phase, by the motion", f"{phase}; {motion['without_phase']:.4g} {motion['unit']} remain without it")
+    )
     peak = motion["peak_acceleration"]
     rows.append(("  peak acceleration", f"{peak['made']:.4g}, intended {peak['intended']:.4g} {peak['unit']}"))
     for figure in section.get("figures", ()):

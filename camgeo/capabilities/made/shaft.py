@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.made.options import PointOptions, Probing
     from camgeo.capabilities.made.part_points import MeasuredSurface
     from camgeo.capabilities.made.shaft_axis import Leaning
-    from camgeo.registry.capability import ShaftCam
+    from camgeo.synthesis.shaft_cam import ShaftCam
     from kin.made.axis import Axis
     from kin.made.lifts import Readings
     from kin.made.motion import Errors
@@ -198,7 +198,7 @@ def made_shaft(cams: Sequence[ShaftCam], paths: Sequence[Path], options: PointOp
     ]
     if not lifts and not without_lean:
         firsts = [result.surfaces[0] for result in results]
-        shifts = [shift_of([first.measured.deviations], [first.fit.curve]) for first in firsts]
+        shifts = [shift_of([first.measured.deviations], [first.fit]) for first in firsts]
         leaning = _leaning(measured, turns, shifts, scale)
     # phases, and remarks on the shaft
     phases = _phases(measured, [result.motion for result in results], options)
@@ -347,8 +347,9 @@ def _shaft_turn(measured: Sequence[CamPoints], scale: float, probing: Probing) -
     if measured[0].tables[0].measured == "lift":
         from kin.made.lifts import lateness
 
-        return lateness([_readings(points, scale, probing) for points in measured])
-    return turned_at([_on_surface(points, scale, probing).points for points in measured]).turn
+        readings = [_readings(points, scale, probing) for points in measured]
+        return lateness([cam.on_metal(lateness([cam])) for cam in readings])
+    return turned_at([_on_surface(points, scale, probing).points.on_metal for points in measured]).turn
 
 
 def _on_surface(points: CamPoints, scale: float, probing: Probing) -> MeasuredSurface:
@@ -447,7 +448,7 @@ def _without_lean(
         for points, turn in zip(moved, turns, strict=True):
             with as_call_errors(points.paths, points.cam.name):
                 deviations = _on_surface(points, scale, probing).points.placed(Placing(turn)).deviations
-                shifts.append(shift_of([deviations], [fit(deviations.parameter, deviations.e).curve]))
+                shifts.append(shift_of([deviations], [fit(deviations.parameter, deviations.e)]))
         leaning = _leaning(moved, turns, shifts, scale, removed=True)
         if leaning is None:
             problem = f"lean and shift of a shaft need lobes at {LEAST_CAMS} heights or more"

@@ -18,7 +18,7 @@ from kin.numeric.records import replace
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.recipe.recipe import Order
+    from camgeo.recipe.recipe import ShaftOrder
     from kin.made.axis import Axis
     from kin.numeric.arrays import Array
 
@@ -40,7 +40,7 @@ class Leaning(NamedTuple):
         axis = replace(later.axis, shift=self.axis.shift + later.axis.shift, lean=self.axis.lean + later.axis.lean)
         return self._replace(axis=axis)
 
-    def section(self, recipe: Order) -> dict[str, Any]:
+    def section(self, recipe: ShaftOrder) -> dict[str, Any]:
         """Report entry `axis`: as drawn, lengths in the recipe's unit, angles in degrees, uncertainties with k = 2."""
         axis, mm, drawn = self.axis, recipe.mm, np.array([1.0, -1.0 if recipe.rotation == "ccw" else 1.0])
         x, y = (drawn * axis.lean).tolist()

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.cams.families import FAMILIES
-from camgeo.capabilities.made.keys import zone_of
 from camgeo.capabilities.made.made_part import made_part
 from camgeo.capabilities.made.options import PointOptions
 from camgeo.capabilities.made.part_points import (
@@ -28,16 +27,17 @@ from camgeo.capabilities.made.part_points import (
     scale_of,
 )
 from camgeo.capabilities.made.refusal import as_call_errors
+from camgeo.cli.extension import Started
 from camgeo.common.errors import CallError
 from camgeo.common.terminal import escaped
 from camgeo.measures.units import UNIT_NAMES, report_unit
-from camgeo.recipe.recipe import load_text
+from camgeo.recipe.recipe import file_bytes, load_text
 from camgeo.schema.change import replace_entry, set_value
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.yaml_source import Mapping, Scalar, Source, entries, read_source
 from camgeo.synthesis.design import designed
 from kin.follower.motion_error import ContactError
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.made.motion import COVERAGE
 from kin.made.point_motion import SurfaceRun, measured_motion
 from kin.made.recognised import recognised
@@ -45,6 +45,7 @@ from kin.made.series import STANDS_OUT, support_series
 from kin.made.smooth import GapError
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass, replace
+from kin.read.formats import FORMATS, suffixes
 
 if TYPE_CHECKING:
     import collections.abc
@@ -66,14 +67,6 @@ ROUND = (1.0, 0.5, 0.1, 0.05, 0.01, 0.005, 0.001, 0.0005, 0.0001)  # steps of wr
 MOST_UNEVEN = 0.02  # of the motion: points farther off the symmetry of a kind of cam are of another kind
 AT_ZERO = 3.0  # degrees: a stroke that ends or begins so near the turn's beginning is tried as one that does so there
 BESIDE = 8  # points to either side by polar angle, among which the flanks of a groove are told apart
-
-
-class Started(NamedTuple):
-    """Text of a new recipe; `beside` has the texts of files beside it by name, `lines` are for the terminal."""
-
-    text: str
-    beside: collections.abc.Mapping[str, str]
-    lines: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,9 +92,14 @@ def started(paths: Sequence[Path], recipe: Path, name: str) -> Started:
     """Make a recipe, for a file called `name`, from files of points.
 
     `recipe` states follower, guide, units and part; its base radius and motion are replaced. Raises CallError for
-    points from which no recipe can be made, RecipeErrors for a faulty recipe, OSError for a recipe that cannot be read.
+    points from which no recipe can be made, RecipeErrors for a faulty recipe or one that cannot be read.
     """
     names = ", ".join(escaped(str(path)) for path in paths)
+    for path in paths:
+        kind = suffixes().get(path.suffix.lower())
+        if kind is not None and FORMATS[kind].contents in {"drawing", "solid"}:
+            problem = f"a {FORMATS[kind].contents}, and no points: its recipe is made by camgeo follow with --recipe"
+            raise CallError(f"{escaped(str(path))}: {problem}")
     rough = _placeholders(recipe, paths)
     try:
         measured, source = _measured_cam(rough), Source.of(rough.text, str(recipe))
@@ -205,9 +203,9 @@ def _placeholders(path: Path, paths: Sequence[Path]) -> _Rough:
     """Complete a recipe with a provisional base radius, sized by the points, and nearly no motion.
 
     Raises CallError for lifts, which show no base radius, and for files without points or surfaces without any;
-    RecipeErrors for a faulty recipe, OSError for a recipe that cannot be read.
+    RecipeErrors for a faulty recipe or one that cannot be read.
     """
-    source = read_source(path.read_bytes(), str(path))
+    source = read_source(file_bytes(path), str(path))
     keys = _keys(source)
     if keys.base and not keys.series:
         source = _with(source, f"cam.{keys.base}", 40.0)
@@ -287,7 +285,7 @@ def _measured_cam(rough: _Rough) -> _MeasuredCam:
     motion = measured_motion(runs, recipe.cam.motion_span, opposed=keys.opposed, lag=keys.lag)
     _demand_symmetry(recipe, motion)
     # half the zone, as a motion of the follower
-    zone = zone_of(recipe)
+    zone = recipe.profile
     reading = READING if zone is None else 0.5 * zone
     unit = motion.gauge.unit
     reading = motion.gauge.moved_by(reading) if unit == "deg" else reading

@@ -2,4 +2,6 @@
 
 from camgeo.registry.label import Label
 
-LABEL = Label(rank=40, words=("mechanism", "parts: all"), absent="no file is requested with parts: all")
+LABEL = Label(
+    rank=40, words=("mechanism", "parts: all"), absent="no file is requested with parts: all", kin=("mechanism",)
+)

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.checks.declared import LAST_EXACT, READABLE, Declared
+from camgeo.capabilities.mechanism.figures import FIGURES
+from camgeo.checks.declaration import Declared
+from camgeo.checks.declared import LAST_EXACT, READABLE
+from camgeo.checks.extension import Checks
 
 if TYPE_CHECKING:
-    from camgeo.checks.declared import CheckFacts
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import CheckFacts, Entry
     from camgeo.recipe.recipe import Recipe
 
 NAME = "mechanism"  # of this capability
 IN_PLAN = ("wall", "bar", "pin", "knob")  # sizes that decide whether bodies meet
 
 
-def _has_bodies(scene: CheckFacts) -> bool:
-    return any(request.variant == NAME for request in scene.recipe.export.files)
+def _has_bodies(facts: CheckFacts) -> bool:
+    return any(request.variant == NAME for request in facts.recipe.export.files)
 
 
 def slimmer_sizes(recipe: Recipe) -> str:
@@ -29,7 +31,16 @@ def _apart(_check: Entry, _report: Entry, recipe: Recipe) -> str:
     return slimmer_sizes(recipe)
 
 
+def _remedy(recipe: Recipe, figure: str, value: float, bound: float) -> str:
+    """Words for a change that brings a figure of bodies to its bound, mm; empty for other figures."""
+    if figure not in FIGURES:
+        return ""
+    if figure == COLLISION.name and value <= 0.0:
+        return slimmer_sizes(recipe)
+    return f"a {'larger' if value < bound else 'smaller'} mechanism.clearance"
+
+
 CLEARANCE = Declared("clearance", ("mm",), _has_bodies, strict_at=(0.0,), after=LAST_EXACT)
 COLLISION = Declared("collision", ("mm",), _has_bodies, field=NAME, remedy=_apart, after=LAST_EXACT)
 OUTLINE = Declared("outline", ("mm",), after=READABLE.name)  # never expected: files of bodies beside the cam follow
-CHECKS = (CLEARANCE, COLLISION, OUTLINE)
+ANSWERS = Checks(checks=(CLEARANCE, COLLISION, OUTLINE), remedy=_remedy)

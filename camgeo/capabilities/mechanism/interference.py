@@ -10,13 +10,13 @@ import numpy as np
 from camgeo.capabilities.mechanism.checks import CLEARANCE, COLLISION
 from camgeo.capabilities.mechanism.poses import Turning
 from camgeo.fit.pieces import Polygon
-from kin.clearance.clearance import Mover, Slab, clearances
-from kin.clearance.pose import Sampled, Still
-from kin.clearance.pose import Turning as Steady
-from kin.clearance.sweep import swept_box
 from kin.contour.contour import Contour
-from kin.judge.check import Check
+from kin.mechanism.clearance import Mover, Slab, clearances
+from kin.mechanism.pose import Sampled, Still
+from kin.mechanism.pose import Turning as Steady
+from kin.mechanism.sweep import swept_box
 from kin.numeric.angles import TURN
+from kin.numeric.check import Check
 from kin.numeric.lengths import UNIT, length_words, place_words
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.mechanism.assembly import Assembly, Place, Plate
     from camgeo.fit.pieces import ArcSpline
-    from kin.clearance.clearance import Clearance
-    from kin.clearance.pose import PlaneMotion
+    from kin.mechanism.clearance import Clearance
+    from kin.mechanism.pose import PlaneMotion
 
 STEPS = 720  # of a turn, at which the exact motion and its rates are sampled
 POINTS = 24  # of each line and arc of a hole, from which walls are measured

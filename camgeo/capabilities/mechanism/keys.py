@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.discs import is_pair
+from camgeo.recipe.machining import build_compensation
 from camgeo.recipe.track import is_ring
 from camgeo.schema.fields import Field, Kind, length, mapping
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
-    from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.reader import Reader, Values
 
@@ -77,9 +77,10 @@ def requested_sizes(recipe: Recipe) -> RequestedSizes:
     return recipe.of(RequestedSizes) or RequestedSizes()
 
 
-def check(request: FileRequest, values: Values, reader: Reader, path: str) -> None:
-    """Note, at the `path` of a file with `parts: all`, why its cam has no printable mechanism."""
-    if request.compensation is not None:
+def check(file: Values, values: Values, reader: Reader) -> None:
+    """Note, at the path of a file with `parts: all`, why its cam has no printable mechanism."""
+    path: str = file["path"]
+    if build_compensation(file) is not None:
         remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
         reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
     if values.get("cam", {}).get("preload") is not None:

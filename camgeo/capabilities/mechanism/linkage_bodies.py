@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.mechanism.assembly import Assembly, BodyFit, Plate
-from camgeo.capabilities.mechanism.base import (
+from camgeo.capabilities.mechanism.body_stack import (
     BLOCK,
     BLOCK_COLOUR,
     FRAME_COLOUR,

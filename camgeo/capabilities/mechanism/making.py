@@ -20,8 +20,8 @@ from camgeo.output.job import MadeFiles
 from camgeo.synthesis.view import Drawer, entry, view_of
 from kin.contour.contour import Contour
 from kin.contour.region import farthest
-from kin.judge.check import as_drawn
 from kin.law.contacts import Arrangement, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
+from kin.numeric.check import as_drawn
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -105,7 +105,7 @@ def _equal(outline: Outline, other: Outline) -> bool:
 def _loop(outline: Outline, tolerance: float, precision: Precision) -> tuple[Array, float]:
     """Rounded vertices (n, 2) of an outline, and its greatest error with the rounding, mm."""
     if isinstance(outline, Polygon):
-        loop, moved, _ = rounded_contour(outline, precision)
+        loop, moved = rounded_contour(outline, precision)
         off = outline.bound.widened(moved).worst
         precision.within("an outline", off, tolerance)
         return loop, off

@@ -14,6 +14,7 @@ from camgeo.files.errors import RegionError
 from camgeo.files.mesh import Item
 from camgeo.fit.pieces import Bound
 from camgeo.measures.file_result import FileResult
+from camgeo.output.extension import MAKING
 from camgeo.output.job import MadeFiles
 from camgeo.output.solid import cam_mesh, numbers
 
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Mesh
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
-    from kin.judge.check import Check
     from kin.numeric.arrays import Array
+    from kin.numeric.check import Check
 
 CAM = "cam"
 
@@ -156,9 +157,10 @@ def write_moving(job: Job, request: FileRequest, path: Path, parts: Sequence[Mes
 
 
 def _writer(request: FileRequest) -> Callable[[Path, Sequence[Item], str, float, str], None]:
-    if request.format.write is None:
+    write = MAKING[request.kind].write
+    if write is None:
         raise ValueError(f"{request.kind} holds no mesh")
-    return request.format.write
+    return write
 
 
 def _judge_cam(job: Job, request: FileRequest, path: Path, part: MeshedBody) -> MadeFiles:
@@ -167,8 +169,8 @@ def _judge_cam(job: Job, request: FileRequest, path: Path, part: MeshedBody) -> 
 
 def _judge_body(job: Job, request: FileRequest, path: Path, part: MeshedBody, corners: Array) -> MadeFiles:
     """Compare the triangles `corners` of a file, mm in the body's axes, with the body's plates."""
-    from kin.judge.check import about
-    from kin.judge.printed import judge_body
+    from kin.mechanism.printed import judge_body
+    from kin.numeric.check import about
 
     tolerance, units = job.tolerance(request), job.recipe.in_units_of(request).mm
     with job.clock.stage(f"judge {request.kind}"):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.checks.declared import WATERTIGHT, Declared
+from camgeo.checks.declaration import Declared
+from camgeo.checks.declared import WATERTIGHT
+from camgeo.checks.extension import Checks
 
 if TYPE_CHECKING:
-    from camgeo.checks.declared import CheckFacts
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import CheckFacts, Entry
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
 
@@ -17,9 +18,9 @@ def _program(_: CheckFacts, file: FileRequest) -> bool:
     return file.format.program
 
 
-def _pocketed(scene: CheckFacts, file: FileRequest) -> bool:
+def _pocketed(facts: CheckFacts, file: FileRequest) -> bool:
     """Whether a milling program cuts the groove between two surfaces that one touch runs on."""
-    follower = scene.follower
+    follower = facts.follower
     return file.format.program and follower.arrangement.contacts < len(follower.contacts)
 
 
@@ -34,7 +35,7 @@ def other_entry(check: Entry, _report: Entry, recipe: Recipe) -> str:
 
 
 _FIELD, _AFTER = "manufacture.start", WATERTIGHT.name
-CHECKS = (
+_CHECKS = (
     Declared("cutter", ("mm",), of_file=_program, after=_AFTER),
     Declared("arcs", ("mm",), of_file=_program, after=_AFTER),
     Declared("rapid", ("", "faults"), of_file=_program, after=_AFTER),
@@ -45,3 +46,4 @@ CHECKS = (
     Declared("gouge", ("mm",), of_file=_program, field=_FIELD, remedy=other_entry, after=_AFTER),
 )
 """All of them, in the order in which they are foreseen."""
+ANSWERS = Checks(checks=_CHECKS)

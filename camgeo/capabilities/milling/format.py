@@ -6,9 +6,12 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.milling.keys import check_boss, check_milling, check_slight
+from camgeo.checks.extension import Holes
 from camgeo.formats.options import RECIPE_UNITS, TOLERANCE
+from camgeo.output.extension import Making
 from camgeo.registry.formats import Format
 from camgeo.schema.fields import FieldTable
+from camgeo.synthesis.intent import FileIntent
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -95,9 +98,7 @@ FORMAT = Format(
     check=_check,
     part=False,
     by_disc=True,
-    make=_make,
-    intent=_intent,
-    unmade=_unmade,
-    bored=_bored,
-    drilled=_drilled,
 )
+HOLES = Holes(bored=_bored, drilled=_drilled)
+INTENT = FileIntent(_intent)
+MAKING = Making(make=_make, unmade=_unmade)

@@ -6,9 +6,16 @@ import math
 from functools import reduce
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.milling.gcode import Cutting, places, plain, rounding, write_gcode
 from camgeo.capabilities.milling.milling import few_passes, milled_holes, pocket_of, unmilled
-from camgeo.capabilities.milling.toolpath import (
+from camgeo.curve.curve import Curve
+from camgeo.curve.parallel import Parallel
+from camgeo.files.gcode import Cutting, places, plain, rounding, write_gcode
+from camgeo.fit.bound import Bound
+from camgeo.fit.cache import Fits
+from camgeo.fit.pieces import ArcSpline
+from camgeo.machining.cutter import CutterPath
+from camgeo.machining.reach import cutter_paths, path_arcs, reach_checks
+from camgeo.machining.toolpath import (
     begun_at,
     bend_at_begin,
     circle,
@@ -18,22 +25,15 @@ from camgeo.capabilities.milling.toolpath import (
     plunged,
     side_by_side,
 )
-from camgeo.curve.curve import Curve
-from camgeo.curve.parallel import Parallel
-from camgeo.fit.bound import Bound
-from camgeo.fit.cache import Fits
-from camgeo.fit.pieces import ArcSpline
-from camgeo.machining.cutter import CutterPath
-from camgeo.machining.reach import cutter_paths, path_arcs, reach_checks
 from camgeo.output.job import MadeFiles
-from kin.judge.check import about
+from kin.numeric.check import about
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.milling.milling import RoundHole
-    from camgeo.capabilities.milling.toolpath import ClosedPath, Pass
+    from camgeo.files.gcode import ClosedPath, Pass
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.machining import Manufacture

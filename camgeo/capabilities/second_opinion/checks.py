@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.checks.declared import Declared
+from camgeo.checks.declaration import Declared
+from camgeo.checks.extension import Checks
 from camgeo.common.rounding import upward
 
 if TYPE_CHECKING:
-    from camgeo.checks.declared import CheckFacts, OfFile
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import CheckFacts, Entry, OfFile
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
     from camgeo.registry.formats import Format
@@ -25,7 +25,7 @@ def libraries(record: Format) -> frozenset[str]:
     """
     if not record.contour or not record.part:
         return frozenset()
-    meshed = {"trimesh"} if record.numbers is not None else set()
+    meshed = {"trimesh"} if record.mesh else set()
     audited = {"ezdxf"} if record.name in AUDITED else set()
     return frozenset({"shapely", *meshed, *audited})
 
@@ -88,3 +88,4 @@ SECOND_OPINIONS = (
     MESH_STATUS,
 )
 """All checks of a second opinion, in the order of a report."""
+ANSWERS = Checks(checks=SECOND_OPINIONS)

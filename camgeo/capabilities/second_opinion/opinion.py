@@ -31,11 +31,11 @@ from camgeo.common.errors import SurroundingsError
 from camgeo.files.errors import demand_uninterrupted, install
 from camgeo.fit.nodes import MOST_PIECES, ToleranceError
 from camgeo.fit.pieces import Polygon
+from camgeo.measures.extension import Results
 from camgeo.output.file_intent import shaft_of_file
 from camgeo.output.job import Job
 from camgeo.output.skipped import scene_of
-from camgeo.registry.capability import Results
-from kin.judge.check import Check, about, as_drawn, at_most, failed
+from kin.numeric.check import Check, about, as_drawn, at_most, failed
 from kin.numeric.lengths import UNIT, place_words
 from kin.read.errors import ReadError
 

@@ -2,4 +2,4 @@
 
 from camgeo.registry.label import Label
 
-LABEL = Label(rank=90, formats={"sheet": "format"}, record=False)
+LABEL = Label(rank=75, words=("sheet",), formats={"sheet": "format"})

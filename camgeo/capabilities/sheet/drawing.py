@@ -11,7 +11,16 @@ from camgeo.capabilities.sheet.dxf import annotation
 from camgeo.capabilities.sheet.frame import Facts, LongTextError, footer, framed_page, free_area, notes_at, title_block
 from camgeo.capabilities.sheet.lettering import unknown, wrap
 from camgeo.capabilities.sheet.options import Sheet, build_sheet
-from camgeo.capabilities.sheet.pages import LINE, full_size, motion_page, polar_table, table_pages
+from camgeo.capabilities.sheet.pages import (
+    LINE,
+    SHARE,
+    SheetTable,
+    Zone,
+    contour_table,
+    full_size,
+    motion_pages,
+    table_pages,
+)
 from camgeo.capabilities.sheet.part import DrawnDisc, disc_loops, number
 from camgeo.capabilities.sheet.pdf import write_pdf
 from camgeo.capabilities.sheet.views import NoRoomError, Tolerance, disc_sizes, draw_views, lay_out
@@ -28,9 +37,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.sheet.marks import Page
+    from camgeo.output.extension import RunResults
     from camgeo.output.job import Job
     from camgeo.recipe.recipe import Recipe
-    from camgeo.registry.formats import RunResults
 
 ARCS = FileRequest("dxf", "arcs", units="mm")
 
@@ -84,15 +93,15 @@ def _make_sheet(run: RunResults, job: Job, request: FileRequest, path: Path, *, 
 
 def _tolerance(recipe: Recipe, sheet: Sheet, field: str) -> Tolerance:
     """The contour's profile tolerance and its datums; raises RecipeErrors where two sections state different widths."""
-    stated, own = recipe.zone, sheet.profile
-    if stated is not None and own is not None and not math.isclose(stated[1], own, rel_tol=1e-9):
-        other, width = stated
-        what = f"{other} in line {recipe.locate(other)[0]} makes it {number(width / recipe.mm)}"
-        raise recipe.error(f"{field}.profile", what, number(own / recipe.mm), "leave it out, or make them the same")
+    own = sheet.profile
+    for other, width in recipe.zones:
+        if own is not None and not math.isclose(width, own, rel_tol=1e-9):
+            what = f"{other} in line {recipe.locate(other)[0]} makes it {number(width / recipe.mm)}"
+            raise recipe.error(f"{field}.profile", what, number(own / recipe.mm), "leave it out, or make them the same")
     part = recipe.part
     turning = not part.sides and not part.round_bore
     datums = {"A": part.bore is not None, "B": part.bore is not None and turning}
-    return Tolerance(own if stated is None else stated[1], tuple(letter for letter, there in datums.items() if there))
+    return Tolerance(recipe.profile, tuple(letter for letter, there in datums.items() if there))
 
 
 # --- its pages --------------------------------------------------------------------------------------------------------
@@ -120,11 +129,11 @@ def _pages(
 ) -> Pages:
     recipe, contours = run.recipe, job.design.contours
     # contents before places: what the notes take decides how large the views may be
-    sizes = disc_sizes(drawn, _base(job), tolerance)
+    sizes = disc_sizes(drawn, _base(job), tolerance, dict(sheet.rough))
     names = [(surface.name if len(contours) > 1 else "", contour) for surface, contour in contours]
-    table = polar_table(names, sheet.step, ccw=drawn.ccw)
+    table = contour_table(names, sheet.step, _zone(recipe, tolerance), ccw=drawn.ccw)
     last = full_size(drawn)
-    notes = _notes(drawn, recipe, wide=notes_at(sheet.paper)[2], full=last is not None)
+    notes = _notes(drawn, recipe, table, wide=notes_at(sheet.paper)[2], full=last is not None)
     area = free_area(sheet.paper, block=True, notes=LINE * len(notes) + 6.0)
     sense = 1.0 if sheet.projection == "first" else -1.0
     try:
@@ -137,7 +146,11 @@ def _pages(
     for k, note in enumerate(reversed(notes)):
         first.text((left, low + LINE * k), note)
     sources = [(file.path.name, hashlib.sha256(file.path.read_bytes()).hexdigest()) for file in run.findings.files]
-    pages = [first, *table_pages(table, sheet.paper), motion_page(job.design, run.findings, sheet.paper, sources)]
+    pages = [
+        first,
+        *table_pages(table, sheet.paper),
+        *motion_pages(job.design, drawn, run.findings, sheet.paper, sources),
+    ]
     # title block and footers last, as they state the number of pages
     count = len(pages) + (0 if last is None else 1)
     facts = Facts(layout.word, _mass(run, rank), 1, count)
@@ -183,13 +196,22 @@ def _mass(run: RunResults, rank: int) -> str:
     return f"{1000.0 * mass:.4g} g" if mass < 1.0 else f"{mass:.4g} kg"
 
 
-def _notes(drawn: DrawnDisc, recipe: Recipe, *, wide: float, full: bool) -> list[str]:
+def _zone(recipe: Recipe, tolerance: Tolerance) -> Zone:
+    """What a spline through the table may be off: a tenth of the profile's zone, without one the files' tolerance."""
+    if tolerance.width is None:
+        return Zone(recipe.export.tolerance, stated=False)
+    return Zone(SHARE * tolerance.width, stated=True)
+
+
+def _notes(drawn: DrawnDisc, recipe: Recipe, table: SheetTable, *, wide: float, full: bool) -> list[str]:
     """Notes on the first page, in words."""
     body, part = drawn.body, drawn.part
-    sense = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"
+    clockwise = recipe.rotation == "cw"
+    sense, count = ("clockwise", "the other way") if clockwise else ("counter-clockwise", "the same way")
+    by = "the table, or " if table.exact else ""
     notes = [
-        "The contour is theoretically exact by the table, or the DXF of this drawing: layer CUT, 1 : 1.",
-        f"0° marks the start of the motion. The shaft turns {sense}, as drawn. Angles are polar, from 0°.",
+        f"The contour is theoretically exact by {by}the DXF of this drawing: layer CUT, 1 : 1.",
+        f"0° marks the start of the motion. The shaft turns {sense}, as drawn; angles count {count}.",
     ]
     if body.edge:
         notes.append(f"Edges of the contour: chamfer {number(body.edge)} × 45°, both sides.")

@@ -24,7 +24,7 @@ FONT = "DejaVuSans.ttf"
 APART = 20.0  # mm of paper between pages
 LINEAR, DIAMETRIC, USER_PLACED = 32, 35, 128  # types of dimensions, which have a block of their own
 MIDDLE_CENTRE = 5
-PATTERNS = {"": "BYLAYER", "dashed": "DASHED", "chain": "CENTER"}
+PATTERNS = {"": "BYLAYER", "dashed": "DASHED", "chain": "CENTER", "phantom": "PHANTOM"}
 
 
 def annotation(pages: Sequence[Page], origin: Point, scale: float) -> Callable[[Modelspace], Box]:
@@ -52,6 +52,8 @@ def _prepare(space: Modelspace, scale: float) -> None:
     """Add layers, line types, the style of texts, and the style of dimensions, in mm with arrows."""
     document = space.doc
     document.linetypes.add("DASHED", [4.5 / scale, 3.0 / scale, -1.5 / scale], description="Dashed _ _ _")
+    phantom = [part / scale for part in (13.5, 8.0, -1.5, 0.5, -1.5, 0.5, -1.5)]
+    document.linetypes.add("PHANTOM", phantom, description="Phantom ____ _ _ ____ _ _")
     for layer, colour in COLOURS.items():
         document.layers.add(layer, color=colour)
     document.styles.add(STYLE, font=FONT)
@@ -142,4 +144,4 @@ class _Pen:
 
 
 def _hundredths(weight: float) -> int:
-    return {0.7: 70, 0.5: 50}.get(weight, 25)
+    return {1.0: 100, 0.7: 70, 0.5: 50}.get(weight, 25)

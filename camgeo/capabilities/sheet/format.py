@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.capabilities.sheet.options import OPTIONS, check_sheet
+from camgeo.output.extension import Making
 from camgeo.registry.formats import Format
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from camgeo.output.extension import RunResults
     from camgeo.output.job import Job, MadeFiles
     from camgeo.recipe.export import FileRequest
-    from camgeo.registry.formats import RunResults
 
 
 def _foresee(_job: Job, _request: FileRequest) -> None:
@@ -39,6 +40,6 @@ FORMAT = Format(
     contour=False,
     part=False,
     by_disc=True,
-    summarise=_summarise,
-    foresee=_foresee,
+    summary=True,
 )
+MAKING = Making(summarise=_summarise, foresee=_foresee)

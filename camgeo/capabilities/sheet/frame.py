@@ -24,6 +24,7 @@ BINDING, EDGE = 20.0, 10.0  # mm: margin on the left, and on the other sides
 INNER = 5.5  # mm: between the frame and what stands beside it, clear of the marks of its middles
 BLOCK = 180.0  # mm: width of the title block
 ROW = 9.5  # mm: height of a row of the title block
+LABEL = 2.9  # mm from its upper edge to the baseline of the labels, clear of accents below
 CELLS = (
     (
         (90.0, "number", "Drawing number"),
@@ -113,8 +114,8 @@ def title_block(page: Page, sheet: Sheet, facts: Facts) -> None:
         for wide, name, label in row:
             if x > left:
                 page.line((x, y), (x, y + ROW), layer="FRAME")
-            page.text((x + 1.2, y + ROW - 3.2), label, SMALL, layer="FRAME")
-            _value(page, (x + 1.2, y + 1.3), wide - 2.4, name, values[name])
+            page.text((x + 1.2, y + ROW - LABEL), label, SMALL, layer="FRAME")
+            _value(page, (x + 1.2, y + 1.2), wide - 2.4, name, values[name])
             x += wide
     _projection(page, left + BLOCK - 26.0, low + 4.5 * ROW, sheet.projection)
 
@@ -140,7 +141,7 @@ def footer(page: Page, sheet: Sheet, facts: Facts) -> None:
     ):
         if x > left:
             page.line((x, low), (x, low + ROW), layer="FRAME")
-        page.text((x + 1.2, low + ROW - 3.2), label, SMALL, layer="FRAME")
+        page.text((x + 1.2, low + ROW - LABEL), label, SMALL, layer="FRAME")
         page.text((x + 1.2, low + 1.3), _within(value, wide - 2.4), SMALL, layer="FRAME")
         x += wide
 

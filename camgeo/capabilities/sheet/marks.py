@@ -18,11 +18,13 @@ if TYPE_CHECKING:
 Point: TypeAlias = tuple[float, float]
 Anchor: TypeAlias = Literal["left", "middle", "right"]
 Layer: TypeAlias = Literal["", "FRAME", "VIEW", "HATCH", "CENTRE", "DIM", "TEXT", "TABLE"]
-Pattern: TypeAlias = Literal["", "dashed", "chain"]
-BORDER, THICK, THIN = 0.7, 0.5, 0.25  # mm: widths of lines, ISO 128-2
+Pattern: TypeAlias = Literal["", "dashed", "chain", "phantom"]
+PLANE, BORDER, THICK, THIN = 1.0, 0.7, 0.5, 0.25  # mm: widths of lines, ISO 128-2
 ARROW, SLENDER = 2.5, 0.4  # mm: length of an arrow, half its width
 RAISED = 1.2  # mm: baseline of a dimension's text from its line, clear of the arrows
 GAP, BEYOND = 1.0, 1.5  # mm: of an extension line from the part, and what it stands out beyond the dimension line
+TICK, TALL = 3.5, 7.5  # mm: heights of a surface symbol's strokes for letters of 2.5 mm, ISO 21920-1
+SLOPE = math.tan(math.radians(60.0))  # of these strokes
 LETTERS, BELOW = 1.0, 0.3  # of a text's height: what it reaches above and below its baseline
 
 
@@ -203,9 +205,25 @@ def round_size(centre: Point, radius: float, label: Text, value: float) -> Dimen
     return Dimension((x + radius, y), (x - radius, y), (x - radius, y), value, label, ())
 
 
-def leader(tip: Point, start: Point) -> tuple[LineMark, ...]:
-    """Leader from the text at `start` to the arrow's `tip`: its line and its arrowhead."""
-    return _line(start, tip), arrow(tip, math.atan2(tip[1] - start[1], tip[0] - start[0]))
+def finish_width(text: str) -> float:
+    """Width of a surface symbol with its text, mm."""
+    return (TICK + TALL) / SLOPE + width(text, SMALL) + 2.0
+
+
+def finish_symbol(start: Point, text: str, side: int) -> list[LineMark | Text]:
+    """Symbol of ISO 21920-1 of a surface that is machined, on the line of a leader that begins at `start`.
+
+    `text` is its roughness; the symbol stands on the left of the leader with `side` -1, on the right with 1.
+    """
+    long = finish_width(text)
+    x, y = start[0] - (long if side < 0 else 0.0), start[1]
+    foot, first, last = x + TICK / SLOPE, x, x + (TICK + TALL) / SLOPE
+    return [
+        _line((x, y), (x + long, y)),
+        _line((first, y + TICK), (foot, y), (last, y + TALL), (x + long, y + TALL)),
+        _line((first, y + TICK), (foot + TICK / SLOPE, y + TICK)),
+        Text((last + 0.8, y + TALL - 1.0 - SMALL), text, SMALL, "left", "DIM"),
+    ]
 
 
 def _line(*points: Point) -> LineMark:

@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, Any
 
 from camgeo.common.rounding import NOISE
-from camgeo.schema.fields import Field, FieldTable, Kind, length
+from camgeo.schema.errors import quote
+from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, length
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.read_scalar import read_text
+from camgeo.schema.yaml_source import Mapping as YamlMapping
+from camgeo.schema.yaml_source import Scalar, describe
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 SCALES: Mapping[str, float] = {
     **{f"{k}:1": float(k) for k in (50, 20, 10, 5, 2, 1)},
@@ -31,7 +38,6 @@ TEXTS: Mapping[str, tuple[str, str]] = {
     "approved": ("who approved it", ""),
     "owner": ("legal owner", ""),
     "material": ("material of the part", ""),
-    "finish": ("surface finish", ""),
     "general": ("general tolerances", "ISO 2768-m"),
 }
 """Texts of the title block by their options: what they are, and the text by default."""
@@ -41,16 +47,18 @@ TEXTS: Mapping[str, tuple[str, str]] = {
 class Sheet:
     """The options of one drawing; `words` are the texts of the title block with their options.
 
-    `scale` is a key of SCALES, None for the largest that fits; `step`, rad, is between rows of the contour's table;
-    `profile` is the width of the tolerance zone, mm, None where the drawing states none.
+    `scale` is a key of SCALES, None for the largest that fits; `step`, rad, is between rows of the contour's table,
+    None for one that is chosen; `profile` is the width of the tolerance zone, mm, None where the drawing states none;
+    `rough` has pairs of a surface, `contour` or `bore`, and its roughness.
     """
 
     words: tuple[tuple[str, str], ...]
     paper: str = "A3"
     projection: str = "first"
     scale: str | None = None
-    step: float = math.radians(10.0)
+    step: float | None = None
     profile: float | None = None
+    rough: tuple[tuple[str, str], ...] = ()
 
     @property
     def texts(self) -> dict[str, str]:
@@ -63,6 +71,49 @@ class Sheet:
         return self.texts["title"]
 
 
+def _read_roughness(reader: Reader, field: Field, node: Node, path: str) -> str | None:
+    """Roughness such as `Ra 0.8`; None where it is faulty, which is noted."""
+    found = _ROUGHNESS.fullmatch(node.text.strip()) if isinstance(node, Scalar) else None
+    if found is None or not 0.0 < float(found[2]) <= ROUGHEST:
+        given = quote(node.text) if isinstance(node, Scalar) else describe(node)
+        reader.fault(node.mark, path, "not a roughness", given, reader.wanted(field))
+        return None
+    return f"{found[1]} {found[2]}"
+
+
+_ROUGHNESS = re.compile(r"(Ra|Rz) ?([0-9]{1,3}(?:\.[0-9]{1,3})?)", re.ASCII)
+ROUGHEST = 400.0  # micrometres
+_VALUE = OwnForm(
+    "a roughness",
+    "Ra or Rz in micrometres, such as Ra 0.8",
+    _read_roughness,
+    lambda _: {"type": "string", "pattern": f"^{_ROUGHNESS.pattern}$"},
+)
+FINISH = FieldTable(
+    (
+        Field("contour", Kind.OWN, "roughness of the contour, ISO 21920", form=_VALUE),
+        Field("bore", Kind.OWN, "roughness of the bore", form=_VALUE),
+    )
+)
+
+
+def _read_finish(reader: Reader, field: Field, node: Node, path: str) -> object:
+    """A text, or pairs of a surface and its roughness; None where it is faulty, which is noted."""
+    if not isinstance(node, YamlMapping):
+        return read_text(reader, Field(field.name, Kind.TEXT, field.about), node, path)
+    if not node.entries:
+        reader.fault(node.mark, path, "no surface is named", None, "give {contour: Ra 0.8}, or leave it out")
+        return None
+    values = reader.mapping(field, node, path)
+    return None if values is None else tuple(values.items())
+
+
+_FINISH = OwnForm(
+    "a finish",
+    "a text, or a mapping such as {contour: Ra 0.8, bore: Ra 1.6}",
+    _read_finish,
+    lambda field: {"anyOf": [{"type": "string"}, table_schema(field.inner)]},
+)
 OPTIONS = FieldTable(
     (
         Field(
@@ -91,7 +142,7 @@ OPTIONS = FieldTable(
             "step",
             Kind.ANGLE,
             "between rows of the contour's table; 360 degrees are a whole number of it",
-            default="10",
+            default="chosen by the profile's zone",
             at_least=LEAST_STEP,
             at_most=MOST_STEP,
         ),
@@ -100,12 +151,23 @@ OPTIONS = FieldTable(
             Field(name, Kind.TEXT, about, default="the recipe's name" if name == "title" else default or "empty")
             for name, (about, default) in TEXTS.items()
         ),
+        Field(
+            "finish",
+            Kind.OWN,
+            "surface finish: symbols on the drawing, or a text",
+            default="empty",
+            table=FINISH,
+            form=_FINISH,
+        ),
     )
 )
 
 
 def check_sheet(file: Values, _: Values, reader: Reader) -> None:
-    """Add a fault for a step that does not divide 360 degrees."""
+    """Note a step that does not divide 360 degrees, and the roughness of a bore that is not there."""
+    finish = file.get("finish")
+    if isinstance(finish, tuple) and "bore" in dict(finish) and "part.bore" not in reader.marks:
+        reader.fault_at(f"{file['path']}.sheet.finish.bore", "the part has no bore", None, "leave it out")
     step = file.get("step")
     if step is not None:
         turns = 2.0 * math.pi / step
@@ -117,5 +179,8 @@ def check_sheet(file: Values, _: Values, reader: Reader) -> None:
 def build_sheet(options: Mapping[str, Any]) -> Sheet:
     """Options of a drawing without faults, the step in rad."""
     values = {name: value for name, value in options.items() if value != AUTO or name != "scale"}
+    finish = values.pop("finish", "")
+    rough = finish if isinstance(finish, tuple) else ()
     texts = {name: values.pop(name, default) for name, (_, default) in TEXTS.items()}
-    return Sheet(tuple(texts.items()), **values)
+    texts["finish"] = "as drawn" if rough else finish
+    return Sheet(tuple(texts.items()), rough=rough, **values)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.sheet.frame import EDGE, SIZES, framed_page, free_area
-from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width, wrap
+from camgeo.capabilities.sheet.lettering import LARGE, PLAIN, SMALL, width, wrap
 from camgeo.capabilities.sheet.marks import THICK, THIN, LineMark, Page, shifted
 from camgeo.capabilities.sheet.part import number
 
@@ -23,152 +23,244 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 LINE = 4.4  # mm between lines of text
-COLUMN = 6.0  # mm between columns of the table
-BETWEEN = 16  # places in each step at which the error of interpolation is computed
+COUNTS = (36, 60, 72, 120, 180, 360, 720)  # rows of a table whose step is chosen: from 10 to half a degree
+PLACES = 16 * COUNTS[-1]  # of a turn, at which the error of interpolation is measured
+DECIMALS = 4  # of the numbers in the table
+SHARE = 0.1  # of the profile's zone that a spline through the table may be off
 BAR = 100.0  # mm: length of the bar by which a print at 1 : 1 is checked
 
 
+class Zone(NamedTuple):
+    """What a spline through the table may be off, mm, and whether that is a share of the profile's zone."""
+
+    permitted: float
+    stated: bool
+
+    @property
+    def words(self) -> str:
+        """What it is, in words."""
+        return "a tenth of the profile's zone" if self.stated else "the tolerance of the files"
+
+
 class SheetTable(NamedTuple):
-    """Table of a contour on the drawing: headings of its columns, numbers (n, columns), and notes."""
+    """Table of a contour on the drawing: headings of its columns, numbers (n, columns), and notes.
+
+    `off` is how far a spline through the rows is off the contour, mm, nan where that is not known. `exact` is whether
+    that is permitted, so that the numbers are theoretically exact dimensions.
+    """
 
     heads: tuple[str, ...]
     rows: Array
     notes: tuple[str, ...]
+    off: float
+    exact: bool
 
 
-def polar_table(contours: Sequence[tuple[str, Curve]], step: float, *, ccw: bool) -> SheetTable:
+def contour_table(contours: Sequence[tuple[str, Curve]], step: float | None, zone: Zone, *, ccw: bool) -> SheetTable:
     """Table of polar radii, mm, of the contours at every `step`, rad; notes give the error of interpolation.
 
-    `contours` are pairs of a name and a curve. Where a ray may cross a contour more than once, the table has places
-    X, Y, mm, at even steps of the curve's parameter instead. The angles run as the disc is drawn:
-    mirrored with `ccw`.
+    Without a step it is the greatest of COUNTS whose error is permitted by the zone, the least if none is. `contours`
+    are pairs of a name and a curve. Where a ray may cross a contour more than once, the table has places X, Y, mm, at
+    even steps of the curve's parameter instead. The angles run as the disc is drawn: mirrored with `ccw`.
     """
-    from camgeo.curve.measures import StarError, polar_radius
+    from camgeo.curve.measures import StarError
 
-    count = round(2.0 * math.pi / step)
-    fine = 2.0 * math.pi / count / BETWEEN * np.arange(count * BETWEEN, dtype=np.float64)
-    columns, heads, notes = [360.0 / count * np.arange(count)], ["angle °"], []
+    counts = COUNTS if step is None else (round(2.0 * math.pi / step),)
+    places = PLACES if step is None else counts[0] * math.ceil(PLACES / counts[0])
+    names: tuple[str, ...] = ("R",)
     try:
-        for name, curve in contours:
-            exact = polar_radius(curve, -fine if ccw else fine)
-            off = float(np.abs(_spline(exact[::BETWEEN][:, None], BETWEEN)[:, 0] - exact).max())
-            columns.append(exact[::BETWEEN])
-            heads.append(f"R {name}".strip())
-            notes.append(_error(name, off))
+        fine, head = _radii(contours, places, ccw=ccw), "angle °"
     except StarError:
-        return _places(contours, count, ccw=ccw)
-    return SheetTable(tuple(heads), np.column_stack(columns), tuple(notes))
+        fine, head, names = _places(contours, places, ccw=ccw), "no.", ("X", "Y")
+    rounded, off = fine, math.nan
+    for count in counts:
+        rows = np.round(fine[:: places // count], DECIMALS)
+        rounded, off = rows, _error(rows, fine, len(names))
+        if off <= zone.permitted:
+            break
+    count, exact = len(rounded), off <= zone.permitted
+    heads = (head, *(f"{name} {whose}".strip() for whose, _ in contours for name in names))
+    numbers = 360.0 / count * np.arange(count) if names == ("R",) else np.arange(1.0, count + 1.0)
+    notes = _notes(off, zone, places, exact=exact)
+    if np.isnan(rounded).any():
+        notes = ("Rows without numbers are places that were trimmed away; interpolation across them is not measured.",)
+    return SheetTable(heads, np.column_stack([numbers, rounded]), notes, off, exact)
 
 
-def _error(name: str, off: float) -> str:
-    whose = f" of the {name} contour" if name else ""
-    seen = f"{off:.2g} mm at most (estimated, {BETWEEN} places a step)"
-    return f"A periodic cubic spline through the rows{whose} is off by {seen}."
+def _notes(off: float, zone: Zone, places: int, *, exact: bool) -> tuple[str, ...]:
+    found = f"A periodic cubic spline through the rows is off by {off:.2g} mm at most, measured at {places} places"
+    if exact:
+        return (f"{found}: within {zone.words}, {zone.permitted:.2g} mm.",)
+    limit = f"{found}: more than {zone.words}, {zone.permitted:.2g} mm."
+    return limit, "These are no theoretically exact dimensions. The contour is that of the DXF of this drawing."
 
 
-def _places(contours: Sequence[tuple[str, Curve]], count: int, *, ccw: bool) -> SheetTable:
+def _radii(contours: Sequence[tuple[str, Curve]], places: int, *, ccw: bool) -> Array:
+    """Polar radii of the contours, mm (places, contours); raises StarError where a ray may cross one more than once."""
+    from camgeo.curve.measures import polar_radius
+
+    angles = 2.0 * math.pi / places * np.arange(places, dtype=np.float64)
+    return np.column_stack([polar_radius(curve, -angles if ccw else angles) for _, curve in contours])
+
+
+def _places(contours: Sequence[tuple[str, Curve]], places: int, *, ccw: bool) -> Array:
+    """Points of the contours, mm (places, 2 contours), nan where they were trimmed away."""
     from camgeo.curve.measures import touched
 
-    columns: list[Array] = [np.arange(1, count + 1, dtype=np.float64)]
-    heads, notes = ["no."], []
-    for name, curve in contours:
-        fine = curve.shape.period / count / BETWEEN * np.arange(count * BETWEEN, dtype=np.float64)
-        points = curve.sample(fine).point * (np.array([1.0, -1.0]) if ccw else 1.0)
-        there = touched(curve, fine)
-        columns += list(np.where(there[::BETWEEN, None], points[::BETWEEN], np.nan).T)
-        heads += [f"X {name}".strip(), f"Y {name}".strip()]
-        if there.all():
-            splined = _spline(points[::BETWEEN], BETWEEN)
-            notes.append(_error(name, float(np.hypot(*(splined - points).T).max())))
-        else:
-            notes.append(
-                "Rows without numbers are places that were trimmed away; interpolation across them is not estimated."
-            )
-    return SheetTable(tuple(heads), np.column_stack(columns), tuple(notes))
+    columns = []
+    for _, curve in contours:
+        t = curve.shape.period / places * np.arange(places, dtype=np.float64)
+        points = curve.sample(t).point * (np.array([1.0, -1.0]) if ccw else 1.0)
+        columns.append(np.where(touched(curve, t)[:, None], points, np.nan))
+    return np.column_stack(columns)
+
+
+def _error(rows: Array, fine: Array, width: int) -> float:
+    """Greatest distance, mm, of splines through rows (n, k) from (m n, k), `width` columns a contour; nan with gaps."""
+    if np.isnan(fine).any():
+        return math.nan
+    apart = _spline(rows, len(fine) // len(rows)) - fine
+    return float(np.hypot.reduce(apart.reshape(len(fine), -1, width), axis=2).max())
 
 
 def _spline(rows: Array, between: int) -> Array:
     """Periodic cubic spline through rows (n, k) one step apart, at `between` places a step, (n between, k)."""
     n = len(rows)
-    matrix = 4.0 * np.eye(n) + np.roll(np.eye(n), 1, axis=1) + np.roll(np.eye(n), -1, axis=1)
+    # the second derivatives: of a circulant system, which a Fourier transform solves
     after, before = np.roll(rows, -1, axis=0), np.roll(rows, 1, axis=0)
-    bend = np.linalg.solve(matrix, 6.0 * (after - 2.0 * rows + before))
+    waves = np.fft.rfft(6.0 * (after - 2.0 * rows + before), axis=0)
+    bend = np.fft.irfft(waves / (4.0 + 2.0 * np.cos(2.0 * math.pi * np.arange(len(waves)) / n))[:, None], n, axis=0)
     t = (np.arange(between) / between)[None, :, None]
     a, b, c, d = rows[:, None], after[:, None], bend[:, None], np.roll(bend, -1, axis=0)[:, None]
     splined: Array = a * (1.0 - t) + b * t + (c * ((1.0 - t) ** 3 - (1.0 - t)) + d * (t**3 - t)) / 6.0
     return splined.reshape(n * between, -1)
 
 
+# --- its pages --------------------------------------------------------------------------------------------------------
+
+FEWEST = 9  # rows of a column, where the table has more than one
+WIDEST = 40.0  # mm: greatest distance between columns
+NEAREST = 6.0  # mm: least distance
+HEADING = 9.0  # mm from the upper edge to the notes
+
+
+class _Columns(NamedTuple):
+    """Columns of the table: height of its letters and width of each part, mm, columns and rows on a page, gap, mm."""
+
+    height: float
+    wides: tuple[float, ...]
+    beside: int
+    each: int
+    gap: float
+
+    @property
+    def line(self) -> float:
+        """Distance between two rows, mm."""
+        return LINE / SMALL * self.height
+
+
 def table_pages(table: SheetTable, paper: str) -> list[Page]:
-    """Pages of the table, as many as its rows need."""
+    """Pages of the table, as many as its rows need: in letters as large, and columns as many, as fill the page."""
     area = free_area(paper, block=False)
     cells = [[_cell(value, k) for k, value in enumerate(row)] for row in table.rows.tolist()]
-    texts = [[head, *(row[k] for row in cells)] for k, head in enumerate(table.heads)]
-    wides = [max(width(text, SMALL) for text in column) + 3.0 for column in texts]
-    block = sum(wides) + COLUMN
     notes = [line for note in table.notes for line in wrap(note, area.right - area.left)]
-    above = 9.0 + LINE * len(notes)
-    each = int((area.high - area.low - above - LINE - 3.0) // LINE)
-    beside = max(1, int((area.right - area.left + COLUMN) // block))
+    top = area.high - HEADING - LINE * len(notes) - 2.0
+    columns = _columns([list(table.heads), *cells], area.right - area.left, top - area.low)
+    each, block = columns.each, sum(columns.wides) + columns.gap
+    word = "theoretically exact" if table.exact else "for orientation"
     pages = []
-    for first in range(0, len(cells), each * beside):
+    for first in range(0, len(cells), each * columns.beside):
         page = framed_page("Contour", paper)
-        page.text((area.left, area.high - PLAIN), "Contour, theoretically exact, from the shaft, in mm", PLAIN)
+        page.text((area.left, area.high - PLAIN), f"Contour, {word}, from the shaft, in mm", PLAIN)
         for k, note in enumerate(notes):
-            page.text((area.left, area.high - 9.0 - LINE * k - 0.5), note)
-        top = area.high - above - LINE
-        for k in range(beside):
+            page.text((area.left, area.high - HEADING - LINE * k - 0.5), note)
+        for k in range(columns.beside):
             rows = cells[first + k * each : first + (k + 1) * each]
             if rows:
-                _draw_rows(page, (area.left + k * block, top), table.heads, wides, rows)
+                _draw_rows(page, (area.left + k * block, top), table, columns, rows)
         pages.append(page)
     return pages
+
+
+def _columns(cells: Sequence[Sequence[str]], wide: float, high: float) -> _Columns:
+    """Columns of a table, its heads the first row of cells, on pages `wide` by `high` mm.
+
+    The letters are the largest of which one page holds all, else the smallest.
+    """
+    rows = len(cells) - 1
+    for height in (LARGE, PLAIN, SMALL):
+        wides = tuple(max(width(row[k], height) for row in cells) + 1.2 * height for k in range(len(cells[0])))
+        most = max(1, int((wide + NEAREST) // (sum(wides) + NEAREST)))
+        each = int(high // (LINE / SMALL * height)) - 1
+        if rows <= most * each:
+            break
+    if rows <= most * each:
+        beside = max(math.ceil(rows / each), min(most, rows // FEWEST), 1)
+        each = math.ceil(rows / beside)
+        beside = math.ceil(rows / each)
+    else:
+        beside = most
+    left = wide - beside * sum(wides)
+    return _Columns(height, wides, beside, each, min(WIDEST, left / max(beside - 1, 1)))
 
 
 def _cell(value: float, column: int) -> str:
     if math.isnan(value):
         return "-"
-    return number(value) if column == 0 else f"{value:.4f}"
+    return number(value) if column == 0 else f"{value:.{DECIMALS}f}"
 
 
-def _draw_rows(
-    page: Page, corner: Point, heads: Sequence[str], wides: Sequence[float], rows: Sequence[Sequence[str]]
-) -> None:
-    left, top = corner
+def _draw_rows(page: Page, corner: Point, table: SheetTable, columns: _Columns, rows: Sequence[Sequence[str]]) -> None:
+    """Draw a column of rows below its heads, its upper left corner at a point; in a box where the numbers are exact."""
+    (left, top), line, high = corner, columns.line, columns.height
+    raised = 0.5 * (line - high)
     x = left
-    page.line((left, top - 1.2), (left + sum(wides), top - 1.2), layer="TABLE")
-    for k, (head, wide) in enumerate(zip(heads, wides, strict=True)):
+    page.line((left, top - line), (left + sum(columns.wides), top - line), layer="TABLE")
+    if table.exact:
+        bottom = top - line * (len(rows) + 1) - 0.3 * raised
+        page.box((left, bottom), sum(columns.wides), top - bottom, layer="TABLE")
+    for k, (head, wide) in enumerate(zip(table.heads, columns.wides, strict=True)):
         x += wide
-        page.text((x - 1.5, top), head, SMALL, "right", "TABLE")
+        page.text((x - 0.5 * high, top - line + raised), head, high, "right", "TABLE")
         for i, row in enumerate(rows):
-            page.text((x - 1.5, top - LINE * (i + 1) - 1.0), row[k], SMALL, "right", "TABLE")
+            page.text((x - 0.5 * high, top - line * (i + 2) + raised), row[k], high, "right", "TABLE")
 
 
 # --- motion and verdict -----------------------------------------------------------------------------------------------
 
 
-def motion_page(design: Design, findings: Findings, paper: str, sources: Sequence[tuple[str, str]]) -> Page:
-    """Page with the follower's motion over a turn, and below it the verdict and the judged files.
+PLOT = 104.0  # mm: height of the plot of the motion, with its words
+FIGURE = 90.0  # mm: least height of the follower's figure
 
-    `sources` are pairs of a file's name and its SHA-256.
+
+def motion_pages(
+    design: Design, drawn: DrawnDisc, findings: Findings, paper: str, sources: Sequence[tuple[str, str]]
+) -> list[Page]:
+    """Pages with the follower's motion over a turn, the follower itself, and the verdict with the judged files.
+
+    They are one page, or two where the list of files is long. `sources` are pairs of a file's name and its SHA-256.
     """
-    page, area = framed_page("Motion and verdict", paper), free_area(paper, block=False)
+    from camgeo.capabilities.sheet.follower import draw_follower, follower_figure
+
+    area = free_area(paper, block=False)
     lines = _verdict(findings)
-    rows = len(lines) + 2 * len(sources) + 2
-    split = area.low + LINE * rows + 6.0
-    _draw_motion(
-        page, design, (area.left + 16.0, max(split + 16.0, area.high - 130.0), area.right - 4.0, area.high - 10.0)
-    )
-    y = split - LINE
+    tall = LINE * (len(lines) + 2 * len(sources) + 2)
+    together = area.high - area.low - PLOT - tall >= FIGURE
+    page = framed_page("Motion and verdict" if together else "Motion", paper)
+    _draw_motion(page, design, (area.left + 16.0, area.high - PLOT + 20.0, area.right - 4.0, area.high - 10.0))
+    low = area.low + (tall if together else 0.0)
+    draw_follower(page, follower_figure(design, drawn), drawn, area._replace(low=low, high=area.high - PLOT))
+    pages = [page] if together else [page, framed_page("Verdict", paper)]
+    y = low - LINE if together else area.high - LINE
     for line in lines:
-        page.text((area.left, y), line)
+        pages[-1].text((area.left, y), line)
         y -= LINE
     y -= 0.5 * LINE
     for name, checksum in sources:
-        page.text((area.left, y), name)
-        page.text((area.left + 4.0, y - LINE), f"sha256 {checksum}")
+        pages[-1].text((area.left, y), name)
+        pages[-1].text((area.left + 4.0, y - LINE), f"sha256 {checksum}")
         y -= 2.0 * LINE
-    return page
+    return pages
 
 
 def _verdict(findings: Findings) -> list[str]:

@@ -20,7 +20,12 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 EPOCH = datetime(2000, 1, 1, tzinfo=UTC)  # in place of the time of writing
-PATTERNS = {"": (), "dashed": (3.0, 1.5), "chain": (8.0, 1.5, 0.5, 1.5)}  # mm: dashes and gaps by turns
+PATTERNS = {
+    "": (),
+    "dashed": (3.0, 1.5),
+    "chain": (8.0, 1.5, 0.5, 1.5),
+    "phantom": (8.0, 1.5, 0.5, 1.5, 0.5, 1.5),
+}  # mm: dashes and gaps by turns
 AROUND = 180  # chords of a circle that is drawn in a pattern
 
 

@@ -1,6 +1,6 @@
 """The first page: face, section through the shaft, bore, and every dimension of the part.
 
-Dimensions stand outside the views: diameters and features in a column on the left, lengths in lanes below and beside
+Dimensions stand outside the views: diameters and features in columns beside the face, lengths in lanes below and beside
 the section. The layout knows the size of every text, so that no two overlap whatever the part.
 """
 
@@ -11,51 +11,78 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.sheet.callouts import (
+    APART,
+    CROSSED,
+    ColumnCallout,
+    Room,
+    crossings,
+    draw_callouts,
+    draw_letter,
+    knees_about,
+    leaders_cost,
+    place_callouts,
+    theoretical,
+)
 from camgeo.capabilities.sheet.lettering import PLAIN, SMALL, width
 from camgeo.capabilities.sheet.marks import (
     ARROW,
+    PLANE,
     THICK,
     THIN,
     CircleMark,
     LineMark,
     Page,
-    Text,
     across,
     arrow,
     has_room,
-    leader,
-    round_size,
     shifted,
     text_beyond,
 )
 from camgeo.capabilities.sheet.options import SCALES
-from camgeo.capabilities.sheet.part import hatching, number, sections
+from camgeo.capabilities.sheet.part import deviation_words, hatching, number, screw_holes, section_edges
 from camgeo.part.features import with_records
 from camgeo.part.flat import Flat
+from camgeo.part.iso286 import HOLES, UPPER_ENDS, deviations
 from camgeo.part.keyway import Keyway
 from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from camgeo.capabilities.sheet.callouts import PlacedCallout
     from camgeo.capabilities.sheet.frame import Area
     from camgeo.capabilities.sheet.marks import Point
-    from camgeo.capabilities.sheet.part import DrawnDisc
+    from camgeo.capabilities.sheet.part import DrawnDisc, Loop
+    from camgeo.part.part import Part
     from kin.numeric.arrays import Array
 
 ROUND = 17.0  # mm of paper round the face: zero mark, sense of rotation, ends of the section line
-LEFT = 6.0  # mm on its left, where nothing but the centre line's end stands
+LEFT = 12.0  # mm on its left, where the centre line's end stands, and leaders begin
 LANE = 8.0  # mm between dimension lines
-PITCH = 5.5  # mm between callouts of the column
-SECOND = 3.8  # mm from the first line of a callout to the second
-SLANT = 6.0  # mm by which a callout stands lower whose leader would lie on the centre line
 STRIP = 14.0  # mm above the views: tolerance frame, name of the section
 UNDER = 7.0  # mm below the views: names of views
 CELL = 7.0  # mm: height of a tolerance frame
 KNEE = 7.0  # mm: of its leader before it
 UNSTATED = "contour: no profile tolerance is stated"
 NARROW = 6.0  # mm: between views
+TOP = 5.5  # mm from the upper end of the face's area to the first line of callouts
+CLEARANCE = 0.8  # mm between a leader and the texts about the face
+COVER = 14.0  # mm between circles that cover a view
+SENSES = math.radians(48.0)  # to either side of the ray at 0: where the arcs that show the senses stand
+SMALLER = 2  # scales by which the views may become smaller so that no leader crosses an opening
+WORTH = 1.25  # of what leaders cost on both sides of the face: they have to be so much better than on its left
+PLACES = 24  # at which the leader of a surface's roughness may end
 HATCH = 2.5  # mm between lines of the hatching
 DATUM = 2.0 * ARROW + 9.5  # mm: how far a datum's box reaches beyond a short dimension's line
+
+
+_SURFACES: tuple[tuple[str, Callable[[Loop], bool]], ...] = (
+    ("contour", lambda loop: loop.surface),
+    ("bore", lambda loop: loop.layer == "BORE"),
+)
+"""Surfaces whose roughness a drawing states, and the outline of each."""
 
 
 class NoRoomError(CamgeoError, ValueError):
@@ -64,42 +91,6 @@ class NoRoomError(CamgeoError, ValueError):
     def __init__(self, largest: str) -> None:
         super().__init__(largest)
         self.largest = largest
-
-
-class ColumnCallout(NamedTuple):
-    """A callout of the column: what it points at, as centre, radius and angle (rad) of a circle of the part or a point.
-
-    Its first line is `text`, boxed where the size is theoretically exact; `note` is the second, empty for none. `value`
-    is a diameter, mm, that is a dimension; None of words. `datum` is the letter of the datum that the feature is.
-    """
-
-    text: str
-    note: str
-    centre: Point
-    radius: float
-    angle: float
-    value: float | None = None
-    boxed: bool = False
-    datum: str = ""
-
-    @property
-    def wide(self) -> float:
-        """Width on the paper, mm."""
-        first = width(self.text, SMALL) + (CELL + 2.0 if self.datum else 0.0) + (2.0 if self.boxed else 0.0)
-        return max(first, width(self.note, SMALL))
-
-    @property
-    def high(self) -> float:
-        """Height from its first line to the next callout's, mm on the paper."""
-        return PITCH + (SECOND if self.note else 0.0)
-
-    @property
-    def tip(self) -> Point:
-        """End of the leader on the part, x and y, mm."""
-        return (
-            self.centre[0] + self.radius * math.cos(self.angle),
-            self.centre[1] + self.radius * math.sin(self.angle),
-        )
 
 
 class Along(NamedTuple):
@@ -151,33 +142,36 @@ class Dimensions:
     tolerance: Tolerance
 
 
-def disc_sizes(drawn: DrawnDisc, base: tuple[str, float] | None, tolerance: Tolerance) -> Dimensions:
+def disc_sizes(
+    drawn: DrawnDisc, base: tuple[str, float] | None, tolerance: Tolerance, finish: Mapping[str, str]
+) -> Dimensions:
     """Every dimension of a disc; `base` is the name and radius, mm, of the circle from which the contour is described.
 
-    Without a thickness there is no section, and its diameters are callouts of the face.
+    `finish` has the roughness of the contour and of the bore where it is stated. Without a thickness there is no
+    section, and its diameters are callouts of the face.
     """
     part, body = drawn.part, drawn.body
     column: list[ColumnCallout] = []
-    origin = (0.0, 0.0)
     if base is not None:
         name, radius = base
-        column.append(
-            ColumnCallout(f"Ø{number(2.0 * radius)}", name, origin, radius, 0.8 * math.pi, 2.0 * radius, boxed=True)
-        )
+        column.append(_about_shaft(2.0 * radius, name, boxed=True))
     features = ((feature.callouts, value) for feature, value in with_records(part.features))
     sizes = [callouts(value, drawn.view) for callouts, value in features if callouts is not None]
     column += [ColumnCallout(*size) for each in sizes for size in each]
+    edges = {name: next(loop.points for loop in drawn.loops if of(loop)) for name, of in _SURFACES if name in finish}
+    column += [
+        ColumnCallout(finish[name], points=tuple(map(tuple, points[:: len(points) // PLACES + 1].tolist())), rough=True)
+        for name, points in edges.items()
+    ]
     thick = body.thickness
     plain = part.bore is not None and not part.sides
+    bore_text = f"Ø{number(part.bore or 0.0)}{_fit_words(part)}"
     if thick is None:
         if plain and part.bore is not None:
-            text = f"Ø{number(part.bore)} {part.fit}".rstrip()
-            column.append(ColumnCallout(text, "bore", origin, 0.5 * part.bore, 1.1 * math.pi, part.bore, datum="A"))
+            column.append(_about_shaft(part.bore, "bore", text=bore_text, datum="A"))
         if part.outer is not None:
-            column.append(
-                ColumnCallout(f"Ø{number(part.outer)}", "", origin, 0.5 * part.outer, 0.9 * math.pi, part.outer)
-            )
-        return Dimensions(tuple(column), (), (), None, tolerance)
+            column.append(_about_shaft(part.outer))
+        return Dimensions(_merged(column), (), (), None, tolerance)
     under = [Along(0.0, thick, number(thick))]
     if body.pocket is not None:
         under.append(Along(thick - body.pocket, thick, f"{number(body.pocket)} groove"))
@@ -192,21 +186,83 @@ def disc_sizes(drawn: DrawnDisc, base: tuple[str, float] | None, tolerance: Tole
         right.append(Across(thick, part.outer, f"Ø{number(part.outer)}"))
     bore = None
     if plain and part.bore is not None:
-        bore = Across(body.bottom, part.bore, f"Ø{number(part.bore)} {part.fit}".rstrip())
+        bore = Across(body.bottom, part.bore, bore_text)
     return Dimensions(
-        tuple(column), tuple(sorted(under, key=lambda length: length.high - length.low)), tuple(right), bore, tolerance
+        _merged(column),
+        tuple(sorted(under, key=lambda length: length.high - length.low)),
+        tuple(right),
+        bore,
+        tolerance,
     )
+
+
+def _about_shaft(
+    diameter: float, name: str = "", *, text: str = "", boxed: bool = False, datum: str = ""
+) -> ColumnCallout:
+    """Callout of a circle about the shaft of a diameter, mm."""
+    circle = ((0.0, 0.0), 0.5 * diameter)
+    text = text or f"Ø{number(diameter)}"
+    return ColumnCallout(text, (name,) if name else (), (circle,), value=diameter, boxed=boxed, datum=datum)
+
+
+def _merged(column: Sequence[ColumnCallout]) -> tuple[ColumnCallout, ...]:
+    """The callouts, of which those of one circle about the shaft are one, so that its size stands once."""
+    merged: dict[object, ColumnCallout] = {}
+    for k, row in enumerate(column):
+        about = len(row.circles) == 1 and row.circles[0][0] == (0.0, 0.0) and not row.boxed and not row.datum
+        key = row.text if about else k
+        first = merged.get(key)
+        merged[key] = row if first is None else first._replace(notes=(*first.notes, *row.notes))
+    return tuple(merged.values())
+
+
+def _fit_words(part: Part) -> str:
+    """Tolerance class of a bore, and its deviations where the tables have them."""
+    if not part.fit:
+        return ""
+    if (part.bore or 0.0) > UPPER_ENDS[-1]:
+        return f" {part.fit}"
+    return f" {part.fit} ({deviation_words(*deviations(HOLES[part.fit], part.bore or 0.0))})"
 
 
 # --- the layout -------------------------------------------------------------------------------------------------------
 
 
+class Extent(NamedTuple):
+    """What the face needs about the shaft, with its circles about the shaft, mm: x and y at its ends.
+
+    `right` is as far out as the arcs that show the senses stand clear of the part.
+    """
+
+    left: float
+    right: float
+    low: float
+    high: float
+
+
+def _outline(drawn: DrawnDisc, sizes: Dimensions) -> Array:
+    """Points (n, 2), mm, of all outlines of the face, and of circles about the shaft."""
+    radii = [radius for row in sizes.column for centre, radius in row.circles if centre == (0.0, 0.0)]
+    radii += [] if drawn.body.boss is None else [0.5 * drawn.body.boss.diameter]
+    turn = np.linspace(0.0, 2.0 * np.pi, 121)
+    circle = np.column_stack([np.cos(turn), np.sin(turn)])
+    return np.concatenate([*(loop.points for loop in drawn.loops), *(radius * circle for radius in radii)])
+
+
+def _extent(points: Array) -> Extent:
+    (left, low), (right, high) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    ahead = points[np.abs(np.arctan2(points[:, 1], points[:, 0])) <= SENSES]
+    far = float(np.hypot(*ahead.T).max()) if len(ahead) else 0.0
+    return Extent(min(left, 0.0), max(right, far, 0.0), min(low, 0.0), max(high, 0.0))
+
+
 class Layout(NamedTuple):
     """Places of the views at a scale: centre of the face, left end of the section, centre of the view of the bore.
 
-    `word` is the scale as a key of SCALES, `scale` its value, `column` the right end of the column, `area` the free
-    area, mm on the paper. `sense` is the direction of view along x, 1 or -1: the section stands on the right, so in the
-    first angle it is seen from the left (1).
+    `word` is the scale as a key of SCALES, `scale` its value, `extent` the face's, mm of paper; `callouts` stand beside
+    the face. `sense` is the
+    direction of view along x, 1 or -1: the section stands on the right, so in the first angle it is seen from the left
+    (1).
     """
 
     word: str
@@ -214,54 +270,137 @@ class Layout(NamedTuple):
     face: Point
     section: Point
     bore: Point
-    column: float
-    area: Area
+    extent: Extent
+    callouts: Sequence[PlacedCallout]
     sense: float = 1.0
+
+    @property
+    def cost(self) -> float:
+        """What its leaders cost, in mm of paper."""
+        return leaders_cost(self.callouts)
+
+    @property
+    def crossings(self) -> int:
+        """Openings and texts that leaders cross."""
+        return sum(callout.crossings for callout in self.callouts)
 
 
 def lay_out(drawn: DrawnDisc, sizes: Dimensions, area: Area, scale: str | None, sense: float) -> Layout:
     """Place the views at a scale, a key of SCALES, or for None at the largest that fits; `sense` is that of Layout.
 
-    Raises NoRoomError where they do not fit; for a given scale it names the largest that fits, if there is one.
+    Where leaders would cross an opening the next smaller scales are tried too. Raises NoRoomError where the views do
+    not fit; for a given scale it names the largest that fits, if there is one.
     """
-    words = SCALES if scale is None else (scale,)
+    found: list[Layout] = []
+    for layout in _layouts(drawn, sizes, area, SCALES if scale is None else (scale,)):
+        found.append(layout)
+        if not layout.crossings or len(found) > SMALLER:
+            break
+    if found:
+        return min(found, key=lambda layout: layout.crossings)._replace(sense=sense)
+    fits = iter(()) if scale is None else _layouts(drawn, sizes, area, SCALES)
+    raise NoRoomError(next((layout.word for layout in fits), ""))
+
+
+def _layouts(drawn: DrawnDisc, sizes: Dimensions, area: Area, words: Iterable[str]) -> Iterator[Layout]:
+    """The best layout at each of these scales at which the views fit.
+
+    Callouts stand on the left of the face alone, unless leaders are clearer or much shorter with some on its right.
+    """
     for word in words:
         for beside in (True, False):
-            layout = _lay_out_at(drawn, sizes, area, word, beside=beside)
-            if layout is not None:
-                return layout._replace(sense=sense)
-    fits = (word for word in SCALES for beside in (True, False) if _lay_out_at(drawn, sizes, area, word, beside=beside))
-    raise NoRoomError("" if scale is None else next(fits, ""))
+            left, both = (_lay_out_at(drawn, sizes, area, word, beside=beside, both=both) for both in (False, True))
+            layouts = [layout for layout in (left, both) if layout is not None]
+            if layouts:
+                yield min(layouts, key=lambda layout: layout.cost * (1.0 if layout is left else WORTH))
+                break
 
 
-def _lay_out_at(drawn: DrawnDisc, sizes: Dimensions, area: Area, word: str, *, beside: bool) -> Layout | None:
-    """Place the views at a scale, the bore's own view beside the others or below; None where they do not fit."""
+def _lay_out_at(
+    drawn: DrawnDisc, sizes: Dimensions, area: Area, word: str, *, beside: bool, both: bool
+) -> Layout | None:
+    """Place the views at a scale, or give None where they do not fit.
+
+    The bore's own view stands `beside` the others or below; callouts stand on `both` sides of the face or on its left.
+    """
     k = SCALES[word]
-    reach = k * drawn.reach
-    # widths from the left; the tolerance stands above the face and may reach over the column
-    column = max((callout.wide for callout in sizes.column), default=0.0) + (NARROW if sizes.column else 0.0)
-    face = max(LEFT + 2.0 * reach + ROUND, sizes.tolerance.long - column)
-    gap = NARROW + LANE if sizes.bore is not None else NARROW
-    section = gap + k * drawn.depth + _beyond(sizes, k) if drawn.body.thickness is not None else 0.0
+    points = k * _outline(drawn, sizes)
+    extent = _extent(points)
+    broad, tall = extent.right - extent.left, extent.high - extent.low
     own = _bore_view(drawn, k)
     below = max(UNDER, LANE * len(sizes.under))
-    wide = column + face + section + (own.wide if beside else 0.0)
-    high = STRIP + 2.0 * (reach + ROUND) + below + (0.0 if beside else own.above + own.below)
-    if wide > area.right - area.left or high > area.high - area.low:
+    high = STRIP + tall + 2.0 * ROUND + below + (0.0 if beside else own.above + own.below)
+    gap = NARROW + LANE if sizes.bore is not None else NARROW
+    section = gap + k * drawn.depth + _beyond(sizes, k) if drawn.body.thickness is not None else 0.0
+    face = LEFT + broad + ROUND + section + (own.wide if beside else 0.0)
+    if face > area.right - area.left or high > area.high - area.low:
         return None
-    # places: the views in the middle of the area; the column, from the face's upper end downward, stays within it
-    start = area.left + column + 0.5 * (area.right - area.left - wide)
-    x, y = start + face - reach - ROUND, area.high - STRIP - reach - ROUND - 0.5 * (area.high - area.low - high)
-    if sum(callout.high for callout in sizes.column) + SLANT > y + reach + ROUND - area.low:
+    y = area.high - STRIP - extent.high - ROUND - 0.5 * (area.high - area.low - high)
+    # a view of the bore below the face stands clear of the column, which may reach down beside it
+    foot = extent.low - ROUND - below
+    aside = max(0.0, extent.left - LEFT + NARROW + 0.5 * own.wide)
+    room = _room(drawn, extent, points, k, area.low - y)
+    if own.wide and not beside:
+        room = room._replace(texts=np.concatenate([room.texts, _cover(aside, foot, own)]))
+    callouts = place_callouts(sizes.column, room, both=both)
+    if callouts is None:
         return None
-    bore = (start + face + section + 0.5 * own.wide, y) if beside else (x, y - reach - ROUND - below - own.above)
-    return Layout(word, k, (x, y), (start + face + gap, y), bore, start - NARROW, area)
+    left, right = (max((each.row.wide for each in callouts if each.side == side), default=0.0) for side in (-1, 1))
+    # widths from the left; the tolerance stands above the face and may reach over the column
+    left = max(left, sizes.tolerance.long - LEFT - broad - ROUND)
+    wide = left + face + right
+    if not beside:
+        wide = max(wide, left + LEFT - extent.left + aside + 0.5 * own.wide)
+    if wide > area.right - area.left:
+        return None
+    # places: the views in the middle of the area
+    start = area.left + left + 0.5 * (area.right - area.left - wide)
+    x, end = start + LEFT - extent.left, start + LEFT + broad + ROUND + right
+    bore = (end + section + 0.5 * own.wide, y) if beside else (x + aside, y + foot - own.above)
+    return Layout(word, k, (x, y), (end + gap, y), bore, extent, callouts)
+
+
+def _cover(x: float, top: float, own: BoreView) -> Array:
+    """Circles (n, 3) that cover a view of the bore about x below a height, mm of paper from the shaft."""
+    left, right, low = x - 0.5 * own.wide, x + 0.5 * own.wide, top - own.above - own.below
+    columns, rows = (max(2, math.ceil(long / COVER) + 1) for long in (right - left, top - low))
+    grid = np.meshgrid(np.linspace(left, right, columns), np.linspace(low, top, rows))
+    centres = np.column_stack([each.ravel() for each in grid])
+    return np.column_stack([centres, np.full(len(centres), 0.71 * COVER)])
+
+
+def _room(drawn: DrawnDisc, extent: Extent, points: Array, k: float, low: float) -> Room:
+    """Room for the callouts of the face at a scale k, about points of paper (n, 2).
+
+    `low` is the lower end of the free area below the shaft, mm.
+    """
+    texts = [
+        (x + shift, y + 0.5 * height, 0.5 * height + CLEARANCE)
+        for (x, y), text, height in (*_marks_of_sense(extent), *_letters_of_plane(drawn, extent))
+        for shift in np.arange(0.0, width(text, height) + 1.0, height)
+    ]
+    return Room(
+        left=extent.left - LEFT + APART,
+        right=extent.right + ROUND - APART,
+        low=low,
+        high=extent.high + ROUND - TOP,
+        knees=knees_about(points),
+        openings=k * np.array(drawn.holes).reshape(-1, 3),
+        texts=np.array(texts),
+        scale=k,
+    )
 
 
 def _beyond(sizes: Dimensions, k: float) -> float:
     """Width to the right of the section, mm on the paper: lanes of dimensions, or texts beyond their lines."""
     texts = (text_beyond(k * (length.high - length.low), length.text) for length in sizes.under)
     return max(LANE * len(sizes.right), *texts) + 1.0
+
+
+def _width_words(keyway: Keyway) -> str:
+    """Width of a keyway, with its tolerance class and deviations where one is stated."""
+    fit = f" {keyway.fit} ({deviation_words(*keyway.wider)})" if keyway.fit else ""
+    return f"{number(keyway.width)}{fit}"
 
 
 class BoreView(NamedTuple):
@@ -280,7 +419,7 @@ def _bore_view(drawn: DrawnDisc, k: float) -> BoreView:
     reach = k * next(opening.reach for opening in drawn.body.openings if opening.name == "bore")
     above, below = reach + 4.0, reach + LANE + 2.0
     if (keyway := part.of(Keyway)) is not None:
-        above = max(above, 0.5 * k * keyway.width + 2.0 * ARROW + width(number(keyway.width), SMALL) + 4.0)
+        above = max(above, 0.5 * k * keyway.width + 2.0 * ARROW + width(_width_words(keyway), SMALL) + 4.0)
         below = max(below, 0.5 * k * keyway.width + DATUM + 2.0)
     return BoreView(
         max(2.0 * reach + 4.0 * LANE + 8.0, width(_bore_label(drawn)[1], SMALL) + 4.0), above, below + UNDER
@@ -303,8 +442,8 @@ def _bore_label(drawn: DrawnDisc) -> tuple[float, str]:
 
 def draw_views(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) -> None:
     """Draw all views with their dimensions on a page."""
-    _draw_face(page, drawn, sizes, layout)
-    _draw_column(page, drawn, sizes, layout)
+    _draw_face(page, drawn, layout)
+    draw_callouts(page, layout.callouts, layout.face, layout.scale)
     _draw_tolerance(page, drawn, layout, sizes.tolerance)
     if drawn.body.thickness is not None:
         _draw_section(page, drawn, sizes, layout)
@@ -312,22 +451,21 @@ def draw_views(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) 
         _draw_bore(page, drawn, layout, sizes.tolerance)
 
 
-def _draw_face(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) -> None:
+def _draw_face(page: Page, drawn: DrawnDisc, layout: Layout) -> None:
     k, (x, y) = layout.scale, layout.face
-    reach = k * drawn.reach
+    left, right, low, high = layout.extent
     for loop in drawn.loops:
         page.marks.append(LineMark(shifted(loop.points, k, layout.face), THICK, "", closed=True))
     boss = drawn.body.boss
     if boss is not None:
         outline = CircleMark(layout.face, 0.5 * k * boss.diameter, THICK, "VIEW")
         page.marks.append(outline if boss.above else replace(outline, weight=THIN, pattern="dashed"))
-    page.line((x - reach - 4.0, y), (x + reach + 2.0, y), layer="CENTRE", pattern="chain")
+    page.line((x + left - 4.0, y), (x + right + 2.0, y), layer="CENTRE", pattern="chain")
     solid = drawn.body.thickness is not None
-    end = reach + (5.0 if solid else 4.0)
-    page.line((x, y - end), (x, y + end), layer="CENTRE", pattern="chain")
-    for callout in sizes.column:
-        if callout.value is not None and callout.centre == (0.0, 0.0) and not callout.datum:
-            page.marks.append(CircleMark(layout.face, k * callout.radius, THIN, "CENTRE", "chain"))
+    page.line((x, y + low - 3.0), (x, y + high + 3.0), layer="CENTRE", pattern="chain")
+    page.marks.extend(theoretical(layout.callouts, layout.face, k))
+    for start, stop in drawn.hidden:
+        page.marks.append(LineMark(shifted([start, stop], k, layout.face), THIN, "VIEW", "dashed"))
     for opening in drawn.body.openings:
         if opening.circle is not None and opening.name != "bore":
             (cx, cy), r = opening.circle
@@ -335,68 +473,55 @@ def _draw_face(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) 
             page.line((at[0] - half, at[1]), (at[0] + half, at[1]), layer="CENTRE")
             page.line((at[0], at[1] - half), (at[0], at[1] + half), layer="CENTRE")
     # the mark of the angle 0
-    page.line((x + reach + 3.0, y), (x + reach + 8.0, y), weight=THICK)
-    page.text((x + reach + 9.0, y - 0.5 * SMALL), "0°")
-    _draw_rotation(page, drawn, layout)
+    page.line((x + right + 3.0, y), (x + right + 8.0, y), weight=THICK)
+    for (u, v), text, height in _marks_of_sense(layout.extent):
+        page.text((x + u, y + v), text, height)
+    _draw_sense(page, layout.face, right + 5.0, *((14.0, 40.0) if drawn.ccw else (40.0, 14.0)))
+    _draw_sense(page, layout.face, right + 5.0, -40.0, -14.0)
     if solid:
         _draw_plane(page, drawn, layout)
 
 
-def _draw_rotation(page: Page, drawn: DrawnDisc, layout: Layout) -> None:
-    """Arc with an arrow: the sense in which the shaft turns."""
-    (x, y), radius = layout.face, layout.scale * drawn.reach + 5.0
-    start, end = (14.0, 40.0) if drawn.ccw else (40.0, 14.0)
+def _marks_of_sense(extent: Extent) -> list[tuple[Point, str, float]]:
+    """Texts right of the face, mm from its middle: where the angles begin, what turns, and which way angles count."""
+    out = extent.right + 5.0
+    c, s = out * math.cos(math.radians(40.0)), out * math.sin(math.radians(40.0))
+    return [
+        ((extent.right + 9.0, -0.5 * SMALL), "0°", SMALL),
+        ((c + 1.0, s + 1.0), "shaft", SMALL),
+        ((c + 1.0, -s - 1.0 - SMALL), "angles", SMALL),
+    ]
+
+
+def _draw_sense(page: Page, middle: Point, radius: float, start: float, end: float) -> None:
+    """Arc about the middle of the face from one angle to another, degrees, with an arrow at its end."""
+    x, y = middle
     angles = np.radians(np.linspace(start, end, 24))
     points = np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
     page.marks.append(LineMark(points))
-    sense = 0.5 * math.pi if drawn.ccw else -0.5 * math.pi
     tip = (float(points[-1, 0]), float(points[-1, 1]))
-    page.marks.append(arrow(tip, float(angles[-1]) + sense))
+    page.marks.append(arrow(tip, float(angles[-1]) + math.copysign(0.5 * math.pi, end - start)))
+
+
+def _letters_of_plane(drawn: DrawnDisc, extent: Extent) -> list[tuple[Point, str, float]]:
+    """Letters at the ends of the cutting plane, mm from the middle of the face; none without a section."""
+    if drawn.body.thickness is None:
+        return []
+    above, below = extent.high + 11.3, extent.low - 11.3 - PLAIN
+    return [((-0.5 * PLAIN, above), "A", PLAIN), ((-0.5 * PLAIN, below), "A", PLAIN)]
 
 
 def _draw_plane(page: Page, drawn: DrawnDisc, layout: Layout) -> None:
-    """Ends of the cutting plane, with arrows in the direction of view."""
-    (x, y), reach = layout.face, layout.scale * drawn.reach
-    sense = layout.sense
-    for side in (-1.0, 1.0):
-        inner, outer = y + side * (reach + 5.0), y + side * (reach + 10.0)
-        page.line((x, inner), (x, outer), weight=THICK)
+    """Thick ends of the cutting plane, with arrows in the direction of view."""
+    (x, y), sense = layout.face, layout.sense
+    for side, end in ((-1.0, layout.extent.low), (1.0, layout.extent.high)):
+        edge = y + end
+        inner, outer = edge + side * 4.0, edge + side * 10.0
+        page.line((x, inner), (x, outer), weight=PLANE)
         page.line((x, outer), (x + sense * 6.0, outer))
         page.marks.append(arrow((x + sense * 6.0, outer), 0.0 if sense > 0.0 else math.pi))
-        page.text((x, outer + 1.3 if side > 0.0 else outer - 1.0 - PLAIN), "A", PLAIN, "middle")
-
-
-def _draw_column(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layout) -> None:
-    """Callouts of the column, each as near to the height of its feature as the others let it."""
-    k, (x, y) = layout.scale, layout.face
-    rows = sorted(sizes.column, key=lambda row: -row.tip[1])
-    heights = [y + k * row.tip[1] - 0.5 * SMALL - (SLANT if abs(k * row.tip[1]) < 2.0 else 0.0) for row in rows]
-    # downwards no callout covers its upper neighbour; upwards none leaves the free area
-    for i in range(len(rows)):
-        top = y + k * drawn.reach + ROUND - PITCH if i == 0 else heights[i - 1] - rows[i - 1].high
-        heights[i] = min(heights[i], top)
-    for i in reversed(range(len(rows))):
-        bottom = layout.area.low if i == len(rows) - 1 else heights[i + 1]
-        heights[i] = max(heights[i], bottom + rows[i].high)
-    for row, height in zip(rows, heights, strict=True):
-        end = layout.column - (CELL + 2.0 if row.datum else 0.0) - (1.0 if row.boxed else 0.0)
-        label = Text((end, height), row.text, SMALL, "right", "DIM")
-        tip = (x + k * row.tip[0], y + k * row.tip[1])
-        centre = (x + k * row.centre[0], y + k * row.centre[1])
-        sized = label if row.value is None else round_size(centre, k * row.radius, label, row.value)
-        page.marks.extend([*leader(tip, (layout.column + 0.8, height + 0.5 * SMALL)), sized])
-        page.text((layout.column, height - SECOND), row.note, anchor="right", layer="DIM")
-        if row.boxed:
-            wide = width(row.text, SMALL)
-            page.box((end - wide - 0.8, height - 0.8), wide + 1.6, SMALL + 1.6)
-        if row.datum:
-            _draw_letter(page, (layout.column - 3.5, height + 0.5 * SMALL), row.datum)
-
-
-def _draw_letter(page: Page, middle: Point, letter: str) -> None:
-    x, y = middle
-    page.box((x - 2.5, y - 2.5), 5.0, 5.0)
-    page.text((x, y - 0.5 * SMALL), letter, SMALL, "middle")
+    for (u, v), letter, height in _letters_of_plane(drawn, layout.extent):
+        page.text((x + u + 0.5 * PLAIN, y + v), letter, height, "middle")
 
 
 def _draw_datum(page: Page, at: Point, direction: Point, letter: str) -> None:
@@ -405,22 +530,26 @@ def _draw_datum(page: Page, at: Point, direction: Point, letter: str) -> None:
     base = [(x - 1.2 * v, y + 1.2 * u), (x + 1.2 * v, y - 1.2 * u), (x + 2.0 * u, y + 2.0 * v)]
     page.marks.append(LineMark(np.array(base), closed=True, filled=True))
     page.line((x + 2.0 * u, y + 2.0 * v), (x + 4.5 * u, y + 4.5 * v))
-    _draw_letter(page, (x + 7.0 * u, y + 7.0 * v), letter)
+    draw_letter(page, (x + 7.0 * u, y + 7.0 * v), letter)
 
 
 def _draw_tolerance(page: Page, drawn: DrawnDisc, layout: Layout, tolerance: Tolerance) -> None:
     """Profile of a surface with its tolerance, all around, by the datums; or that none is stated."""
     k, (x, y) = layout.scale, layout.face
-    low = y + k * drawn.reach + ROUND + 2.0
-    left = min(x - k * drawn.reach, x + k * drawn.reach + ROUND - tolerance.long)
+    extent = layout.extent
+    low = y + extent.high + ROUND + 2.0
+    left = min(x + extent.left, x + extent.right + ROUND - tolerance.long)
     if not tolerance.cells:
         page.text((left, low + 2.0), UNSTATED)
         return
-    contour = next(loop.points for loop in drawn.loops if loop.surface)
-    angles = np.arctan2(contour[:, 1], contour[:, 0])
-    place = contour[int(np.argmin(np.abs(angles - 0.68 * math.pi)))]
-    tip = (x + k * float(place[0]), y + k * float(place[1]))
     knee = (left + 0.3 * KNEE, low + 0.5 * CELL)
+    # the nearest place of the contour, so that the leader meets it at right angles, but behind no opening
+    contour = shifted(next(loop.points for loop in drawn.loops if loop.surface), k, layout.face)
+    circles = k * np.array(drawn.holes).reshape(-1, 3) + np.array([x, y, 0.0])
+    costs = np.hypot(*(contour - np.array(knee)).T)
+    costs = costs + CROSSED * crossings(np.array([[knee]]), contour[None], circles)[0]
+    tip_x, tip_y = contour[int(np.argmin(costs))].tolist()
+    tip = (tip_x, tip_y)
     page.line(tip, knee, (left + KNEE, knee[1]))
     page.marks.append(arrow(tip, math.atan2(tip[1] - knee[1], tip[0] - knee[0])))
     page.marks.append(CircleMark(knee, 1.4, THIN, "DIM"))
@@ -445,22 +574,21 @@ def _draw_section(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layou
         along = z - body.bottom if sense > 0.0 else body.top - z
         return left + k * along, y + k * height
 
-    chains = [[placed(*point) for point in chain] for chain in sections(drawn)]
+    cut, edges = section_edges(drawn, sense)
+    chains = [[placed(*point) for point in chain] for chain in cut]
     for chain in chains:
         page.marks.append(LineMark(np.array(chain), THICK, "VIEW", closed=True))
-    for ends in hatching(chains, HATCH):
+    gone = [[placed(*point) for point in ring] for ring in screw_holes(drawn)]
+    for ring in gone:
+        page.marks.append(LineMark(np.array(ring), THICK, "VIEW", closed=True))
+    for ends in hatching([*chains, *gone], HATCH):
         page.marks.append(LineMark(ends, THIN, "HATCH"))
-    behind = [[placed(*point) for point in edges] for edges in _behind(drawn, sense)]
-    for edges in behind:
-        page.line(*edges, weight=THICK, layer="VIEW")
+    behind = [[placed(*point) for point in edge] for edge in edges]
+    for edge in behind:
+        page.line(*edge, weight=THICK, layer="VIEW")
     right = left + k * drawn.depth
     page.line((left - 4.0, y), (right + 4.0, y), layer="CENTRE", pattern="chain")
-    outer = 0.0 if body.boss is None else 0.5 * body.boss.diameter
-    for hole in body.cross_holes:
-        half, side = 0.5 * hole.diameter, 1.0 if math.sin(hole.at) >= 0.0 else -1.0
-        for z in (hole.z - half, hole.z + half):
-            page.line(placed(z, side * 0.5 * (body.bore or 0.0)), placed(z, side * outer), layer="VIEW")
-    top = y + k * drawn.reach + ROUND + 2.0
+    top = y + layout.extent.high + ROUND + 2.0
     page.text((0.5 * (left + right), top + 1.5), "A-A", PLAIN, "middle")
     low = min(height for chain in [*chains, *behind] for _, height in chain)
     # the lengths stand below the part, and below the datum of its bore where that reaches lower
@@ -478,25 +606,6 @@ def _draw_section(page: Page, drawn: DrawnDisc, sizes: Dimensions, layout: Layou
         bore, base, half = sizes.bore, left - LANE, 0.5 * k * sizes.bore.diameter
         page.marks.append(across((left, y - half), (left, y + half), base, bore.diameter, bore.text, upright=True))
         _draw_datum(page, (base, y - half - (0.0 if has_room(2.0 * half) else 2.0 * ARROW)), (0.0, -1.0), "A")
-
-
-def _behind(drawn: DrawnDisc, sense: float) -> list[tuple[Point, ...]]:
-    """Edges behind the cutting plane, as chains of (z, y), mm: rims of the bore, and what reaches beyond the cut."""
-    body = drawn.body
-    edges: list[tuple[Point, ...]] = []
-    thick = body.thickness or 0.0
-    if drawn.part.bore is not None:
-        bore = next(loop.points for loop in drawn.loops if loop.layer == "BORE")
-        beyond = bore[sense * bore[:, 0] >= 0.0]
-        low, high = float(beyond[:, 1].min()), float(beyond[:, 1].max())
-        edges += [((body.bottom, low), (body.bottom, high)), ((body.top, low), (body.top, high))]
-    outer = max((loop for loop in drawn.loops if loop.through), key=lambda loop: float(np.ptp(loop.points[:, 1])))
-    beyond = outer.points[sense * outer.points[:, 0] >= 0.0]
-    cut = [height for chain in sections(drawn) for _, height in chain]
-    for end, edge in ((float(beyond[:, 1].max()), max(cut)), (float(beyond[:, 1].min()), min(cut))):
-        if abs(end) > abs(edge) + 1e-3:
-            edges.append(((0.0, edge), (0.0, end), (thick, end), (thick, edge)))
-    return edges
 
 
 def _draw_bore(page: Page, drawn: DrawnDisc, layout: Layout, tolerance: Tolerance) -> None:
@@ -517,10 +626,11 @@ def _draw_bore(page: Page, drawn: DrawnDisc, layout: Layout, tolerance: Toleranc
         corner = 0.5 * bore + key.depth
         value = bore + key.depth
         ends = (x + left, y), (x + k * corner, y - 0.5 * k * key.width)
-        page.marks.append(across(*ends, base, value, number(value), before=True))
+        deeper = f" {deviation_words(0.0, key.deeper)}" if key.deeper else ""
+        page.marks.append(across(*ends, base, value, f"{number(value)}{deeper}", before=True))
         edges = (x + k * corner, y - 0.5 * k * key.width), (x + k * corner, y + 0.5 * k * key.width)
         lane = x + k * corner + LANE
-        page.marks.append(across(*edges, lane, key.width, number(key.width), upright=True))
+        page.marks.append(across(*edges, lane, key.width, _width_words(key), upright=True))
         if "B" in tolerance.datums:
             half = 0.5 * k * key.width
             _draw_datum(page, (lane, y - half - (0.0 if has_room(2.0 * half) else 2.0 * ARROW)), (0.0, -1.0), "B")

@@ -6,5 +6,4 @@ LABEL = Label(
     rank=10,
     commands={"study": "Error against run time of each output form; a recipe's margins."},
     reports=("study.json",),
-    record=False,
 )

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.study.margins import FailureMargin
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
     from camgeo.recipe.recipe import Recipe
-    from kin.judge.check import Check
+    from kin.numeric.check import Check
 
 
 def document(

@@ -10,7 +10,7 @@ from kin.read.home import prepare_home
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
 
 COLOURS = {"polyline": "#0072B2", "arcs": "#D55E00", "spline": "#009E73", "stl": "#CC79A7"}
 MARKS = {"polyline": "o", "arcs": "s", "spline": "^", "stl": "D"}

@@ -65,7 +65,7 @@ class _CentredCam(NamedTuple):
         from camgeo.cams.flat_faced import breadth_of, is_constant_breadth
         from camgeo.curve.curvature import least_radius
         from camgeo.curve.curve import CurveError
-        from kin.law.programme import IntentError
+        from kin.law.normalised import IntentError
 
         linear = recipe.cam.linear
         cam = linear.about_origin() if linear is not None else recipe.cam

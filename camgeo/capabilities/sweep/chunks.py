@@ -2,9 +2,8 @@
 
 The outcome of a sweep depends on its job alone, not on who computed its chunks, or when. Results are written as they
 land, whole or not at all, and checked when they are read. A chunk's file begins with its key and designs and ends with
-a checksum, so a truncated one, a changed one and one of another sweep all count as missing. What is no regular file is
-refused, never opened. Any number of runs may write the same folder at once: under one name they write the same bytes,
-put there by a rename.
+a checksum, so a truncated one, a changed one and one of another sweep all count as missing. Any number of
+runs may write the same folder at once: under one name they write the same bytes, put there by a rename.
 """
 
 from __future__ import annotations
@@ -13,11 +12,10 @@ import hashlib
 import json
 import os
 import re
-import stat
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing, suppress
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 
@@ -31,7 +29,6 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.capabilities.sweep.engines import Workers
     from camgeo.capabilities.sweep.gather import Ranking, Selection
     from camgeo.capabilities.sweep.plan import Plan
     from camgeo.recipe.limits import Limit
@@ -43,13 +40,15 @@ FOLDER = "sweep"  # of a recipe's output folder, with a folder for each job in i
 _SHORT = 16  # digits of the key that name the folder
 _MAGIC = b"camgeo sweep chunk 1\n"
 _ABANDONED = 3600.0  # seconds after which a file still unfinished is a killed run's; writing one takes milliseconds
-_MOST_BYTES = 1 << 24  # of a chunk's file: its designs with a hundred figures and more take less
 _CHUNK = re.compile(r"chunk-[0-9]{7}\.bin")
 _UNFINISHED = re.compile(r"\.chunk-[0-9]{7}\.[0-9]+\.part")
 
 Compute = Callable[[Any, "Array"], Mapping[str, "Array"]]
 Listener: TypeAlias = "Callable[[str, int, int, float], None]"
 """Called with what is counted, how many are done, of how many, and the seconds they took."""
+
+
+Results: TypeAlias = Generator[tuple[int, bytes], None, None]
 
 
 class EngineError(CamgeoError):
@@ -159,8 +158,7 @@ class Chunks:
     def open(self, *, fresh: bool = False) -> None:
         """Make the folder; remove unfinished files over an hour old, left by killed runs, and, if `fresh`, every chunk.
 
-        Raises SurroundingsError where something else is in the place of a folder, or of a chunk's file, OSError where
-        the disk refuses.
+        Raises SurroundingsError where something else is in the place of a folder, OSError where the disk refuses.
         """
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -169,15 +167,11 @@ class Chunks:
             place = next(path for path in reversed(blocked) if os.path.lexists(path) and not path.is_dir())
             problem = "not a folder, where the sweep keeps its results: move it or remove it"
             raise SurroundingsError(problem, place) from None
-        for number in range(self.plan.chunks):
-            _is_regular_file(self.path(number))
         for path in self.folder.iterdir():
             # another run may be clearing away, or finishing, the same file
             with suppress(FileNotFoundError):
                 if (fresh and _CHUNK.fullmatch(path.name)) or (
-                    _UNFINISHED.fullmatch(path.name)
-                    and time.time() - path.lstat().st_mtime > _ABANDONED
-                    and not path.is_dir()
+                    _UNFINISHED.fullmatch(path.name) and time.time() - path.lstat().st_mtime > _ABANDONED
                 ):
                     path.unlink()
 
@@ -188,14 +182,10 @@ class Chunks:
     def read(self, number: int) -> dict[str, Array] | None:
         """Figures (m,) by name of the m designs of chunk `number`, or None without a file.
 
-        Raises ChunkError for a damaged file, SurroundingsError for what is no regular file, OSError where the disk
-        refuses.
+        Raises ChunkError for a damaged file, OSError where the disk refuses.
         """
-        if not _is_regular_file(self.path(number)):
-            return None
         try:
-            with self.path(number).open("rb") as stream:
-                data = stream.read(_MOST_BYTES)
+            data = self.path(number).read_bytes()
         except FileNotFoundError:
             return None
         return decode(data, self.key, *self.plan.span(number))
@@ -203,7 +193,7 @@ class Chunks:
     def missing_chunks(self) -> tuple[list[int], int]:
         """Numbers of the chunks still to be computed, and how many of them had damaged files, which are removed.
 
-        Raises SurroundingsError where a chunk's file is no regular file, OSError where the disk refuses.
+        Raises OSError where the disk refuses.
         """
         missing, damaged = [], 0
         for number in range(self.plan.chunks):
@@ -231,21 +221,6 @@ class Chunks:
             raise
 
 
-def _is_regular_file(path: Path) -> bool:
-    """Whether a regular file is there; raises SurroundingsError for a folder, a pipe or a device.
-
-    Opening a pipe would wait, and a device may have no end.
-    """
-    try:
-        mode = path.stat().st_mode
-    except FileNotFoundError:
-        return False
-    if stat.S_ISREG(mode):
-        return True
-    kind = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
-    raise SurroundingsError(f"{kind}, where the sweep keeps a file of its results: move it or remove it", path)
-
-
 def chunks_of(job: SweepJob, folder: Path) -> Chunks:
     """Chunks of a job; their folder, named by its key, lies below `folder`, the output folder of the recipe."""
     key = job.key
@@ -262,15 +237,22 @@ class Work:
     seconds: float
 
 
+class Engine(Protocol):
+    """What computes chunks, such as processes of this machine."""
+
+    def results(self, job: SweepJob, numbers: Sequence[int]) -> Results:
+        """Pairs of a chunk's number, of those in `numbers`, and the bytes of its file, as they are done."""
+
+
 def compute(
-    job: SweepJob, chunks: Chunks, engine: Workers, *, fresh: bool = False, listener: Listener | None = None
+    job: SweepJob, chunks: Chunks, engine: Engine, *, fresh: bool = False, listener: Listener | None = None
 ) -> Work:
     """Compute every chunk that is not on disk, or all if `fresh`, and return the counts of the run.
 
     Each chunk is written as soon as it is done, and `listener` is called with the number of designs. Raises EngineError
     where workers or a scheduler are missing or lost, VersionsError for workers of other versions, ModuleNotFoundError
-    for a missing package, SurroundingsError where something else is in the place of a chunk's file or folder, OSError
-    where the disk refuses; chunks written by then stay.
+    for a missing package, SurroundingsError where something else is in the place of a folder, OSError where the disk
+    refuses; chunks written by then stay.
     """
     chunks.open(fresh=fresh)
     missing, damaged = chunks.missing_chunks()
@@ -278,6 +260,8 @@ def compute(
     sizes = {number: last - first for number in missing for first, last in (job.plan.span(number),)}
     total, done = sum(sizes.values()), 0
     if missing:
+        if listener is not None:
+            listener("designs", 0, total, 0.0)
         with closing(engine.results(job, missing)) as results:
             for number, data in results:
                 chunks.write(number, data)
@@ -293,7 +277,7 @@ def gather_chunks(
     """The designs that a ranking selects, best first; they may miss a limit by its `slack`, in the figure's unit.
 
     Chunks damaged or removed meanwhile are computed again. Raises FileNotFoundError where one is removed as soon as it
-    is written, SurroundingsError where another thing is in its place, OSError where the disk refuses.
+    is written, OSError where the disk refuses.
     """
     return gather(job.plan, ranking, (_figures(job, chunks, number) for number in range(job.plan.chunks)), slack)
 

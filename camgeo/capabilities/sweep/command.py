@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,9 +18,8 @@ if TYPE_CHECKING:
     from camgeo.capabilities.sweep.chunks import Listener
     from camgeo.capabilities.sweep.search import SweepOutcome
     from camgeo.capabilities.sweep.task import SweepTask
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
 
-_EVERY = 10.0  # seconds between lines of progress where there is no terminal
 _LISTED = 5  # best designs that -v lists
 
 
@@ -77,8 +77,8 @@ def _search(task: SweepTask, arguments: argparse.Namespace) -> tuple[SweepOutcom
     from camgeo.capabilities.sweep.search import search
     from camgeo.common.errors import SurroundingsError
 
-    progress = Progress(task.recipe.name, _EVERY)
-    engine = Workers(arguments.jobs, arguments.scheduler)
+    progress = Progress(task.recipe.name)
+    engine = Workers(arguments.jobs, arguments.scheduler, progress)
     resume = "what was computed is kept; the same command continues from there"
     try:
         out, listener = Path(arguments.out), _progress_listener(progress)
@@ -170,8 +170,8 @@ def _values(design: Entry) -> str:
 
 
 def _with_unit(report: Entry, figure: str, value: float) -> str:
-    """Value of a figure with its unit."""
-    return f"{value:.6g} {report['figures'][figure]['unit']}".rstrip()
+    """Value of a figure with its unit; `infinite` without one for a radius that the design does not have."""
+    return "infinite" if math.isinf(value) else f"{value:.6g} {report['figures'][figure]['unit']}".rstrip()
 
 
 def _table(report: Entry) -> str:

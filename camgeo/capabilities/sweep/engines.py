@@ -7,9 +7,9 @@ about to be free, so a sweep that is stopped early wastes little.
 from __future__ import annotations
 
 import time
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from camgeo.capabilities.sweep.chunks import EngineError, VersionsError, result, versions
 from camgeo.common import workers
@@ -18,9 +18,8 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 
-    from camgeo.capabilities.sweep.chunks import SweepJob
+    from camgeo.capabilities.sweep.chunks import Results, SweepJob
 
-Results: TypeAlias = "Generator[tuple[int, bytes], None, None]"
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -30,24 +29,29 @@ _WORTHWHILE = 2.0  # seconds of remaining work from which more processes save ti
 _TIMEOUT = 10.0  # seconds for a scheduler to answer
 _NO_ADDRESS = "is not the address of a Dask scheduler, such as tcp://host:8786"
 _LOGGERS = frozenset({"distributed", "tornado", "asyncio"})  # which print errors that are raised here in plain words
-_MOST_TIMEOUTS = 6  # in a row, until the scheduler's first worker comes
+_MOST_KILLED = 4  # items: where so many kill their process the others will too
+_MOST_TIMEOUTS = 2  # in a row, until the scheduler's first worker comes
 
 
 @dataclass(frozen=True)
 class Workers:
-    """Who computes chunks: the scheduler at an address, else at most `jobs` processes, by default one a core."""
+    """Who computes chunks: the scheduler at an address, else at most `jobs` processes, by default one a core.
+
+    `waiting` is called with words on what a scheduler lacks, again and again while it waits.
+    """
 
     jobs: int | None = None
     scheduler: str | None = None
+    waiting: Callable[[str], None] | None = None
 
     def results(self, job: SweepJob, numbers: Sequence[int]) -> Results:
         """Pairs of a chunk's number, of those in `numbers`, and the bytes of its file, as they are done.
 
-        Iterating raises EngineError where a process is killed, or a scheduler or its workers are missing or lost,
+        Iterating raises EngineError where a chunk kills its process, or a scheduler or its workers are missing or lost,
         VersionsError for workers of other versions, ModuleNotFoundError for a missing package.
         """
         if self.scheduler is not None:
-            return dask(job, numbers, self.scheduler)
+            return dask(job, numbers, self.scheduler, self.waiting)
         return spread(partial(result, job, key=job.key), numbers, self.processes)
 
     def __str__(self) -> str:
@@ -66,22 +70,27 @@ class Workers:
 def in_processes(function: Callable[[T], R], items: Iterable[T], count: int) -> Generator[tuple[T, R], None, None]:
     """Pairs of an item and the function's result, in the order of their ends, computed in `count` processes.
 
-    The function must be defined in a module, not inside another. Iterating raises EngineError where a process is
-    killed, and whatever the function raises.
+    The function must be defined in a module, not inside another. Iterating raises EngineError where items killed the
+    process that worked on them alone: in the end, or after _MOST_KILLED of them; and whatever the function raises.
     """
-    from concurrent.futures.process import BrokenProcessPool
-
-    try:
-        yield from workers.at_once(function, items, count)
-    except BrokenProcessPool as error:
-        raise EngineError(workers.KILLED.format("it")) from error
+    killed = 0
+    with closing(workers.at_once(function, items, count)) as ends:
+        for item, found in ends:
+            if isinstance(found, workers.Killed):
+                killed += 1
+            else:
+                yield item, found
+            if killed == _MOST_KILLED:
+                break
+    if killed:
+        raise EngineError(workers.KILLED.format("it"))
 
 
 def spread(function: Callable[[T], R], items: Sequence[T], count: int) -> Generator[tuple[T, R], None, None]:
     """Pairs of an item and the function's result: one after another here, or from `count` processes.
 
     Processes are started once the items done show that the remaining ones would take over 2 s. Iterating raises
-    EngineError where a process is killed, and whatever the function raises.
+    EngineError where an item kills its process, and whatever the function raises.
     """
     started = time.perf_counter()
     for done, item in enumerate(items):
@@ -92,15 +101,18 @@ def spread(function: Callable[[T], R], items: Sequence[T], count: int) -> Genera
         yield item, function(item)
 
 
-def dask(job: SweepJob, numbers: Sequence[int], address: str) -> Results:
+def dask(job: SweepJob, numbers: Sequence[int], address: str, waiting: Callable[[str], None] | None = None) -> Results:
     """Pairs of a chunk's number, of those in `numbers`, and the bytes of its file, from the workers of Dask.
 
-    The workers of the scheduler at `address` need camgeo, and no shared disk. Iterating raises ModuleNotFoundError
+    The workers of the scheduler at `address` need camgeo, and no shared disk; `waiting` is called with words on those
+    that it lacks. Iterating raises ModuleNotFoundError
     without the package distributed, VersionsError for workers of other versions, and EngineError where the scheduler
     does not answer or goes away, has no workers or some without camgeo, or a chunk kills its workers again and again.
     """
     from distributed import wait
 
+    if waiting is not None:
+        waiting(f"the scheduler at {address} is asked")
     wait_for: Callable[..., Any] = wait
     with _quiet(), _connected(address) as client:
         _require_versions(client.run(versions, job.plan, on_error="return"), versions(job.plan))
@@ -108,6 +120,8 @@ def dask(job: SweepJob, numbers: Sequence[int], address: str) -> Results:
         running: dict[Any, int] = {}
         timeouts = 0
         while left or running:
+            if waiting is not None and not client.nthreads():
+                waiting(f"the scheduler at {address} has no workers yet")
             places = workers.AHEAD * max(1, sum(client.nthreads().values())) - len(running)
             for _ in range(min(places, len(left))):
                 number = left.pop()

@@ -7,7 +7,7 @@ from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.recipe.figures import FIGURES, DesignFigure
+from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.limits import Limit, build_limits, limits_form
 from camgeo.schema.errors import quote, suggestion
 from camgeo.schema.fields import Field, FieldTable, Kind, OwnForm, field_at
@@ -16,6 +16,7 @@ from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, describe, entri
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from camgeo.recipe.design_figure import DesignFigure
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.fields import Schema
     from camgeo.schema.reader import Reader, Values

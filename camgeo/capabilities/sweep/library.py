@@ -108,10 +108,11 @@ def search(
 
     `jobs` is the greatest number of processes at once, by default one for each core; `scheduler` the address of a Dask
     scheduler in their place. What earlier runs computed is used again unless `fresh` is true. `progress` is called with
-    lines such as "64 of 825 designs". Where no design keeps the limits, `ok` of the result is False and the files are
-    in `out`/<name>.rejected. Raises RecipeErrors where the recipe has faults, no sweep or one that cannot be run,
-    SurroundingsError where the disk refuses, a package is missing or a scheduler fails, CallError for a number of
-    processes below 1 or a path that no file can have, TypeError for arguments of other types.
+    lines such as "64 of 825 designs" and "the scheduler at tcp://host:8786 has no workers yet". Where no design keeps
+    the limits, `ok` of the result is False and the files are in `out`/<name>.rejected. Raises RecipeErrors where the
+    recipe has faults, no sweep or one that cannot be run, SurroundingsError where the disk refuses, a package is
+    missing or a scheduler fails, CallError for a number of processes below 1 or a path that no file can have, TypeError
+    for arguments of other types.
     """
     from camgeo.capabilities.sweep.chunks import EngineError
     from camgeo.capabilities.sweep.command import missing_package
@@ -133,7 +134,7 @@ def search(
 
     try:
         task = SweepTask.from_recipe(recipe)
-        outcome = run_search(task, folder, Workers(jobs, scheduler), fresh=fresh, listener=listener)
+        outcome = run_search(task, folder, Workers(jobs, scheduler, progress), fresh=fresh, listener=listener)
     except ModuleNotFoundError as error:
         raise SurroundingsError(missing_package(error), folder) from error
     except EngineError as error:

@@ -21,7 +21,7 @@ from camgeo.capabilities.sweep.single_designs import mechanism_in, text_with
 from camgeo.files.errors import install
 from camgeo.recipe.figures import FIGURES, OF_DWELL
 from camgeo.recipe.loading import read
-from camgeo.report.document import as_json, file_entry
+from camgeo.report.document import file_entry
 from camgeo.schema.change import set_value
 from camgeo.schema.edit import remove_section
 from camgeo.schema.scalars import MOST_TEXT
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.sweep.keys import Axis
     from camgeo.capabilities.sweep.plan import Plan
     from camgeo.capabilities.sweep.task import SweepTask, Unit
-    from camgeo.checks.remedies import Entry
+    from camgeo.checks.declaration import Entry
     from camgeo.recipe.recipe import Recipe
     from kin.numeric.arrays import Array, Mask
 
@@ -228,12 +228,12 @@ class Files:
 
 
 def outputs(
-    task: SweepTask, designs: Selection, best: Sequence[Best], run: Entry, reasons: Sequence[str] = ()
+    task: SweepTask, designs: Selection, best: Sequence[Best], reasons: Sequence[str] = ()
 ) -> tuple[dict[str, bytes], Entry]:
-    """Contents of all files of a sweep by name, `sweep.json` among them, and the report that `sweep.json` holds.
+    """Contents of all files of a sweep by name but `sweep.json`, and the report that it holds, but for its `run`.
 
-    `run` becomes an entry of the report, the only one that depends on how the sweep was computed. `reasons` are words
-    for the codes of why a design has no figures. Raises RecipeErrors where a best design's recipe cannot be written.
+    `reasons` are words for the codes of why a design has no figures. Raises RecipeErrors where a best design's recipe
+    cannot be written.
     """
     files = Files()
     units = task.units(designs.figures)
@@ -258,8 +258,6 @@ def outputs(
             files.skipped.append({"what": f"polishing {design.file}", "why": design.why})
     report["files"] = [file_entry(name, data) for name, data in files.contents.items()]
     report["skipped"] = files.skipped
-    report["run"] = run
-    files.contents[REPORT] = as_json(report).encode()
     return files.contents, report
 
 

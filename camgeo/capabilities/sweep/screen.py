@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 
 from camgeo.capabilities.sweep.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
+from camgeo.capabilities.sweep.extension import ESTIMATES
 from camgeo.capabilities.sweep.keys import varied_fields
 from camgeo.capabilities.sweep.samples import Template, sample_cam
 from camgeo.recipe.figures import (
@@ -38,9 +39,8 @@ from camgeo.recipe.figures import (
     SIZE,
 )
 from camgeo.recipe.loading import load_text
-from camgeo.registry import registry
 from camgeo.schema.errors import RecipeErrors
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -353,10 +353,8 @@ function, with each law of the catalogue, at 360 angles.
 @cache
 def estimates() -> dict[str, FigureEstimate]:
     """Estimates by the names of their figures: the core's first, then the capabilities'."""
-    capabilities = registry.in_order(registry.names_with_record())
-    return _CORE | {
-        name: FigureEstimate(*estimate) for each in capabilities for name, estimate in each.estimates().items()
-    }
+    every = ESTIMATES.of(ESTIMATES.answering())
+    return _CORE | {name: FigureEstimate(*estimate) for each in every for name, estimate in each.estimates.items()}
 
 
 def allowance(name: str, value: float) -> float:

@@ -13,6 +13,7 @@ import numpy as np
 
 from camgeo.capabilities.sweep.cams import REASONS
 from camgeo.capabilities.sweep.chunks import SweepJob, chunks_of, compute, gather_chunks
+from camgeo.capabilities.sweep.earlier import decisive, earlier, remember
 from camgeo.capabilities.sweep.engines import spread
 from camgeo.capabilities.sweep.figures import compute_figures
 from camgeo.capabilities.sweep.gather import Certificate, Nearest
@@ -22,6 +23,7 @@ from camgeo.capabilities.sweep.screen import allowance, error_of, slack
 from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.common.errors import BusyError, SurroundingsError
 from camgeo.output.output_folder import Family, RunFolder
+from camgeo.report.document import as_json
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -99,11 +101,18 @@ def search(
     job = SweepJob(task.plan, task.scene(task.figures), procedures.compute)
     chunks = chunks_of(job, out / task.recipe.name)
     work = compute(job, chunks, engine, fresh=fresh, listener=listener)
-    selection = gather_chunks(job, chunks, task.ranking, slack if task.screened else None)
-    if task.screened:
-        selection = certify(task, selection, engine, listener)
-    best = best_designs(task, selection, procedures, engine, listener)
-    run = {
+    decided = decisive(task, job.key) if procedures is COMPUTING else ""
+    found = earlier(chunks.folder, out / task.recipe.name, REPORT, decided) if not work.computed else None
+    if found is None:
+        selection = gather_chunks(job, chunks, task.ranking, slack if task.screened else None)
+        if task.screened:
+            selection = certify(task, selection, engine, listener)
+        best = best_designs(task, selection, procedures, engine, listener)
+        found = outputs(task, selection, best, procedures.reasons)
+        if best and decided:
+            remember(chunks.folder, decided, found[1])
+    files, report = found
+    report["run"] = {
         "engine": str(engine),
         "key": job.key,
         "chunks": task.plan.chunks,
@@ -114,8 +123,8 @@ def search(
         "designs_per_second": round(work.computed / work.seconds, 1) if work.computed else None,
         "seconds": round(time.perf_counter() - started, 3),
     }
-    files, report = outputs(task, selection, best, run, procedures.reasons)
-    return SweepOutcome(report, place_files(out, task.recipe.name, files, accepted=bool(best)), work)
+    files[REPORT] = as_json(report).encode()
+    return SweepOutcome(report, place_files(out, task.recipe.name, files, accepted=bool(report["best"])), work)
 
 
 def require_packages(task: SweepTask, engine: Workers) -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from camgeo.recipe.starter import DWELLING, FOUR_BAR, Starter
+from camgeo.recipe.starter import DWELLING, FOUR_BAR, Starter, Starters
 
-STARTERS = {
+_STARTERS = {
     "sweep": Starter(
         "A search for a longer dwell of a four-bar.",
         "support",
@@ -22,5 +22,9 @@ STARTERS = {
             },
         },
         after="slider-crank",
+        task="a search among linkages",
+        also="sweep optimise optimize best dwell",
     ),
 }
+
+ANSWERS = Starters(starters=_STARTERS)

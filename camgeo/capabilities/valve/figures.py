@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from camgeo.recipe.figures import DesignFigure, Need, lift_key
+from camgeo.recipe.design_figure import DesignFigure, Need
+from camgeo.recipe.figures import lift_key
 from camgeo.schema.fields import Kind
 
 LIFT, DURATION, SEATING = "valve-lift", "valve-duration", "valve-seating"

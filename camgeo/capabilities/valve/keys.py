@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.capabilities.valve.train import Valve
 from camgeo.motions.lift_table import MAX_BYTES, TABLE, Origin
+from camgeo.schema.errors import quote
 from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, mapping
 from camgeo.schema.file_bytes import read_bytes
 from camgeo.schema.json_schema import number_schema, table_schema
@@ -66,7 +67,7 @@ def _read_ratio(reader: Reader, field: Field, node: Node, path: str) -> tuple[tu
         rows = _rows(origin, reader)
     except Complaint as complaint:
         remedy = complaint.remedy or _REMEDY
-        reader.fault_at(place, complaint.problem, repr(origin.name), remedy)
+        reader.fault_at(place, complaint.problem, quote(origin.name), remedy)
         return None
     return tuple(rows)
 

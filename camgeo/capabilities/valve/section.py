@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 from camgeo.capabilities.valve.figures import SEATING
 from camgeo.capabilities.valve.measure import EVENTS, extremes, greatest_lift, measure_at, valve_event
 from camgeo.capabilities.valve.train import ORDER, valve_of
-from camgeo.measures.lobe import EventError
-from camgeo.report.page.curves import Plot, Series, per
+from camgeo.measures.lobe import EventError, event_of
+from camgeo.report.page.curves import per
 from camgeo.report.page.followers import SHAFT
 from camgeo.report.page.tables import html_table, number
+from camgeo.report.plot import Plot, Series
 from kin.numeric.angles import TURN, degrees
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
+TAPPET = {"in": (0.006, 0.05, 0.2), "mm": (0.1, 1.0)}  # usual lifts of the tappet at which cards give durations
 TITLES = ("Valve lift", "Valve velocity", "Valve acceleration")
 
 
@@ -41,6 +43,7 @@ def section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
         "lift": greatest_lift(valve, design) / mm,
         "unit": unit,
         "events": [_event(valve, design, lift, mm) for lift in lifts],
+        "tappet": [_tappet_event(design, lift, mm) for lift in TAPPET[unit]],
     }
     seating = measure_at(recipe, design, SEATING, 0.0)
     if seating.value is not None:
@@ -52,6 +55,18 @@ def section(recipe: Recipe, design: Design) -> dict[str, Any] | None:
     for k, (name, power) in enumerate((("velocity", "/rad"), ("acceleration", "/rad^2")), 1):
         entry[name] = {"max": peaks[k].value / mm, "unit": unit + power, "at_deg": peaks[k].at_deg}
     return entry
+
+
+def _tappet_event(design: Design, lift: float, mm: float) -> dict[str, Any]:
+    """Report entry of a lift of the tappet, in the recipe's unit of `mm` mm: its duration, crank degrees, and centre.
+
+    Both are None where the tappet does not cross the lift just twice.
+    """
+    try:
+        event = event_of(design.exact, lift * mm)
+    except EventError:
+        return {"lift": lift, "duration_crank_deg": None, "centre_deg": None}
+    return {"lift": lift, "duration_crank_deg": event.duration, "centre_deg": event.centre}
 
 
 def _event(valve: Valve, design: Design, lift: float, mm: float) -> dict[str, Any]:
@@ -94,6 +109,12 @@ def panel(report: dict[str, Any]) -> str:
     rows = ["<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in cells]
     heads = (f"valve lift, {unit}", f"tappet lift, {unit}", "opens, cam °", "closes, cam °", "duration, crank °")
     text += f" While it is open: {', '.join(peaks)}." if peaks else ""
+    durations = [
+        f"{number(row['duration_crank_deg'])} crank degrees at {number(row['lift'])} {unit}"
+        for row in entry["tappet"]
+        if row["duration_crank_deg"] is not None
+    ]
+    text += f" The tappet is lifted for {', '.join(durations)}." if durations else ""
     table = html_table("Valve events", heads, rows)
     return f'<section aria-labelledby="valve-head"><h2 id="valve-head">Valve</h2><p>{text}</p>{table}</section>'
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from camgeo.recipe.starter import Starter
+from camgeo.recipe.starter import Starter, Starters
 
-STARTERS = {
+_STARTERS = {
     "valve-train": Starter(
         "A valve that a rocker opens: its lobe by its cam card, its events and its seating.",
         "disc",
@@ -24,6 +24,10 @@ STARTERS = {
             "export": {"tolerance": "0.001", "files": "[dxf, svg, stl, {csv: {as: valve}}, html]"},
         },
         unfit=("conjugate",),
-        after="disc-lobe",
+        after="disc-card",
+        task="a valve that a rocker opens",
+        also="engine motor camshaft train intake exhaust lash seat spring",
     ),
 }
+
+ANSWERS = Starters(starters=_STARTERS)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.valve.train import ORDER, valve_of
+from camgeo.formats.extension import Table
 from camgeo.formats.tables.tabled import table_maker
-from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -38,4 +38,4 @@ def _columns(job: Job, request: FileRequest) -> Columns:
     return names, np.column_stack([degrees, 2.0 * degrees, tappet[0] / recipe.mm, *lifts])
 
 
-FORM = Form(name="valve", after="motion", check=_check, make=table_maker("valve", _columns))
+FORM = Table(name="valve", after="motion", check=_check, make=table_maker("valve", _columns))

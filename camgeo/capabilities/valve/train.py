@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.numeric.monotone import between, cells, extremes
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 ORDER = 2  # derivatives of a valve's lift that are computed: its velocity and its acceleration
-_LOOKS = 2001  # places over the lift at which a table's slope is looked at
 _HALVINGS = 100
 _WITHIN = 1e-9  # of the greatest lift: so far a table may end before it
 
@@ -78,8 +78,9 @@ def valve_of(recipe: Recipe, design: Design) -> Valve | None:
     if last < most * (1.0 - _WITHIN):
         problem = f"the table ends at a tappet lift of {last / recipe.mm:.6g}, the tappet lifts {most / recipe.mm:.6g}"
         raise recipe.error(where, problem, None, f"give rows up to {most / recipe.mm:.6g} or more")
-    slope = valve.travel(np.linspace(0.0, min(most, last), _LOOKS))[1]
-    if slope.min() <= 0.0:
+    rows = between(0.0, min(most, last), [lift for lift, _ in valve.ratios])
+    (slope, _), _ = extremes(cells(lambda lift: valve.travel(lift)[1:2], rows))
+    if slope <= 0.0:
         raise recipe.error(where, "the valve falls while the tappet rises", None, "give ratios that fall less steeply")
     return valve
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.formats.extension import Table
 from camgeo.formats.tables.motion import motion_columns
 from camgeo.formats.tables.tabled import table_maker
-from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -75,4 +75,6 @@ def _columns(job: Job, request: FileRequest) -> Columns:
     return contact_table(job.recipe.in_units_of(request), job.design, motion_columns(job, request))
 
 
-FORM = Form(name="contacts", surfaces=2, discs=2, make=table_maker("contacts", _columns, gaps=True))  # nan: not touched
+FORM = Table(
+    name="contacts", surfaces=2, discs=2, make=table_maker("contacts", _columns, gaps=True)
+)  # nan: not touched

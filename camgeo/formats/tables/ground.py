@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.formats.extension import Table
 from camgeo.formats.tables.tabled import check_step
-from camgeo.registry.formats import Form
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
 
 
-def ground_form(name: str, check: Callable[[Values, Values, Reader], None], *more: str) -> Form:
+def ground_form(name: str, check: Callable[[Values, Values, Reader], None], *more: str) -> Table:
     """Record of the form `name`, a table by which a lobe is ground; `more` are options beside step and tolerance.
 
     `check`, (values of the file, values of the recipe, reader), notes what a recipe lacks for it.
@@ -27,7 +27,7 @@ def ground_form(name: str, check: Callable[[Values, Values, Reader], None], *mor
         _check(file, values, reader)
 
     takes = ("step", "tolerance", *more)
-    return Form(name=name, listed=("as",), ground=True, takes=takes, check=checked, make=make_ground)
+    return Table(name=name, listed=("as",), ground=True, takes=takes, check=checked, make=make_ground)
 
 
 def _check(file: Values, values: Values, reader: Reader) -> None:

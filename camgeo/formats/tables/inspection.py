@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.formats.extension import Table
 from camgeo.formats.tables.tabled import check_step, table_maker
-from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def _columns(job: Job, request: FileRequest) -> Columns:
     return inspection_table(job.recipe.in_units_of(request), job.design, request.own.get("step"))
 
 
-FORM = Form(
+FORM = Table(
     name="inspection",
     surfaces=2,
     discs=2,

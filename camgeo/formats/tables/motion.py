@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.formats.extension import Table
 from camgeo.formats.tables.tabled import table_maker
-from camgeo.registry.formats import Form
 
 if TYPE_CHECKING:
     from camgeo.formats.tables.tabled import Columns
@@ -29,4 +29,4 @@ def motion_columns(job: Job, request: FileRequest) -> Columns:
     return motion_table(recipe, job.design.motion)
 
 
-FORM = Form(name="motion", surfaces=2, discs=2, make=table_maker("table", motion_columns))
+FORM = Table(name="motion", surfaces=2, discs=2, make=table_maker("table", motion_columns))

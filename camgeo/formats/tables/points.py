@@ -12,10 +12,10 @@ import numpy as np
 
 from camgeo.common.rounding import upward
 from camgeo.files.table import DIGITS
+from camgeo.formats.extension import Table
 from camgeo.formats.tables.tabled import check_step, fewest_rows
 from camgeo.measures.file_result import FileResult
 from camgeo.recipe.machining import FINEST
-from camgeo.registry.formats import Form
 from kin.contour.closed_spline import closed_spline
 from kin.numeric.angles import TURN
 from kin.read.point_list import MOST_POINTS
@@ -108,7 +108,7 @@ def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) ->
     Raises RecipeErrors where points at that step, or at the finest one, are not within the tolerance.
     """
     recipe, field = job.recipe, job.field(request)
-    fewest = fewest_rows(points.error, MARGIN * tolerance)
+    fewest = fewest_rows(lambda count: points.error(count) <= MARGIN * tolerance)
     step = request.own.get("step")
     if step is not None:
         count = round(TURN / float(step))
@@ -127,4 +127,4 @@ def _count(job: Job, request: FileRequest, points: _Points, tolerance: float) ->
     return fewest
 
 
-FORM = Form(name="points", listed=("as",), curve=True, takes=("step", "tolerance", "suffix"), check=check, make=make)
+FORM = Table(name="points", listed=("as",), curve=True, takes=("step", "tolerance", "suffix"), check=check, make=make)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.formats.extension import Table
 from camgeo.formats.tables.tabled import table_maker
-from camgeo.registry.formats import Form
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -49,4 +49,4 @@ def _columns(job: Job, request: FileRequest) -> Columns:
         raise job.recipe.error(field_path, str(error), "'polar'", remedy) from error
 
 
-FORM = Form(name="polar", make=table_maker("polar", _columns))
+FORM = Table(name="polar", make=table_maker("polar", _columns))

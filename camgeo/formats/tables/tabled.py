@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from camgeo.files.table import write_table
@@ -9,7 +10,7 @@ from camgeo.recipe.machining import COARSEST, FINEST
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
     from typing import TypeAlias
 
@@ -34,24 +35,34 @@ def check_step(file: Values, reader: Reader) -> None:
             reader.fault_at(path, "360 degrees are no whole number of it", None, remedy)
 
 
-def fewest_rows(error: Callable[[int], float], most: float, finest: float = FINEST) -> int | None:
-    """Number of steps of a turn, about the fewest, whose error is at most `most`; None where no number is enough.
+def fewest_rows(
+    holds: Callable[[int], bool], finest: float = FINEST, may: Callable[[int], bool] | None = None
+) -> int | None:
+    """Number of steps of a turn, about the fewest, that hold what is asked; None where no number is enough.
 
-    `error` gives the error of a number of steps, in the unit of `most`. Steps divide a turn and are whole 1/10000
-    degrees, from COARSEST down to `finest` degrees. The search assumes that finer steps err less; where some err more,
-    fewer might be enough.
+    `holds` says whether a number of steps does; `may` costs less, and is false only where `holds` is. Each is asked
+    once of a number. Steps divide a turn and are whole 1/10000 degrees, from COARSEST down to `finest` degrees. The
+    search assumes that finer steps err less; where some err more, fewer might be enough.
     """
     whole = 360 * TICKS
-    ticks = [tick for tick in range(int(COARSEST * TICKS), round(finest * TICKS) - 1, -1) if whole % tick == 0]
-    low, high = 0, len(ticks) - 1
+    ticks = range(int(COARSEST * TICKS), round(finest * TICKS) - 1, -1)
+    counts = [whole // tick for tick in ticks if whole % tick == 0]
+    if may is None:
+        return _first(holds, counts)
+    first = _first(may, counts)
+    if first is None or holds(first):
+        return first
+    return _first(holds, counts[counts.index(first) + 1 :])
+
+
+def _first(holds: Callable[[int], bool], counts: Sequence[int]) -> int | None:
+    """First of rising counts that holds, or about it; None for none."""
+    asked = lru_cache(maxsize=None)(holds)
+    low, high = 0, len(counts) - 1
     while low < high:  # finer steps leave less, but for a few that meet the motion's breaks
         middle = (low + high) // 2
-        low, high = (low, middle) if error(whole // ticks[middle]) <= most else (middle + 1, high)
-    while low < len(ticks):
-        if error(whole // ticks[low]) <= most:
-            return whole // ticks[low]
-        low += 1
-    return None
+        low, high = (low, middle) if asked(counts[middle]) else (middle + 1, high)
+    return next((count for count in counts[low:] if asked(count)), None)
 
 
 def table_maker(

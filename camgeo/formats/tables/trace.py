@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.formats.extension import Table
 from camgeo.formats.tables.tabled import table_maker
-from camgeo.registry.formats import Form
 
 if TYPE_CHECKING:
     from camgeo.formats.tables.tabled import Columns
@@ -26,4 +26,4 @@ def _columns(job: Job, request: FileRequest) -> Columns:
     return trace_table(job.recipe.in_units_of(request), job.design)
 
 
-FORM = Form(name="trace", check=_check, make=table_maker("trace", _columns, gaps=True))  # nan: nothing moves
+FORM = Table(name="trace", check=_check, make=table_maker("trace", _columns, gaps=True))  # nan: nothing moves

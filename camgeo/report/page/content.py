@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from camgeo.curve.ring import Ring, disc
-from camgeo.registry import registry
+from camgeo.report.extension import PAGE
 from camgeo.report.page import curves, guided, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, faces, flat, flat_pair
 from camgeo.report.page.overlays import Stage, overlay_bodies
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
+    from camgeo.report.plot import Plot
     from camgeo.synthesis.design import Design, Disc
     from kin.law.contacts import Arrangement, Guide, Touch
     from kin.numeric.arrays import Array
@@ -80,7 +81,7 @@ class Content:
     """
 
     scene: Scene
-    plots: tuple[curves.Plot, ...]
+    plots: tuple[Plot, ...]
     rests: tuple[curves.DwellBand, ...]
     relative: Array
     contours: Mapping[str, Traced]
@@ -97,8 +98,8 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     drawings = [_drawing_of(group) for group in groups]
     scene, plots, relative = mechanism(recipe, design, drawings)
     plots += curves.preload(recipe, design)
-    for capability in registry.in_order(recipe.uses):
-        plots += capability.plots(recipe, design)
+    for answers in PAGE.of(recipe.uses):
+        plots += answers.plots(recipe, design)
     plots += [curves.curvature(recipe, design, profile, exacts[profile.surface.name]) for profile in design.surfaces]
     plots += [plot for group in groups for plot in curves.backlash(recipe, design, group)]
     # the distances from the exact contours; equal ones are listed once, as files of one tolerance often agree
@@ -122,9 +123,7 @@ def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Co
     return Content(scene, tuple(curves.merge_alike(plots)), rests, relative, contours, merged)
 
 
-def mechanism(
-    recipe: Recipe, design: Design, drawn: list[Drawn] | None = None
-) -> tuple[Scene, list[curves.Plot], Array]:
+def mechanism(recipe: Recipe, design: Design, drawn: list[Drawn] | None = None) -> tuple[Scene, list[Plot], Array]:
     """Return scene, plots of the motion, and the angle between cam and frame (STEPS + 1,), rad.
 
     The scene is in the recipe's unit and for the recipe's sense of rotation. It shows the contours `drawn`, by default
@@ -193,7 +192,7 @@ def _discs(design: Design, drawings: list[Drawn], bore: float | None, size: floa
     ]
 
 
-def _mechanism(recipe: Recipe, design: Design, drawings: list[Drawn]) -> tuple[Scene, list[curves.Plot], Array]:
+def _mechanism(recipe: Recipe, design: Design, drawings: list[Drawn]) -> tuple[Scene, list[Plot], Array]:
     """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
     _, rings_of_discs = drawings[0]
     # the greatest radius scales the symbols and ends the lines that pass the cam
@@ -245,7 +244,7 @@ def _under_contacts(overlays: Sequence[MovingBody], bodies: list[MovingBody]) ->
     return [*(body for body in bodies if body.kind != CONTACTS), *overlays, *contacts]
 
 
-_Drawing: TypeAlias = "tuple[list[MovingBody], list[curves.Plot]]"
+_Drawing: TypeAlias = "tuple[list[MovingBody], list[Plot]]"
 
 
 def _faces(view: View[Translating, Flat], reach: float, size: float) -> _Drawing:
@@ -262,9 +261,7 @@ def _two_faces(view: View[Oscillating, Flat], _: float, size: float) -> _Drawing
     return bodies, [curves.levers(view.recipe, lever)]
 
 
-def _round_contact(
-    view: View[Guide, Round], size: float
-) -> tuple[guided.Touch, Array, list[MovingBody], list[curves.Plot]]:
+def _round_contact(view: View[Guide, Round], size: float) -> tuple[guided.Touch, Array, list[MovingBody], list[Plot]]:
     """Return roller, shoe or edge, displacement (STEPS + 1,), mm or rad, contacts, and the plot of pressure angles."""
     angle = view.pressure(SHAFT)
     touch = guided.touch_of(view.touch, angle, size)
@@ -291,9 +288,7 @@ def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
     return [*guided.on_arm(touch, view.contacts[0], s, (view.guide.arm, 0.0), size), *contacts], plots
 
 
-def _face_contact(
-    view: View[Guide, Flat], size: float
-) -> tuple[Array, float, float, list[MovingBody], list[curves.Plot]]:
+def _face_contact(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[MovingBody], list[Plot]]:
     """Return displacement (STEPS + 1,), low and high end of the contact's run on the face, mm, contacts, and plots.
 
     The displacement is in mm or rad; the ends have a margin.
@@ -341,7 +336,7 @@ def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Dr
 
 def _pair_contacts(
     view: View[Guide, Round], size: float
-) -> tuple[tuple[guided.Touch, guided.Touch], list[MovingBody], list[curves.Plot]]:
+) -> tuple[tuple[guided.Touch, guided.Touch], list[MovingBody], list[Plot]]:
     """Return the rollers or shoes on the discs of a pair, their contacts, and the plot of both pressure angles."""
     touches, angles, bodies = [], {}, []
     for number, contact in enumerate(view.contacts, start=1):

@@ -22,6 +22,7 @@ from camgeo.recipe.figures import (
     RADIUS,
 )
 from camgeo.report.page.followers import SHAFT
+from camgeo.report.plot import Plot, Series
 from camgeo.schema.fields import Kind
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass, replace
@@ -44,34 +45,6 @@ DEGREES = 180.0 / math.pi
 FAR = 3.0  # ranges of a curve: a line that is farther off is not drawn
 SAME = 1e-4  # of a curve's range: what is nearer is drawn once
 COUNTS = 0.5  # of the longest dwell within a band: shorter ones are not shown
-
-
-@dataclass(frozen=True, eq=False)
-class Series:
-    """Curve of a plot: values (STEPS + 1,) at equal steps of the angle."""
-
-    name: str
-    values: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Plot:
-    """Curves over the shaft angle or the relative angle, in `unit`.
-
-    `limits` are lines across, pairs (value, name); with `dwells` the dwells are shaded; `note` stands below. `axis` is
-    the quantity's name beside the upright axis, by default the title. That axis always spans the values of `holds`: 0
-    for a force, the tolerance for an error.
-    """
-
-    title: str
-    unit: str
-    series: tuple[Series, ...]
-    over: Literal["shaft", "relative"] = "shaft"
-    limits: tuple[tuple[float, str], ...] = ()
-    dwells: bool = False
-    note: str = ""
-    axis: str = ""
-    holds: tuple[float, ...] = ()
 
 
 def group_alike(items: Iterable[T], alike: Callable[[T, T], bool]) -> list[list[T]]:

@@ -21,6 +21,7 @@ class Look(NamedTuple):
 LOOKS = {
     "metal": Look("metal", "metal-edge", 1.5),
     "metal upper": Look("upper", "upper-edge", 1.5, 0.55),
+    "wall": Look("quiet", ""),
     "hub": Look("", "quiet", 1.2),
     "zero": Look("", "quiet", 1.0),
     "timing mark": Look("", "metal-edge", 2.2),

@@ -1,6 +1,6 @@
 "use strict";
 // the one player: moves and plots a scene in the elements of this document, and returns what ends that, for another one;
-// it begins as the address says, or as `begin` does, { degrees, playing }, and then leaves the address alone
+// it begins as the address says, or as `begin` does, { at, playing }, and then leaves the address alone
 function playScene(data, begin = null) {
   const find = (id) => document.getElementById(id);
   const root = document.documentElement;
@@ -10,6 +10,11 @@ function playScene(data, begin = null) {
   if ("note" in data) find("stage").querySelector(".note").textContent = data.note;
   const drawing = find("drawing");
   const N = data.steps;
+  // what the mechanism runs over, from 0 to `most`: a turn, after which it begins again, or a travel, to and fro
+  const { most: M, closed, unit: inputUnit, name: inputName, noun, key, pace } = data.input;
+  const cycle = closed ? M : 2 * M;
+  const wrapped = (value) => (closed ? ((value % M) + M) % M : Math.min(Math.max(value, 0), M));
+  const withUnit = (value, digits) => value.toFixed(digits) + (inputUnit === "°" ? "°" : ` ${inputUnit}`);
 
   // --- numbers ------------------------------------------------------------------------------------------------------
 
@@ -22,12 +27,14 @@ function playScene(data, begin = null) {
     return row.v.map((step) => (sum += step) / scale);
   }
 
-  // a function of the step x in [0, N]: cubic between values, which join over the turn; a leap is not smoothed
+  // a function of the step x in [0, N]: cubic between values, which join over a turn; a leap is not smoothed
   function curve(row) {
     const v = unpacked(row);
     if (v === null) return () => row.c;
     const turn = v[N] - v[0];
-    const get = (i) => (i < 0 ? v[i + N] - turn : i > N ? v[i - N] + turn : v[i]);
+    const beyond = (i) => (i < 0 ? 2 * v[0] - v[1] : 2 * v[N] - v[N - 1]);
+    const around = (i) => (i < 0 ? v[i + N] - turn : v[i - N] + turn);
+    const get = (i) => (i >= 0 && i <= N ? v[i] : closed ? around(i) : beyond(i));
     return (x) => {
       const i = Math.min(Math.max(Math.floor(x), 0), N - 1);
       const t = x - i;
@@ -73,20 +80,43 @@ function playScene(data, begin = null) {
     made("title", {}, mark).textContent = text;
     return mark;
   });
+  // another design that is kept beside this one: outlines that move along, in the same scale
+  const kept = data.beside ? keptBodies(data.beside) : [];
+  function keptBodies({ drawing: other, bodies: rows, factor, room: [x0, y0, x1, y1] }) {
+    drawing.setAttribute("viewBox", [scale * (x0 - left), scale * (top - y1), scale * (x1 - x0), scale * (y1 - y0)].join(" "));
+    const held = document.createElement("template");
+    held.innerHTML = other;
+    const outlines = made("g", { class: "kept", "aria-hidden": "true" });
+    drawing.querySelector("g").append(outlines);
+    return rows.flatMap((row, i) => {
+      const group = held.content.getElementById(`body-${i}`);
+      if (group.matches(".contacts, .forces, .overlays")) return [];
+      for (const part of group.querySelectorAll("title, .other")) part.remove();
+      group.removeAttribute("id");
+      group.setAttribute("class", "");
+      outlines.append(group);
+      return [{ group, factor, x: curve(row[0]), y: curve(row[1]), angle: curve(row[2]) }];
+    });
+  }
   let px = 1; // units of the drawing that one px of the screen is
-  let degrees = 0;
+  let at = 0; // of the input
+  let phase = 0; // of a cycle, in the same unit
   let playing = false;
   let last = 0;
   const followers = []; // what else moves with the angle
 
   function show() {
-    const x = (degrees / 360) * N;
+    const x = (at / M) * N;
     for (const body of bodies) {
       body.at = [body.x(x), body.y(x), (body.angle(x) * Math.PI) / 180];
       if (body.moves) {
         const [bx, by] = body.at;
         body.group.setAttribute("transform", `translate(${bx.toFixed(6)} ${by.toFixed(6)}) rotate(${body.angle(x).toFixed(5)})`);
       }
+    }
+    for (const body of kept) {
+      const place = `translate(${(body.factor * body.x(x)).toFixed(6)} ${(body.factor * body.y(x)).toFixed(6)})`;
+      body.group.setAttribute("transform", `${place} rotate(${body.angle(x).toFixed(5)}) scale(${body.factor})`);
     }
     for (const letter of letters) {
       const [bx, by, angle] = letter.body.at;
@@ -98,20 +128,22 @@ function playScene(data, begin = null) {
       letter.text.setAttribute("y", ly.toFixed(1));
     }
     for (const follow of followers) follow(x);
-    find("slider").value = degrees;
-    find("slider").setAttribute("aria-valuetext", `${degrees.toFixed(1)} degrees`);
-    root.dataset.degrees = degrees.toFixed(4);
+    find("slider").value = at;
+    find("slider").setAttribute("aria-valuetext", `${at.toFixed(1)} ${inputUnit === "°" ? "degrees" : inputUnit}`);
+    root.dataset.at = at.toFixed(4);
+    root.dataset.key = key;
   }
 
   function turnTo(next) {
-    degrees = next >= 0 && next <= 360 ? next : ((next % 360) + 360) % 360;
+    at = next >= 0 && next <= M ? next : wrapped(next);
     show();
   }
 
   function tick(now) {
     if (!playing) return;
     const rpm = Number(find("speed").value);
-    turnTo((degrees + Math.min(now - last, 100) * rpm * 0.006) % 360);
+    phase = (phase + (Math.min(now - last, 100) * rpm * cycle) / 60000) % cycle;
+    turnTo(phase > M ? cycle - phase : phase);
     last = now;
     requestAnimationFrame(tick);
   }
@@ -123,6 +155,7 @@ function playScene(data, begin = null) {
     button.textContent = on ? "Pause" : "Play";
     button.setAttribute("aria-pressed", String(on));
     if (on) {
+      phase = at;
       last = performance.now();
       requestAnimationFrame(tick);
     }
@@ -135,7 +168,7 @@ function playScene(data, begin = null) {
     clearTimeout(later);
     later = setTimeout(() => {
       try {
-        history.replaceState(null, "", `#deg=${Number(degrees.toFixed(2))}`);
+        history.replaceState(null, "", `#${key}=${Number(at.toFixed(2))}`);
       } catch {
         // a frame without an origin has no address of its own
       }
@@ -153,7 +186,7 @@ function playScene(data, begin = null) {
     if (!playing) noted();
   }
 
-  // shaft angle at which the relative angle has this value; it rises with the shaft's
+  // shaft angle at which the relative angle has this value; it rises with the shaft's, by a turn
   function shaftAt(wanted) {
     let [low, high] = [0, N];
     const goal = relative(0) + ((((wanted - relative(0)) % 360) + 360) % 360);
@@ -162,7 +195,7 @@ function playScene(data, begin = null) {
       if (relative(middle) < goal) low = middle;
       else high = middle;
     }
-    return (180 * (low + high)) / N;
+    return (0.5 * M * (low + high)) / N;
   }
 
   // --- plots --------------------------------------------------------------------------------------------------------
@@ -223,13 +256,14 @@ function playScene(data, begin = null) {
   class Plot {
     constructor(plot) {
       this.plot = plot;
-      this.over = plot.over === "relative" ? relative : (x) => (360 * x) / N;
+      this.over = plot.over === "relative" ? relative : (x) => (M * x) / N;
       this.rows = plot.series.map((series) => ({
         name: series.name,
         at: curve(series),
         values: unpacked(series) || Array(series.high ? N : N + 1).fill(series.c),
         high: series.high && (unpacked(series.high) || Array(N).fill(series.high.c)),
       }));
+      this.kept = (plot.beside || []).filter((series) => !series.high).map((series) => unpacked(series) || Array(N + 1).fill(series.c));
       this.range();
       this.figure = html("figure", "plot", find("plots"));
       const caption = html("figcaption", "", this.figure);
@@ -262,6 +296,7 @@ function playScene(data, begin = null) {
         row.most = Math.max(...good);
         [low, high] = [Math.min(low, row.least), Math.max(high, row.most)];
       }
+      for (const value of this.kept.flat()) if (value !== null) [low, high] = [Math.min(low, value), Math.max(high, value)];
       for (const value of this.plot.holds) [low, high] = [Math.min(low, value), Math.max(high, value)];
       const span = high - low || Math.abs(high) || 1;
       const near = ([value]) => value > low - FAR * span && value < high + FAR * span;
@@ -272,11 +307,11 @@ function playScene(data, begin = null) {
       if (high - low < 1e-12 * Math.abs(high) || high === low) [low, high] = [low - 0.5 * span, high + 0.5 * span];
       const margin = 0.06 * (high - low);
       const foot = low === 0 && this.plot.holds.includes(0); // of forces, whose axis begins at 0
-      [this.low, this.high] = [foot ? 0 : low - margin, high + margin];
+      [this.low, this.high] = this.plot.frame || [foot ? 0 : low - margin, high + margin]; // a frame is kept as given
     }
 
     x(angle) {
-      return LEFT + (angle / 360) * (this.width - LEFT - RIGHT);
+      return LEFT + (angle / M) * (this.width - LEFT - RIGHT);
     }
 
     y(value) {
@@ -287,11 +322,12 @@ function playScene(data, begin = null) {
       this.width = width;
       this.svg.replaceChildren();
       this.svg.setAttribute("viewBox", `0 0 ${this.width} ${HEIGHT}`);
+      this.svg.dataset.frame = JSON.stringify([LEFT, RIGHT, TOP, BOTTOM, this.low, this.high]);
       const line = (name, x1, y1, x2, y2) => made("line", { class: name, x1, y1, x2, y2 }, this.svg);
       if (this.plot.rests) {
         for (const [start, length] of data.rests) {
-          for (const from of [start, start - 360]) {
-            const [a, b] = [Math.max(from, 0), Math.min(from + length, 360)];
+          for (const from of closed ? [start, start - M] : [start]) {
+            const [a, b] = [Math.max(from, 0), Math.min(from + length, M)];
             if (b <= a) continue;
             const place = { class: "rest", x: this.x(a), y: TOP, width: this.x(b) - this.x(a) };
             made("rect", { ...place, height: HEIGHT - TOP - BOTTOM }, this.svg);
@@ -304,20 +340,25 @@ function playScene(data, begin = null) {
         const y = this.y(value * unit);
         const zero = Math.abs(value * unit) < 1e-12 * (this.high - this.low);
         line(zero ? "zero" : "grid", LEFT, y, this.width - RIGHT, y);
-        const text = made("text", { x: LEFT - 5, y: y + 4, "text-anchor": "end" }, this.svg);
-        text.textContent = digits > 4 ? value.toExponential(0) : value.toFixed(digits).replace("-", "−");
+        const told = zero ? (0).toFixed(Math.min(digits, 4)) : value.toFixed(digits);
+        const few = Math.max(0, digits + Math.floor(Math.log10(Math.abs(value) || 1))); // those of the step
+        const text = (told.length > 8 ? value.toExponential(few) : told).replace("-", "−");
+        const narrow = text.length > 6 ? { textLength: 40, lengthAdjust: "spacingAndGlyphs" } : {};
+        made("text", { x: LEFT - 5, y: y + 4, "text-anchor": "end", ...narrow }, this.svg).textContent = text;
       }
       const upright = `${this.plot.axis}, ${counted}${this.plot.unit}`;
       const middle = [0.5 * (LEFT + this.width - RIGHT), 0.5 * (TOP + HEIGHT - BOTTOM)];
       const axis = (text, place) => (made("text", { ...place, "text-anchor": "middle" }, this.svg).textContent = text);
       const narrow = upright.length > LETTERS ? { textLength: HEIGHT - TOP - BOTTOM, lengthAdjust: "spacingAndGlyphs" } : {};
       axis(upright, { class: "axis", transform: `translate(11 ${middle[1]}) rotate(-90)`, ...narrow });
-      axis(`${this.plot.over === "relative" ? "relative" : "shaft"} angle, °`, { class: "axis", x: middle[0], y: HEIGHT - 5 });
-      for (let angle = 0; angle <= 360; angle += 90) {
+      axis(`${this.plot.over === "relative" ? "relative angle" : inputName}, ${inputUnit}`, { class: "axis", x: middle[0], y: HEIGHT - 5 });
+      const steps = closed ? { found: [0, 1, 2, 3, 4].map((k) => (k * M) / 4), digits: 0 } : ticks(0, M, 5);
+      for (const angle of steps.found) {
         line("grid", this.x(angle), TOP, this.x(angle), HEIGHT - BOTTOM);
-        const place = { x: this.x(angle) + (angle === 360 ? 7 : 0), y: HEIGHT - BOTTOM + 14 };
-        place["text-anchor"] = angle === 360 ? "end" : "middle";
-        made("text", place, this.svg).textContent = `${angle}°`;
+        const last = angle > 0.98 * M;
+        const place = { x: this.x(angle) + (last ? 7 : 0), y: HEIGHT - BOTTOM + 14 };
+        place["text-anchor"] = last ? "end" : "middle";
+        made("text", place, this.svg).textContent = angle.toFixed(steps.digits) + (inputUnit === "°" ? "°" : "");
       }
       const names = [];
       for (const [value, name] of this.limits) {
@@ -326,6 +367,7 @@ function playScene(data, begin = null) {
         const place = { x: this.width - RIGHT - 2, y: this.y(value) + (below ? 11 : -4), "text-anchor": "end" };
         if (name) names.push([{ class: "named", ...place }, name]);
       }
+      for (const values of this.kept) made("path", { class: "line kept", d: this.path(values) }, this.svg);
       this.rows.forEach((row, i) => {
         const d = row.high ? this.band(row) : this.path(row.values);
         made("path", { class: `${row.high ? "band" : "line"}${i ? " second" : ""}`, d }, this.svg);
@@ -343,7 +385,7 @@ function playScene(data, begin = null) {
           pen = "M";
           return;
         }
-        text += `${pen}${this.x((360 * i) / N).toFixed(1)} ${this.y(value).toFixed(1)}`;
+        text += `${pen}${this.x((M * i) / N).toFixed(1)} ${this.y(value).toFixed(1)}`;
         pen = "L";
       });
       return text;
@@ -351,19 +393,19 @@ function playScene(data, begin = null) {
 
     band(row) {
       const side = (values, run) =>
-        run.map((i) => `${this.x((360 * (i + 0.5)) / N).toFixed(1)} ${this.y(values[i]).toFixed(1)}`);
+        run.map((i) => `${this.x((M * (i + 0.5)) / N).toFixed(1)} ${this.y(values[i]).toFixed(1)}`);
       const outline = (run) => `M${side(row.high, run).concat(side(row.values, run).reverse()).join("L")}Z`;
       return runs(row.values).map(outline).join("");
     }
 
     follow(x) {
-      const angle = this.over(x) % 360.0000001;
-      const at = (angle / 360) * N;
+      const angle = this.over(x) % (M + 1e-7);
+      const step = (angle / M) * N;
       const place = this.x(angle);
       this.cursor.setAttribute("x1", place);
       this.cursor.setAttribute("x2", place);
       this.rows.forEach((row, i) => {
-        const value = row.high ? row.high[Math.min(Math.floor(at), N - 1)] : row.at(at);
+        const value = row.high ? row.high[Math.min(Math.floor(step), N - 1)] : row.at(step);
         const good = Number.isFinite(value) && value !== null;
         this.dots[i].setAttribute("visibility", good ? "visible" : "hidden");
         if (good) {
@@ -412,7 +454,7 @@ function playScene(data, begin = null) {
     drag(event) {
       const box = this.svg.getBoundingClientRect();
       const share = (((event.clientX - box.left) / box.width) * this.width - LEFT) / (this.width - LEFT - RIGHT);
-      const angle = 360 * Math.min(Math.max(share, 0), 1);
+      const angle = M * Math.min(Math.max(share, 0), 1);
       held(this.plot.over === "relative" ? shaftAt(angle) : angle);
     }
   }
@@ -436,15 +478,15 @@ function playScene(data, begin = null) {
   const rests = find("rests");
   data.rests.forEach(([start, length, name], i) => {
     if (!i) html("span", "rest-key", rests).setAttribute("aria-hidden", "true");
-    rests.append(`${i ? "; " : " "}${name}, from ${start.toFixed(2)}° to ${((start + length) % 360).toFixed(2)}°`);
+    rests.append(`${i ? "; " : " "}${name}, from ${withUnit(start, 2)} to ${withUnit(closed ? (start + length) % M : start + length, 2)}`);
   });
   find("plots").append(rests);
 
   // --- the line under the drawing -----------------------------------------------------------------------------------
 
   const now = find("now");
-  const told = [["shaft", (x) => `${((360 * x) / N).toFixed(1)}°`, "4.2em"]];
-  if (data.linked) told.push(["relative", (x) => `${(((relative(x) % 360) + 360) % 360).toFixed(1)}°`, "4.2em"]);
+  const told = [[noun, (x) => withUnit((M * x) / N, 1), closed ? "4.2em" : "6.2em"]];
+  if (data.linked) told.push(["relative", (x) => withUnit(wrapped(relative(x)), 1), "4.2em"]);
   for (const plot of plots.slice(0, 1)) {
     const span = plot.high - plot.low;
     told.push([plot.plot.title.toLowerCase(), (x) => tidy(plot.rows[0].at(x), plot.plot.unit, span), "6.2em"]);
@@ -482,7 +524,7 @@ function playScene(data, begin = null) {
     let round = all[0]; // the contour of the error that is chosen
     const point = (i, off) =>
       `${(round.x[i] + round.nx[i] * off).toPrecision(7)} ${(round.y[i] - round.ny[i] * off).toPrecision(7)}`;
-    const along = (off) => `M${round.x.map((_, i) => point(i, off)).join("L")}Z`;
+    const along = (off) => `M${round.x.map((_, i) => point(i, off)).join("L")}${closed ? "Z" : ""}`;
     for (const { file } of data.errors) chosen.append(new Option(file, file));
     const rows = data.errors.map(({ low, high }) => [low, high].map(full));
     const redraw = () => {
@@ -496,7 +538,7 @@ function playScene(data, begin = null) {
       const power = 10 ** Math.floor(Math.log10(wanted));
       const by = Math.round((wanted / power) * 10) * power / 10;
       const outline = (run) => {
-        const steps = run.length === N ? [...run, 0] : run;
+        const steps = closed && run.length === N ? [...run, 0] : run;
         const there = steps.map((i) => point(i, by * high[i]));
         const back = steps.map((i) => point(i, by * low[i])).reverse();
         return `M${there.concat(back).join("L")}Z`;
@@ -508,10 +550,10 @@ function playScene(data, begin = null) {
       find("error-note").textContent =
         `${file}, ${most} the exact contour (the thin line), and its ${within}, drawn ${Number(by.toPrecision(3))} times as large.`;
       svg.setAttribute("aria-label", find("error-note").textContent);
-      follow((degrees / 360) * N);
+      follow((at / M) * N);
     };
     const follow = (x) => {
-      const i = Math.floor(data.linked ? (((relative(x) % 360) + 360) % 360) / 360 * N : x) % N;
+      const i = Math.floor(data.linked ? (wrapped(relative(x)) / M) * N : x) % N;
       place.setAttribute("cx", round.x[i]);
       place.setAttribute("cy", round.y[i]);
     };
@@ -523,12 +565,16 @@ function playScene(data, begin = null) {
 
   // --- controls -----------------------------------------------------------------------------------------------------
 
+  const slider = { max: M, step: M / 3600, "aria-label": `${inputName} in ${inputUnit === "°" ? "degrees" : inputUnit}` };
+  for (const [name, value] of Object.entries(slider)) find("slider").setAttribute(name, value);
+  for (const option of find("speed").options) option.textContent = `${option.value} ${pace}`;
   find("play").addEventListener("click", turned, until);
   find("slider").addEventListener("input", (event) => held(Number(event.target.value)), until);
   for (const kind of ["contacts", "forces", "overlays"]) {
     find(kind).addEventListener("change", (event) => drawing.classList.toggle(`hide-${kind}`, !event.target.checked), until);
   }
-  for (const kind of ["forces", "overlays"]) find(`${kind}-label`).hidden = !drawing.querySelector(`.${kind}`);
+  for (const kind of ["contacts", "forces", "overlays"]) find(`${kind}-label`).hidden = !drawing.querySelector(`.${kind}`);
+  find("grip").hidden = !drawing.querySelector(".cam");
   const contours = [...drawing.querySelectorAll(".cam .metal")];
   const named = (path) => path.querySelector("title").textContent;
   const names = [...new Set(contours.map(named))]; // each disc has a contour by each name
@@ -539,8 +585,8 @@ function playScene(data, begin = null) {
   }, until);
   for (const button of document.querySelectorAll(".go")) {
     button.addEventListener("click", () => {
-      const at = Number(button.dataset.deg);
-      held(button.dataset.over === "relative" ? shaftAt(at) : ((at % 360) + 360) % 360);
+      const wanted = Number(button.dataset.at);
+      held(button.dataset.over === "relative" ? shaftAt(wanted) : wrapped(wanted));
     }, until);
   }
 
@@ -548,30 +594,30 @@ function playScene(data, begin = null) {
     const on = event.target;
     const own = on.closest("select, button, summary, a, textarea") || (on.tagName === "INPUT" && on.id !== "slider");
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const step = event.shiftKey ? 10 : 1;
+    const step = ((event.shiftKey ? 10 : 1) * M) / 360;
     const keys = {
       " ": turned,
-      ArrowLeft: () => held(degrees - step),
-      ArrowRight: () => held(degrees + step),
+      ArrowLeft: () => held(at - step),
+      ArrowRight: () => held(at + step),
       Home: () => held(0),
-      End: () => held(360),
+      End: () => held(M),
     };
     if (own || !(event.key in keys)) return;
     event.preventDefault();
     keys[event.key]();
   }, until);
 
-  // drag the cam about its shaft
+  // drag the cam about its shaft, or along its travel
   let grip = null;
-  const polar = (event) => {
-    const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(drawing.getScreenCTM().inverse());
-    const x = at.x + scale * left;
-    const y = at.y - scale * top;
-    return (Math.atan2(-y, x) * 180) / Math.PI;
+  const gripped = (event) => {
+    const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(drawing.getScreenCTM().inverse());
+    const x = point.x + scale * left;
+    const y = point.y - scale * top;
+    return closed ? (Math.atan2(-y, x) * 180) / Math.PI : x / scale;
   };
   for (const disk of drawing.querySelectorAll(".cam")) {
     disk.addEventListener("pointerdown", (event) => {
-      grip = polar(event);
+      grip = gripped(event);
       disk.setPointerCapture(event.pointerId);
       find("stage").classList.add("dragged");
       play(false);
@@ -579,10 +625,10 @@ function playScene(data, begin = null) {
     });
     disk.addEventListener("pointermove", (event) => {
       if (grip === null) return;
-      const next = polar(event);
-      const step = ((next - grip + 540) % 360) - 180;
+      const next = gripped(event);
+      const step = closed ? ((next - grip + 540) % 360) - 180 : next - grip;
       grip = next;
-      held((degrees + data.sense * step + 360) % 360);
+      held(wrapped(at + data.sense * step));
     });
     for (const name of ["pointerup", "pointercancel"]) {
       disk.addEventListener(name, () => {
@@ -622,14 +668,14 @@ function playScene(data, begin = null) {
   fit();
   // #deg=90 goes there and stands still, #deg=90&play turns on from there
   function addressed() {
-    const place = /^#deg=(-?[0-9.]+)(&play)?$/.exec(location.hash);
-    if (!place) return false;
-    turnTo(Number(place[1]));
-    play(Boolean(place[2]));
+    const place = /^#([a-z]+)=(-?[0-9.]+)(&play)?$/.exec(location.hash);
+    if (!place || place[1] !== key) return false;
+    turnTo(Number(place[2]));
+    play(Boolean(place[3]));
     return true;
   }
   if (begin) {
-    turnTo(begin.degrees);
+    turnTo(begin.at);
     play(begin.playing);
   } else {
     window.addEventListener("hashchange", addressed, until);

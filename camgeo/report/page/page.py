@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.registry import registry
 from camgeo.report.document import finite
+from camgeo.report.extension import PAGE
 from camgeo.report.failure import headline
 from camgeo.report.page import looks, svg, tables
 from camgeo.report.page.asset import asset
@@ -19,8 +19,8 @@ from camgeo.report.page.scene import STEPS, digits_for
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Order, Recipe
     from camgeo.report.page.content import Content
-    from camgeo.report.page.curves import Plot
     from camgeo.report.page.scene import MovingBody, Scene
+    from camgeo.report.plot import Plot
     from kin.numeric.arrays import Array
 
 RELOAD = "<!-- reload -->"  # where a page that is watched gets the script that reloads it
@@ -32,21 +32,28 @@ LOCAL = "connect-src 'none'"  # a page may connect to nothing; one that is watch
 def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
     """Return the HTML of a recipe's page, complete in one file."""
     data = scene(recipe, content, report)
-    panels = "".join(capability.panel(report) for capability in registry.in_order(recipe.uses))
+    panels = "".join(answers.panel(report) for answers in PAGE.of(recipe.uses))
+    return filled(recipe, data, report, linkage=tables.linkage(report), panels=tables.preload(report) + panels)
+
+
+def filled(
+    recipe: Order, data: dict[str, Any], report: dict[str, Any], *, linkage: str = "", panels: str = "", style: str = ""
+) -> str:
+    """Return the HTML of a page with the data of its script, as `scene` gives them, with further panels and rules."""
     parts = {
         "note": escape(data.pop("note")),
-        "facts": tables.facts(report),
+        "facts": tables.facts(report, recipe.input_words),
         "drawing": data.pop("drawing"),
         "checks": tables.checks(report),
         "files": tables.file_table(report),
-        "linkage": tables.linkage(report),
-        "panels": tables.preload(report) + panels,
+        "linkage": linkage,
+        "panels": panels,
         "skipped": tables.skipped_list(report),
         "recipe": escape(recipe.text),
         "script": asset("page.js"),
         "data": script_json(data),
     }
-    return head(recipe, report) + _fill("page.html", parts)
+    return head(recipe, report, style) + _fill("page.html", parts)
 
 
 def head(recipe: Order, report: dict[str, Any], more: str = "") -> str:
@@ -89,9 +96,9 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
     places on the contour, in the axes of the cam, of failed checks and remarks of `report`.
     """
     return {
-        **picture(recipe, content.scene, content.relative),
+        **picture(recipe, content.scene, content.relative, -1 if recipe.rotation == "cw" else 1),
         "marks": _marks(content, report),
-        "plots": [_plot(plot) for plot in content.plots],
+        "plots": [plotted(plot) for plot in content.plots],
         "rests": [[rest.start, rest.length, rest.name] for rest in content.rests],
         "linked": any(plot.over == "relative" for plot in content.plots),
         "contours": {
@@ -111,10 +118,10 @@ def scene(recipe: Recipe, content: Content, report: dict[str, Any]) -> dict[str,
     }
 
 
-def picture(recipe: Recipe, drawn: Scene, relative: Array) -> dict[str, Any]:
+def picture(recipe: Order, drawn: Scene, relative: Array, sense: int) -> dict[str, Any]:
     """Return those entries of `scene` that show and move the mechanism.
 
-    `relative` (STEPS + 1,) is the angle between cam and frame, rad.
+    `relative` (STEPS + 1,) is the angle between cam and frame, rad; `sense` is -1 where a cam turns clockwise, else 1.
     """
     view = svg.Viewport.of(drawn)
     extent = max(view.width, view.height) / view.scale
@@ -123,8 +130,9 @@ def picture(recipe: Recipe, drawn: Scene, relative: Array) -> dict[str, Any]:
         "note": drawn.note,
         "drawing": svg.moving(drawn),
         "unit": "in" if recipe.units == "inch" else "mm",
-        "sense": -1 if recipe.rotation == "cw" else 1,
+        "sense": sense,
         "steps": STEPS,
+        "input": drawn.input_._asdict(),
         "relative": pack_numbers(np.degrees(relative)),
         "view": [view.scale, view.x, view.y, svg.BESIDE],
         "bodies": [_pose(body, extent) for body in drawn.bodies],
@@ -137,7 +145,7 @@ def _marks(content: Content, report: dict[str, Any]) -> list[dict[str, Any]]:
     entries += [(remark, "remark") for remark in report["remarks"]]
     marks = []
     for entry, kind in entries:
-        if entry["at_deg"] is None:
+        if entry.get("at_deg") is None:
             continue
         contour = content.contours[entry.get("surface", next(iter(content.contours)))]
         x, y = contour.at(entry["at_deg"])
@@ -158,7 +166,8 @@ def _fine(row: np.ndarray[Any, np.dtype[np.float64]], extent: float) -> float:
     return min(extent, spread) if spread > 0.0 else extent
 
 
-def _plot(plot: Plot) -> dict[str, Any]:
+def plotted(plot: Plot) -> dict[str, Any]:
+    """Return the data of a plot for the page's script."""
     entry: dict[str, Any] = {
         "title": plot.title,
         "unit": plot.unit,

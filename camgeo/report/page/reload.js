@@ -21,8 +21,8 @@
     box.hidden = !event.fault;
     box.textContent = event.fault;
     if (first || !changed || event.fault) return;
-    const { degrees, playing } = document.documentElement.dataset;
-    if (degrees) history.replaceState(null, "", `#deg=${degrees}${playing === "true" ? "&play" : ""}`);
+    const { at, key, playing } = document.documentElement.dataset;
+    if (at) history.replaceState(null, "", `#${key}=${at}${playing === "true" ? "&play" : ""}`);
     location.reload();
   };
 })();

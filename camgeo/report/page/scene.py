@@ -1,4 +1,4 @@
-"""A mechanism as bodies to be drawn: each has its shapes in its own axes, and its place over one turn of the shaft.
+"""A mechanism as bodies to be drawn: each has its shapes in its own axes, and its place over its input, such as a turn.
 
 This module is independent of cams and followers. A page moves the bodies, a picture draws them once, of the same
 shapes.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -70,12 +70,35 @@ class MovingBody:
         return placed
 
 
+class SceneInput(NamedTuple):
+    """Input over which bodies move, from 0 to `most` in `unit`: a turn, or a travel to and fro.
+
+    `name` and `noun` are words for it, `key` names it in the page's address, `pace` is the unit of its speed. After a
+    `closed` input the bodies stand where they began, and go on.
+    """
+
+    name: str
+    noun: str
+    unit: str
+    most: float
+    closed: bool
+    key: str
+    pace: str
+
+
+SHAFT = SceneInput("shaft angle", "shaft", "°", 360, closed=True, key="deg", pace="rpm")
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Bodies from the hindmost to the foremost, in mm until they are scaled, and a note below the drawing."""
+    """Bodies from the hindmost to the foremost, in mm until they are scaled, and a note below the drawing.
+
+    The poses of the bodies are at equal steps of `input_`.
+    """
 
     bodies: tuple[MovingBody, ...]
     note: str = ""
+    input_: SceneInput = SHAFT
 
     def scaled(self, factor: float) -> Scene:
         """Return the scene with all lengths times `factor`, for another unit."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from html import escape
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -9,8 +10,8 @@ from urllib.parse import quote
 from camgeo.checks.declared import declaration
 from camgeo.measures.units import in_pounds
 from camgeo.registry.formats import FORMATS
-from camgeo.report.bound import sign, title
 from camgeo.report.document import error_text, pieces_word, value_text
+from camgeo.report.limit_words import sign, title
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +83,7 @@ def _row(state: tuple[str, str], check: dict[str, Any], limit: str, over: str, t
         f'<th scope="row">{escape(title(check))}{detail}</th>'
         f'<td class="number">{value}</td>'
         f"<td>{beside(figures['unit'], check['value'], check['unit'])}</td>{_cell(limit, 'number')}"
-        f"{_cell(place_button(check['at_deg'], over))}"
+        f"{_cell(_place(check, over))}"
         f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
     )
 
@@ -214,15 +215,14 @@ def skipped_list(report: dict[str, Any]) -> str:
     return "".join(f"<li><b>{escape(item['what'])}</b>: {escape(item['why'])}</li>" for item in items)
 
 
-def facts(report: dict[str, Any]) -> str:
-    """Return one line about the recipe: follower, unit, sense, tolerance."""
-    sense = "clockwise" if report["rotation"] == "cw" else "counter-clockwise"
-    unit = "in" if report["units"] == "inch" else "mm"
+def facts(report: dict[str, Any], runs: str) -> str:
+    """Return one line about the recipe: follower, how its input `runs`, tolerance."""
+    unit = report.get("tolerance_unit") or ("in" if report["units"] == "inch" else "mm")
     kind = report["follower"]
     if "linkage" in report:
         linkage = report["linkage"]["kind"].replace("inverted-", "inverted ")
         kind += f" in {'an' if linkage[0] in 'aeiou' else 'a'} {linkage}"
-    return escape(f"{kind} · the shaft turns {sense} · tolerance {report['tolerance']:.6g} {unit}")
+    return escape(f"{kind} · {runs} · tolerance {report['tolerance']:.6g} {unit}")
 
 
 def number(value: float | None) -> str:
@@ -244,6 +244,19 @@ def _with_hint(short: str, value: float) -> str:
     return short if short == f"{value:.6g}" and float(short) == value else f'<span title="{value!r}">{short}</span>'
 
 
+def _place(entry: dict[str, Any], over: str) -> str:
+    """Return a button that moves the mechanism to the place of a check or a remark; a dash without one."""
+    if "at" not in entry:
+        return place_button(entry["at_deg"], over)
+    at, unit = entry["at"], entry["at_unit"]
+    if at is None:
+        return NONE
+    return (
+        f'<button type="button" class="go" data-at="{at:.6f}" data-over="shaft" '
+        f'aria-label="go to {at:.2f} {unit} of the travel">{at:.2f} {unit}</button>'
+    )
+
+
 def place_button(angle: float | None, over: str) -> str:
     """Return a button that turns the shaft to an angle, degrees; a dash for None.
 
@@ -255,7 +268,7 @@ def place_button(angle: float | None, over: str) -> str:
     label = f"turn to {angle:.2f} degrees of the {name}"
     mark = " rel." if over == "relative" else ""
     return (
-        f'<button type="button" class="go" data-deg="{angle:.6f}" data-over="{over}" aria-label="{label}">'
+        f'<button type="button" class="go" data-at="{angle:.6f}" data-over="{over}" aria-label="{label}">'
         f"{angle:.2f}°{mark}</button>"
     )
 
@@ -286,9 +299,22 @@ def named_row(name: str, *cells: str) -> str:
     return f'<tr><th scope="row">{name}</th>{"".join(f"<td>{cell}</td>" for cell in cells)}</tr>'
 
 
+def figures(entries: Sequence[dict[str, Any]], at: str, unit: str) -> str:
+    """Return the panel of figures, each with `name`, `value`, `unit`; by the key `at` its place, in `unit`."""
+    rows = []
+    for entry in entries:
+        value, place = entry["value"], entry.get(at)
+        shown = number(value) if value is not None and math.isfinite(value) else NONE
+        where = "" if place is None else f"{place:.2f}{unit}"
+        rows.append(named_row(entry["name"], shown, escape(_unit(entry["unit"])), where))
+    table = html_table("Figures", ("figure", "value", "unit", "at"), rows)
+    return f'<section aria-labelledby="figures-head"><h2 id="figures-head">Figures</h2>{table}</section>'
+
+
 def html_table(caption: str, head: Sequence[str], rows: Sequence[str], kind: str = "plain") -> str:
     """Return a table with its caption, the heads of its columns and its rows, HTML each; `kind` is its class in CSS."""
     cells = "".join(f'<th scope="col">{name}</th>' if name else "<td></td>" for name in head)
-    region = f'<div class="wide" tabindex="0" role="region" aria-label="{caption}">'
+    # no region, as sections of the same heading are landmarks already
+    region = f'<div class="wide" tabindex="0" role="group" aria-label="{caption}">'
     body = f"<thead><tr>{cells}</tr></thead><tbody>{''.join(rows)}</tbody>"
     return f'{region}<table class="{kind}">{body}</table></div>'

@@ -66,7 +66,8 @@ class Formula:
         """Return knots (k + 1,) from lower to upper and k expressions without switches, one between each two knots.
 
         The inner knots are the parameters at which abs, sign, min or max switch, or atan2 jumps: isolated with balls,
-        so that none is missed, and found to the last places. Switches within rounding of each other give one knot.
+        so that none is missed, and found to the last places. Switches within 1e-11 of each other give one knot, and
+        those within 1e-11 of an end none.
         Raises FormulaError where rounding hides whether there is a switch, where there are too many, or where the
         formula has no value; ValueError unless lower is below upper.
         """

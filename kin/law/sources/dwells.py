@@ -8,7 +8,6 @@ digits, and the run is no dwell.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from kin.law.sources.tabled import Tabled
 
 _LEAST_ROWS = 3  # of a run that may be a dwell
-_LEAST_ANGLE = math.radians(10.0)  # of such a run
+_LEAST_SHARE = 1.0 / 36.0  # of the motion that such a run takes: 10 degrees of a turn
 _MOST_RUNS = 24  # the longest runs
 _INNER = 0.25  # of a run: the shortest dwell
 _PEAK = 1.1  # times the peak acceleration without dwells: the greatest beside a dwell
@@ -37,12 +36,12 @@ _FASTER = 1.5  # factor from one step to the next
 class Run(NamedTuple):
     """Equal rows from angle `begin` to `end`, rad, perhaps beyond the turn, at `level`, mm or rad.
 
-    `step`, rad, is the mean angle from row to row; a run without width has 0.
+    `step`, rad, is the mean angle from row to row; a run without width has 0. A free end is one without a level.
     """
 
     begin: float
     end: float
-    level: float
+    level: float | None
     step: float
 
     @property
@@ -64,16 +63,16 @@ class MotionBetweenDwells(NamedTuple):
 
 
 def runs(rows: Tabled, least_level: float | None) -> list[Run]:
-    """Runs of three or more rows that are equal as written, over 10 degrees or more, rising; the 24 longest.
+    """Runs of three or more rows that are equal as written, over 10 degrees of a turn or more, rising; the 24 longest.
 
-    The lowest run, if the motion is lowest there, gets the level `least_level`, mm or rad. A motion that rests at its
-    ends has a run at each of them, of no width without equal rows.
+    The lowest run, if the motion is lowest there, gets the level `least_level`, mm or rad. A motion that ends has a run
+    at each of its ends, of no width without equal rows.
     """
-    x, s = rows.x, rows.s
-    if rows.space.rest:
-        first, last = rows.space.rest
-        x = np.concatenate([[rows.space.begin], x, [rows.space.end]])
-        s = np.concatenate([[first], s, [last]])
+    x, s, rest = rows.x, rows.s, rows.space.rest or (None, None)
+    if rest[0] is not None:
+        x, s = np.insert(x, 0, rows.space.begin), np.insert(s, 0, rest[0])
+    if rest[1] is not None:
+        x, s = np.append(x, rows.space.end), np.append(s, rest[1])
     # edges of the runs of rows that are equal to the next one, from a row on that is not
     n = len(x)
     same = np.append(np.diff(s) == 0.0, bool(rows.period and s[-1] == s[0]))
@@ -81,22 +80,23 @@ def runs(rows: Tabled, least_level: float | None) -> list[Run]:
         return []
     start = int(np.argmin(same)) + 1 if rows.period else 0
     edges = np.diff(np.concatenate([[0], same[(start + np.arange(n)) % n].astype(int), [0]]))
-    level_runs = []
+    least_width = _LEAST_SHARE * (rows.space.end - rows.space.begin) - SAME_ANGLE
+    level_runs: list[Run] = []
     for a, b in zip(start + np.flatnonzero(edges == 1), start + np.flatnonzero(edges == -1), strict=True):
         begin, end = (float(x[i % n]) + rows.period * (i // n) for i in (int(a), int(b)))
         level = float(s[a % n])
-        if b - a + 1 >= _LEAST_ROWS and end - begin >= _LEAST_ANGLE - SAME_ANGLE:
+        if b - a + 1 >= _LEAST_ROWS and end - begin >= least_width:
             level_runs.append(Run(begin, end, level, (end - begin) / int(b - a)))
     level_runs = sorted(sorted(level_runs, key=lambda run: run.begin - run.end)[:_MOST_RUNS])
     if least_level is not None and level_runs:
-        lowest = min(run.level for run in level_runs)
+        lowest = min(run.level for run in level_runs if run.level is not None)
         level_runs = [run._replace(level=least_level) if run.level == lowest == s.min() else run for run in level_runs]
-    # an end at rest is a run, if of no width
+    # an end is a run, if of no width
     if rows.space.rest:
         if not level_runs or level_runs[0].begin > rows.space.begin:
-            level_runs.insert(0, Run(rows.space.begin, rows.space.begin, float(s[0]), 0.0))
+            level_runs.insert(0, Run(rows.space.begin, rows.space.begin, rest[0], 0.0))
         if level_runs[-1].end < rows.space.end:
-            level_runs.append(Run(rows.space.end, rows.space.end, float(s[-1]), 0.0))
+            level_runs.append(Run(rows.space.end, rows.space.end, rest[1], 0.0))
     return level_runs
 
 
@@ -115,7 +115,7 @@ def stretches(
         for i, after in enumerate(following):
             stretch, spoilt = _stretch(rows, (kept[i], after), plain, bounds, limit)
             if stretch is None:
-                _leave_out(kept, (i + spoilt) % len(kept), rows.period)
+                _leave_out(kept, (i + spoilt) % len(kept), rows.space)
                 break
             between.append(stretch)
         else:
@@ -123,12 +123,12 @@ def stretches(
     return [], []
 
 
-def _leave_out(kept: list[Run], which: int, period: float) -> None:
-    """Drop a run that is no dwell; at an end where the motion rests it becomes a run without width."""
+def _leave_out(kept: list[Run], which: int, space: FunctionSpace) -> None:
+    """Drop a run that is no dwell; at an end of the motion it becomes a run without width."""
     run = kept[which]
-    if not period and which in {0, len(kept) - 1}:
-        end = run.end if which else run.begin
-        kept[which] = run._replace(begin=end, end=end)
+    if space.rest is not None and which in {0, len(kept) - 1}:
+        end, level = (run.end, space.rest[1]) if which else (run.begin, space.rest[0])
+        kept[which] = run._replace(begin=end, end=end, level=level)
     else:
         kept.pop(which)
 
@@ -167,7 +167,10 @@ def _stretch(
     # a side is wild while the motion is rougher there than `plain`, or cannot be found; its end is moved in further
     while True:
         begin, end = before.end - moved[0], after.begin + moved[1]
-        space = FunctionSpace(begin, end, (before.level, after.level))
+        free = [run.begin for run in pair if run.level is None]
+        ends = (end_jerk for end_jerk in rows.space.ends if end_jerk.at in free)
+        shorter = tuple(jerk._replace(width=min(jerk.width, end - begin)) for jerk in ends)
+        space = FunctionSpace(begin, end, (before.level, after.level), shorter)
         try:
             moving = least(space, rows.between(bounds, space), touch, limit)
         except UnsolvedError:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import comb, fsum
 from typing import TYPE_CHECKING
 
+from kin.law.segment import Alike
 from kin.numeric.elementary import cos, sin
 from kin.numeric.jet import horner
 from kin.numeric.records import dataclass
@@ -12,7 +14,8 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.law.segment import Series
+    from kin.law.segment import Series, Stretch
+    from kin.numeric.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,7 @@ def _over_power(derivatives: Sequence[float]) -> tuple[float, ...]:
 
 
 @dataclass(frozen=True)
-class Flank:
+class Flank(Alike):
     """v**5 Q(1 - v): a lobe's flank up to its nose, v = 1, with derivatives 0..4 that vanish at v = 0."""
 
     coefficients: tuple[float, ...]
@@ -133,9 +136,27 @@ class Flank:
         columns = zip(*padded, strict=True)
         return Flank(tuple(fsum(w * c for w, c in zip(weights, column, strict=True)) for column in columns))
 
+    @property
+    def kind(self) -> tuple[str, int]:
+        """Key of flanks whose Q have as many coefficients."""
+        return "flank", len(self.coefficients)
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """Coefficients of Q."""
+        return self.coefficients
+
+    def together(self, rows: Array) -> Stretch:
+        """Give one function for n flanks: column i of `rows` (k, n) has the coefficients for point or interval i."""
+        return partial(_flank, rows)
+
     def __call__(self, v: Series, /) -> Series:
         """Displacement, a series of v's own kind: 1 at the nose."""
-        return v**5.0 * horner(self.coefficients, 1.0 - v)
+        return _flank(self.coefficients, v)
+
+
+def _flank(coefficients: Sequence[float] | Array, v: Series) -> Series:
+    return v**5.0 * horner(coefficients, 1.0 - v)
 
 
 @dataclass(frozen=True)

@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from kin.law.normalised import IntentError, Law, Polynomial, mirrored, symmetric
 from kin.law.piecewise import Piecewise
-from kin.law.programme import LAWS, IntentError, Law, Polynomial, mirrored, symmetric
 from kin.law.segment import AffineStretch, Stretch
 from kin.law.sources.functions import Cosines, FromRest, Sines
-from kin.law.sources.peaks import peaks
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ def scca(sine: float, constant: float, velocity: float = 0.0, field: str = "law"
     """Make the law of sine, constant and cosine acceleration, with constant velocity in the middle (SCCA).
 
     `sine`, b, and `constant`, c, are shares of the accelerating half; the cosine's is d = 1 - b - c. `velocity` is the
-    share of the whole segment at constant velocity. A member that is a standard law is given as that law. Raises
+    share of the whole segment at constant velocity. A member of the catalogue is given as that law. Raises
     IntentError, at a field below `field`, for shares out of bounds.
     """
     b, c, x = float(sine), float(constant), float(velocity)
@@ -53,9 +52,9 @@ def scca(sine: float, constant: float, velocity: float = 0.0, field: str = "law"
     if 1.0 - x < _LEAST_SHARE:
         raise IntentError("with `velocity: 1` nothing accelerates; the law is `constant-velocity`", f"{field}.velocity")
     for name, member in _MEMBERS.items():
-        if name in LAWS and max(abs(m - s) for m, s in zip(member, (b, c, x), strict=True)) <= _SAME:
-            return LAWS[name]
-    return _of(f"scca (sine {b:.6g}, constant {c:.6g}, velocity {x:.6g})", scca_motion(b, c, x))
+        if max(abs(m - s) for m, s in zip(member, (b, c, x), strict=True)) <= _SAME:
+            return named(name)
+    return Law(f"scca (sine {b:.6g}, constant {c:.6g}, velocity {x:.6g})", scca_motion(b, c, x))
 
 
 def scca_motion(b: float, c: float, x: float) -> Piecewise:
@@ -70,6 +69,8 @@ def scca_motion(b: float, c: float, x: float) -> Piecewise:
     top = plain * ((b + d) / _PI + c / 2)
     peak = plain / ((1 + x * (top - 1)) * (1 - x))
     half = (1 - x) / 2
+    if b == d and not c and not x:  # the cosine goes on as the sine does: a single run
+        return symmetric([0.0, 1.0], [(peak, 2 * _PI, "sin")], centre=True)
     runs: list[tuple[float, float, Shape]] = []
     knots = [0.0]
     for share, shape in ((b, "sin"), (c, "flat"), (d, "cos")):
@@ -115,7 +116,7 @@ def _trapezoid() -> Law:
         half.append(Polynomial((s, v, a / 2, j / 6), begin))
         x = end - begin
         s, v = s + x * (v + x * (a / 2 + x * j / 6)), v + x * (a + x * j / 2)
-    return _of("trapezoid", _symmetric(knots, half))
+    return Law("trapezoid", _symmetric(knots, half))
 
 
 def blended(first: float, last: float, field: str = "law") -> Law:
@@ -143,7 +144,7 @@ def blended(first: float, last: float, field: str = "law") -> Law:
         functions.append(AffineStretch(FromRest(), offset=1.0, scale=-0.5 * velocity * last, start=1.0, width=-last))
         knots.append(1.0)
     knots[-1] = 1.0
-    return _of(f"uniform (blends {first:.6g} and {last:.6g})", Piecewise(np.array(knots), tuple(functions)))
+    return Law(f"uniform (blends {first:.6g} and {last:.6g})", Piecewise(np.array(knots), tuple(functions)))
 
 
 def through_points(points: Sequence[tuple[float, float]], field: str = "law") -> Law:
@@ -166,27 +167,28 @@ def through_points(points: Sequence[tuple[float, float]], field: str = "law") ->
         made = from_points(u, s, 1.0, around=None, field=field)
     except IntentError as error:
         raise IntentError("the points of a law rise in u, its first number", field) from error
-    return _of(f"points ({len(points)})", made.motion, reverses=True)
+    return Law(f"points ({len(points)})", made.motion, reverses=True)
 
 
-def from_rows(samples: Samples, reading: float, field: str = "law") -> Law:
+def from_rows(samples: Samples, reading: float | None, field: str = "law") -> Law:
     """Make the law of least mean square jerk within `reading` of each row (u, s) from (0, 0) to (1, 1), at rest there.
 
-    Raises IntentError for rows that do not lead from (0, 0) to (1, 1) or give no motion, as TableError where a line is
-    at fault.
+    For None the reading of each row is its own rounding. Raises IntentError for rows that do not lead from (0, 0) to
+    (1, 1) or give no motion, as TableError where a line is at fault.
     """
     from kin.law.sources.table import from_table
 
     u, s = samples.theta, samples.s
+    within = reading or float(np.max(samples.rounding))
     ends = len(u) > 1 and max(abs(u[0]), abs(u[-1] - 1.0)) <= _END
-    if not ends or max(abs(s[0]), abs(s[-1] - 1.0)) > reading:
+    if not ends or max(abs(s[0]), abs(s[-1] - 1.0)) > within:
         raise IntentError("the rows of a law lead from 0;0 to 1;1", field)
     made = from_table(samples, reading, 1.0, around=None, field=field)
     rise = made.at_end(0)[0] - made.at_start(0)[0]
     functions = tuple(
         AffineStretch.of(f, offset=-made.at_start(0)[0] / rise, scale=1.0 / rise) for f in made.motion.functions
     )
-    return _of(f"table ({len(u)} rows)", Piecewise(made.motion.knots, functions), reverses=True)
+    return Law(f"table ({len(u)} rows)", Piecewise(made.motion.knots, functions), reverses=True)
 
 
 def split(law: Law, share: float, field: str = "law") -> Law:
@@ -220,17 +222,13 @@ def split(law: Law, share: float, field: str = "law") -> Law:
             functions.append(AffineStretch.of(function, offset=1 - after, scale=after, start=1 - after, width=after))
             knots.append(1 - after * (1 - end))
     knots[-1] = 1.0
-    return _of(f"{law.name} (split {share:.6g})", Piecewise(np.array(knots), tuple(functions)))
+    return Law(f"{law.name} (split {share:.6g})", Piecewise(np.array(knots), tuple(functions)))
 
 
 def sines(weights: Mapping[int, float], name: str) -> Law:
     """Make s = u - sum of w_k sin(2 pi k u)/(2 pi k), by weights w_k that sum to 1: at rest at both ends."""
     terms = tuple((2 * _PI * k, w / (2 * _PI * k)) for k, w in weights.items())
     return _single(name, Sines(terms))
-
-
-def _of(name: str, motion: Piecewise, *, reverses: bool = False) -> Law:
-    return Law(name, motion, peaks(motion), reverses)
 
 
 def _symmetric(knots: Sequence[float], half: Sequence[Stretch]) -> Piecewise:
@@ -240,7 +238,7 @@ def _symmetric(knots: Sequence[float], half: Sequence[Stretch]) -> Piecewise:
 
 
 def _single(name: str, function: Stretch, *, reverses: bool = False) -> Law:
-    return _of(name, Piecewise(np.array([0.0, 1.0]), (function,)), reverses=reverses)
+    return Law(name, Piecewise(np.array([0.0, 1.0]), (function,)), reverses)
 
 
 @dataclass(frozen=True)
@@ -251,33 +249,50 @@ class _Entry:
     formula: str
 
 
+def _member(name: str, formula: str) -> _Entry:
+    """Entry of a member of the SCCA family."""
+    return _Entry(lambda: Law(name, scca_motion(*_MEMBERS[name])), formula)
+
+
 def _catalogue() -> dict[str, _Entry]:
     half = (0.0, 0.5)
     double = Cosines(((_PI, 0.5), (2 * _PI, -0.125)))
     square = Cosines(((4 * _PI, -1 / (4 * _PI**2)),), square=2.0)
     return {
         "constant-velocity": _Entry(lambda: _single("constant-velocity", Polynomial((0.0, 1.0))), "u"),
-        **{name: _Entry(lambda name=name: LAWS[name], text) for name, text in _TODAY.items()},  # type: ignore[misc]
-        **{
-            name: _Entry(
-                lambda name=name: _of(name, scca_motion(*_MEMBERS[name])),  # type: ignore[misc]
-                f"scca: sine {b:.3g}, constant {c:.3g}, velocity {x:.3g}",
-            )
-            for name, (b, c, x) in _MEMBERS.items()
-            if name not in LAWS
-        },
+        "parabolic": _member("parabolic", "2 u^2, and its image"),
+        "harmonic": _member("harmonic", "(1 - cos pi u)/2"),
+        "cycloidal": _member("cycloidal", "u - sin 2 pi u/(2 pi)"),
+        "modified-trapezoid": _member("modified-trapezoid", "scca: sine 0.25, constant 0.5"),
+        "modified-sine": _member("modified-sine", "scca: sine 0.25, constant 0"),
+        "modified-constant-velocity": _member(
+            "modified-constant-velocity", "scca: sine 0.25, constant 0, velocity 0.5"
+        ),
+        # both about the middle: no cancellation at u = 1
+        "polynomial-345": _Entry(
+            lambda: _single("polynomial-345", Polynomial((0.5, 15 / 8, 0.0, -5.0, 0.0, 6.0), 0.5)),
+            "10 u^3 - 15 u^4 + 6 u^5",
+        ),
+        "polynomial-4567": _Entry(
+            lambda: _single("polynomial-4567", Polynomial((0.5, 35 / 16, 0.0, -35 / 4, 0.0, 21.0, 0.0, -20.0), 0.5)),
+            "35 u^4 - 84 u^5 + 70 u^6 - 20 u^7",
+        ),
+        "scca-20": _member("scca-20", "scca: sine 0.25, constant 0, velocity 0.2"),
+        "scca-33": _member("scca-33", "scca: sine 0.25, constant 0, velocity 0.333"),
+        "scca-66": _member("scca-66", "scca: sine 0.25, constant 0, velocity 0.667"),
+        "cycloidal-cv50": _member("cycloidal-cv50", "scca: sine 0.5, constant 0, velocity 0.5"),
         "double-harmonic": _Entry(
             lambda: _single("double-harmonic", double, reverses=True), "(1 - cos pi u)/2 - (1 - cos 2 pi u)/8"
         ),
         "trapezoid": _Entry(_trapezoid, "acceleration a trapezoid, ramps of 1/8"),
         "sine-squared": _Entry(
-            lambda: _of("sine-squared", _symmetric(half, [square])), "acceleration 8 sin^2 2 pi u, and its image"
+            lambda: Law("sine-squared", _symmetric(half, [square])), "acceleration 8 sin^2 2 pi u, and its image"
         ),
         "polynomial-23": _Entry(
             lambda: _single("polynomial-23", Polynomial((0.5, 1.5, 0.0, -2.0), 0.5)), "3 u^2 - 2 u^3"
         ),
         "cubic": _Entry(
-            lambda: _of("cubic", _symmetric(half, [Polynomial((0.0, 0.0, 0.0, 4.0))])), "4 u^3, and its image"
+            lambda: Law("cubic", _symmetric(half, [Polynomial((0.0, 0.0, 0.0, 4.0))])), "4 u^3, and its image"
         ),
         "freudenstein-13": _Entry(
             lambda: sines({1: 27 / 28, 3: 1 / 28}, "freudenstein-13"), "u - 27/(56 pi) (sin 2 pi u + sin 6 pi u/81)"
@@ -292,16 +307,6 @@ def _catalogue() -> dict[str, _Entry]:
     }
 
 
-_TODAY = {
-    "parabolic": "2 u^2, and its image",
-    "harmonic": "(1 - cos pi u)/2",
-    "cycloidal": "u - sin 2 pi u/(2 pi)",
-    "modified-trapezoid": "scca: sine 0.25, constant 0.5",
-    "modified-sine": "scca: sine 0.25, constant 0",
-    "modified-constant-velocity": "scca: sine 0.25, constant 0, velocity 0.5",
-    "polynomial-345": "10 u^3 - 15 u^4 + 6 u^5",
-    "polynomial-4567": "35 u^4 - 84 u^5 + 70 u^6 - 20 u^7",
-}
 _ENTRIES = _catalogue()
 
 NAMES: tuple[str, ...] = tuple(_ENTRIES)

@@ -7,6 +7,9 @@ the jump of -S^(5) there, above 0 at a lower bound and below 0 at an upper one.
 S''' is a spline of degree two over the same knots. Its coefficients mu solve G mu = E s, where G has the products of
 the quadratic B-splines and E takes third divided differences of the values s (C. de Boor, A Practical Guide to Splines,
 chapter 14). The multipliers are E^T mu. Differences of neighbours alone enter, so that close knots do little harm.
+An end at rest is a threefold knot. At a free end S''' and its slope vanish at the last knot, so that the B-splines over
+knots beyond it are left out, and S goes on as a polynomial of degree two. Where rows show a jerk at the end itself, the
+function has a tail of that jerk, which dies away, and the integral is that of the rest.
 
 The touched bounds are found by the dual problem: bounds that are missed are added, all at once where that raises the
 integral, else by the steps of C. L. Lawson and R. J. Hanson (Solving Least Squares Problems, chapter 23), which stop
@@ -39,6 +42,7 @@ _GROWS = 1e-12  # of the integral: a growth above rounding
 _MOST_WORK = 5e10
 _FEW = 1000  # bounds that are looked at together; of more a search begins with these and adds those that are missed
 _DIPS, _HELD = 60, 0.1  # most rounds of bounds at dips, and the share of the tolerance that these bounds allow
+_EXCHANGES = 100  # of bounds, towards the nearest parabola: some ten do
 _GAUSS = np.polynomial.legendre.leggauss(3)  # exact for squares of quadratic pieces
 _BACK = np.array([[2], [1], [0]])  # B-splines on a piece, counted back from the last one, which begins there
 _BLOCK = 24  # B-splines of one block of equations with its separators, from three times as many on
@@ -53,17 +57,93 @@ class CrowdedError(CamgeoError, ArithmeticError):
     """A search that would take minutes, as too many bounds are touched and are found one by one."""
 
 
+class EndJerk(NamedTuple):
+    """Jerk at a free end `at`, rad, and its slope by the distance y from it, which die away over a `width`, rad.
+
+    The jerk is a (1 - 2y/w)^2 + b (1 - y/w)^2, each to where it is 0; `way` is 1 at a beginning, -1 at an end, where
+    distances are backwards.
+    """
+
+    at: float
+    way: float
+    width: float
+    jerk: float
+    slope: float
+
+    @property
+    def tails(self) -> tuple[Tail, Tail]:
+        """Displacements with that jerk."""
+        half, a = 0.5 * self.width, -self.jerk - 0.5 * self.slope * self.width
+        first, second = (
+            Tail(self.at, self.way, w, -c * w**3 / 60.0) for w, c in ((half, a), (2.0 * half, self.jerk - a))
+        )
+        return first, second
+
+
+class Tail(NamedTuple):
+    """Displacement size (1 - y/w)^5 at the distance y < w from the end `at`, rad, and 0 beyond."""
+
+    at: float
+    way: float
+    width: float
+    size: float
+
+    def __call__(self, x: Array) -> Array:
+        """Displacement (n,), mm or rad, at x (n,), rad."""
+        value: Array = self.size * np.maximum(1.0 - self.way * (x - self.at) / self.width, 0.0) ** 5
+        return value
+
+    @property
+    def end(self) -> float:
+        """Where it ends, rad."""
+        return self.at + self.way * self.width
+
+    def coefficients(self, starts: Array, widths: Array) -> Array:
+        """Coefficients (6, m) of powers of u over pieces (m,), which do not run across its end."""
+        base, slope = 1.0 - self.way * (starts - self.at) / self.width, -self.way * widths / self.width
+        k = np.arange(6)[:, None]
+        binomial = np.array([math.comb(5, j) for j in range(6)])[:, None]
+        coefficients: Array = np.where(base + 0.5 * slope > 0.0, binomial * base ** (5 - k) * slope**k, 0.0)
+        return self.size * coefficients
+
+
 class FunctionSpace(NamedTuple):
-    """Functions from `begin` to `end`, rad: at rest at both ends, at the levels `rest`, or, with None, periodic."""
+    """Functions from `begin` to `end`, rad: at rest at the levels `rest` of its ends, or, with None, periodic.
+
+    An end whose level is None is free: value, slope and curvature there are any. What the functions have besides by the
+    jerk of ends does not count.
+    """
 
     begin: float
     end: float
-    rest: tuple[float, float] | None = None
+    rest: tuple[float | None, float | None] | None = None
+    ends: tuple[EndJerk, ...] = ()
+
+    @property
+    def tails(self) -> tuple[Tail, ...]:
+        """Displacements by the jerk of ends."""
+        return tuple(tail for end in self.ends for tail in end.tails)
 
     @property
     def period(self) -> float:
         """Angle, rad, after which the functions repeat; 0 where they do not."""
         return 0.0 if self.rest else self.end - self.begin
+
+    @property
+    def free(self) -> bool:
+        """Whether both ends are free."""
+        return self.rest == (None, None)
+
+    def tail(self, x: Array) -> Array:
+        """Displacement (n,), mm or rad, that the tails have at x (n,), rad."""
+        value: Array = np.sum([tail(x) for tail in self.tails], axis=0) if self.tails else np.zeros(len(x))
+        return value
+
+    def inside(self, x: Array) -> NDArray[np.bool_]:
+        """Mask (n,) of the places x (n,), rad, at which functions may be bounded: not at ends where they rest."""
+        first, last = (-SAME_ANGLE if level is None else SAME_ANGLE for level in self.rest or (0.0, 0.0))
+        mask: NDArray[np.bool_] = (x > self.begin + first) & (x < self.end - last)
+        return mask
 
 
 class Bounds(NamedTuple):
@@ -155,6 +235,21 @@ class Curve(NamedTuple):
         value = _polynomial(self._rows(order)[:, piece], (x - self.starts[piece]) / width)
         return value / width**order if order else value
 
+    def with_tail(self, tail: Tail) -> Curve:
+        """The curve with a tail added, from where it ends on a knot more."""
+        starts, widths, rows = self.starts, self.widths, self.coefficients
+        i = int(np.searchsorted(starts, tail.end, side="right")) - 1
+        share = float((tail.end - starts[i]) / widths[i]) if i >= 0 else 0.0
+        if SAME_ANGLE < share < 1.0 - SAME_ANGLE:
+            powers = np.arange(6)
+            # the polynomial of u beyond `share`, and both parts over their own widths
+            later = [sum(math.comb(m, k) * rows[m, i] * share ** (m - k) for m in range(k, 6)) for k in range(6)]
+            parts = np.column_stack([rows[:, i] * share**powers, np.array(later) * (1.0 - share) ** powers])
+            rows = np.column_stack([rows[:, :i], parts, rows[:, i + 1 :]])
+            starts = np.insert(starts, i + 1, tail.end)
+            widths = np.concatenate([widths[:i], [share * widths[i], (1.0 - share) * widths[i]], widths[i + 1 :]])
+        return Curve(starts, widths, rows + tail.coefficients(starts, widths), self.period)
+
     def _rows(self, order: int) -> Array:
         rows = self.coefficients
         for _ in range(order):
@@ -187,7 +282,8 @@ class Curve(NamedTuple):
 
     def lowest(self) -> tuple[float, float]:
         """Angle, rad, at which the function is least, and its value there."""
-        place = np.concatenate([self.starts, self.dips(np.inf)[0]])
+        ends = self.starts if self.period else np.append(self.starts, self.starts[-1] + self.widths[-1])
+        place = np.concatenate([ends, self.dips(np.inf)[0]])
         value = self(place)
         i = int(np.argmin(value))
         return float(place[i]), float(value[i])
@@ -231,10 +327,10 @@ class _Spline(NamedTuple):
     Over a piece the third derivative is b0 (1 - u)^2 + 2 b1 u (1 - u) + b2 u^2.
     """
 
-    period: float  # 0 between two rests
-    starts: Array  # of the pieces
+    space: FunctionSpace
+    knots: Array  # ends of all pieces
     widths: Array
-    values: Array  # at the ends of all pieces, one more than there are pieces
+    values: Array  # at the ends of all pieces, one more than there are pieces, less the tails
     near: Array  # 1 over the steps from knot to knot, 0 for a step of no width
     far: Array  # 1 over the steps from a knot to the next but one
     mu: Array  # coefficients
@@ -243,9 +339,12 @@ class _Spline(NamedTuple):
 
     def pull(self) -> Array:
         """Lagrange multipliers (k,) of the values."""
+        if not len(self.mu):
+            return np.empty(0)
         pull = _fall(_fall(_fall(2.0 * self.mu) * self.far) * self.near)
-        if not self.period:
-            return pull[3:-3]
+        if self.space.rest is not None:
+            first, last = _repeated(self.space.rest)
+            return pull[first : len(pull) - last]
         count = len(self.widths)
         for place in range(count, len(pull)):
             pull[place % count] += pull[place]
@@ -262,14 +361,45 @@ class _Spline(NamedTuple):
         gain = self.values[1:] - c[0]
         ahead = (gain - c[3] - c[4] - c[5]) / width
         behind = (gain - c[3] - 3.0 * c[4] - 6.0 * c[5]) / width
-        bend = np.zeros(len(width))
-        bend[1:] = 2.0 * (ahead[1:] - behind[:-1]) / (width[1:] + width[:-1])
-        if self.period:
+        # the second derivative at both ends of each piece
+        bend = np.zeros(len(width) + 1)
+        bend[1:-1] = 2.0 * (ahead[1:] - behind[:-1]) / (width[1:] + width[:-1])
+        first, last = (0.0, 0.0) if self.space.rest is None else self.space.rest
+        turn = width * (b0 + b1 + b2) / 3.0
+        if self.space.period:
             bend[0] = 2.0 * (ahead[0] - behind[-1]) / (width[0] + width[-1])
-        c[1], c[2] = (ahead - 0.5 * bend * width) * width, 0.5 * bend * width**2
-        if not self.period:
-            c[1, 0] = 0.0
-        return Curve(self.starts, width, c, self.period)
+        if first is None and len(width):
+            bend[0] = bend[1] - turn[0]
+        if last is None and len(width):
+            bend[-1] = bend[-2] + turn[-1]
+        c[1], c[2] = (ahead - 0.5 * bend[:-1] * width) * width, 0.5 * bend[:-1] * width**2
+        if self.space.rest is not None and first is not None:
+            c[1, :1] = 0.0
+        starts, space = self.knots[:-1], self.space
+        # beyond the last knots towards free ends: polynomials of degree two
+        if first is None and self.knots[0] > space.begin:
+            state = float(self.values[0]), float(c[1, 0] / width[0]) if len(width) else 0.0, float(bend[0])
+            more, wide = space.begin, float(self.knots[0]) - space.begin
+            starts, width = np.append(more, starts), np.append(wide, width)
+            c = np.column_stack([_parabola(state, -wide, wide), c])
+        if last is None and self.knots[-1] < space.end:
+            slope = float(behind[-1] + 0.5 * bend[-1] * self.widths[-1]) if len(behind) else 0.0
+            wide = space.end - float(self.knots[-1])
+            starts, width = np.append(starts, self.knots[-1]), np.append(width, wide)
+            c = np.column_stack([c, _parabola((float(self.values[-1]), slope, float(bend[-1])), 0.0, wide)])
+        curve = Curve(starts, width, c, space.period)
+        for tail in space.tails:
+            curve = curve.with_tail(tail)
+        return curve
+
+
+def _parabola(state: tuple[float, float, float], begin: float, width: float) -> Array:
+    """Coefficients (6,) of powers of u of a polynomial of degree two, over a piece of some width.
+
+    `state` is its value, slope and second derivative at a place from which the piece begins at `begin`, rad.
+    """
+    s, v, a = state
+    return np.array([s + (v + 0.5 * a * begin) * begin, (v + a * begin) * width, 0.5 * a * width**2, 0.0, 0.0, 0.0])
 
 
 def _fall(values: Array) -> Array:
@@ -287,7 +417,7 @@ class _Blocks(NamedTuple):
     (p, b, 4), and the separators (n, n). A place without a B-spline in a block has a 1 on the diagonal.
     """
 
-    taken: Indices  # the three B-splines on each piece, (3, m)
+    taken: Indices  # the three B-splines on each piece, (3, m); their number for one that is left out
     used: Indices  # indices of those of their nine products on each piece that the array holds
     flat: Indices  # places of these products in the array
     ones: Indices  # places of the 1s in the array
@@ -324,10 +454,16 @@ class _Blocks(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def _blocks(count: int, *, periodic: bool) -> _Blocks:
-    """Blocks for `count` knots; a few B-splines are not divided: all of them are separators."""
-    size = count if periodic else count + 3
-    columns = (np.arange(count) - _BACK) % count if periodic else np.arange(count + 1) + 2 - _BACK
+def _blocks(size: int, first: int, last: int, *, periodic: bool) -> _Blocks:
+    """Blocks for `size` B-splines over the pieces from knot `first` to `last`; those that are left out have no place.
+
+    A few B-splines are not divided: all of them are separators.
+    """
+    columns = np.arange(first, last) - _BACK
+    if periodic:
+        columns %= size
+    there = (columns >= 0) & (columns < size)
+    taken, columns = np.where(there, columns, size), np.where(there, columns, 0)
     p = size // _BLOCK if size >= 3 * _BLOCK else 0
     # block of each B-spline, the last two of each block being separators
     starts = np.arange(p + 1) * size // max(p, 1) if p else np.array([0, size])
@@ -348,11 +484,12 @@ def _blocks(count: int, *, periodic: bool) -> _Blocks:
             place[row] * b + offset[column],
         ),
     )
-    used, inner = np.flatnonzero(parting[column] | ~parting[row]), np.flatnonzero(~parting)
+    both = (there[_ROW] & there[_COLUMN]).ravel()
+    used, inner = np.flatnonzero(both & (parting[column] | ~parting[row])), np.flatnonzero(~parting)
     empty = np.setdiff1d(np.arange(p * b), place[inner])
     beside = (2 * np.arange(p)[:, None] + np.array([-2, -1, 0, 1])) % max(n, 1)
     return _Blocks(
-        columns,
+        taken,
         used,
         flat[used],
         empty * b + empty % max(b, 1),
@@ -366,35 +503,48 @@ def _blocks(count: int, *, periodic: bool) -> _Blocks:
 
 def _spline(space: FunctionSpace, x: Array, s: Array) -> _Spline:
     """Solve for the third derivative of the spline through s (k,) at x (k,)."""
-    k = len(x)
+    k, s = len(x), s - space.tail(x)
     # knots and values with their continuation: by the period, or threefold at an end at rest
     if space.rest is None:  # B-spline i stands over the knots i to i + 3
         place = np.arange(k + 3)
         t, values = x[place % k] + space.period * (place // k), s[place % k]
         near, far = 1.0 / (t[1:] - t[:-1]), 1.0 / (t[2:] - t[:-2])
-        first, last, before = 0, k, np.concatenate([far[k - 1 : k], far[: k - 1]])
+        first, last, before, after = 0, k, np.concatenate([far[k - 1 : k], far[: k - 1]]), far[:k]
     else:
-        t = np.concatenate([[space.begin] * 3, x, [space.end] * 3])
-        values = np.concatenate([[space.rest[0]] * 3, s, [space.rest[1]] * 3])
-        near, far = np.zeros(k + 5), np.zeros(k + 4)
-        near[2:-2], far[1:-1] = 1.0 / (t[3:-2] - t[2:-3]), 1.0 / (t[3:-1] - t[1:-3])
-        first, last, before = 2, k + 3, far[1:-2]
+        (start, end), (level, level_end) = _repeated(space.rest), space.rest
+        t = np.concatenate([[space.begin] * start, x, [space.end] * end])
+        values = np.concatenate([[level] * start, s, [level_end] * end]).astype(np.float64)
+        # steps without width count for nothing
+        near, far = np.zeros(len(t) - 1), np.zeros(len(t) - 2)
+        first, last = (2 if start else 0), len(t) - (3 if end else 1)
+        np.divide(1.0, t[first + 1 : last + 1] - t[first:last], out=near[first:last])
+        low, high = (1 if start else 0), len(far) - (1 if end else 0)
+        np.divide(1.0, t[low + 2 : high + 2] - t[low:high], out=far[low:high])
+        more = np.concatenate([[0.0], far, [0.0]])
+        before, after = more[first:last], more[first + 1 : last + 1]
     # third divided differences of the values are the right side
     bend = _rise(_rise(values) * near) * far
     rhs = 2.0 * _rise(bend)
     widths = t[first + 1 : last + 1] - t[first:last]
     # on a piece the three B-splines are a (1 - u)^2, c u^2, and the remainder to 1
-    a, c = widths * before, widths * far[first:last]
+    a, c = widths * before, widths * after
     aa, cc, ac = a * a / 5.0, c * c / 5.0, a * c / 30.0
     ab, cb = a / 3.0 - aa - ac, c / 3.0 - cc - ac
     products = widths * np.array([aa, ab, ac, ab, 1.0 - 2.0 * (a + c) / 3.0 + aa + cc + 2.0 * ac, cb, ac, cb, cc])
-    blocks = _blocks(k, periodic=space.rest is None)
+    size = len(rhs)
+    blocks = _blocks(size, first, last, periodic=space.rest is None)
     mu = blocks.solve(products, rhs)
-    low, middle, high = mu[blocks.taken]
+    low, middle, high = np.append(mu, 0.0)[blocks.taken]
     bernstein = middle + a * (low - middle), middle, middle + c * (high - middle)
     return _Spline(
-        space.period, t[first:last], widths, values[first : last + 1], near, far, mu, bernstein, float(mu @ rhs)
+        space, t[first : last + 1], widths, values[first : last + 1], near, far, mu, bernstein, float(mu @ rhs)
     )
+
+
+def _repeated(rest: tuple[float | None, float | None]) -> tuple[int, int]:
+    """How many knots stand at each end: three where functions rest, none where the end is free."""
+    first, last = (0 if level is None else 3 for level in rest)
+    return first, last
 
 
 def _rise(values: Array) -> Array:
@@ -445,9 +595,10 @@ def least(
 ) -> Least | None:
     """The function of least mean square jerk within bounds and above a limit, searched from the rows of `start`.
 
-    None where a constant keeps all the bounds of a periodic function. A search whose integral passes `ample` ends with
-    a function that misses bounds, and whose integral is less than that of the solution. Raises UnsolvedError where
-    rounding stands in the way, and CrowdedError where too many bounds are touched for it to end in seconds.
+    None where a constant keeps all the bounds of a function without an end at rest. A search whose integral passes
+    `ample` ends with a function that misses bounds, and whose integral is less than that of the solution. Raises
+    UnsolvedError where rounding stands in the way, and CrowdedError where too many bounds are touched for it to end in
+    seconds.
     """
     touch = bounds.touching(start)
     for turn in range(_DIPS):
@@ -561,7 +712,8 @@ class _Search:
 
     def __init__(self, space: FunctionSpace, bounds: Bounds, work: float) -> None:
         self.space, self.bounds, self.work = space, bounds, work
-        self.least = 2 if space.rest is None else 0  # fewest touched bounds of a function that is no constant
+        # fewest touched bounds of a function with a jerk
+        self.least = 2 if space.rest is None else 4 if space.free else 0
         self._before: set[bytes] = set()
 
     def run(self, start: Touch | None, ample: float) -> Least | None:
@@ -570,7 +722,12 @@ class _Search:
         Raises UnsolvedError where a bound is still missed when the integral grows no more.
         """
         state = None if start is None else self._without_wrong_signs(start)
-        state = state or self._first()
+        if state is None:
+            first = self._first()
+            if isinstance(first, Curve):
+                none = np.empty(0)
+                return Least(none.astype(np.intp), none.astype(np.bool_), none, 0.0, none, none, first)
+            state = first
         while state is not None:
             touch, spline, pull = state
             curve = spline.curve()
@@ -619,13 +776,19 @@ class _Search:
         spline = _spline(self.space, self.bounds.x[touch.which], self._values(touch))
         return _State(touch, spline, spline.pull())
 
-    def _first(self) -> _State | None:
-        """State of no bound, or of the greatest lower and least upper bound; None where a constant keeps all bounds."""
-        if self.space.rest is not None:
+    def _first(self) -> _State | Curve | None:
+        """State of no bound, of the greatest lower and least upper bound, or of four bounds that no parabola keeps.
+
+        None where a constant keeps all bounds, a curve where a parabola keeps those of a function with free ends.
+        """
+        if self.space.rest is not None and not self.space.free:
             return self._solved(Touch(np.empty(0, dtype=np.intp), np.empty(0, dtype=bool)))
         i, j = int(np.argmax(self.bounds.lo)), int(np.argmin(self.bounds.hi))
         if self.bounds.lo[i] <= self.bounds.hi[j]:
             return None
+        if self.space.free:
+            found = nearest_parabola(self.space, self.bounds)
+            return self._solved(found) if isinstance(found, Touch) else found
         which = np.array(sorted((i, j)), dtype=np.intp)
         return self._solved(Touch(which, which == j))
 
@@ -662,3 +825,62 @@ class _Search:
             size[which] = np.maximum(now + step * (wanted - now), 0.0)
             which = which[share > step]
         return None
+
+
+def nearest_parabola(space: FunctionSpace, bounds: Bounds) -> Touch | Curve:
+    """The curve of a parabola and the space's tails that misses bounds the least; or four bounds that forbid any."""
+    tail = space.tail(bounds.x)
+    bounds = bounds._replace(lo=bounds.lo - tail, hi=bounds.hi - tail)
+    place = 0.5 * (space.begin + space.end), 0.5 * (space.end - space.begin)
+    touch, parabola, miss = nearest_polynomial(bounds, 2, *place)
+    if miss > _MISSED:
+        return touch
+    state = float(parabola[0]), float(parabola[1]) / place[1], 2.0 * float(parabola[2]) / place[1] ** 2
+    width = space.end - space.begin
+    curve = Curve(np.array([space.begin]), np.array([width]), _parabola(state, -place[1], width)[:, None], 0.0)
+    for tail_of_end in space.tails:
+        curve = curve.with_tail(tail_of_end)
+    return curve
+
+
+def nearest_polynomial(bounds: Bounds, degree: int, middle: float, half: float) -> tuple[Touch, Array, float]:
+    """The polynomial that misses bounds the least: what it touches, its coefficients, and the miss in their unit.
+
+    The coefficients (degree + 1,) are those of powers of (x - middle)/half. It misses degree + 2 bounds alike, in turn
+    upper and lower ones, by as much as any (E. Ya. Remez, C. R. Acad. Sci. Paris 198, 1934): the worst of the others
+    takes the place of one of them, by which the miss grows, until none is worse. The miss is negative where all bounds
+    are kept. Raises UnsolvedError where rounding stands in the way.
+    """
+    powers = np.vander((bounds.x - middle) / half, degree + 1, increasing=True)
+    usable = np.flatnonzero(np.isfinite(bounds.lo) & np.isfinite(bounds.hi))
+    which = usable[np.linspace(0, len(usable) - 1, degree + 2).round().astype(np.intp)].tolist()
+
+    def levelled(upper: Sequence[bool]) -> tuple[Array, float]:
+        at, above = np.array(which), np.array(upper)
+        values = np.where(above, bounds.hi[at], bounds.lo[at])
+        equations = np.column_stack([powers[at], np.where(above, -1.0, 1.0) * bounds.unit[at]])
+        solution = np.linalg.solve(equations, values)
+        return solution[:-1], float(solution[-1])
+
+    turns = ([k % 2 == way for k in range(degree + 2)] for way in (0, 1))
+    upper = max(turns, key=lambda upper: levelled(upper)[1])
+    for _ in range(_EXCHANGES):
+        polynomial, miss = levelled(upper)
+        s = powers @ polynomial
+        excess = np.stack([(bounds.lo - s) / bounds.unit, (s - bounds.hi) / bounds.unit])
+        above, worst = divmod(int(np.argmax(excess)), len(s))
+        most = float(excess[above, worst])
+        if most <= miss + _MISSED or (most <= _MISSED and worst in which):
+            return Touch(np.array(which), np.array(upper)), polynomial, miss
+        # of the bounds, one more now, that goes whose place keeps upper and lower ones in turn
+        place = sum(old <= worst for old in which)
+        which.insert(place, worst)
+        upper.insert(place, bool(above))
+        if place and upper[place - 1] == upper[place]:
+            gone = place - 1
+        elif place + 1 < len(upper) and upper[place + 1] == upper[place]:
+            gone = place + 1
+        else:
+            gone = 0 if place else len(upper) - 1
+        del which[gone], upper[gone]
+    raise UnsolvedError

@@ -7,7 +7,7 @@ from itertools import pairwise
 from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.segment import AffineStretch, Constant, Power
 from kin.law.sources.functions import Flank, FromRest, RampedFlank
 from kin.law.sources.motion import Motion, joined

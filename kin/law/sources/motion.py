@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from kin.law.joints import ORDERS, DerivativeJump, joints_of
+from kin.law.normalised import IntentError
 from kin.law.piecewise import Piecewise, Side
-from kin.law.programme import IntentError
 from kin.law.segment import Constant, moved
 from kin.law.sources.peaks import extremes
+from kin.numeric.lengths import marked
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
@@ -40,19 +41,23 @@ class DwellStretch(NamedTuple):
 class TableRemark(NamedTuple):
     """Remark on a table or a cam card: its name, and a sentence in the table's own units."""
 
-    name: Literal["cam-card", "table-angles", "table-distance", "table-noise", "table-row"]
+    name: Literal["cam-card", "contour", "table-angles", "table-distance", "table-noise", "table-row"]
     sentence: str
 
 
 class Kept(NamedTuple):
     """Greatest distance of a motion from a row of its table, mm or rad, the row's line, and remarks.
 
-    A motion from another source, such as a cam card, has remarks alone: `distance` is None.
+    `lowered` is by how much the rows as a whole must be lowered to be nearest to it, and `distance_lowered` the
+    greatest distance then, mm or rad. A motion from another source, such as a cam card, has remarks alone: `distance`
+    is None.
     """
 
     distance: float | None
     line: int
     remarks: tuple[TableRemark, ...]
+    lowered: float = 0.0
+    distance_lowered: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -146,18 +151,19 @@ class Motion:
         knots = self.motion.knots
         return float(np.abs(self.motion.derivatives(np.linspace(knots[0], knots[-1], _LOOKS), 2)).max())
 
-    def demand_joined(self, field: str = "motion", unit: str = "mm") -> Motion:
+    def demand_joined(self, field: str = "motion", unit: str = "mm", per: str = "rad") -> Motion:
         """Return the motion if S and S' join all round; else raise IntentError, at `field`, with the first jump.
 
-        `unit` is that of S, mm or rad, for the message.
+        `unit` is that of S, mm or rad, and `per` that of the input, for the message.
         """
         for joint in self.joints:
             low = [(k, a, b) for k, a, b in joint.jumps if k < 2 and abs(b - a) > _CLOSED * self._size]
             if low:
                 at = math.degrees(joint.at)
                 jump = DerivativeJump(joint.at, tuple(low))  # messages have angles in degrees, as recipes do
-                amount = jump.scaled(math.degrees(1.0)).said("deg") if unit == "rad" else jump.said(unit)
-                raise IntentError(f"the motion does not join: {amount}; {_remedy(joint.at, low[0][0])}", field, at)
+                amount = jump.scaled(math.degrees(1.0)).said("deg", per) if unit == "rad" else jump.said(unit, per)
+                remedy = _remedy(joint.at, low[0][0])
+                raise IntentError(f"the motion does not join: {marked(amount)}; {remedy}", field, at)
         return self
 
     @cached_property
@@ -169,6 +175,13 @@ class Motion:
     def raised(self, by: float) -> Motion:
         """Give the motion with a constant added, mm or rad."""
         return replace(self, motion=self.motion.raised(by)) if by else self
+
+    def stretched(self, by: float) -> Motion:
+        """Give the motion over an input `by` times as long."""
+        if by == 1.0:
+            return self
+        functions = tuple(moved(function, width=by) for function in self.motion.functions)
+        return replace(self, motion=Piecewise(self.motion.knots * by, functions))
 
     def from_lowest(self) -> Motion:
         """The motion less its least value, so that it is 0 where it is lowest."""
@@ -197,7 +210,8 @@ class Motion:
 
 def _remedy(angle: float, order: int) -> str:
     if order:
-        return "let both sides meet at one velocity, as laws from rest to rest do, or give one of them law: match"
+        laws = "as laws from rest to rest and law: {uniform: {blend: 10}} do"
+        return f"let both sides meet at one velocity, {laws}, or give one of them law: match"
     return "let both sides meet at one displacement" if angle else "let the motion end where it begins"
 
 

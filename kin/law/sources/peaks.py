@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.programme import Peaks
 from kin.numeric.elementary import Jet
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from kin.law.piecewise import Piecewise
@@ -20,6 +20,18 @@ if TYPE_CHECKING:
 _GRID = 129  # places on a stretch at which a derivative is looked at first
 _STEPS = 6  # of Newton's method from there: the error of a grid is squared six times
 _REST = 1e-9  # of the greatest value: a smaller step is rounding
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Largest absolute velocity, acceleration and jerk of a law, for unit stroke over unit interval from rest to rest.
+
+    `acceleration` is infinite where the velocity steps, `jerk` where velocity or acceleration does, at the ends too.
+    """
+
+    velocity: float
+    acceleration: float
+    jerk: float
 
 
 def extremes(motion: Piecewise, k: int) -> tuple[float, float, float, float]:

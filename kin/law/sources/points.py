@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, demand_whole, laid
 from kin.law.sources.spline import Ends, through
+from kin.numeric.lengths import INPUT, input_number, input_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,10 +52,11 @@ def from_points(
     falls = np.flatnonzero(np.diff(angles) <= SAME_ANGLE)
     if len(falls):
         i = int(falls[0]) + 1
-        before, here = np.degrees(angles[i - 1 : i + 1])
-        raise IntentError(f"the angles must rise; {here:.6g} follows {before:.6g} degrees", f"{field}[{i}]")
+        before, here = angles[i - 1 : i + 1].tolist()
+        problem = f"the {INPUT}s must rise; {input_number(here)} follows {input_words(before)}"
+        raise IntentError(problem, f"{field}[{i}]")
     if len(angles) and (angles[0] < -SAME_ANGLE or angles[-1] > total + SAME_ANGLE):
-        raise IntentError(f"the angles lie between 0 and {math.degrees(total):.6g} degrees", field)
+        raise IntentError(f"the {INPUT}s lie between 0 and {input_words(total)}", field)
     if around == 1 and len(angles) > 1 and angles[-1] - angles[0] > total - SAME_ANGLE:
         if abs(values[-1] - values[0]) > 1e-9 * max(1.0, float(np.abs(values).max())):
             raise IntentError(
@@ -63,6 +65,8 @@ def from_points(
                 f"{field}[{len(values) - 1}]",
             )
         angles, values = angles[:-1], values[:-1]
+    elif around == 1 and len(angles) and angles[-1] > total - SAME_ANGLE:  # a turn on it is the first
+        angles, values = np.append(0.0, angles[:-1]), np.append(values[-1], values[:-1])
     # the fit, with the dwells as rows of equal displacement
     rows = Samples(angles, values, np.arange(len(angles)))
     demand_whole(rows, total, around, field)
@@ -87,15 +91,15 @@ def _dwelling(
         turns = math.floor((angle + SAME_ANGLE) / total) if around == 1 else 0
         i = int(np.argmin(np.abs(rows.theta - (angle - turns * total))))
         if abs(rows.theta[i] - (angle - turns * total)) > SAME_ANGLE:
-            raise IntentError(f"no point stands at {math.degrees(angle):.6g} degrees, where a dwell ends", field)
+            raise IntentError(f"no point stands at {input_words(angle)}, where a dwell ends", field)
         ends.append(i + turns * n)
-    first, last = ends
+    first, last = (ends[0] - n, ends[1] - n) if ends[0] >= n else ends
     if last != first + 1:
-        at = [math.degrees(a) for a in dwell]
-        raise IntentError(f"a dwell runs from a point to the next; from {at[0]:.6g} to {at[1]:.6g} is none", field)
+        ends_of = f"from {input_number(dwell[0])} to {input_number(dwell[1])}"
+        raise IntentError(f"a dwell runs from a point to the next; {ends_of} is none", field)
     a, b = float(rows.s[first % n]), float(rows.s[last % n])
     if a != b:
-        at = [math.degrees(x) for x in dwell]
         climb = f"{a / unit:.6g} to {b / unit:.6g}"
-        raise IntentError(f"no dwell from {at[0]:.6g} to {at[1]:.6g} degrees: it would climb from {climb}", field)
+        ends_of = f"from {input_number(dwell[0])} to {input_words(dwell[1])}"
+        raise IntentError(f"no dwell {ends_of}: it would climb from {climb}", field)
     return Dwelling(first, last, a)

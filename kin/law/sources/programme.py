@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.law.normalised import IntentError, Law
 from kin.law.piecewise import Piecewise
-from kin.law.programme import IntentError, Law
 from kin.law.segment import AffineStretch, Constant, Stretch
 from kin.law.sources.functions import RiseFall, TwoPoint
 from kin.law.sources.motion import Motion, joined
+from kin.numeric.lengths import INPUT, input_number, input_words
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -114,15 +115,15 @@ def programme(segments: Sequence[Step], total: float, *, around: int | None = 1,
         raise IntentError("a motion needs at least one segment", field)
     for i, segment in enumerate(segments):
         if not (math.isfinite(segment.over) and segment.over > _ANGLE_TOLERANCE):
-            stated, least = math.degrees(segment.over), math.degrees(_ANGLE_TOLERANCE)
-            problem = f"the angle of a segment must be above 0, not {stated:.6g} degrees"
-            if stated > 0.0:
-                problem = f"the angle of a segment, {stated:.6g} degrees, is as good as none; give {least:.1g} or more"
+            stated, least = input_words(segment.over), input_number(_ANGLE_TOLERANCE, ".1g")
+            problem = f"the {INPUT} of a segment must be above 0, not {stated}"
+            if segment.over > 0.0:
+                problem = f"the {INPUT} of a segment, {stated}, is as good as none; give {least} or more"
             raise IntentError(problem, f"{field}[{i}]")
     covered = math.fsum(segment.over for segment in segments)
     if not abs(covered - total) <= _ANGLE_TOLERANCE:
         raise IntentError(
-            f"the segments cover {math.degrees(covered):.10g} degrees, {math.degrees(total):.10g} are wanted", field
+            f"the segments cover {input_words(covered, '.10g')}, {input_number(total, '.10g')} are wanted", field
         )
     # all but matched segments first, then these between their neighbours
     ends = [math.fsum(segment.over for segment in segments[:i]) for i in range(len(segments))] + [total]
@@ -246,7 +247,7 @@ def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Arra
         first = parts[i] if way > 0 else neighbour
         where = math.degrees(first.end)
         which = "the last entry" if first is parts[-1] else "the first one"
-        problem = f"two matched segments meet at {where:.6g} degrees: give {which} `at_end: {{v: ..., a: ...}}`"
+        problem = f"two matched segments meet at {input_words(first.end)}: give {which} `at_end: {{v: ..., a: ...}}`"
         if neighbour is parts[i]:
             problem = "a matched segment that stands alone has no neighbour to match: "
             problem += "add one, such as a dwell" if around == 1 else "add one, or give it `at_end: {v: 0, a: 0}`"

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.segment import AffineStretch, Constant, Stretch, moved
 from kin.law.sources.motion import Motion, joined
 from kin.law.sources.spline import Ends
+from kin.numeric.lengths import INPUT, input_number, input_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +31,8 @@ class Samples(NamedTuple):
     """Angles (rad, rising), displacements, and the line of each in its file, each (n,).
 
     `unit` is one unit of the file's displacements, in mm or rad, for messages. `slack`, rad, is the greatest rounding
-    error of an angle as written; `turned` is the number of the file's units of angle in a degree.
+    error of an angle as written; `turned` is the number of the file's units of angle in a degree. `rounding` is the
+    greatest rounding error of each displacement as written, (n,), or one for all.
     """
 
     theta: Array
@@ -39,10 +41,12 @@ class Samples(NamedTuple):
     unit: float = 1.0
     slack: float = 0.0
     turned: float = 1.0
+    rounding: Array | float = 0.0
 
-    def part(self, which: slice) -> Samples:
-        """Samples of a slice of the rows."""
-        return self._replace(theta=self.theta[which], s=self.s[which], lines=self.lines[which])
+    def part(self, which: slice | NDArray[np.intp] | NDArray[np.bool_]) -> Samples:
+        """Samples of some of the rows: a slice, their indices, or a mask."""
+        rounding = self.rounding if isinstance(self.rounding, float) else self.rounding[which]
+        return self._replace(theta=self.theta[which], s=self.s[which], lines=self.lines[which], rounding=rounding)
 
 
 class Dwelling(NamedTuple):
@@ -183,8 +187,7 @@ def demand_whole(rows: Samples, total: float, around: int | None, field: str) ->
     if around == 1:
         return
     if abs(rows.theta[0]) > SAME_ANGLE or abs(rows.theta[-1] - total) > SAME_ANGLE:
-        first, last = np.degrees(rows.theta[[0, -1]])
+        first, last = map(input_number, rows.theta[[0, -1]].tolist())
         raise IntentError(
-            f"the angles must reach from 0 to {math.degrees(total):.6g} degrees, these from {first:.6g} to {last:.6g}",
-            field,
+            f"the {INPUT}s must reach from 0 to {input_words(total)}, these from {first} to {last}", field
         )

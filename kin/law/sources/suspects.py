@@ -1,4 +1,9 @@
-"""Rows of a table that stand out, and noise beyond its digits, by the mean square of the jerk that they cause."""
+"""Rows of a table that stand out, and noise beyond its digits.
+
+A row is named for what leaving it out does, measured twice. Polynomials through the rows about it tell how far off each
+row is from its neighbours, and they from theirs while it is left out: a corner of the law puts its neighbours off too,
+a slip does not. Where that alone does not decide, the motion without the row does, by the mean square of the jerk.
+"""
 
 from __future__ import annotations
 
@@ -7,57 +12,61 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.law.sources.least_jerk import Touch, least, pulls
+from kin.law.sources.least_jerk import Touch, UnsolvedError, least
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
+
+    from numpy.typing import NDArray
 
     from kin.law.sources.least_jerk import Least
     from kin.law.sources.tabled import Tabled
+    from kin.numeric.arrays import Array, Indices
 
-_FALLS = 2.0  # least factor by which the mean square falls without a row that is remarked on
-# Such factors for a certain row: in short strokes, and in strokes of the third number of rows or more.
-_SURE, _SURE_OF_MANY, _MANY = 3.0, 1.1, 16
-_LEAST_ROWS, _SURE_OF_FEW = 5, 6.0  # rows of the shortest stroke in which a bad one shows, and the factor there
-_OFF = 3.0  # readings: least distance of a certain row from the curve through the others
+# What a row must show, by corpora of sound and of spoilt tables (tests/support/written_tables.py): readings that it is
+# off, times its neighbours' distances, and that times the fall of the jerk. Sound corners come to 5.7, and 244.
+_OFF, _CLEAR, _DECIDED = 6.0, 6.0, 260.0
+_LOOKED = 1.5  # times its neighbours' distances, and what digits leave open: the least for which it is left out
+_ROUNDED = 0.25  # of what digits leave open: the least distance of a neighbour
+# A row is alone in its table where it is so many times further off than all that it does not reach: corners are two.
+_CLEAR_ALONE, _ALONE, _REACH = 2.0, 7.0, 5
+_LEAST_ROWS = 12  # of a table in which a row can stand out: the polynomials span eleven
+_GROUPS = ((0,), (0, 1))  # rows that are left out together: one, or two that were swapped
+_SIDE, _BESIDE = 3, 2  # rows to either side that a polynomial goes through, and that are asked how far off they are
 _ABOUT = 2  # rows to either side that count as about a row
-_CALMER = 10.0  # least factor by which the mean square about a certain row falls without it
-_SHARP = 0.5  # of the mean square that is left: where more of it lies about a row, the law itself is sharp there
-_LIKELY = 0.08  # of the mean square: least fall, with the other rows still touched, of rows that are tried
-# Numbers of rows: those of the greatest multipliers, those paired with a neighbour, those solved for.
-_MOST_TRIED, _PAIRED, _MOST_SOLVED = 6, 3, 3
-_TOGETHER = 2  # rows from one of a pair to the other at most
+_MOST_TRIED, _MOST_NAMED = 4, 8  # groups for which a motion is made at a time, groups that are named
+# Noise: the share of successive rows that are off to alternate sides, the part of what digits leave open that the
+# median row is off, and how many times that the greatest is. About a corner few are off, on smooth laws to one side.
+_ALTERNATE, _NOISY, _EVEN = 0.25, 0.35, 12.0
 _LADDER = 4.0  # factor from one reading to the next
 _TENFOLD = 10.0  # fall of the mean square that marks noise
-_ROUNDING = 1.0 + 1e-9
 _COARSEST = 0.02  # of the stroke: the greatest reading that is tried
 
 
 class Suspect(NamedTuple):
-    """Rows that look wrong.
+    """Rows that look wrong: one, or two side by side.
 
     rows      their indices in the table as laid out
-    falls     factor by which the mean square jerk falls without them
     expected  values, mm or rad, of the curve through the other rows at their angles
-    certain   whether only an error explains them
+    falls     factor by which the mean square of the jerk about them falls without them
     """
 
     rows: tuple[int, ...]
-    falls: float
     expected: tuple[float, ...]
-    certain: bool
+    falls: float
 
 
-def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
+def nearest(rows: Tabled) -> tuple[Least | None, float | None]:
     """The motion within the rows' readings, None for a constant, and the factor of readings that shows noise.
 
     With readings greater by that factor, the greatest such power of 4, the mean square of the jerk is a tenth or less
-    of that of the power before; None where there is none. The mean square falls from reading to reading: between two
-    where it falls less than tenfold there is no such step. Raises UnsolvedError where rounding stands in the way,
-    CrowdedError for a search that would take minutes.
+    of that of the power before; None where there is none, or rows do not scatter. Raises UnsolvedError where rounding
+    stands in the way, CrowdedError for a search that would take minutes.
     """
     most = _COARSEST * rows.stroke / float(rows.reading.max())
-    count = max(0, math.floor(math.log(most, _LADDER))) if most > 1.0 else 0
+    if most < _LADDER or not _scatter(rows):
+        return least(rows.space, rows.bounds()), None
+    count = math.floor(math.log(most, _LADDER))
     steps: dict[int, Least | None] = {}
 
     def square(k: int, near: int) -> float:
@@ -68,7 +77,10 @@ def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
         return 0.0 if step is None else step.square
 
     def tenfold(low: int, high: int) -> int:
-        """The greatest power up to `high` that is such a step; `low` where none above it is."""
+        """The greatest power up to `high` that is such a step; `low` where none above it is.
+
+        The mean square falls from reading to reading: between two where it falls less than tenfold there is none.
+        """
         if square(low, middle := (low + high) // 2) < _TENFOLD * square(high, high):
             return low
         if high - low == 1:
@@ -78,127 +90,185 @@ def ladder(rows: Tabled) -> tuple[Least | None, float | None]:
         return step if step > middle else tenfold(low, middle)
 
     square(count, count)
-    square(count // 2, count)  # a start from which fewer steps lead down where rows scatter
-    step = tenfold(0, count) if count else 0
+    square(count // 2, count)  # a start from which fewer steps lead down
+    step = tenfold(0, count)
     return steps[0], _LADDER**step if step else None
 
 
-def suspect(rows: Tabled, plain: Least, *, noisy: bool) -> Suspect | None:
-    """The row, or two neighbouring rows, without which the mean square jerk falls most; None where no row stands out.
-
-    Without it the mean square must be half or less, or the row must be certain to be wrong. `plain` is the motion
-    within the rows' readings. `noisy` tells that the rows scatter more than they are rounded: then any row must show as
-    great a fall as one in a short stroke.
-    """
-    best = None
-    for places in _likely(rows, plain):
-        if best is not None and best.certain and len({*rows.lines[list(places)].tolist()}) > len(best.rows):
-            break
-        sure = _sure(rows, places)
-        sure = max(sure, _SURE) if noisy else sure
-        without = _without(rows, plain, places, min(sure, _FALLS))
-        if without is None or not without.square:
-            continue
-        falls = plain.square / without.square
-        certain = falls >= sure and _certain(rows, plain, without, places)
-        better = best is None or (certain, falls) > (best.certain, best.falls)
-        named = list({int(rows.lines[place]): place for place in reversed(places) if rows.lines[place]}.values())
-        if named and (certain or falls >= _FALLS) and better:  # rows that fill a turn have no line
-            best = Suspect(tuple(named), falls, tuple(without.curve(rows.x[named]).tolist()), certain)
-    return best
-
-
-def _sure(rows: Tabled, places: Sequence[int]) -> float:
-    """Least factor by which the mean square must fall without certain rows; greater in a stroke of few rows."""
-    span = min(spanned(rows, place) for place in places)
-    if span < _LEAST_ROWS:
-        return math.inf
-    return _SURE_OF_FEW if span == _LEAST_ROWS else _SURE if span < _MANY else _SURE_OF_MANY
-
-
-def _certain(rows: Tabled, plain: Least, without: Least, places: Sequence[int]) -> bool:
-    """Whether rows at `places` are off by more than their digits, and are no part of a law that is sharp there."""
-    index = list(places)
-    off = np.abs(rows.s[index] - without.curve(rows.x[index])) / rows.reading[index]
-    if off.max() < _OFF:
+def _scatter(rows: Tabled) -> bool:
+    """Whether rows lie about a smooth curve, on either side in turn, by more than their digits leave open."""
+    if len(rows.x) < _LEAST_ROWS:
         return False
-    before, after = (max(_about(rows, nearest, place) for place in places) for nearest in (plain, without))
-    return before >= _CALMER * after and after <= _SHARP * without.square
+    off, left = _Line.of(rows, np.arange(len(rows.x))).off(0, (0,))
+    moving = off != 0.0  # in a dwell no row is off
+    if not moving.any():
+        return False
+    far = np.abs(off) > _NOISY * left
+    alternate = np.count_nonzero(far[1:] & far[:-1] & (off[1:] * off[:-1] < 0.0))
+    middle = float(np.median(np.abs(off[moving])))
+    noisy = middle > _NOISY * float(np.median(left[moving])) and float(np.abs(off).max()) < _EVEN * middle
+    return bool(noisy and alternate >= _ALTERNATE * np.count_nonzero(moving))
 
 
-def _about(rows: Tabled, nearest: Least, place: int) -> float:
-    """Integral of the jerk's square over two rows to either side of a row."""
+def suspects(rows: Tabled, plain: Least, *, noisy: bool = False) -> list[Suspect]:
+    """Rows that stand out, those of the greatest distance first, each found among the others that are left.
+
+    `plain` is the motion within the rows' readings. A row is named where it is off the motion through the others by
+    many readings, where that is many times what its neighbours are off while it is left out, and where the jerk about
+    it falls without it; none in a table of fewer than 12 rows. Of `noisy` rows the first alone decides.
+    """
+    named: list[Suspect] = []
+    gone: set[int] = set()
+    while len(named) < _MOST_NAMED and (found := _next(rows, plain, gone, noisy=noisy)) is not None:
+        suspect, plain = found
+        named.append(suspect)
+        gone.update(*(_twins(rows, place) for place in suspect.rows))
+    return named
+
+
+def _next(rows: Tabled, plain: Least, gone: set[int], *, noisy: bool) -> tuple[Suspect, Least] | None:
+    """The next row or pair that stands out while those in `gone` are left out, and the motion without it."""
+    for ratio, clear, places in _likely(rows, gone):
+        out = [twin for place in places for twin in _twins(rows, place)]
+        without = _without(rows, plain, [*gone, *out])
+        if without is None:
+            continue
+        expected = without.curve(rows.x[places])
+        off = np.abs(rows.s[places] - expected) / rows.resolution[places]
+        before, after = (_about(rows, motion, places) for motion in (plain, without))
+        falls = before / after if after > 0.0 else math.inf
+        if off.min() >= _OFF and falls > 1.0 and (ratio >= clear or (ratio * falls >= _DECIDED and not noisy)):
+            return Suspect(tuple(places), tuple(expected.tolist()), falls), without
+    return None
+
+
+def _likely(rows: Tabled, gone: Collection[int]) -> list[tuple[float, float, list[int]]]:
+    """Rows, or pairs of neighbours, that are further off than their neighbours are without them.
+
+    Of each how many times, how many times do for certain, and its indices; one of which there is no other does sooner.
+    All are measured by polynomials of degree five through the six nearest rows that are left. What is less than their
+    readings leave open, or than half of all rows are off, is nothing.
+    """
+    n = len(rows.x) - len(gone)
+    if n < _LEAST_ROWS:
+        return []
+    line = _Line.of(rows, np.setdiff1d(np.arange(len(rows.x)), list(gone)))
+    _, first = np.unique(rows.lines, return_index=True)
+    free = (rows.lines[line.which] > 0) & np.isin(line.which, first) & ~np.isin(line.which, rows.fixed)
+    single = np.abs(line.off(0, (0,))[0])
+    usual = float(np.median(single))
+    likely: list[tuple[float, float, list[int]]] = []
+    for group in _GROUPS:
+        own = [line.off(k, group) for k in group]
+        beside = [k for k in range(-_BESIDE, group[-1] + _BESIDE + 1) if k not in group]
+        near = np.max([np.abs(line.off(k, group)[0]) for k in beside], axis=0)
+        far, left = np.min([np.abs(off) for off, _ in own], axis=0), np.max([left for _, left in own], axis=0)
+        ratio = far / np.maximum(np.maximum(near, _ROUNDED * left), usual)
+        ratio[far < _LOOKED * left] = 0.0
+        for k in group:  # neither what fills a turn or its other half, nor what is met exactly, nor behind the last row
+            ratio[~np.roll(free, -k)] = 0.0
+        ratio[~line.between(group)] = 0.0
+        if not rows.period:
+            ratio[n - group[-1] :] = 0.0
+        order = np.argsort(-ratio)[:_MOST_TRIED].tolist()
+        for i in order:
+            if ratio[i] >= _LOOKED:
+                away = np.abs(np.arange(n) - i)
+                others = single[np.minimum(away, n - away) > _REACH].max(initial=_LOOKED * left[i])
+                clear = _CLEAR_ALONE if len(group) == 1 and far[i] >= _ALONE * others else _CLEAR
+                likely.append((float(ratio[i]), clear, [int(line.which[(i + k) % n]) for k in group]))
+    return sorted(likely, reverse=True)[:_MOST_TRIED]
+
+
+class _Line(NamedTuple):
+    """Rows in a line, with more before and behind: those of a turn earlier and later, the levels of rests, or none.
+
+    `which` are the indices of the n rows between.
+    """
+
+    which: Indices
+    x: Array
+    s: Array
+    open: Array  # what each row's digits leave open
+    more: int  # rows before the n, and behind them
+
+    @staticmethod
+    def of(rows: Tabled, which: Indices) -> _Line:
+        """The rows of these indices, in a line."""
+        more = _SIDE + _BESIDE + 2
+        x, s, left = rows.x[which], rows.s[which], rows.resolution[which]
+        if rows.space.free:
+            return _Line(which, x, s, left, 0)
+        if rows.space.rest is None:
+            turn = rows.period
+            again_s, again_left = (np.concatenate([column[-more:], column, column[:more]]) for column in (s, left))
+            again_x = np.concatenate([x[-more:] - turn, x, x[:more] + turn])
+            return _Line(which, again_x, again_s, again_left, more)
+        (first, last), away = rows.space.rest, np.arange(more)
+        before = rows.space.begin - away[::-1] * (x[0] - rows.space.begin)
+        behind = rows.space.end + away * (rows.space.end - x[-1])
+        return _Line(
+            which,
+            np.concatenate([before, x, behind]),
+            np.concatenate([np.full(more, first), s, np.full(more, last)]),
+            np.pad(left, more, mode="edge"),
+            more,
+        )
+
+    def between(self, group: Sequence[int]) -> NDArray[np.bool_]:
+        """Mask (n,) of rows from which on a group has three rows before and behind it: of free ends not all have."""
+        i = np.arange(len(self.which)) + self.more
+        mask: NDArray[np.bool_] = (i >= _SIDE) & (i + group[-1] < len(self.x) - _SIDE)
+        return mask
+
+    def off(self, at: int, out: Sequence[int]) -> tuple[Array, Array]:
+        """How far each row's neighbour `at` is off the rows beside it but for those `out`, and what digits leave open.
+
+        Both (n,); `at` and `out` are counted from the row. A neighbour beyond a free end is off by nothing; near one
+        there are more rows on the other side.
+        """
+        reach, six = 2 * (_SIDE + _BESIDE) + 1, np.arange(2 * _SIDE)
+        low, high = ([k for k in range(at - reach, at) if k not in out], range(at + 1, at + reach + 1))
+        steps = np.array([*low, *(k for k in high if k not in out)])
+        i, last = np.arange(len(self.which)) + self.more, len(self.x) - 1
+        begin = np.searchsorted(steps, -i), np.searchsorted(steps, last - i, side="right") - len(six)
+        place = i[:, None] + steps[np.clip(len(low) - _SIDE, *begin)[:, None] + six]
+        here = np.clip(i + at, 0, last)
+        apart = self.x[place] - self.x[here][:, None]
+        # weights of the polynomial through the six, at the row
+        weights = np.ones_like(apart)
+        for a in range(apart.shape[1]):
+            for b in range(apart.shape[1]):
+                if a != b:
+                    weights[:, a] *= apart[:, b] / (apart[:, b] - apart[:, a])
+        off: Array = np.where(here == i + at, self.s[here] - (weights * self.s[place]).sum(axis=1), 0.0)
+        left: Array = self.open[here] + (np.abs(weights) * self.open[place]).sum(axis=1)
+        return off, left
+
+
+def _twins(rows: Tabled, place: int) -> list[int]:
+    """Indices of the rows that stand for one line of the file: two of a motion over two halves."""
+    twins: list[int] = np.flatnonzero(rows.lines == rows.lines[place]).tolist()
+    return twins
+
+
+def _without(rows: Tabled, plain: Least, places: Sequence[int]) -> Least | None:
+    """The motion without some rows; None where a constant is left, or rounding stands in the way."""
+    bounds = rows.bounds()
+    gone, keep = np.isin(bounds.row, places), ~np.isin(plain.row, places)
+    bounds = bounds._replace(lo=np.where(gone, -np.inf, bounds.lo), hi=np.where(gone, np.inf, bounds.hi))
+    try:
+        return least(rows.space, bounds, Touch(plain.row[keep], plain.upper[keep]))
+    except UnsolvedError:
+        return None
+
+
+def _about(rows: Tabled, motion: Least, places: Sequence[int]) -> float:
+    """Integral of the jerk's square from two rows before the first of some neighbours to two rows behind the last."""
     n = len(rows.x)
-    ends = place - _ABOUT, place + _ABOUT
+    ends = places[0] - _ABOUT, places[0] + len(places) - 1 + _ABOUT
     if rows.period:
         begin, end = (float(rows.x[i % n]) + rows.period * (i // n) for i in ends)
     else:
         begin, end = (float(rows.x[min(max(i, 0), n - 1)]) for i in ends)
-    return nearest.curve.square(begin, end)
-
-
-def _without(rows: Tabled, plain: Least, places: Sequence[int], falls: float) -> Least | None:
-    """The motion without some rows; the search ends once its mean square cannot be `falls` times less."""
-    bounds = rows.bounds()
-    gone, keep = np.isin(bounds.row, places), ~np.isin(plain.row, places)
-    bounds = bounds._replace(lo=np.where(gone, -np.inf, bounds.lo), hi=np.where(gone, np.inf, bounds.hi))
-    ample = plain.square / falls * _ROUNDING
-    return least(rows.space, bounds, Touch(plain.row[keep], plain.upper[keep]), ample=ample)
-
-
-def _likely(rows: Tabled, plain: Least) -> list[tuple[int, ...]]:
-    """Indices of single rows, then of pairs, by which much of the mean square is caused, the greatest first.
-
-    A motion over two halves has each row twice.
-    """
-    k = len(plain.row)
-    order = np.argsort(-np.abs(plain.pull))[:_MOST_TRIED].tolist()
-
-    def falls(group: Sequence[int]) -> float:
-        """Share by which the mean square of the jerk falls without a group of rows, the other rows still touched."""
-        left = np.delete(np.arange(k), group)
-        return 1.0 - pulls(rows.space, plain.x[left], plain.values[left])[1] / plain.square
-
-    def twins(i: int) -> list[int]:
-        line = rows.lines[plain.row[i]]
-        return [i] if not line else np.flatnonzero(rows.lines[plain.row] == line).tolist()
-
-    singles = {tuple(twins(i)) for i in order}
-    pairs = [(i, (i + way) % k) for i in order[:_PAIRED] for way in (-1, 1)]
-    beside = {tuple(sorted({*twins(i), *twins(j)})) for i, j in pairs if _together(rows, plain, i, j)}
-    likely = []
-    for groups in (singles, beside - singles):
-        weighed = sorted(((falls(group), group) for group in groups), reverse=True)[:_MOST_SOLVED]
-        likely += [tuple(plain.row[list(group)].tolist()) for share, group in weighed if share >= _LIKELY]
-    return likely
-
-
-def _together(rows: Tabled, plain: Least, i: int, j: int) -> bool:
-    """Whether the touched rows i and j have at most one other row between them."""
-    n, apart = len(rows.x), abs(int(plain.row[i]) - int(plain.row[j]))
-    return 0 < min(apart, n - apart if rows.period else n) <= _TOGETHER
-
-
-def spanned(rows: Tabled, place: int) -> int:
-    """Number of rows in the stroke, a monotone run of values, to which the row of index `place` belongs, with it.
-
-    For a row between two strokes of opposite sense, a peak, it is that of the shorter stroke, the peak left out.
-    """
-    n = len(rows.s)
-    sides = []
-    for way in (-1, 1):
-        if rows.period:
-            s = rows.s[(place + way * np.arange(1, n)) % n]
-        else:
-            s = rows.s[:place][::-1] if way < 0 else rows.s[place + 1 :]
-        signs = np.sign(np.diff(s))
-        changes = np.flatnonzero(signs != signs[0]) if len(signs) else signs
-        run = int(changes[0]) if len(changes) else len(signs)
-        # one row alone, at the end of a table, is of the sense of the other side
-        sides.append((min(run + 1, len(s)), way * float(signs[0]) if len(signs) else None))
-    (left, rising), (right, later) = sides
-    if rising is None or later is None or rising == later:
-        return left + right + 1
-    if not rising or not later:  # at the foot of a stroke, beside a dwell
-        return (left if rising else right) + 1
-    return min(left, right)
+    return motion.curve.square(begin, end)

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
-from kin.law.programme import IntentError
-from kin.law.sources.least_jerk import Bounds, FunctionSpace, joined_bounds
+from kin.law.normalised import IntentError
+from kin.law.sources.least_jerk import Bounds, EndJerk, FunctionSpace, joined_bounds, nearest_polynomial
 from kin.law.sources.ring import SAME_ANGLE, Samples, demand_whole
-from kin.numeric.records import dataclass
+from kin.numeric.angles import TURN
+from kin.numeric.lengths import INPUT, input_number, input_words
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.law.sources.least_jerk import Curve
@@ -21,11 +23,15 @@ Rest: TypeAlias = Literal["dwell", "cycle", "mirror"]
 _UNITS = {1.0: " mm", 25.4: " in", 0.0254: " thou", math.radians(1.0): " deg"}  # units of tables
 _ADVISED = {0.0254: (25.4, " in")}  # units that recipes do not have, and those that stand for them
 _KEPT = 1.0 - 1e-3  # of a reading: the part that a motion may use, so that its zero may move by rounding
+LEAST_READING = 1e-7  # of the stroke: of every digit of a computer each row would become a knot
 _LEAST_ROWS = 4  # of a motion
 _GAP = 1.5  # of the widest step: a wider one at the end is a part of the turn without rows
 _LEAST_READING = 1e-6  # of a row's reading: the least one where two rows bound one angle
 _WHOLE = 1e-6  # of a cycle: accuracy with which a whole number of cycles must fill the turn
 _SAME = 1e-9  # of the stroke: rows that differ by less are equal
+# Jerk at open ends: the degree of the polynomial that shows a jerk, the fewest rows that it keeps and the factor to
+# more, and the third derivative that one of degree five within 1 may have at an end of [-1, 1]
+_DEGREE, _LEAST_KEPT, _LONGER, _MARKOV = 5, 8, 1.2, 840.0
 _MOST_FILLED = 400  # rows that fill the rest of a turn
 BELOW = 1e-10  # of the stroke: the depth that a motion may have below its least level
 
@@ -42,8 +48,9 @@ class TableError(IntentError):
 class Tabled:
     """Rows of a motion: rising angles x, rad, displacements s and reading errors, mm or rad, and lines, (n,) each.
 
-    A row with which a turn is filled has the line 0. The motion repeats after `period`, or, where that is 0, rests at
-    the ends of `space`. `fixed` are the indices of rows that are met exactly. One unit of the file is `unit` mm or rad.
+    `resolution` (n,) is the reading error, or what a row's own digits leave open where that is more. A row with which a
+    turn is filled has the line 0. The motion repeats after `period`, or, where that is 0, rests at the ends of `space`.
+    `fixed` are the indices of rows that are met exactly. One unit of the file is `unit` mm or rad.
     """
 
     x: Array
@@ -52,6 +59,7 @@ class Tabled:
     lines: Indices
     space: FunctionSpace
     unit: float
+    resolution: Array
     fixed: tuple[int, ...] = ()
 
     @property
@@ -62,7 +70,8 @@ class Tabled:
     @property
     def stroke(self) -> float:
         """Greatest less least value of the rows, mm or rad."""
-        levels = self.s if self.space.rest is None else np.append(self.s, self.space.rest)
+        ends = self.space.rest or ()
+        levels = np.append(self.s, [level for level in ends if level is not None])
         return float(np.ptp(levels))
 
     def tell(self, value: float, digits: int = 6) -> str:
@@ -86,8 +95,7 @@ class Tabled:
         parts = []
         for turn in (-1, 0, 1) if self.period else (0,):
             x = bounds.x + turn * self.period
-            inside = (x > space.begin + SAME_ANGLE) & (x < space.end - SAME_ANGLE)
-            parts.append(bounds._replace(x=x).at(np.flatnonzero(inside)))
+            parts.append(bounds._replace(x=x).at(np.flatnonzero(space.inside(x))))
         return joined_bounds(parts)
 
     def off(self, curve: Curve) -> Array:
@@ -107,38 +115,102 @@ def advised(reading: float, unit: float) -> str:
     return f"{math.ceil(reading / unit / digit - 1e-9) * digit:.6g}{word}"
 
 
-def tabled(rows: Samples, reading: float, total: float, around: int | None, *, rest: Rest | None, field: str) -> Tabled:
-    """Lay rows with a reading error, mm or rad, out over [0, total], rad, or round the turn.
+def tabled(
+    rows: Samples,
+    reading: float | None,
+    total: float,
+    around: int | None,
+    *,
+    rest: Rest | None,
+    field: str,
+    open_ends: bool = False,
+) -> Tabled:
+    """Lay rows with a reading error, mm or rad, or for None their own rounding, out over [0, total], rad, or a turn.
 
-    With `around` -1 the motion goes on upside down, over twice the angle; with None it rests at both ends. `rest` fills
-    the part of a turn without rows; it is a dwell where `rest` is None and the ends agree. Raises TableError, with the
+    With `around` -1 the motion goes on upside down, over twice the angle; with None it rests at both ends, or with
+    `open_ends` at none. `rest` fills the part of a turn without rows; it is a dwell where `rest` is None and the ends
+    agree. Raises TableError, with the
     line, for numbers that are not finite, angles that do not rise or cover more than `total`, and ends that do not
     agree. Raises IntentError for a `rest` that does not suit, for too few rows and for an angle that they do not fill.
     """
     rows = demand_rows(rows, total, field)
-    within = reading + rows.slack * _slopes(rows)
+    slack, least = rows.slack * _slopes(rows), LEAST_READING * float(np.ptp(rows.s))
+    written = np.maximum(np.broadcast_to(rows.rounding, rows.s.shape), least)
+    own = written if reading is None else np.full(len(rows.s), reading)
+    within, resolution = own + slack, np.maximum(own, written) + slack
     if around == 1:
-        return _turn(rows, within, total, rest, field)
+        return _turn(rows, (within, resolution), total, rest, field)
     if rest is not None:
         raise IntentError("the rest of a turn is that of a motion that repeats with it", f"{field}.rest")
+    if open_ends:
+        _demand_begin(rows, field)
     demand_whole(rows, total, None, field)
+    if around is None and open_ends:
+        x = rows.theta.copy()
+        x[0], x[-1] = 0.0, total
+        open_rows = Tabled(
+            x, rows.s, within, rows.lines, FunctionSpace(0.0, total, (None, None)), rows.unit, resolution
+        )
+        ends = _end_jerk(open_rows.bounds(), 0.0, 1.0), _end_jerk(open_rows.bounds(), total, -1.0)
+        shown = tuple(end for end in ends if end is not None)
+        return replace(open_rows, space=open_rows.space._replace(ends=shown))
     s = rows.s.copy()
-    if abs(s[0]) <= reading:
+    if abs(s[0]) <= own[0]:
         s[0] = 0.0  # where the motion begins
     n = len(s) - 1
     if around is None:
         inner = slice(1, -1)
         space = FunctionSpace(0.0, total, (float(s[0]), float(s[-1])))
-        return Tabled(rows.theta[inner], s[inner], within[inner], rows.lines[inner], space, rows.unit)
+        return Tabled(
+            rows.theta[inner], s[inner], within[inner], rows.lines[inner], space, rows.unit, resolution[inner]
+        )
     return Tabled(
         np.concatenate([rows.theta[:-1], rows.theta[:-1] + total]),
         np.concatenate([s[:-1], s[0] + s[-1] - s[:-1]]),
-        np.tile(within[:-1], 2),
+        np.concatenate([within[:-1], within[-1:], within[1:-1]]),
         np.concatenate([rows.lines[:-1], rows.lines[-1:], rows.lines[1:-1]]),
         FunctionSpace(0.0, 2.0 * total),
         rows.unit,
+        np.concatenate([resolution[:-1], resolution[-1:], resolution[1:-1]]),
         (0, n),
     )
+
+
+def _demand_begin(rows: Samples, field: str) -> None:
+    """Raise TableError, at the first row, for rows that do not begin at 0."""
+    first = float(rows.theta[0])
+    if abs(first) > SAME_ANGLE:
+        remedy = f"make every {INPUT} {input_words(abs(first))} {'less' if first > 0.0 else 'more'}"
+        raise TableError(f"the {INPUT}s begin at {input_number(first)}, not at 0; {remedy}", field, int(rows.lines[0]))
+
+
+def _end_jerk(bounds: Bounds, end: float, way: float) -> EndJerk | None:
+    """Jerk at an open end that rows show, `way` 1 for the beginning and -1 for the end; or None.
+
+    The jerk and its slope are those of the polynomial of degree five that keeps the most rows from the end on. A
+    jerk that is not above what readings leave open, by Markov's bound, is none.
+    """
+    n, found = len(bounds.x), None
+    count = _LEAST_KEPT
+    while count <= n:
+        part = bounds.at(np.arange(count) if way > 0.0 else np.arange(n - count, n))
+        half = 0.5 * float(part.x[-1] - part.x[0])
+        _, polynomial, miss = nearest_polynomial(part, _DEGREE, end + way * half, half)
+        if miss > 0.0:
+            break
+        found = polynomial, half, float(part.unit.max())
+        if count == n:
+            break
+        count = min(n, math.ceil(_LONGER * count))
+    if found is None:
+        return None
+    polynomial, half, reading = found
+    # jerk and its slope by the distance from the end, which is at u = -1, or at u = 1 seen backwards
+    inwards = polynomial * way ** np.arange(_DEGREE + 1)
+    jerk, slope = (float(np.polynomial.Polynomial(inwards).deriv(k)(-1.0)) / half**k for k in (3, 4))
+    if abs(jerk) <= _MARKOV * reading / half**3:
+        return None
+    return EndJerk(end, way, 2.0 * half, jerk, slope)
 
 
 def _slopes(rows: Samples) -> Array:
@@ -148,18 +220,20 @@ def _slopes(rows: Samples) -> Array:
     return greatest
 
 
-def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: str) -> Tabled:
+def _turn(rows: Samples, errors: tuple[Array, Array], total: float, rest: Rest | None, field: str) -> Tabled:
     """Rows of a motion that repeats, without a last row that closes it, and with rows in the rest of the turn.
 
-    `within` (n,) are the reading errors.
+    `errors` are the reading errors and the resolutions, (n,) each.
     """
+    within, resolution = errors
     over, line = float(rows.theta[-1] - rows.theta[0]), int(rows.lines[-1])
     apart, allowed = abs(float(rows.s[-1] - rows.s[0])), float(within[0] + within[-1])
     space = FunctionSpace(float(rows.theta[0]), float(rows.theta[0]) + total)
     if over > total - SAME_ANGLE:
         _demand_no_rest(rest, field)
         if apart > allowed * (1.0 + 1e-9):
-            problem = f"the motion does not close: {in_unit(apart, rows.unit)} off the first row, a turn later"
+            later = f"{in_unit(apart, rows.unit)} off the first row, {input_words(total)} earlier"
+            problem = f"the motion does not close: {later}"
             remedy = f"give this row the displacement of the first one, or reading: {advised(0.5 * apart, rows.unit)}"
             raise TableError(f"{problem}; {remedy}", field, line)
         s, readings = rows.s[:-1].copy(), within[:-1].copy()
@@ -167,12 +241,12 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
             low, high = (rows.s + sign * within for sign in (-1.0, 1.0))
             least, most = max(low[0], low[-1]), min(high[0], high[-1])
             s[0], readings[0] = 0.5 * (least + most), max(0.5 * (most - least), _LEAST_READING * within[0])
-        return Tabled(rows.theta[:-1], s, readings, rows.lines[:-1], space, rows.unit)
+        return Tabled(rows.theta[:-1], s, readings, rows.lines[:-1], space, rows.unit, resolution[:-1])
     if total - over <= _GAP * float(np.diff(rows.theta).max()):
         _demand_no_rest(rest, field)
-        return Tabled(rows.theta, rows.s, within, rows.lines, space, rows.unit)
+        return Tabled(rows.theta, rows.s, within, rows.lines, space, rows.unit, resolution)
     if rest is None and apart > allowed:
-        ends = f"the table ends after {math.degrees(over):.6g} degrees, {in_unit(apart, rows.unit)} off its first row"
+        ends = f"the table ends after {input_words(over)}, {in_unit(apart, rows.unit)} off its first row"
         remedy = "add the rows that are missing, or give rest: mirror, cycle or dwell"
         raise TableError(f"{ends}: the rest of the turn can be no dwell; {remedy}", field, line)
     x, s, like = _rest(rows, total, rest or "dwell", field)
@@ -183,6 +257,7 @@ def _turn(rows: Samples, within: Array, total: float, rest: Rest | None, field: 
         np.concatenate([rows.lines, np.zeros(len(x), dtype=np.intp)]),
         space,
         rows.unit,
+        np.concatenate([resolution, resolution[like]]),
     )
 
 
@@ -206,8 +281,7 @@ def _rest(rows: Samples, total: float, rest: Rest, field: str) -> tuple[Array, A
         return x, np.full(len(x), rows.s[-1]), np.full(len(x), n - 1)
     if rest == "mirror":
         if abs(left - over) > SAME_ANGLE:
-            half = math.degrees(0.5 * total)
-            problem = f"rows that are mirrored cover {half:.6g} degrees, not {math.degrees(over):.6g}"
+            problem = f"rows that are mirrored cover {input_words(0.5 * total)}, not {input_number(over)}"
             raise IntentError(f"{problem}; add those that are missing, or give rest: dwell", f"{field}.rest")
         back = np.arange(n - 2, 0, -1)
         return 2.0 * last - rows.theta[back], rows.s[back], back
@@ -221,8 +295,8 @@ def _cycle(rows: Samples, total: float, field: str) -> tuple[Array, Array, Indic
     whole = [abs(total / length - round(total / length)) <= _WHOLE for length in lengths]
     closed = whole[0] and abs(float(rows.s[-1] - rows.s[0])) <= _SAME * float(np.ptp(rows.s))
     if not (closed or whole[1]):
-        cycles = " nor ".join(f"{math.degrees(length):.6g}" for length in lengths)
-        problem = f"a cycle of the rows is neither {cycles} degrees, of which a whole number fill the turn"
+        cycles = f"{input_number(lengths[0])} nor {input_words(lengths[1])}"
+        problem = f"a cycle of the rows is neither {cycles}, of which a whole number fill the turn"
         raise IntentError(f"{problem}; add rows, or give rest: dwell", f"{field}.rest")
     count = round(total / lengths[0 if closed else 1])
     like = np.tile(np.arange(len(rows.s) - closed), count)
@@ -236,11 +310,13 @@ def demand_rows(
 ) -> Samples:
     """Rows in rising order of angles, falling ones reversed, without rows written twice.
 
+    Angles over a turn may begin anew once, at 360 degrees, and end before the first.
+
     Raises TableError, with the line, for numbers that are not finite, angles that neither rise nor fall, and angles
     over more than `total`, rad; IntentError for fewer than `least` rows. `quantity` is the second column's name in
     messages.
     """
-    for column, what in ((rows.theta, "the angle"), (rows.s, f"the {quantity}")):
+    for column, what in ((rows.theta, f"the {INPUT}"), (rows.s, f"the {quantity}")):
         bad = np.flatnonzero(~np.isfinite(column))
         if len(bad):
             raise TableError(f"{what} is not finite", field, int(rows.lines[bad[0]]))
@@ -249,21 +325,25 @@ def demand_rows(
         rows = rows.part(slice(None, None, -1))
     twice = (np.diff(rows.theta) == 0.0) & (np.diff(rows.s) == 0.0)
     if twice.any():
-        keep = np.append(True, ~twice)
-        rows = rows._replace(theta=rows.theta[keep], s=rows.s[keep], lines=rows.lines[keep])
+        rows = rows.part(np.append(True, ~twice))
     if len(rows.theta) < least:
-        raise IntentError(f"a table has at least {least} rows, not {len(rows.theta)}", field)
+        raise IntentError(f"a table has at least {least} rows, not {len(rows.theta)}; add rows", field)
     falls = np.flatnonzero(np.diff(rows.theta) <= SAME_ANGLE)
+    if len(falls) == 1 and total >= TURN - SAME_ANGLE:
+        beyond = rows.theta + np.where(np.arange(len(rows.theta)) > falls[0], TURN, 0.0)
+        if beyond[-1] - beyond[0] <= TURN + SAME_ANGLE and (np.diff(beyond) > SAME_ANGLE).all():
+            rows, falls = rows._replace(theta=beyond), falls[:0]
     if len(falls):
         i = int(falls[0]) + 1
-        before, here = np.degrees(rows.theta[i - 1 : i + 1])
-        word = f"stands twice, with another {quantity}" if here == before else f"follows {before:.9g}"
-        raise TableError(f"the angles must rise; {here:.9g} {word}", field, int(rows.lines[i]))
+        before, here = (input_number(value, ".9g") for value in rows.theta[i - 1 : i + 1].tolist())
+        same = rows.theta[i] == rows.theta[i - 1]
+        word = f"stands twice, with another {quantity}" if same else f"follows {before}"
+        raise TableError(f"the {INPUT}s must rise; {here} {word}", field, int(rows.lines[i]))
     over = float(rows.theta[-1] - rows.theta[0])
     if over > total + SAME_ANGLE:
         i = int(np.argmax(rows.theta - rows.theta[0] > total + SAME_ANGLE))
         crank = quantity == "displacement" and over <= 2.0 * total + SAME_ANGLE
         remedy = "; give angle: crank if its angles are the crank's" if crank else ""
-        covered = f"the table covers more than {math.degrees(total):.6g} degrees{remedy}"
+        covered = f"the table covers more than {input_words(total)}{remedy}"
         raise TableError(covered, field, int(rows.lines[i]))
     return rows

@@ -9,9 +9,10 @@ import numpy as np
 
 from kin.law.bounds import unbounded
 from kin.law.formula.expression import Expression, FormulaDomainError, FormulaError
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.segment import Constant, Stretch, moved
 from kin.law.sources.motion import Motion, joined
+from kin.numeric.lengths import input_words
 
 if TYPE_CHECKING:
     from kin.law.formula.formula import Formula
@@ -42,7 +43,7 @@ def pieces_of(
     """
 
     def place(x: float) -> str:
-        return f"{math.degrees(x):.6g} degrees" if variable == "t" else f"{variable} = {x:.6g}"
+        return input_words(x) if variable == "t" else f"{variable} = {x:.6g}"
 
     try:
         places, parts = formula.pieces(begin, end)

@@ -21,6 +21,10 @@ SAME_POINT = 1e-9
 # A drawing smaller than 50 mm is read as closely for its size: what is one point, and what gap is permitted by default.
 SAME_SHARE = SAME_POINT / 50.0
 GAP, GAP_SHARE = 1e-6, 1e-6 / 50.0
+# Ends this near for the size of a drawing are joined, and told: so far apart are they where single precision was used.
+NEAR_SHARE = 1e-7
+# Digits explain no gap that is wider for the size of the drawing.
+MOST_EXPLAINED = 1e-4
 # An opening wider than this share of the drawing is called a missing segment, a smaller one a gap.
 MISSING_SHARE = 0.01
 # Rounding of a point computed from an arc's centre, radius and angle, in units of its coordinates.
@@ -30,6 +34,23 @@ MOST_SHOWN = 500
 MOST_TOGETHER = 64  # pieces or ends at one place
 # A direction in which no drawing puts many of its points on one line: sorting along it keeps candidates few.
 SLANT = 0.5370795
+
+
+class Closeness(NamedTuple):
+    """How near ends are to be, mm.
+
+    same      ends within it are one point
+    usual     ends that are joined with no word on it: a line joins those that are farther apart
+    gap       ends within it are joined: the usual distance, or the one that the caller wants
+    near      what is left open is joined within this distance too, 0 for no more
+    rounding  what rounding of the file's numbers may put the ends of each run off (n,); None where nothing shows it
+    """
+
+    same: float
+    usual: float
+    gap: float
+    near: float = 0.0
+    rounding: Array | None = None
 
 
 class Loop(NamedTuple):
@@ -70,25 +91,28 @@ def close_pairs(points: Array, tolerance: float, path: Path | None = None) -> tu
     return np.concatenate(first), np.concatenate(second)
 
 
-def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some: bool = False) -> list[Loop]:
-    """Join runs, whose starts and ends are (n, 2), mm, into closed loops where ends lie within `gap` of each other.
+def loops(start: Array, end: Array, close: Closeness, path: Path, *, some: bool = False) -> list[Loop]:
+    """Join runs, whose starts and ends are (n, 2), mm, into closed loops where ends lie near each other.
 
-    Ends within `same`, mm, are one point and are joined first. A gap below the rounding of the coordinates is raised to
-    it. Raises ReadError: "branch" where more than two ends meet, "range" where very many do, "gap" or "open" where an
-    end finds no partner; with `some` an open chain is left out instead.
+    The nearest are joined first. A gap below the rounding of the coordinates is raised to it. Raises ReadError:
+    "branch" where more than two ends meet, "range" where very many do, "gap" or "open" where an end finds no partner;
+    with `some` an open chain is left out instead.
     """
     count = len(start)
     ends = np.concatenate([start, end])  # of run k: its start is number k, its end number k + count
-    gap = max(gap, ROUNDING * float(np.abs(ends).max()))
+    gap = max(close.gap, ROUNDING * float(np.abs(ends).max()))
     partner = np.full(2 * count, -1, dtype=np.intp)
-    closed = np.flatnonzero((np.abs(start - end) <= min(same, gap)).all(axis=1))
+    closed = np.flatnonzero((np.abs(start - end) <= min(close.same, gap)).all(axis=1))
     partner[closed], partner[closed + count] = closed + count, closed
-    for tolerance in (min(same, gap), gap):
-        free = np.flatnonzero(partner < 0)
-        join(free, ends, tolerance, partner, path)
+    for tolerance in (min(close.same, gap), gap):
+        join(np.flatnonzero(partner < 0), ends, (tolerance, None), partner, path)
+    free = np.flatnonzero(partner < 0)
+    if free.size and close.near:
+        rounding = None if close.rounding is None else np.tile(close.rounding, 2)
+        join(free, ends, (close.near, rounding), partner, path)
     free = np.flatnonzero(partner < 0)
     if free.size and not some:
-        raise opening(free, ends, gap, path)
+        raise opening(free, ends, max(gap, close.near), path)
     # runs of open chains are marked from their free ends on, and so left out
     follow = partner.tolist()
     seen = bytearray(count)
@@ -118,13 +142,18 @@ def loops(start: Array, end: Array, gap: float, same: float, path: Path, *, some
     return chains
 
 
-def join(free: Indices, ends: Array, tolerance: float, partner: Indices, path: Path) -> None:
-    """Write into `partner` (m,) the number of the other free end within `tolerance`, mm, of each `free` end (k,).
+def join(free: Indices, ends: Array, within: tuple[float, Array | None], partner: Indices, path: Path) -> None:
+    """Write into `partner` (m,) the number of the other free end that is near each `free` end (k,).
 
-    `ends` are (m, 2), mm; an end without such a partner is left as it is. Raises ReadError "branch" where more than two
-    free ends meet, "range" where very many do.
+    `ends` are (m, 2), mm; an end without such a partner is left as it is. `within` is a distance, mm, and how far
+    rounding may put each end off (m,), or None: two ends are near too where both together explain it. Raises ReadError
+    "branch" where more than two free ends meet, "range" where very many do.
     """
-    i, j = close_pairs(ends[free], tolerance, path)
+    tolerance, rounding = within
+    off = np.zeros(len(free)) if rounding is None else rounding[free]
+    i, j = close_pairs(ends[free], max(tolerance, 2.0 * float(off.max(initial=0.0))), path)
+    near = np.abs(ends[free[i]] - ends[free[j]]).max(axis=1) <= np.maximum(tolerance, off[i] + off[j])
+    i, j = i[near], j[near]
     met = np.bincount(np.concatenate([i, j]), minlength=len(free))
     crowded = np.flatnonzero(met > 1)
     if crowded.size:
@@ -152,4 +181,7 @@ def opening(free: Indices, ends: Array, gap: float, path: Path) -> ReadError:
     problem = "the contour is open, a segment is missing" if missing else "the contour is open"
     places = f"{place_text(x, y, digits=9)} and {place_text(x2, y2, digits=9)}"
     message = f"{problem} between {places}: {wide:.3g} apart, permitted is {gap:.3g}{more}"
-    return ReadError("open" if missing else "gap", message, path, (x, y), wide)
+    error = ReadError("open" if missing else "gap", message, path, (x, y), wide)
+    if len(free) == 2:
+        error.between = (x, y), (x2, y2)
+    return error

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -10,24 +11,40 @@ from kin.contour.bezier import Beziers
 from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
 from kin.contour.pieces import ARC, Pieces
-from kin.numeric.records import dataclass, replace
-from kin.read.drawing.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
+from kin.numeric.records import dataclass
+from kin.read.drawing.chaining import (
+    GAP,
+    GAP_SHARE,
+    MISSING_SHARE,
+    MOST_EXPLAINED,
+    NEAR_SHARE,
+    ROUNDING,
+    SAME_POINT,
+    SAME_SHARE,
+    Closeness,
+    close_pairs,
+    loops,
+)
+from kin.read.drawing.closing import closed_up
 from kin.read.errors import ReadError
 from kin.read.nesting import ClosedContour, Nest, counter_clockwise, demand_few, demand_few_pieces, met, nested
 
 if TYPE_CHECKING:
     from collections import Counter
+    from collections.abc import Callable
     from pathlib import Path
 
     from numpy.typing import NDArray
 
+    from kin.contour.across import Bridge
     from kin.numeric.arrays import Array, Indices, Mask
+    from kin.read.drawing.digits import Written
     from kin.read.drawing.shapes import Shape
     from kin.read.formats import DrawingOptions
 
 CUT, BORE = "CUT", "BORE"
 # Layers that are cut beside CUT: the bore's, holes, a mark that is cut through, the flanks of a groove.
-BESIDE = frozenset({BORE, "HOLES", "MARK", "GROOVE_INNER", "GROOVE_OUTER"})
+BESIDE = frozenset({BORE, "HOLES", "MARK", "GROOVE", "GROOVE_INNER", "GROOVE_OUTER"})
 # What is engraved stands here, read if it is asked for.
 ENGRAVED = "ENGRAVE"
 # A gap is bridged that is as wide as its ends say.
@@ -73,6 +90,8 @@ class Drawing(Nest):
     short           pieces no longer than the gap that the caller permits; empty where the caller states no gap
     openings        messages on ends that do not meet, where a contour could be read all the same
     version         of DXF, such as "AC1024", or "SVG" or "STEP"
+    passed          what was left out, in words, where the contours round the shaft alone were sought
+    bridge          the stretch, mm, that closes a contour which is open in one place
     engraved        closed chains on the layer ENGRAVE, counter-clockwise, if the caller wants them
     """
 
@@ -86,15 +105,32 @@ class Drawing(Nest):
     engraved: tuple[Contour, ...] = ()
     short: tuple[Fault, ...] = ()
     openings: tuple[str, ...] = ()
+    passed: tuple[str, ...] = ()
+    bridge: Bridge | None = None
 
 
 class CutEntities(NamedTuple):
-    """Entities that are read, with their shapes, names and layers, and counts of the others by layer and type."""
+    """Entities that are read, with their shapes, names and layers, and counts of the others by layer and type.
+
+    `written` has their numbers as the file shows them, in the order of the shapes; empty where it does not.
+    """
 
     shapes: list[Shape]
     names: list[str]
     layers: list[str]
     aside: Counter[tuple[str, str]]
+    written: list[Written]
+
+    def chosen(self, which: Mask) -> CutEntities:
+        """The entities that are marked (n,)."""
+        rows = np.flatnonzero(which).tolist()
+        return CutEntities(
+            [self.shapes[k] for k in rows],
+            [self.names[k] for k in rows],
+            [self.layers[k] for k in rows],
+            self.aside,
+            [self.written[k] for k in rows] if self.written else [],
+        )
 
 
 def drawing_of(
@@ -121,21 +157,20 @@ def drawing_of(
     pieces, run = gathered(curves.shapes)
     demand_few_pieces(len(run), path)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
-    same, usual = closeness(pieces)
-    demanded, gap = gap, usual if gap is None else gap
+    near = closeness(pieces, gap)
     scratched: tuple[Contour, ...] = ()
     if marks is not None and marks.shapes:
         lines, owner = gathered(marks.shapes)
         lines = lines.enlarged(scale) if scale != 1.0 else lines
-        scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, (gap, usual, same), path))
-    demand_one_plane(np.concatenate([s.heights for s in curves.shapes]) * scale, usual, path)
+        scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, near, path))
+    demand_one_plane(np.concatenate([s.heights for s in curves.shapes]) * scale, near.usual, path)
     # pieces of no length and pieces drawn twice are left out, the rest is joined and nested
-    keep, faults = without_faults(pieces, run, curves, same, path)
+    keep, faults = without_faults(pieces, run, curves, near.same, path)
     if not keep.any():
         raise ReadError("empty", "all entities to cut are of zero length", path)
-    short = np.flatnonzero(keep & (reach(pieces) <= gap)) if demanded is not None else ()
+    short = np.flatnonzero(keep & (reach(pieces) <= gap)) if gap is not None else ()
     shorter = tuple(fault("short", pieces, int(k), run, curves) for k in short)
-    chained, openings = chain_most(pieces.take(keep), run[keep], (gap, usual, same), path, bridged)
+    chained, openings = chain_most(pieces.take(keep), run[keep], (near, partial(rounded, curves, scale)), path, bridged)
     meeting = first_meeting([c.contour for c in chained])
     if meeting:
         raise met(meeting, path)
@@ -149,7 +184,7 @@ def drawing_of(
                 inside,
                 curves.layers[ring.entities[0]],
                 ring.spans(curves.shapes),
-                ring.gap if ring.gap > usual else 0.0,
+                ring.gap if ring.gap > near.usual else 0.0,
             )
             for ring, depth, inside in ((chained[k], depth, inside) for k, depth, inside in order)
         ),
@@ -188,11 +223,22 @@ def gathered(shapes: list[Shape]) -> tuple[Pieces, Indices]:
     return (pieces, run) if (np.diff(run) >= 0).all() else (pieces.take(order), run[order])
 
 
-def closeness(pieces: Pieces) -> tuple[float, float]:
-    """Two distances, mm: within the first points are one, within the second ends are joined by default."""
+def closeness(pieces: Pieces, gap: float | None) -> Closeness:
+    """How near ends are to be; `gap`, mm, is what the caller wants to be joined, None for what a drawing may leave."""
     size = extent(pieces)
     same = max(min(SAME_POINT, SAME_SHARE * size), ROUNDING * float(np.abs(pieces.start).max()))
-    return same, max(min(GAP, GAP_SHARE * size), same)
+    usual = max(min(GAP, GAP_SHARE * size), same)
+    return Closeness(same, usual, usual, NEAR_SHARE * size) if gap is None else Closeness(same, usual, gap)
+
+
+def rounded(curves: CutEntities, scale: float, near: Closeness) -> Closeness:
+    """How near ends are to be by the digits of the file too; `scale` is mm in the drawing's unit."""
+    if not near.near or not curves.written:
+        return near
+    from kin.read.drawing.digits import rounding
+
+    most = 0.5 * MOST_EXPLAINED / NEAR_SHARE * near.near
+    return near._replace(rounding=np.minimum(scale * rounding(curves.written), most))
 
 
 def demand_one_plane(heights: Array, most: float, path: Path) -> None:
@@ -271,33 +317,50 @@ class Chained(NamedTuple):
         return sum(shapes[k].spans for k in self.entities)
 
 
-Closeness: TypeAlias = tuple[float, float, float]
-"""Gap within which ends are joined, that beyond which a line joins them, distance of points that are one, mm."""
-
-
 def chain_most(
-    pieces: Pieces, run: Indices, near: Closeness, path: Path, bridged: float
+    pieces: Pieces, run: Indices, near: tuple[Closeness, Callable[[Closeness], Closeness]], path: Path, bridged: float
 ) -> tuple[list[Chained], tuple[str, ...]]:
     """Contours out of pieces whose runs (n,), rising, are joined end to end, and messages on what is open.
 
-    With `bridged` above 0, mm, gaps up to it are joined too, and chains that stay open are left out. Raises ReadError
-    for an open chain without it, an open outermost contour, and more than two ends that meet.
+    `near` is how near ends are to be, and what counts the digits of the file in, where that leaves some open. With
+    `bridged` above 0, mm, gaps up to it are joined too, and chains that stay open are left out. Raises ReadError for an
+    open chain without it, an open outermost contour, and more than two ends that meet.
     """
-    gap, usual, same = near
+    close, by_digits = near
+    try:
+        return chain(pieces, run, close, path), ()
+    except ReadError as error:
+        if error.width is None:
+            raise
+    likely = by_digits(close)
     # the gap grows to the widest opening met until all is closed; beyond `bridged`, open chains are left out
     width, opened = 0.0, None
     while True:
         some = width > bridged
-        close = (gap if opened is None else max(gap, WIDER * min(width, bridged)), usual, same)
+        close = likely if opened is None else likely._replace(gap=max(likely.gap, WIDER * min(width, bridged)))
         try:
             chained = chain(pieces, run, close, path, some=some)
         except ReadError as error:
             opened = error if opened is None else opened
             if some or not bridged or error.width is None or not error.width > width:
-                raise opened from None
+                raise opened.closed_by(closing_gap(pieces, run, likely, path)) from None
             width = error.width
         else:
             return chained, () if opened is None else (opened.message,)
+
+
+def closing_gap(pieces: Pieces, run: Indices, near: Closeness, path: Path) -> float | None:
+    """Gap, mm, that would close all chains; None where a segment is missing, or ends would find no one partner."""
+    width, most = 0.0, MISSING_SHARE * extent(pieces)
+    while True:
+        try:
+            chain(pieces, run, near._replace(gap=max(near.gap, WIDER * width)), path)
+        except ReadError as error:
+            if error.width is None or not width < error.width <= most:
+                return None
+            width = error.width
+        else:
+            return width
 
 
 def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bool = False) -> list[Chained]:
@@ -307,12 +370,12 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
     two ends meet, "gap" or "open" where an end finds no partner or the outermost contour is open, "range" for too many
     contours.
     """
-    gap, usual, same = near
     # first piece and number of pieces of each run
     first = np.flatnonzero(np.diff(run, prepend=-1))
     count = np.diff(first, append=len(run))
     made = []
-    rings = loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path, some=some)
+    close = near if near.rounding is None else near._replace(rounding=near.rounding[run[first]])
+    rings = loops(pieces.start[first], pieces.end[first + count - 1], close, path, some=some)
     demand_few(len(rings), path)
     closed = np.concatenate([np.empty(0, dtype=np.intp), *(loop.runs for loop in rings)])
     if some and not outermost_closed(pieces, np.isin(np.cumsum(np.diff(run, prepend=-1) > 0) - 1, closed)):
@@ -324,7 +387,7 @@ def chain(pieces: Pieces, run: Indices, near: Closeness, path: Path, *, some: bo
         step = np.arange(len(owner)) - np.repeat(np.cumsum(many) - many, many)
         step = np.where(back[owner], many[owner] - 1 - step, step)
         ordered = pieces.take(first[loop.runs][owner] + step).turned_round(back[owner])
-        contour = Contour.from_pieces(with_lines(closed_up(ordered, same), usual))
+        contour = Contour.from_pieces(closed_up(ordered, near.same, near.usual))
         made.append(Chained(contour, run[first[loop.runs]], loop.gap))
     return made
 
@@ -337,21 +400,3 @@ def outermost_closed(pieces: Pieces, closed: Mask) -> bool:
     points = np.stack([pieces.start, pieces.end, pieces.points(every, np.full(every.size, 0.5))])
     inner, outer = points[:, ~closed].reshape(-1, 2), points[:, closed].reshape(-1, 2)
     return bool((outer.min(axis=0) < inner.min(axis=0)).all() and (outer.max(axis=0) > inner.max(axis=0)).all())
-
-
-def with_lines(pieces: Pieces, usual: float) -> Pieces:
-    """Return the pieces of a loop with a line wherever an end lies farther than `usual`, mm, from the next start."""
-    following = np.roll(pieces.start, -1, axis=0)
-    apart = np.flatnonzero(np.hypot(*(following - pieces.end).T) > usual)
-    if not apart.size:
-        return pieces
-    lines = Pieces.from_chords(pieces.end[apart], following[apart], np.zeros(apart.size))
-    order = np.argsort(np.concatenate([np.arange(len(pieces)), apart + 0.5]), kind="stable")
-    return Pieces.joined([pieces, lines]).take(order)
-
-
-def closed_up(pieces: Pieces, same: float) -> Pieces:
-    """Return the pieces of a loop, ends that lie within `same`, mm, of the next start set to it."""
-    following = np.roll(pieces.start, -1, axis=0)
-    near = np.abs(following - pieces.end).max(axis=1, keepdims=True) <= same
-    return replace(pieces, end=np.where(near, following, pieces.end))

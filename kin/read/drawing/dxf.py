@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections import Counter
 from contextlib import contextmanager
@@ -10,22 +9,23 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from kin.read.drawing.about_shaft import drawing_about_shaft
 from kin.read.drawing.drawing import (
     BESIDE,
     CUT,
     ENGRAVED,
     REFERENCE,
     CutEntities,
-    drawing_of,
 )
-from kin.read.drawing.dxf_entities import CURVES, NOTES, facing, shape_of
+from kin.read.drawing.dxf_document import DAMAGE, opened, whole
+from kin.read.drawing.dxf_entities import CURVES, FILLS, NOTES, facing, shape_of, written
 from kin.read.drawing.shapes import Affine, UnfitError, check
-from kin.read.errors import ReadError
+from kin.read.errors import ReadError, short
 from kin.read.formats import contents
 from kin.read.home import prepare_home
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
     from ezdxf.document import Drawing as Document
@@ -44,7 +44,7 @@ UNDERSCORED = re.compile(
     rb"[ \t]*([-+.\deE]*\d_\d[-+.\deE_]*)[ \t]*\r?$",
     re.MULTILINE,
 )
-HEADER = re.compile(rb"^[ \t]*2[ \t]*\r?\n[ \t]*HEADER[ \t]*\r?$", re.MULTILINE)
+JOINED = re.compile(rb"_(?<=\d_)\d")  # found soon where there is none
 END_MARK = re.compile(rb"(^|\n)[ \t]*0[ \t]*\r?\n[ \t]*EOF\s*$")
 MOST_ENTITIES = 20_000  # that blocks may bring in
 DEEPEST = 16  # of blocks within blocks
@@ -53,28 +53,29 @@ NO_LAYER = "0"  # what is drawn without choosing a layer stands there
 BINARY_MARK = b"AutoCAD Binary DXF"
 BY_LAYER = "BYLAYER"
 DASH = 49  # group code of a dash, a dot or a space in a line type
-# What wrong text causes in code that expects numbers, names and references.
-DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError, StopIteration)
 
 
 def read_dxf(path: Path, options: DrawingOptions) -> Drawing:
     """Read the outer contour and the holes that a DXF file gives to cut.
 
-    Cut are the layers CUT, BORE, HOLES, MARK, GROOVE_INNER, GROOVE_OUTER and 0, if there is something on CUT; else all
-    layers but those of reference geometry, without what has a line type with dashes, as centre lines and hidden edges
-    have: outlines are continuous (ISO 128). The outermost closed chain is the contour, those inside it are holes.
+    Cut are the layers CUT, BORE, HOLES, MARK, GROOVE, GROOVE_INNER, GROOVE_OUTER and 0, if there is something on CUT;
+    else all layers but those of reference geometry, without what has a line type with dashes, as centre lines and
+    hidden edges have: outlines are continuous (ISO 128). The outermost closed chain is the contour, those inside it are
+    holes.
 
     Raises OSError where the file cannot be read; ReadError for a damaged or too large file, an unknown unit, and, with
     the place and the size of a gap, a contour that is not one closed chain of lines, arcs and splines in one plane.
     """
     raw = contents(path, "dxf")
-    document = parsed(raw, path)
+    check_whole(raw, path)
     with damage_reported(path):
+        document, space = opened(raw)
         unit = unit_of(document, raw[:COMMENT_BYTES], path)
-        drawn = everything(document, path)
-        entities = entities_to_cut(document, drawn, path)
+        drawn = everything(document, space, path)
+        passed = NOTES | FILLS if options.shaft is not None else NOTES  # to follow a contour no fill matters
+        entities = entities_to_cut(document, drawn, path, passed)
         marks = entities_engraved(drawn, path) if options.engraved else None
-    return drawing_of(entities, marks, unit, path, options, version=document.dxfversion)
+    return drawing_about_shaft(entities, marks, unit, path, options, version=document.dxfversion)
 
 
 @contextmanager
@@ -99,6 +100,13 @@ def damage_reported(path: Path) -> Iterator[None]:
 
 def parsed(raw: bytes, path: Path) -> Document:
     """Parse the bytes of a DXF file by ezdxf; raises ReadError for an empty, binary, cut short or damaged file."""
+    check_whole(raw, path)
+    with damage_reported(path):
+        return whole(raw)
+
+
+def check_whole(raw: bytes, path: Path) -> None:
+    """Raise ReadError for a file that is empty, binary or cut short, and for a number that only Python reads."""
     if not raw.strip():
         raise ReadError("empty", "the file is empty", path)
     if raw.startswith(BINARY_MARK):
@@ -106,19 +114,9 @@ def parsed(raw: bytes, path: Path) -> Document:
     if END_MARK.search(raw[-200:]) is None:
         raise ReadError("truncated", "the end mark EOF is missing: the file is cut short, or no DXF file", path)
 
-    if b"_" in raw and (number := UNDERSCORED.search(raw)):
+    if JOINED.search(raw) and (number := UNDERSCORED.search(raw)):
         line = raw.count(b"\n", 0, number.start(1)) + 1
         raise ReadError("syntax", f"line {line}: {number[1].decode('ascii')} is not a number", path)
-
-    prepare_home()
-    from ezdxf.filemanagement import dxf_stream_info, read
-
-    with damage_reported(path):
-        encoding = dxf_stream_info(io.StringIO(raw.decode("utf-8", errors="ignore"), newline=None)).encoding
-        document = read(io.TextIOWrapper(io.BytesIO(raw), encoding=encoding, errors="surrogateescape"))
-    if HEADER.search(raw) is None:
-        document.header.hdrvars.clear()  # ezdxf makes a header up, in metres
-    return document
 
 
 def unit_of(document: Document, head: bytes, path: Path) -> float | None:
@@ -154,14 +152,14 @@ class Drawn(NamedTuple):
         return str(self.entity.dxftype())
 
 
-def everything(document: Document, path: Path) -> list[Drawn]:
-    """List the entities of the model space, and in place of each INSERT those of its block, in order.
+def everything(document: Document, space: Iterable[Any], path: Path) -> list[Drawn]:
+    """List the entities of the model space `space`, and in place of each INSERT those of its block, in order.
 
     Raises ReadError for a block that is not there, lies in another file or is placed unsoundly, and for blocks too deep
     or of too many entities.
     """
     entities: list[Drawn] = []
-    left = [Drawn(entity, entity.dxf.layer, _name(entity)) for entity in document.modelspace()]
+    left = [Drawn(entity, entity.dxf.layer, _name(entity)) for entity in space]
     depths = [0] * len(left)
     left.reverse()
     most = MOST_ENTITIES + len(left)
@@ -180,7 +178,7 @@ def everything(document: Document, path: Path) -> list[Drawn]:
 
 
 def _name(entity: Any) -> str:  # noqa: ANN401  ezdxf's entities declare their attributes while they run
-    return f"{entity.dxftype()} #{entity.dxf.handle} on layer {entity.dxf.layer}"
+    return f"{entity.dxftype()} #{entity.dxf.handle} on layer {short(entity.dxf.layer)}"
 
 
 def _inserted(document: Document, insert: Drawn, path: Path) -> Iterator[Drawn]:
@@ -214,12 +212,12 @@ def _inserted(document: Document, insert: Drawn, path: Path) -> Iterator[Drawn]:
             to = to if insert.to is None else insert.to.after(to)
             for entity in block:
                 on = insert.layer if entity.dxf.layer == NO_LAYER else entity.dxf.layer
-                name = f"{entity.dxftype()} #{entity.dxf.handle} of block {dxf.name} on layer {on}"
+                name = f"{entity.dxftype()} #{entity.dxf.handle} of block {dxf.name} on layer {short(on)}"
                 yield Drawn(entity, on, name, to, insert.rise + insert.scale * rise, insert.scale * scale)
 
 
-def entities_to_cut(document: Document, drawn: list[Drawn], path: Path) -> CutEntities:
-    """Find the entities on the layers to cut, and count the others.
+def entities_to_cut(document: Document, drawn: list[Drawn], path: Path, passed: frozenset[str]) -> CutEntities:
+    """Find the entities on the layers to cut, and count the others; those of types in `passed` are no curves.
 
     Raises ReadError for an entity on these layers that is not read, and where there is nothing to cut.
     """
@@ -234,7 +232,7 @@ def entities_to_cut(document: Document, drawn: list[Drawn], path: Path) -> CutEn
         )
         drawn = [item for item, name in zip(drawn, types, strict=True) if not name]
     # what is drawn with no thought for layers goes to the machine too
-    entities = gather(drawn, wanted | {NO_LAYER}, path)
+    entities = gather(drawn, wanted | {NO_LAYER}, path, passed)
     entities.aside.update(on_paper(document))
     entities.aside.update(dashed)
     if not entities.shapes:
@@ -269,14 +267,14 @@ def _layers_of_curves(drawn: list[Drawn]) -> set[str]:
     return {entity.layer.upper() for entity in drawn if entity.kind in CURVES}
 
 
-def gather(drawn: list[Drawn], layers: set[str], path: Path) -> CutEntities:
-    """Read the entities on these layers, named in capitals, and count the others.
+def gather(drawn: list[Drawn], layers: set[str], path: Path, passed: frozenset[str] = NOTES) -> CutEntities:
+    """Read the entities on these layers, named in capitals, and count the others; those of types in `passed` too.
 
     Raises ReadError for an entity on the layers that is not read.
     """
-    entities = CutEntities([], [], [], Counter())
+    entities = CutEntities([], [], [], Counter(), [])
     for item in drawn:
-        if item.layer.upper() not in layers or item.kind in NOTES:
+        if item.layer.upper() not in layers or item.kind in passed:
             entities.aside[item.layer, item.kind] += 1
             continue
         if item.kind not in CURVES:
@@ -284,6 +282,7 @@ def gather(drawn: list[Drawn], layers: set[str], path: Path) -> CutEntities:
         try:
             shape = shape_of(item.entity)
             entities.shapes.append(shape if item.to is None else item.to.moved(shape, item.rise, item.scale))
+            entities.written.append(written(item.entity, shape, 1.0 if item.to is None else item.to.widest))
         except UnfitError as error:
             reason, problem = error.args
             raise ReadError(reason, f"{item.name}: {problem}", path) from None

@@ -6,11 +6,13 @@ and ellipses for an extrusion that is not along z.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kin.contour.bezier import Beziers
+from kin.read.drawing.digits import Written
 from kin.read.drawing.shapes import Shape, UnfitError, check, check_degree, check_spline, shape
 
 if TYPE_CHECKING:
@@ -19,7 +21,15 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 # Entities that are never cut: they are listed, not refused.
-NOTES = frozenset({"TEXT", "MTEXT", "ATTDEF", "DIMENSION", "LEADER", "MULTILEADER", "POINT", "VIEWPORT", "TOLERANCE"})
+NOTES = frozenset(
+    {
+        "TEXT", "MTEXT", "ATTDEF", "ATTRIB", "DIMENSION", "ARC_DIMENSION", "LARGE_RADIAL_DIMENSION", "LEADER",
+        "MULTILEADER", "TOLERANCE", "ACAD_TABLE", "POINT", "VIEWPORT", "XLINE", "RAY",
+    }
+)  # fmt: skip
+# What a machine may engrave, and what is no edge all the same.
+FILLS = frozenset({"HATCH", "SOLID", "TRACE", "IMAGE", "WIPEOUT", "OLE2FRAME"})
+FRAME = 16  # flag of a vertex that only controls a curve
 # Slope, and relative size, that is still rounding.
 LEVEL = 1e-9
 
@@ -27,6 +37,22 @@ LEVEL = 1e-9
 def shape_of(entity: Any) -> Shape:  # noqa: ANN401  ezdxf's entities declare their attributes while they run
     """Return the numbers of an entity of CURVES. Raises UnfitError if it is damaged or not in the drawing's plane."""
     return CURVES[entity.dxftype()](entity)
+
+
+def written(entity: Any, drawn: Shape, scale: float) -> Written:  # noqa: ANN401
+    """Return the numbers of an entity as its file shows them; `scale` is that of the blocks round it."""
+    dxf = entity.dxf
+    if len(drawn.arcs):
+        x, y, radius = drawn.arcs[0, :3].tolist()
+        angles = [dxf.start_angle, dxf.end_angle] if entity.dxftype() == "ARC" else []
+        return Written([x, y, radius], angles, radius, math.radians(1.0), scale)
+    if entity.dxftype() == "ELLIPSE":
+        lengths = [*tuple(dxf.center)[:2], *tuple(dxf.major_axis)[:2]]
+        angles = [dxf.ratio, dxf.start_param, dxf.end_param]
+        return Written(lengths, angles, math.hypot(*lengths[2:]), 1.0, scale)
+    if drawn.beziers.count:
+        return Written([value for point in entity.control_points for value in tuple(point)[:2]], scale=scale)
+    return Written(drawn.chords[:, :4].ravel().tolist(), scale=scale)
 
 
 def needs(entity: Any, *attributes: str) -> None:  # noqa: ANN401
@@ -89,15 +115,18 @@ def lwpolyline(entity: Any) -> Shape:  # noqa: ANN401
 
 
 def polyline(entity: Any) -> Shape:  # noqa: ANN401
-    """Chords of a POLYLINE in the plane, as R12 draws contours; raises UnfitError for a mesh or a fitted curve."""
-    if not entity.is_2d_polyline:
-        raise UnfitError("unsupported", "it is a polyline in space or a mesh")
-    if entity.dxf.flags & 0b110:
-        raise UnfitError("unsupported", "it stands for a fitted curve; explode it or draw it as a SPLINE")
-    for vertex in entity.vertices:
+    """Chords of a POLYLINE, as R12 draws contours, and as others do in space at one height.
+
+    A curve that was fitted to it is drawn by its own vertices; those of its frame are none. Raises UnfitError for a
+    mesh.
+    """
+    if not (entity.is_2d_polyline or entity.is_3d_polyline):
+        raise UnfitError("unsupported", "it is a mesh")
+    vertices = [vertex for vertex in entity.vertices if not vertex.dxf.flags & FRAME]
+    for vertex in vertices:
         needs(vertex, "location")
-    places = np.array([tuple(v.dxf.location) for v in entity.vertices], dtype=np.float64).reshape(-1, 3)
-    bulges = np.array([v.dxf.get("bulge", 0.0) for v in entity.vertices], dtype=np.float64)
+    places = np.array([tuple(v.dxf.location) for v in vertices], dtype=np.float64).reshape(-1, 3)
+    bulges = np.array([v.dxf.get("bulge", 0.0) for v in vertices], dtype=np.float64)
     return polyline_of(entity, places[:, :2], bulges, entity.is_closed, places[:, 2])
 
 

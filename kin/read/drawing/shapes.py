@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from kin.contour.bezier import Beziers
+from kin.contour.pieces import Pieces
 from kin.numeric.errors import CamgeoError
 
 if TYPE_CHECKING:
@@ -132,6 +133,11 @@ class Affine(NamedTuple):
             raise UnfitError("unsupported", "a transform makes ellipses of its circles")
         return scale, sense
 
+    @property
+    def widest(self) -> float:
+        """Greatest length of what it makes of a unit along an axis."""
+        return max(math.hypot(self.a, self.b), math.hypot(self.c, self.d))
+
     @staticmethod
     def rotation(degrees: float) -> Affine:
         """Return the rotation by `degrees`, counter-clockwise where y points up."""
@@ -141,19 +147,42 @@ class Affine(NamedTuple):
     def moved(self, drawn: Shape, rise: float = 0.0, scale: float = 1.0) -> Shape:
         """Shape under the map, each height z at `rise` + `scale` z.
 
-        Raises UnfitError if the map makes ellipses of arcs, or numbers that are too large.
+        Arcs become pieces of ellipses where the map makes these of circles. Raises UnfitError for numbers that are too
+        large.
         """
         matrix, shift = np.array([[self.a, self.b], [self.c, self.d]]), np.array([self.e, self.f])
         chords, arcs, beziers = drawn.chords.copy(), drawn.arcs.copy(), drawn.beziers
+        if len(arcs) or bool(chords[:, 4].any()):
+            try:
+                size, sense = self.scale_and_sense()
+            except UnfitError:
+                chords, arcs, beziers = chords[:0], arcs[:0], _curves(drawn)
+            else:
+                chords[:, 4] *= sense
+                arcs[:, :2] = arcs[:, :2] @ matrix + shift
+                arcs[:, 2] *= size
+                arcs[:, 3] = math.atan2(self.b, self.a) + sense * arcs[:, 3]
+                arcs[:, 4] *= sense
         if len(chords):
             chords[:, :2], chords[:, 2:4] = chords[:, :2] @ matrix + shift, chords[:, 2:4] @ matrix + shift
-        if len(arcs) or bool(chords[:, 4].any()):
-            size, sense = self.scale_and_sense()
-            chords[:, 4] *= sense
-            arcs[:, :2] = arcs[:, :2] @ matrix + shift
-            arcs[:, 2] *= size
-            arcs[:, 3] = math.atan2(self.b, self.a) + sense * arcs[:, 3]
-            arcs[:, 4] *= sense
         if beziers.count:
             beziers = Beziers(beziers.control @ matrix + shift, beziers.weight)
+            check(beziers.control)
         return shape(chords=chords, arcs=arcs, beziers=beziers, heights=rise + scale * drawn.heights)
+
+
+def _curves(drawn: Shape) -> Beziers:
+    """Lines and arcs of a shape as Bezier pieces, in order."""
+    chords = drawn.chords
+    pieces = Pieces.from_chords(chords[:, :2], chords[:, 2:4], chords[:, 4]) if len(chords) else None
+    rows = drawn.arcs.tolist()
+    if pieces is not None:
+        rows = np.column_stack([pieces.centre, pieces.radius, pieces.angle, pieces.sweep]).tolist()
+    parts = []
+    for i, (x, y, radius, angle, sweep) in enumerate(rows):
+        if pieces is not None and not radius:
+            parts.append(Beziers(np.array([[pieces.start[i], pieces.end[i]]]), np.ones((1, 2))))
+            continue
+        axes = np.array([radius, 0.0]), np.array([0.0, radius])
+        parts.append(Beziers.from_ellipse(np.array([x, y]), *axes, angle, angle + sweep))
+    return Beziers.joined(parts)

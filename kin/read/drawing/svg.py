@@ -12,11 +12,13 @@ from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 from xml.etree import ElementTree as ET
 
-from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, CutEntities, drawing_of
+from kin.read.drawing.about_shaft import drawing_about_shaft
+from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, CutEntities
 from kin.read.drawing.shapes import Affine, Shape, UnfitError, shape
 from kin.read.drawing.svg_path import NUMBER, path_of
-from kin.read.errors import ReadError, xml_fault
+from kin.read.errors import ReadError, short, xml_fault
 from kin.read.formats import contents
+from kin.read.nesting import MOST_PIECES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +34,7 @@ LAYERS = frozenset({CUT, ENGRAVED, *BESIDE, *REFERENCE})
 # Mm in each unit of CSS, which has 96 pixels to the inch.
 UNIT_MM = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72.0, "pc": 25.4 / 6.0, "q": 0.25, "px": 25.4 / 96.0}
 UNIT_MM |= {"": UNIT_MM["px"]}
-LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z]*)\s*")
+LENGTH = re.compile(rf"({NUMBER})\s*([A-Za-z]*)")
 STEP = re.compile(r"\s*([A-Za-z]+)\s*\(([^()]*)\)[\s,]*")
 VALUE = re.compile(NUMBER)
 DECLARED = re.compile(r"(?:^|;)\s*([-\w]+)\s*:\s*([^;!]*)")
@@ -43,6 +45,7 @@ SQUARE = 1e-6
 # Least and greatest unit, mm, and number of groups within groups: bounds against nonsense.
 UNITS = (1e-6, 1e4)
 DEEPEST = 100
+MOST_STEPS = 1000  # of one transform
 LEANING = 1e-6  # least cosine of an angle of skew
 DRAWN = frozenset({"path", "circle"})
 # Elements whose content may be seen where they are hidden themselves.
@@ -64,7 +67,7 @@ def read_svg(path: Path, options: DrawingOptions) -> Drawing:
     """Read the outer contour and the holes that an SVG file gives to cut.
 
     A group is a layer if its id, or Inkscape's label, is the name of a layer of a DXF file. Cut are CUT, BORE, HOLES,
-    MARK, GROOVE_INNER, GROOVE_OUTER and what stands on no layer; where nothing stands on CUT, all but reference
+    MARK, GROOVE, GROOVE_INNER, GROOVE_OUTER and what stands on no layer; where nothing stands on CUT, all but reference
     geometry. Elements that no viewer shows are left out: those with display none, and those with visibility hidden or
     collapse, which the elements of a group have from it unless they state their own.
 
@@ -82,12 +85,14 @@ def read_svg(path: Path, options: DrawingOptions) -> Drawing:
         listing = ", ".join(f"{n} {kind} on {on or 'no layer'}" for (on, kind), n in sorted(entities.aside.items()))
         raise ReadError("empty", f"nothing to cut; the file holds {listing or 'nothing at all'}", path)
     marks = _gathered(elements, {ENGRAVED} if by_name else set(), path) if options.engraved else None
-    return drawing_of(entities, marks, unit, path, options, version="SVG")
+    return drawing_about_shaft(entities, marks, unit, path, options, version="SVG")
 
 
 def _parsed(raw: bytes, path: Path) -> Element:
     if not raw.strip():
         raise ReadError("empty", "the file is empty", path)
+    if raw.count(b"<") > 2 * MOST_PIECES:
+        raise ReadError("range", f"the file has more than {MOST_PIECES} elements", path)
     if b"<!ENTITY" in raw:
         raise ReadError("unsupported", "the file declares entities of its own", path)
     try:
@@ -96,7 +101,7 @@ def _parsed(raw: bytes, path: Path) -> Element:
     except (ET.ParseError, ValueError, LookupError) as error:
         raise ReadError("syntax", f"not a sound SVG file: {xml_fault(error)}", path) from error
     if root.tag != f"{SVG}svg":
-        raise ReadError("syntax", f"not an SVG file: its first element is {root.tag}", path)
+        raise ReadError("syntax", f"not an SVG file: its first element is {short(root.tag)}", path)
     if root.get("transform") or "transform" in root.get("style", ""):
         raise ReadError("unsupported", "the page itself is transformed", path)
     return root
@@ -114,7 +119,7 @@ def unit_of(root: Element, path: Path) -> float | None:
         return None if sizes == [None, None] else UNIT_MM["px"]
     numbers = _numbers(box)
     if numbers is None or len(numbers) != 4 or not (numbers[2] > 0.0 and numbers[3] > 0.0):
-        raise ReadError("syntax", f"the viewBox is {box!r}", path)
+        raise ReadError("syntax", f"the viewBox is {short(box)!r}", path)
     scales = [size / extent for size, extent in zip(sizes, numbers[2:], strict=True) if size is not None]
     if not all(UNITS[0] <= scale <= UNITS[1] for scale in scales):
         bounds = f"{UNITS[0]:g} to {UNITS[1]:g} mm"
@@ -129,9 +134,9 @@ def _length(text: str | None, path: Path) -> float | None:
     """Length in mm, None if it is left out, automatic or in percent; raises ReadError if it is not read."""
     if text is None or text.strip() == "auto" or text.strip().endswith("%"):
         return None
-    match = LENGTH.fullmatch(text)
+    match = LENGTH.fullmatch(text.strip())
     if match is None or match[2].lower() not in UNIT_MM or not 0.0 < float(match[1]) < math.inf:
-        raise ReadError("syntax", f"the size of the page is {text!r}", path)
+        raise ReadError("syntax", f"the size of the page is {short(text)!r}", path)
     return float(match[1]) * UNIT_MM[match[2].lower()]
 
 
@@ -177,13 +182,13 @@ def _property(element: Element, name: str) -> str:
 
 def _gathered(elements: list[_Drawn], layers: set[str], path: Path) -> CutEntities:
     """Read the elements on these layers, and count the others; raises ReadError for an element that is not read."""
-    entities = CutEntities([], [], [], Counter())
+    entities = CutEntities([], [], [], Counter(), [])
     for number, (element, layer, to) in enumerate(elements, start=1):
         kind = element.tag.removeprefix(SVG)
         if layer not in layers:
             entities.aside[layer, kind] += 1
             continue
-        name = f"{kind} #{element.get('id', number)}{f' on {layer}' if layer else ''}"
+        name = f"{short(kind)} #{short(element.get('id', str(number)))}{f' on {layer}' if layer else ''}"
         if kind not in DRAWN:
             raise ReadError("unsupported", f"{name} is none of path and circle; turn it into a path", path)
         try:
@@ -210,7 +215,7 @@ def _circle(element: Element, to: Affine) -> Shape:
 
 def _plain(text: str) -> float:
     if VALUE.fullmatch(text.strip()) is None:
-        raise UnfitError("syntax", f"{text!r} is not a number of the drawing's own unit")
+        raise UnfitError("syntax", f"{short(text)!r} is not a number of the drawing's own unit")
     return float(text)
 
 
@@ -222,12 +227,15 @@ def _numbers(text: str) -> list[float] | None:
 
 def _transform(text: str, path: Path) -> Affine:
     """Map of the attribute transform, whose last step is done first; raises ReadError for steps that are not read."""
+    text = text.rstrip()
+    if text.count("(") > MOST_STEPS:
+        raise ReadError("range", f"a transform has more than {MOST_STEPS} steps", path)
     total, at = Affine(), 0
-    while at < len(text.rstrip()):
+    while at < len(text):
         step = STEP.match(text, at)
         numbers = None if step is None else _numbers(step[2])
         if step is None or numbers is None:
-            raise ReadError("syntax", f"a transform is {text!r}", path)
+            raise ReadError("syntax", f"a transform is {short(text)!r}", path)
         match step[1], numbers:
             case "matrix", [a, b, c, d, e, f]:
                 move = Affine(a, b, c, d, e, f)
@@ -244,7 +252,7 @@ def _transform(text: str, path: Path) -> Affine:
                 move = Affine(c=lean) if kind == "skewX" else Affine(b=lean)
             case _:
                 read = "matrix, translate, scale, rotate, skewX and skewY are"
-                message = f"the transform {step[0].strip()} is not read; {read}"
+                message = f"the transform {short(step[0].strip())} is not read; {read}"
                 raise ReadError("unsupported", message, path)
         total = total.after(move)
         at = step.end()

@@ -10,6 +10,7 @@ import numpy as np
 
 from kin.contour.bezier import Beziers
 from kin.read.drawing.shapes import ALIKE, Shape, UnfitError, check, shape
+from kin.read.errors import short
 from kin.read.nesting import MOST_PIECES
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
     from kin.read.drawing.shapes import Affine
 
-NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 TOKEN = re.compile(rf"([A-Za-z])|({NUMBER})|[\s,]+|(.)", re.DOTALL)
 # Numbers that follow each letter that is read.
 COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "A": 7, "C": 6, "Z": 0}
@@ -42,6 +43,7 @@ def path_of(text: str, to: Affine) -> list[Shape]:
     Letters M, L, H, V, A, C and Z are read, absolute and relative; arcs of circles only. Raises UnfitError for anything
     else, too many pieces, and numbers that are too large.
     """
+    _demand_few(text)
     shapes: list[Shape] = []
     chords: list[tuple[float, ...]] = []
     cubics: list[list[tuple[float, float]]] = []
@@ -60,7 +62,7 @@ def path_of(text: str, to: Affine) -> list[Shape]:
     pen = (0.0, 0.0)
     for count, piece in enumerate(pieces_of(text)):
         if count >= MOST_PIECES:
-            raise UnfitError("range", f"it has more than {MOST_PIECES} pieces")
+            raise _too_many()
         if piece.start != pen or (chords if piece.letter == "C" else cubics):
             close()
         pen = piece.end
@@ -73,6 +75,24 @@ def path_of(text: str, to: Affine) -> list[Shape]:
             chords.append((x, y, *to.at(*piece.end), bulge))
     close()
     return shapes
+
+
+def _demand_few(text: str) -> None:
+    """Raise UnfitError for path data that have more than MOST_PIECES pieces whatever they say, before any is read."""
+    letters = {letter: text.count(letter) + text.count(letter.lower()) for letter in COUNT}
+    drawn = sum(count for letter, count in letters.items() if letter not in "MZ")
+    # a letter may stand for several pieces, of as many numbers each as the letters that are there take at most; of the
+    # words between blanks and commas each has a number, or is a letter
+    most = max((COUNT[letter] for letter in COUNT if letters[letter]), default=0)
+    characters = np.frombuffer(text.encode("utf-8", "replace"), np.uint8)
+    apart = (characters <= ord(" ")) | (characters == ord(","))
+    numbers = np.count_nonzero(apart[:-1] & ~apart[1:]) - sum(letters.values())
+    if drawn > MOST_PIECES or numbers > COUNT["M"] * letters["M"] + most * MOST_PIECES:
+        raise _too_many()
+
+
+def _too_many() -> UnfitError:
+    return UnfitError("range", f"it has more than {MOST_PIECES} pieces")
 
 
 def pieces_of(text: str) -> Iterator[Loose]:
@@ -130,7 +150,7 @@ def commands(text: str) -> Iterator[tuple[str, list[float]]]:
             at = token.end()
             continue
         elif not letter or letter in "Zz":
-            raise UnfitError("syntax", f"its path has the number {token[2]} where a letter belongs")
+            raise UnfitError("syntax", f"its path has the number {short(token[2])} where a letter belongs")
         numbers, at = arguments(text, at, letter.upper())
         yield letter, numbers
         letter = {"M": "L", "m": "l"}.get(letter, letter)
@@ -155,7 +175,7 @@ def arguments(text: str, place: int, kind: str) -> tuple[list[float], int]:
             raise UnfitError("syntax", f"its path has {text[place : place + 20]!r} where a number of {kind} belongs")
         numbers.append(float(number[0]))
         if math.isinf(numbers[-1]):
-            raise UnfitError("range", f"its path has {number[0]}, beyond all numbers of a drawing")
+            raise UnfitError("range", f"its path has {short(number[0])}, beyond all numbers of a drawing")
         place = number.end()
     return numbers, place
 

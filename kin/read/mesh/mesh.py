@@ -77,18 +77,17 @@ class Mesh:
     @cached_property
     def bodies(self) -> Indices:
         """Number of the body that each triangle belongs to (t,), from 0: triangles that share corners are one body."""
-        least = np.arange(len(self.points))  # the least corner that each is known to hang together with
-        while True:
-            roots = least[self.corners]
-            low = roots.min(axis=1)
-            if bool((roots == low[:, None]).all()):
-                break
-            np.minimum.at(least, roots.ravel(), np.repeat(low, 3))
-            while not np.array_equal(further := least[least], least):
-                least = further
-        # the least corner of a body is that of all its triangles by now
-        numbers: Indices = np.unique(low, return_inverse=True)[1]
-        return numbers
+        return _joined(self.corners, len(self.points))
+
+    @cached_property
+    def shells(self) -> Indices:
+        """Number of the shell that each triangle belongs to (t,), from 0: triangles that share an edge are one shell.
+
+        Bodies that touch at a corner alone are several shells.
+        """
+        start, end = self.edges
+        codes, numbers = np.unique(self.code(np.minimum(start, end), np.maximum(start, end)), return_inverse=True)
+        return _joined(numbers.reshape(3, -1).T, len(codes))
 
     @cached_property
     def area_vectors(self) -> tuple[Array, Array, Array]:
@@ -110,6 +109,11 @@ class Mesh:
         columns = [column - (column.min() + column.max()) / 2.0 for column in self.points.T]
         return float(sum(c[first] @ area for c, area in zip(columns, self.area_vectors, strict=True))) / 6.0
 
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """Faults in words, with their numbers: a closed, oriented mesh that faces outward has none."""
+        return fault_words(self.edge_faults, self.degenerate, self.duplicate, self.volume)
+
     @cached_property
     def duplicate(self) -> int:
         """Number of triangles with the same corners, in any order, as a triangle before."""
@@ -121,6 +125,37 @@ class Mesh:
         rising = np.sort(self.corners, axis=1)
         rising = rising[np.lexsort(rising.T)]
         return int(np.count_nonzero((rising[1:] == rising[:-1]).all(axis=1)))
+
+
+def fault_words(edges: EdgeFaults, degenerate: int, duplicate: int, volume: float) -> tuple[str, ...]:
+    """Faults of a mesh in words, by their numbers and its volume, mm^3; none for a closed mesh that faces outward."""
+    counts = {
+        "edges with one triangle": edges.open,
+        "edges with more than two triangles": edges.crowded,
+        "edges between triangles that face opposite sides": edges.misdirected,
+        "triangles without area": degenerate,
+        "triangles drawn twice": duplicate,
+    }
+    faults = [f"{number} {kind}" for kind, number in counts.items() if number]
+    if not volume > 0.0:
+        faults.append(f"the volume is {volume:.6g} mm^3: the triangles face inward")
+    return tuple(faults)
+
+
+def _joined(shared: Indices, count: int) -> Indices:
+    """Numbers (t,), from 0, of groups of triangles that share something, each by its three of `count` things (t, 3)."""
+    least = np.arange(count)  # the least thing that each is known to hang together with
+    while True:
+        roots = least[shared]
+        low = roots.min(axis=1)
+        if bool((roots == low[:, None]).all()):
+            break
+        np.minimum.at(least, roots.ravel(), np.repeat(low, 3))
+        while not np.array_equal(further := least[least], least):
+            least = further
+    # the least thing of a group is that of all its triangles by now
+    numbers: Indices = np.unique(low, return_inverse=True)[1]
+    return numbers
 
 
 def doubles(words: NDArray[np.bytes_]) -> Array:

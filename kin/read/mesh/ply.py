@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from kin.read.errors import ReadError
+from kin.read.errors import ReadError, short
 from kin.read.mesh.mesh import WordError, doubles
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def _elements(elements: list[_Element], path: Path) -> tuple[_Element, _Element]
     kept = [element for element in elements if element.number or element.name in {"vertex", "face"}]
     unread = [element.name for element in kept if element.name not in {"vertex", "face"}]
     if unread:
-        raise ReadError("unsupported", f"it holds elements {unread[0]!r} beside vertices and faces", path)
+        raise ReadError("unsupported", f"it holds elements {short(unread[0])!r} beside vertices and faces", path)
     if [element.name for element in kept] != ["vertex", "face"]:
         raise ReadError("syntax", "the header lists no vertices and then faces", path)
     vertex, face = kept
@@ -190,7 +190,7 @@ def _numbers(words: list[bytes], path: Path) -> NDArray[np.float64]:
         return doubles(np.array(words, dtype="S"))
     except WordError as error:
         text = words[error.place].decode("latin-1")
-        raise ReadError("syntax", f"{text!r} is not a number", path) from None
+        raise ReadError("syntax", f"{short(text)!r} is not a number", path) from None
 
 
 def _demand_triangles(counts: NDArray[np.int64] | NDArray[np.float64], path: Path) -> None:

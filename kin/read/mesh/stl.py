@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import re
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,34 +13,34 @@ from kin.contour.intersections import first_meeting
 from kin.numeric.distinct import distinct
 from kin.numeric.places import place_text
 from kin.numeric.records import dataclass
-from kin.read.bodies import MOST_BODIES, ReadSolid, Section, beside, demand_reached, no_rows
+from kin.read.bodies import MOST_BODIES, ReadSolid, Section, SeparateBody, demand_reached, no_rows
 from kin.read.errors import ReadError
-from kin.read.formats import contents
-from kin.read.mesh.mesh import WordError, doubles
+from kin.read.mesh.checked import boxes_of, ends, several_bodies
+from kin.read.mesh.mesh import WordError, doubles, fault_words, welded
 from kin.read.mesh.prism import Outline, evened, rounding, upright, walls
 from kin.read.nesting import ClosedContour, counter_clockwise, demand_few, met, nested
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from kin.numeric.arrays import Array, Indices
+    from kin.read.mesh.checked import Form
     from kin.read.mesh.mesh import EdgeFaults, Mesh
     from kin.read.mesh.prism import Corners
-
-    Form = Literal["binary", "text", "3mf"]
 
 HEADER = 84
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 # What stands in the 21 words of a facet in text form, where it is not a number.
 FACET = {0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b"vertex", 15: b"vertex"}
 FACET |= {19: b"endloop", 20: b"endfacet"}
+NEXT_SOLID = re.compile(rb"endsolid[^\n]*\n\s*solid[^\n]*\n")
 WORDS = 21
 LONGEST_WORD = 40
 SPACES = str.maketrans("", "", "\r\n\t")
 NUMBERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
-# Beyond this, mm, products of three coordinates have no digits left for a part.
-LARGEST = 1e7
-# Share of a section's extent within which a point is on the straight between its neighbours.
+# Share of a section's extent within which a point is on the straight between its neighbours, and of a part's heights
+# within which a corner lies in the plane of a section: some roundings of doubles.
 STRAIGHT = 1e-13
 # Sections that are looked at for the widest one.
 MOST_STEPS = 8
@@ -67,33 +68,7 @@ class Solid(ReadSolid):
     @property
     def faults(self) -> tuple[str, ...]:
         """Faults in words, with their numbers: a closed, oriented mesh that faces outward has none."""
-        counts = {
-            "edges with one triangle": self.edges.open,
-            "edges with more than two triangles": self.edges.crowded,
-            "edges between triangles that face opposite sides": self.edges.misdirected,
-            "triangles without area": self.degenerate,
-            "triangles drawn twice": self.duplicate,
-        }
-        faults = [f"{number} {kind}" for kind, number in counts.items() if number]
-        if not self.volume > 0.0:
-            faults.append(f"the volume is {self.volume:.6g} mm^3: the triangles face inward")
-        return tuple(faults)
-
-
-def read_stl(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> Solid:
-    """Read a part from an STL file, as mm. Costs about one sort of the corners.
-
-    `heights`, mm, become `sections`, and the contour is that of the first. Without any it is that of the section at
-    half the part's height, or where a part has steps of the widest section midway between two of them. In a section a
-    closed chain may lie inside `deepest` others.
-
-    Raises OSError where the file cannot be read; ReadError where the file is too large, cut short or damaged, for
-    bodies apart, a height beyond the part, and a section that does not close or is not one contour with holes.
-    All other faults are in the Solid's fields.
-    """
-    path = Path(path)
-    corners, form = triangles_of(contents(path, "stl"), path)
-    return solid_of(corners, form, heights, path, deepest)
+        return fault_words(self.edges, self.degenerate, self.duplicate, self.volume)
 
 
 def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path, deepest: int = 1) -> Solid:
@@ -106,12 +81,7 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     Raises ReadError for coordinates out of range, a flat part, bodies apart, a height beyond the part, and a section
     that does not close or is not one contour with holes.
     """
-    if not bool((np.abs(corners) <= LARGEST).all()):
-        raise ReadError("range", "a coordinate is not finite or out of range", path)
-    z = corners[:, :, 2]
-    z_min, z_max = float(z.min()), float(z.max())
-    if z_min == z_max:
-        raise ReadError("empty", f"the part is flat: all corners lie at z = {z_min:g}", path)
+    *_, (z_min, z_max) = ends(corners, path)
     demand_reached(z_min, z_max, heights, path)
     shell = upright(corners)
     mesh_in_file, leaning, slivers = (
@@ -138,14 +108,15 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     levels = distinct(z[(z == z[:, :1]).all(axis=1), 0].astype(np.float64))
     if outline is None:
         steps = no_rows(0) if len(heights) else _steps(corners, apart)
-        height, outline = widest(mesh, steps, path) if len(steps) > 2 else cut(mesh, height, path)
+        height = widest(mesh, steps, path) if len(steps) > 2 else height
+        outline = cut(mesh, height, path)
     try:
         chains = sectioned(outline, path, deepest, across=prism_outline is None)
     except ReadError as error:
         raise _named_bodies(mesh_in_file, error, path) from None
     sections = [
         Section(
-            sectioned(cut(mesh, wanted, path)[1], path, deepest, across=True) if prism_outline is None else chains,
+            sectioned(cut(mesh, wanted, path), path, deepest, across=True) if prism_outline is None else chains,
             wanted,
         )
         for wanted in heights
@@ -170,6 +141,22 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path,
     )
 
 
+def bodies_of(corners: Corners, form: Form, path: Path) -> list[SeparateBody]:
+    """Bodies of triangles (t, 3, 3) that share corners, in the order of the file; raises ReadError as `solid_of`."""
+    ends(corners, path)
+    mesh = welded(corners)
+    numbers = mesh.bodies
+    reads = [partial(_body, corners[numbers == k], form, path) for k in range(int(numbers.max()) + 1)]
+    return [
+        SeparateBody(f"body {k + 1}", box, read)
+        for k, (box, read) in enumerate(zip(boxes_of(mesh, numbers), reads, strict=True))
+    ]
+
+
+def _body(corners: Corners, form: Form, path: Path, heights: Sequence[float], deepest: int) -> Solid:
+    return solid_of(corners, form, heights, path, deepest)
+
+
 def _steps(corners: Corners, apart: float) -> Array:
     """Heights (k,), rising, of triangles (t, 3, 3) that are level within `apart`, mm; heights as near count once."""
     z = corners[:, :, 2]
@@ -181,66 +168,50 @@ def _named_bodies(mesh: Mesh, error: ReadError, path: Path) -> ReadError:
     """Return an error on a section as it is, or where there are several closed bodies an error that names them."""
     if error.reason not in NOT_ONE or mesh.edge_faults.open or not mesh.bodies.any():
         return error
-    return _others(mesh, path)
-
-
-def _others(mesh: Mesh, path: Path) -> ReadError:
-    """Return the error that names the largest bodies of a mesh."""
-    boxes = _boxes(mesh)
-    largest = sorted(range(len(boxes)), key=lambda k: -float(np.prod(boxes[k][1] - boxes[k][0])))[:MOST_BODIES]
-    return beside([(f"body {k + 1}", boxes[k]) for k in largest], len(boxes), path)
-
-
-def _boxes(mesh: Mesh) -> list[tuple[Array, Array]]:
-    """Least and greatest coordinates (3,), mm, of each body, in the order of its number."""
-    order = np.argsort(mesh.bodies, kind="stable")
-    heads = np.flatnonzero(np.diff(mesh.bodies[order], prepend=-1))
-    corners = mesh.points[mesh.corners[order]]
-    low, high = np.minimum.reduceat(corners.min(axis=1), heads), np.maximum.reduceat(corners.max(axis=1), heads)
-    return list(zip(low, high, strict=True))
+    return several_bodies(boxes_of(mesh, mesh.bodies), path)
 
 
 def _refuse_apart(mesh: Mesh, path: Path, deepest: int) -> None:
     """Raise ReadError for a closed mesh with a body apart from the rest, above or beside it or in one of its holes."""
     if mesh.edge_faults.open or not mesh.bodies.any():
         return
-    boxes = _boxes(mesh)
+    boxes = boxes_of(mesh, mesh.bodies)
     if len(boxes) > MOST_BODIES:
-        raise _others(mesh, path)
+        raise several_bodies(boxes, path)
     for k, (low, high) in enumerate(boxes):
         others = [box for j, box in enumerate(boxes) if j != k]
         if all(bool((low > above).any() or (high < below).any()) for below, above in others):
-            raise _others(mesh, path)
+            raise several_bodies(boxes, path)
         try:
-            sectioned(section(mesh, float(0.5 * (low[2] + high[2])))[1], path, deepest, across=True)
+            sectioned(section(mesh, float(0.5 * (low[2] + high[2]))), path, deepest, across=True)
         except ReadError as error:
             if error.reason in NOT_ONE:
-                raise _others(mesh, path) from None
+                raise several_bodies(boxes, path) from None
 
 
-def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
-    """Height, mm, of the section taken at `height`, or above it if corners lie there, and its outline.
+def cut(mesh: Mesh, height: float, path: Path) -> Outline:
+    """Outline of the section at a height, mm.
 
     Raises ReadError where the part does not reach there, or reaches above and below and has no wall there.
     """
     z = mesh.points[:, 2]
     demand_reached(float(z.min()), float(z.max()), [height], path)
-    level, outline = section(mesh, height)
+    outline = section(mesh, height)
     if not len(outline.points):
-        message = f"nothing is at z = {level:.9g} mm, and something above and below: walls are missing between faces"
+        message = f"nothing is at z = {height:.9g} mm, and something above and below: walls are missing between faces"
         raise ReadError("several", message, path)
-    return level, outline
+    return outline
 
 
-def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
-    """Height, mm, and outline of the section with the largest box, of those midway between two rising `levels`, mm.
+def widest(mesh: Mesh, levels: Array, path: Path) -> float:
+    """Height, mm, of the section with the largest box, of those midway between two rising `levels`, mm.
 
     Of many layers between levels the MOST_STEPS thickest are looked at. Raises ReadError where the part has no wall at
     one of these heights.
     """
     thick = np.argsort(-np.diff(levels), kind="stable")[:MOST_STEPS]
-    cuts = [cut(mesh, float(0.5 * (levels[k] + levels[k + 1])), path) for k in thick]
-    return max(cuts, key=lambda section: float(np.prod(np.ptp(section[1].points, axis=0))))
+    middles: list[float] = (0.5 * (levels[thick] + levels[thick + 1])).tolist()
+    return max(middles, key=lambda height: float(np.prod(np.ptp(cut(mesh, height, path).points, axis=0))))
 
 
 def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -> tuple[ClosedContour, ...]:
@@ -289,7 +260,8 @@ def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "te
 def facets(raw: bytes, path: Path) -> Array:
     """Corners (t, 3, 3) of the facets of a text in small letters, in the file's order and unit.
 
-    Raises ReadError where the text is empty, cut short, of several solids, or has a wrong word or number.
+    Several solids are taken together. Raises ReadError where the text is empty, cut short, or has a wrong word or
+    number.
     """
     # between the lines of solid and endsolid stand facets of 21 words each: a table, whose fixed words are compared
     text = raw.strip()
@@ -297,11 +269,9 @@ def facets(raw: bytes, path: Path) -> Array:
     if not mark:
         raise ReadError("truncated", "the end mark endsolid is missing", path)
     body = body.partition(b"\n")[2]
-    words = body.split()
+    words = NEXT_SOLID.sub(b"\n", body).split()
     if not words:
         raise ReadError("empty", "the file holds no triangles", path)
-    if b"endsolid" in words:
-        raise ReadError("unsupported", "the file holds more than one solid", path)
     if len(words) % WORDS:
         raise ReadError("syntax", f"its facets have {len(words)} words, which is not a multiple of {WORDS}", path)
     longest = max(map(len, words))
@@ -322,39 +292,47 @@ def facets(raw: bytes, path: Path) -> Array:
         raise ReadError("syntax", f"facet {facet}: the coordinate {coordinate} is not a number", path) from None
 
 
-def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
-    """Height of a section, mm, and its outline: at `height`, or halfway to the next corners above if corners lie there.
+def section(mesh: Mesh, height: float) -> Outline:
+    """Outline of the section at a height, mm; where corners or faces lie in its plane, that just above them.
 
-    The top of the mesh must be above `height`. Each triangle gives an edge from where its boundary comes down through
-    the plane to where it goes up; neighbours agree on that point since it belongs to an edge of the mesh.
+    Each triangle gives an edge from where its boundary comes down through the plane to where it goes up; neighbours
+    agree on that point since it belongs to an edge of the mesh, or to a corner in the plane.
     """
-    levels = distinct(mesh.points[:, 2])
-    if bool((levels == height).any()):
-        height = (height + float(levels[np.searchsorted(levels, height) + 1])) / 2.0
-    above = mesh.points[:, 2] > height
+    z = mesh.points[:, 2]
+    near = STRAIGHT * float(np.abs(z).max())
+    above = z > height + near
     high = above[mesh.corners]
     met_by = mesh.corners[high.any(axis=1) & ~high.all(axis=1)]
     after = np.roll(met_by, -1, axis=1)
     rises, falls = ~above[met_by] & above[after], above[met_by] & ~above[after]
-    up = np.stack([met_by[rises], after[rises]])
-    down = np.stack([after[falls], met_by[falls]])
-    codes, number = np.unique(mesh.code(*np.concatenate([down, up], axis=1)), return_inverse=True)
-    low, top = mesh.points[codes // len(mesh.points)], mesh.points[codes % len(mesh.points)]
-    share = (height - low[:, 2]) / (top[:, 2] - low[:, 2])
-    points = low[:, :2] + share[:, None] * (top - low)[:, :2]
+    low, top = np.concatenate([[after[falls], met_by[falls]], [met_by[rises], after[rises]]], axis=1)
+    top = np.where(z[low] >= height - near, low, top)
+    codes, number = np.unique(mesh.code(low, top), return_inverse=True)
+    low, top = codes // len(mesh.points), codes % len(mesh.points)
+    share = (height - z[low]) / np.where(top == low, np.inf, z[top] - z[low])
+    points = mesh.points[low, :2] + share[:, None] * (mesh.points[top] - mesh.points[low])[:, :2]
     start, end = number.reshape(2, -1)
-    return height, Outline(points, start, end)
+    return Outline(points, start, end)
 
 
 def straightened(points: Array) -> Array:
-    """Ring (n, 2), mm, without points on the straight between their neighbours, where a section cuts diagonals."""
-    before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
-    chord, offset = after - before, points - before
-    length = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), np.finfo(float).tiny)
-    off_chord = np.abs(chord[:, 0] * offset[:, 1] - chord[:, 1] * offset[:, 0]) / length
-    along = (chord[:, 0] * offset[:, 0] + chord[:, 1] * offset[:, 1]) / length
-    straight = (off_chord <= STRAIGHT * np.abs(points).max()) & (along > 0.0) & (along < length)
-    return points[~straight] if np.count_nonzero(~straight) >= 3 else points
+    """Ring (n, 2), mm, without points on the straight between their neighbours, where a section cuts diagonals.
+
+    Of two neighbours only one goes at a time: close together at a corner, each may be on a straight to the other.
+    """
+    slack = STRAIGHT * float(np.abs(points).max())
+    while True:
+        before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
+        chord, offset = after - before, points - before
+        length = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), np.finfo(float).tiny)
+        off_chord = np.abs(chord[:, 0] * offset[:, 1] - chord[:, 1] * offset[:, 0]) / length
+        along = (chord[:, 0] * offset[:, 0] + chord[:, 1] * offset[:, 1]) / length
+        out = np.flatnonzero((off_chord <= slack) & (along >= -slack) & (along <= length + slack))
+        if len(out):
+            out = out[(out % 2 == out[0] % 2) & (out < out[0] + len(points) - 1)]
+        if not len(out) or len(points) - len(out) < 3:
+            return points
+        points = np.delete(points, out, axis=0)
 
 
 def rings(outline: Outline, path: Path) -> list[Indices]:

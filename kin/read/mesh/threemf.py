@@ -11,6 +11,7 @@ import re
 import zipfile
 import zlib
 from array import array
+from functools import partial
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 from xml.parsers import expat
@@ -18,10 +19,11 @@ from xml.parsers import expat
 import numpy as np
 
 from kin.numeric.records import dataclass, field, replace
-from kin.read.bodies import RIGID, Placed, Sought, missing
-from kin.read.errors import ReadError, xml_fault
+from kin.read.bodies import RIGID, Placed, SeparateBody, Sought, missing
+from kin.read.errors import ReadError, short, xml_fault
 from kin.read.formats import oversize
-from kin.read.mesh.stl import LARGEST, Solid, solid_of
+from kin.read.mesh.checked import LARGEST, Triangles
+from kin.read.mesh.stl import Solid, solid_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -61,16 +63,22 @@ def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) 
     close or is not one contour with holes.
     """
     path = Path(path)
+    corners, form, mm = read_part(path)
+    return replace(solid_of(corners, form, heights, path, deepest), units_mm=mm)
+
+
+def read_part(path: Path) -> Triangles:
+    """Read the triangles of the part, which `read_3mf` finds, mm; raises as it does, but for what a section lacks."""
     built = read_placed(path)
     named = [placed for placed in built if placed.name == PART]
     chosen = built if len(built) == 1 else named
     if len(chosen) != 1:
-        names = ", ".join(repr(placed.name) for placed in built[:8])
+        names = ", ".join(repr(short(placed.name)) for placed in built[:8])
         message = f"{len(built)} objects are built, {names}: one of them should be named {PART!r}"
         raise ReadError("several" if built else "empty", message if built else "no object is built", path)
     placed = chosen[0]
     corners = placed.corners if placed.rigid else _moved(placed.corners, placed.place)
-    return replace(solid_of(corners, "3mf", heights, path, deepest), units_mm=placed.mm)
+    return Triangles(corners, "3mf", placed.mm)
 
 
 def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
@@ -103,6 +111,24 @@ def read_3mf_bodies(path: Path | str, sought: Sequence[Sought]) -> list[Solid]:
         solid = solid_of(corners, "3mf", [z for z in heights if low < z < high], path, deepest)
         solids.append(replace(solid, units_mm=body.mm))
     return solids
+
+
+def separate_bodies(path: Path) -> list[SeparateBody]:
+    """Objects that are built, each in axes of its own unless its place scales, shears or mirrors it, with its name.
+
+    Raises as `read_placed` does.
+    """
+    bodies = []
+    for placed in read_placed(path):
+        corners = placed.corners if placed.rigid else _moved(placed.corners, placed.place)
+        points = corners.reshape(-1, 3)
+        box = points.min(axis=0), points.max(axis=0)
+        bodies.append(SeparateBody(placed.name, box, partial(_body, corners, placed.mm, path)))
+    return bodies
+
+
+def _body(corners: Array, mm: float, path: Path, heights: Sequence[float], deepest: int) -> Solid:
+    return replace(solid_of(corners, "3mf", heights, path, deepest), units_mm=mm)
 
 
 def _ends(corners: Array) -> tuple[float, float]:
@@ -221,7 +247,7 @@ class _Model:
         elif tag == f"{CORE}object":
             name = attributes.get("id", "")
             if name in self.objects:
-                raise self._fault(f"object {name!r} is there twice")
+                raise self._fault(f"object {short(name)!r} is there twice")
             self.current = _Object(attributes.get("name", ""), attributes.get("type", "model") == "model")
             self.objects[name] = self.current
         elif tag == f"{CORE}component":
@@ -251,10 +277,10 @@ class _Model:
             self._demand_room(len(corners))
             corners = corners * self.mm
             if not len(corners):
-                raise ReadError("empty", f"object {item.name or name!r} holds no triangles", self.path)
+                raise ReadError("empty", f"object {short(item.name or name)!r} holds no triangles", self.path)
             placing = np.concatenate((place[:3], self.mm * place[3:]))
             if not all(bool((np.abs(numbers) <= LARGEST).all()) for numbers in (corners, placing)):
-                raise ReadError("range", f"object {item.name or name!r} reaches out of range", self.path)
+                raise ReadError("range", f"object {short(item.name or name)!r} reaches out of range", self.path)
             objects.append(Placed(item.name, corners, placing, self.mm))
         return tuple(objects)
 
@@ -294,15 +320,17 @@ class _Model:
         used[corners.ravel()] = True
         loose = count - int(np.count_nonzero(used))
         if loose > FREE_LOOSE + LOOSE_SHARE * count:
-            message = f"{loose} of the {count} vertices of object {item.name!r} belong to no triangle; leave them out"
+            message = (
+                f"{loose} of the {count} vertices of object {short(item.name)!r} belong to no triangle; leave them out"
+            )
             raise ReadError("range", message, self.path)
 
     def _begin(self, attributes: dict[str, str]) -> None:
         unit = attributes.get("unit", "millimeter")
         if unit not in UNIT_MM:
-            raise ReadError("unsupported", f"the unit {unit!r}", self.path)
+            raise ReadError("unsupported", f"the unit {short(unit)!r}", self.path)
         if attributes.get("requiredextensions", "").split():
-            message = f"it requires extensions, {attributes['requiredextensions']!r}: export it without"
+            message = f"it requires extensions, {short(attributes['requiredextensions'])!r}: export it without"
             raise ReadError("unsupported", message, self.path)
         self.mm = UNIT_MM[unit]
 
@@ -313,32 +341,32 @@ class _Model:
 
     def _named(self, name: str) -> _Object:
         if name not in self.objects:
-            raise self._fault(f"there is no object {name!r}")
+            raise self._fault(f"there is no object {short(name)!r}")
         return self.objects[name]
 
     def _number(self, attributes: dict[str, str], name: str) -> float:
         text = attributes.get(name, "")
         if not NUMBER.fullmatch(text):
-            raise self._fault(f"{name}={text!r} is not a number")
+            raise self._fault(f"{name}={short(text)!r} is not a number")
         if not abs(float(text)) <= LARGEST:
-            raise ReadError("range", f"{name}={text!r} is out of range", self.path)
+            raise ReadError("range", f"{name}={short(text)!r} is out of range", self.path)
         return float(text)
 
     def _whole(self, attributes: dict[str, str], name: str) -> int:
         text = attributes.get(name, "")
         if not (text.isascii() and text.isdecimal() and len(text) < 18):
-            raise self._fault(f"{name}={text!r} is not the number of a vertex")
+            raise self._fault(f"{name}={short(text)!r} is not the number of a vertex")
         return int(text)
 
     def _place(self, attributes: dict[str, str]) -> Array:
         words = attributes.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()
         if len(words) != 12 or not all(NUMBER.fullmatch(word) for word in words):
-            raise self._fault(f"transform={attributes['transform']!r} is not twelve numbers")
+            raise self._fault(f"transform={short(attributes['transform'])!r} is not twelve numbers")
         place = np.array(words, dtype=np.float64).reshape(4, 3)
         if not bool((np.abs(place) <= LARGEST).all()):
-            raise ReadError("range", f"transform={attributes['transform']!r} is out of range", self.path)
+            raise ReadError("range", f"transform={short(attributes['transform'])!r} is out of range", self.path)
         if np.linalg.det(place[:3]) == 0.0:
-            raise self._fault(f"transform={attributes['transform']!r} is flat")
+            raise self._fault(f"transform={short(attributes['transform'])!r} is flat")
         return place
 
     def _fault(self, message: str) -> ReadError:

@@ -199,12 +199,12 @@ class Face:
         return total
 
     def section(self, space: StepFile, z: float) -> list[Shape]:
-        """Pieces of the section at a height z, mm, that lie in the face; none for a level face or a height beyond it.
+        """Pieces of the section just above a height z, mm, in the face; none for a level face or a height beyond it.
 
         Raises ReadError where its bounds do not enclose a part of its surface at that height.
         """
         low, high = self.heights
-        if self.surface.level or not low < z < high:
+        if self.surface.level or not low <= z < high:
             return []
         crossings = [(place, rises == forward) for edge, forward in self.uses for place, rises in edge.crossings(z)]
         if not crossings and not isinstance(self.surface, RoundFace):

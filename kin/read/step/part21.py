@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 BEGIN, END = "ISO-10303-21;", "END-ISO-10303-21;"
 TOKEN = re.compile(
-    r"\s+|/\*.*?\*/|(?P<text>'(?:[^']|'')*')|#(?P<reference>\d+)|(?P<real>[-+]?\d+\.\d*(?:[Ee][-+]?\d+)?)"
+    r"\s+|/\*.*?\*/|(?P<text>'[^']*+(?:''[^']*+)*+')|#(?P<reference>\d+)|(?P<real>[-+]?\d+\.\d*(?:[Ee][-+]?\d+)?)"
     r"|(?P<integer>[-+]?\d+)|\.(?P<enumeration>[A-Za-z_][A-Za-z0-9_]*)\.|(?P<word>!?[A-Za-z_][A-Za-z0-9_-]*)"
     r"|(?P<mark>[(),;=$*])|(?P<binary>\"[0-9A-Fa-f]*\")",
     re.DOTALL,
@@ -25,6 +26,7 @@ LARGEST = 1e30  # number that can be computed with
 LONGEST = 60  # characters of a text that an error shows
 MOST_DIGITS = 18  # of a whole number
 DEEPEST = 64  # of lists within lists
+NONE = ("", "")  # in place of a token behind the last
 
 
 class Reference(int):
@@ -146,38 +148,33 @@ def exchange(raw: bytes, path: Path) -> Exchange:
 def _instances(body: str, path: Path) -> dict[int, dict[str, tuple[Value, ...]]]:
     tokens = _tokens(body, path)
     instances: dict[int, dict[str, tuple[Value, ...]]] = {}
-    at = 0
-    while at < len(tokens):
-        ends = at
-        kind, number = tokens[at]
-        if kind != "reference" or at + 2 >= len(tokens) or tokens[at + 1] != ("mark", "="):
+    for kind, number in tokens:
+        if kind != "reference" or next(tokens, NONE) != ("mark", "="):
             raise ReadError("syntax", f"#{number}= expected, not {number}", path)
         records: dict[str, tuple[Value, ...]] = {}
-        ends = at + 2
-        several = tokens[ends] == ("mark", "(")
-        ends += several
-        while ends < len(tokens) and tokens[ends][0] == "word":
-            name = tokens[ends][1].upper()
-            values, ends = _list(tokens, ends + 1, int(number), path)
-            records[name] = values
-        if several and ends < len(tokens) and tokens[ends] == ("mark", ")"):
-            ends += 1
-        if not records or ends >= len(tokens) or tokens[ends] != ("mark", ";"):
+        token = next(tokens, NONE)
+        several = token == ("mark", "(")
+        if several:
+            token = next(tokens, NONE)
+        while token[0] == "word":
+            records[token[1].upper()] = _list(tokens, int(number), path)
+            token = next(tokens, NONE)
+        if several and token == ("mark", ")"):
+            token = next(tokens, NONE)
+        if not records or token != ("mark", ";"):
             raise ReadError("syntax", f"#{number} does not end as an instance does", path)
         if int(number) in instances:
             raise ReadError("syntax", f"#{number} is there twice", path)
         instances[int(number)] = records
-        at = ends + 1
     return instances
 
 
-def _tokens(body: str, path: Path) -> list[tuple[str, str]]:
-    tokens: list[tuple[str, str]] = []
-    at = 0
+def _tokens(body: str, path: Path) -> Iterator[tuple[str, str]]:
+    """Kind and text of each token, one at a time: a list of all takes a hundred times the file's size."""
+    at, last = 0, "?"
     while at < len(body):
         match = TOKEN.match(body, at)
         if match is None:
-            last = next((text for kind, text in reversed(tokens) if kind == "reference"), "?")
             raise ReadError("syntax", f"{body[at : at + 20]!r} after #{last} is nothing of this format", path)
         at = match.end()
         if match.lastgroup is None:
@@ -185,17 +182,15 @@ def _tokens(body: str, path: Path) -> list[tuple[str, str]]:
         kind, token = match.lastgroup, match[match.lastgroup]
         if kind in {"reference", "integer"} and len(token) > MOST_DIGITS:
             raise ReadError("range", f"{token[:LONGEST]!r} is beyond all numbers of instances and counts", path)
-        tokens.append((kind, token))
-    return tokens
+        last = token if kind == "reference" else last
+        yield kind, token
 
 
-def _list(tokens: list[tuple[str, str]], index: int, number: int, path: Path) -> tuple[tuple[Value, ...], int]:
-    """Values between brackets from token `index` on, and the index of the token behind them."""
+def _list(tokens: Iterator[tuple[str, str]], number: int, path: Path) -> tuple[Value, ...]:
+    """Values between brackets, which the next tokens are."""
     stack: list[tuple[str, list[Value]]] = []
-    name = ""
-    while index < len(tokens):
-        kind, text = tokens[index]
-        index += 1
+    name, before = "", ""
+    for kind, text in tokens:
         if (kind, text) == ("mark", "("):
             stack.append((name, []))
             name = ""
@@ -207,13 +202,16 @@ def _list(tokens: list[tuple[str, str]], index: int, number: int, path: Path) ->
             outer, values = stack.pop()
             whole = tuple(values)
             if not stack:
-                return whole, index
+                return whole
             stack[-1][1].append(Typed(outer, whole) if outer else whole)
         elif kind == "word":
             name = text.upper()
         elif (kind, text) != ("mark", ","):
             stack[-1][1].append(_value(kind, text))
-    raise ReadError("syntax", f"#{number}: its values do not end", path)
+        elif before in {"(", ","}:
+            break
+        before = text
+    raise ReadError("syntax", f"#{number}: its values do not end, or one is missing", path)
 
 
 def _value(kind: str, text: str) -> Value:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from contextlib import suppress
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ import numpy as np
 from kin.numeric.distinct import distinct
 from kin.numeric.quadrature import gauss
 from kin.numeric.records import dataclass, replace
-from kin.read.bodies import MOST_BODIES, ReadSolid, Section, Sought, beside, demand_reached, missing
+from kin.read.bodies import MOST_BODIES, ReadSolid, Section, SeparateBody, Sought, beside, demand_reached, missing
 from kin.read.drawing.drawing import CutEntities, drawing_of
 from kin.read.errors import ReadError
 from kin.read.formats import DrawingOptions, contents
@@ -90,6 +90,22 @@ def read_step_bodies(path: Path | str, sought: Sequence[Sought]) -> list[StepSol
     return [_solid(replace(body, deepest=wanted.deepest), wanted) for body, wanted in zip(rising, sought, strict=True)]
 
 
+def separate_bodies(path: Path) -> list[SeparateBody]:
+    """Solids of a file, in its order, named as it names them.
+
+    Raises OSError where the file cannot be read; ReadError for a file that is too large or damaged, or holds no solid.
+    """
+    file = exchange(contents(path, "step"), path)
+    solids = _Body.numbers(file)
+    read = partial(_separate, file, alone=len(solids) == 1)
+    return [SeparateBody(_Body.name(file, k), _Body.reach(file, k), partial(read, k)) for k in solids]
+
+
+def _separate(file: Exchange, number: int, heights: Sequence[float], deepest: int, *, alone: bool) -> StepSolid:
+    body = replace(_Body.one(file, number, alone=alone), deepest=deepest)
+    return _solid(body, Sought(heights, deepest))
+
+
 def _solid(body: _Body, sought: Sought) -> StepSolid:
     misfit, heights = body.misfit, sought.heights
     demand_reached(body.levels[0], body.levels[-1], heights, body.space.file.path)
@@ -125,27 +141,39 @@ class _Body:
     deepest: int = 1
 
     @staticmethod
-    def every(file: Exchange, count: int) -> list[_Body]:
-        """Read all solids of a file; raises ReadError where they are not `count`, or one is not read."""
+    def numbers(file: Exchange) -> list[int]:
+        """Numbers of the solids of a file; raises ReadError where there is none."""
         solids = [*file.of("MANIFOLD_SOLID_BREP"), *file.of("BREP_WITH_VOIDS"), *file.of("FACETED_BREP")]
         if not solids:
             raise ReadError("empty", "it holds no solid", file.path)
+        return solids
+
+    @staticmethod
+    def name(file: Exchange, solid: int) -> str:
+        """Name of a solid, or its number where it has none."""
+        given = next((values[0] for values in file.instances[solid].values() if values), "")
+        return given if isinstance(given, str) and given else f"solid #{solid}"
+
+    @staticmethod
+    def every(file: Exchange, count: int) -> list[_Body]:
+        """Read all solids of a file; raises ReadError where they are not `count`, or one is not read."""
+        solids = _Body.numbers(file)
         if len(solids) < count:
             raise missing(len(solids), count, file.path)
         if len(solids) > count:
-            boxes = [(f"solid #{number}", _Body._reach(file, number)) for number in solids[:MOST_BODIES]]
+            boxes = [(f"solid #{number}", _Body.reach(file, number)) for number in solids[:MOST_BODIES]]
             raise beside(boxes, len(solids), file.path, expected=count)
-        return [_Body._one(file, solid, alone=count == 1) for solid in solids]
+        return [_Body.one(file, solid, alone=count == 1) for solid in solids]
 
     @staticmethod
-    def _reach(file: Exchange, solid: int) -> tuple[Array, Array] | None:
+    def reach(file: Exchange, solid: int) -> tuple[Array, Array] | None:
         """Box of a solid that may not be sound, None where it cannot be read."""
         with suppress(ReadError):
-            return _Body._one(file, solid).box
+            return _Body.one(file, solid).box
         return None
 
     @staticmethod
-    def _one(file: Exchange, solid: int, *, alone: bool = True) -> _Body:
+    def one(file: Exchange, solid: int, *, alone: bool = True) -> _Body:
         kind = file.kind(solid, ("MANIFOLD_SOLID_BREP",), solid)
         shell = file.reference(file.values(solid, kind, 2)[1], solid)
         file.kind(shell, ("CLOSED_SHELL",), solid)
@@ -191,7 +219,7 @@ class _Body:
 
         Raises ReadError where no face reaches through that height, or the section is not one contour with holes.
         """
-        entities = CutEntities([], [], [], Counter())
+        entities = CutEntities([], [], [], Counter(), [])
         for face in self.faces:
             for piece in face.section(self.space, z):
                 entities.shapes.append(piece)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 from camgeo.capabilities.budget.contact import ContactPlace, SizeErrors, positions
+from camgeo.capabilities.budget.file_metal import ReadMetal
 from kin.law.contacts import Contact, Flat, Roller, Translating
 
 if TYPE_CHECKING:
@@ -65,3 +67,13 @@ def position(touch: Flat | Roller, degrees: float, **sizes: complex) -> float:
 )
 def test_a_round_cam_with_a_size_that_is_off(touch: Flat | Roller, sizes: dict[str, complex], expected: float) -> None:
     assert position(touch, 40.0, **sizes) == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("top", [-9, -4, 0, 4, 9])
+def test_more_points_are_looked_at_where_the_first_or_the_last_holds_the_touch(top: int) -> None:
+    """Of four on either side of the nearest, as wide as the search begins."""
+    index = np.arange(200)
+    held = -np.abs(index - (100 + top)).astype(float)
+    metal: Any = SimpleNamespace(points=index + 0j, side=1, wander=0.0, _few=lambda *_: 4)
+    found = ReadMetal._nearby(metal, lambda within: held[within][None], (), 100.0 + 0j)
+    assert found.tolist() == [0.0]

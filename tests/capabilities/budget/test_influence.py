@@ -178,6 +178,9 @@ def test_velocities_are_slopes_and_waves_of_the_profile() -> None:
     assert np.abs(weights["profile"] - 12.0).max() < 1e-9
     curved = designed(recipe).motion.travel(shaft, 2)[2]
     assert np.abs(weights["angle"] - np.abs(curved)).max() < 1e-2 * np.abs(curved).max()  # a step wide where S'' bends
+    # and a contour of its own error adds the slope of that
+    broad = replace(influence(recipe, designed(recipe), stated, shaft), contour=1e-3 * np.sin([3.0 * shaft] * 2))
+    assert velocities(broad, 12).contour == pytest.approx(3e-3 * np.cos([3.0 * shaft] * 2), abs=1e-7)
     # the error where the machine is set stays the same, and has no velocity
     zeroed = velocities(influence(recipe, designed(recipe), replace(stated, zero=1.0), shaft), 12)
     assert np.abs(by_name(zeroed, zeroed.outputs()[0].weights)["profile"] - 12.0).max() < 1e-9

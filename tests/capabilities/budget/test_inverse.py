@@ -103,6 +103,7 @@ def made(weights: np.ndarray, tolerances: list[float | None]) -> Influence:
     return Influence(np.arange(weights.shape[1], dtype=float), rows, ("follower",))
 
 
+@pytest.mark.slow
 @given(
     st.integers(2, 5),
     st.integers(1, 40),
@@ -150,3 +151,4 @@ def test_what_takes_all_is_named() -> None:
         left_for(rows, 1.0, "worst")
     assert (caught.value.name, caught.value.at) == ("b", 1.0)
     assert caught.value.taken == pytest.approx(0.9)
+    assert caught.value.needed == pytest.approx(0.2 + 0.3 * 3.0)

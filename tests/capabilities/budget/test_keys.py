@@ -34,6 +34,8 @@ REFUSED = [
     ("tolerances: {profile: 0.1}, cost: {profile: 1}", CAM, "its tolerance is stated", "free"),
     ("tolerances: {profile: free}, exponent: 2", CAM, "without a cost it has no use", "leave it out, or give cost"),
     ("tolerances: {guide: 0.1}", CAM, "the guide's place is not known", "budget.guide"),
+    ("tolerances: {profile: 0.1}, cost: {guide: 2}", CAM, "the guide's place is not known", "budget.guide"),
+    ("tolerances: {profile: 0.1}, cost: {bore: 2}, fit: h6", CAM, "the fit says it already", "leave it out"),
     ("tolerances: {profile: 0.1}, guide: 50", CAM, "it has no use", "leave it out"),
     ("tolerances: {profile: 0.1}, play: 0.1", CAM, "not held from both sides", "leave it out"),
     ("tolerances: {profile: 0.1, bore: 0.1}, fit: h6", CAM, "the fit says it already", "leave it out"),
@@ -44,6 +46,12 @@ REFUSED = [
         "leave it out",
     ),
     ("tolerances: {profile: 0.1}, key: {hub: JS9, shaft: P9}", CAM, "needs budget.fit", "fit: h6"),
+    (
+        "tolerances: {profile: 0.1}, fit: h6, key: {hub: JS9, shaft: P9}",
+        CAM.replace("din6885", "{standard: din6885, fit: P9}"),
+        "part.keyway.fit in line 6 makes it P9",
+        "give P9, or part.keyway.fit: JS9",
+    ),
     ("tolerances: {profile: 0.1}, fit: h6", YOKE, "the bore has no tolerance class", "part.bore"),
     ("tolerances: {profile: 0.1}", SIX_BAR, "the influence of dyads is not known", "leave"),
     ("tolerances: {profile: 0.1}, fit: h6", CAM.replace("20, fit", "130, fit"), "reaches to 120 mm", "bore"),
@@ -67,6 +75,10 @@ def test_the_remedies_do() -> None:
         ("tolerances: {profile: free}, cost: {profile: 1}, exponent: 2", CAM),
         ("tolerances: {guide: 0.1}, guide: 120", CAM),
         ("tolerances: {profile: 0.1}, fit: h6, key: {hub: JS9, shaft: P9}", CAM),
+        (
+            "tolerances: {profile: 0.1}, fit: h6, key: {hub: P9, shaft: P9}",
+            CAM.replace("din6885", "{standard: din6885, fit: P9}"),
+        ),
         ("tolerances: {profile: 0.1}, play: 0.3", YOKE),
         ("tolerances: {profile: 0.1}, play: 0.3", FRAME),
     ):

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 import ezdxf
+import pytest
 from support.places import ROOT
 
 from camgeo.cli.main import main
@@ -13,9 +14,8 @@ from camgeo.cli.main import main
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import pytest
 
-
+@pytest.mark.costly("the commands of the page as they stand there")
 def test_the_page_shows_what_the_command_prints(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -29,6 +29,7 @@ def test_the_page_shows_what_the_command_prints(
 
 
 # needs: sheet
+@pytest.mark.slow
 def test_the_split_goes_on_to_a_drawing_that_is_confirmed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -1,6 +1,6 @@
 """The section `budget` of a report, its limits, and the page.
 
-Holds: camgeo.capabilities.budget.record.
+Holds: camgeo.capabilities.budget.recipe, camgeo.capabilities.budget.measures, camgeo.capabilities.budget.page.
 """
 
 from __future__ import annotations

@@ -4,7 +4,10 @@ Holds: camgeo.capabilities.camshaft.drawing, camgeo.capabilities.camshaft.svg.
 """
 
 import re
+from itertools import combinations
 from pathlib import Path
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, cast
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -13,9 +16,13 @@ from support.camshafts import ENGINE, shaft
 from support.heavy import trimesh
 
 import camgeo
+from camgeo.capabilities.camshaft.diagrams import _crank_wheel
 from camgeo.capabilities.camshaft.keys import DIAGRAMS
 from camgeo.recipe.loading import load_order
 from camgeo.schema.errors import RecipeErrors
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.camshaft.keys import CamshaftRecipe, Engine
 
 RECIPES = Path(__file__).parents[3] / "recipes"
 
@@ -43,6 +50,7 @@ ALL_DRAWN = (
 )
 
 
+@pytest.mark.slow
 def test_wheels_of_the_camshaft_and_of_the_crank_say_each_cylinders_events(tmp_path: Path) -> None:
     """Events, durations and overlap stand on both; each has 360 degrees, of the crank or of the cam."""
     source = RECIPES / "camshafts"
@@ -134,3 +142,44 @@ def test_the_drawing_of_the_shaft_is_to_scale(tmp_path: Path, rotation: str) -> 
     from_axis = (corners - [float(value) for value in centre]) * (1.0, -1.0)
     seen, made = (rows[np.argmax(np.hypot(*rows.T))] for rows in (from_axis, points[:, :2]))
     assert np.arctan2(*seen) == pytest.approx(np.arctan2(*made), abs=0.03)
+
+
+def boxes(drawing: str) -> list[tuple[str, float, float, float, float]]:
+    """Words of a drawing with the least and greatest x and y of their letters, px: 0.56 of the size wide each."""
+    found = []
+    row = r'<text x="([\d.-]+)" y="([\d.-]+)" font-size="([\d.]+)" text-anchor="(\w+)"[^>]*>([^<]*)</text>'
+    for x, y, size, anchor, words in re.findall(row, drawing):
+        wide = 0.56 * float(size) * len(words)
+        left = float(x) - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * wide
+        found.append((words, left, left + wide, float(y) - 0.72 * float(size), float(y) + 0.05 * float(size)))
+    return found
+
+
+def covering(drawing: str) -> list[tuple[str, str]]:
+    """Pairs of words of a drawing that cover one another."""
+    pairs = combinations(boxes(drawing), 2)
+    return [(a[0], b[0]) for a, b in pairs if a[1] < b[2] and b[1] < a[2] and a[3] < b[4] and b[3] < a[4]]
+
+
+@pytest.mark.parametrize(
+    ("intake", "exhaust"),
+    [((358.0, 224.0), (138.0, 224.0)), ((362.0, 190.0), (170.0, 192.0)), ((359.9, 180.2), (179.9, 180.2))],
+)
+def test_no_words_of_a_crank_wheel_cover_others(intake: tuple[float, float], exhaust: tuple[float, float]) -> None:
+    recipe = cast("CamshaftRecipe", SimpleNamespace(name="engine", units="mm", mm=1.0))
+    engine = cast("Engine", SimpleNamespace(lift=1.0, at_valve=False))
+
+    def wheel(*events: tuple[str, float, float]) -> str:
+        return _crank_wheel(recipe, engine, events, [1])
+
+    drawn = wheel(("intake", *intake), ("exhaust", *exhaust))
+    assert covering(drawn) == []
+    assert {"TDC", "BDC"} <= {words for words, *_ in boxes(drawn)}
+    rng = np.random.default_rng(1)
+    for _ in range(60):
+        events = [(valve, rng.uniform(0.0, 720.0), rng.uniform(60.0, 340.0)) for valve in ("intake", "exhaust")]
+        drawn = wheel(*events)
+        assert covering(drawn) == [], events
+        height = float(re.findall(r'height="([\d.]+)"', drawn)[0])
+        assert all(low > 40.0 or words.startswith("engine") for words, _, _, low, _ in boxes(drawn)[2:])
+        assert all(high < height for *_, high in boxes(drawn))

@@ -40,6 +40,7 @@ SOURCES = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("motion", "zero", "expected"), SOURCES.values(), ids=SOURCES)
 def test_stretches_of_any_source(motion: str, zero: float, expected: list[tuple[str, float, float]]) -> None:
     text = f"cam: {{kind: disc, base_radius: 30, follower: {{kind: roller, radius: 8}}, motion: {motion}}}\n"

@@ -69,7 +69,7 @@ REFUSED = {
     ),
     "no file": (
         ("recipe: nope.yaml, at: 0, z: 30", ""),
-        "shaft.yaml:5:16: camshaft.lobes[0].recipe: no such file, given 'nope.yaml'; give the path of a recipe from ",
+        "shaft.yaml:5:16: camshaft.lobes[0].recipe: the file does not exist, given 'nope.yaml'; give the path of ",
     ),
     "no recipe": (
         ("recipe: secrets.txt, at: 0, z: 30", ""),
@@ -127,7 +127,7 @@ def test_one_line_with_place_and_remedy(
 def test_a_drawing_is_that_of_a_lobe(tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str) -> None:
     path = shaft(tmp_path, TWO, files=f"[{kind}]")
     assert main(["check", str(path)]) == 2
-    assert f"a camshaft has no {kind}; export the lobe's own recipe" in capsys.readouterr().err
+    assert f"a camshaft takes no {kind}; leave it out, or give the recipe of a lobe" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -191,3 +191,9 @@ def test_centres_are_given_one_way(engine: str, message: str, tmp_path: Path) ->
     with pytest.raises(RecipeErrors) as caught:
         load_order(path)
     assert message in str(caught.value)
+
+
+def test_a_name_longer_than_any_file_has_a_place(tmp_path: Path) -> None:
+    path = shaft(tmp_path, f"recipe: {'x' * 300}, at: 0, z: 30")
+    with pytest.raises(camgeo.RecipeErrors, match=r"shaft\.yaml:5:16: camshaft\.lobes\[0\]\.recipe: cannot be read: "):
+        camgeo.load(path)

@@ -14,6 +14,7 @@ import camgeo
 RECIPES = Path(__file__).parents[3] / "recipes"
 
 
+@pytest.mark.slow
 def test_a_camshaft_is_loaded_and_designed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """From its file, its text or a mapping: whatever `check` takes. Lifts are those of case f20, at crank 200."""
     rows = [
@@ -60,3 +61,36 @@ def test_a_report_of_a_camshaft_shows_itself_and_explains_its_checks(tmp_path: P
     }
     with pytest.raises(camgeo.RecipeErrors, match=r"^recipe: camshaft\.lobes\[0\]\.z: it reaches from 1 to 15 mm"):
         camgeo.load(mapping)
+
+
+HOLLOW = """\
+cam:
+  kind: disc
+  base_radius: 36
+  follower: {kind: roller, radius: 30}
+  motion: [{rise: 20, over: 60, law: cycloidal}, {return: 20, over: 60, law: cycloidal}, {dwell: 240}]
+part: {thickness: 10}
+manufacture: {wheel: 400}
+"""
+
+
+def test_a_wheel_too_large_for_a_lobe_has_a_remedy(tmp_path: Path) -> None:
+    """The remedy is twice the least radius of the lobe's hollows: that of the pitch curve, and the roller's."""
+    u = np.linspace(0.0, 1.0, 200_001)
+    over = math.radians(60)
+    s = 20 * (u - np.sin(2 * math.pi * u) / (2 * math.pi))
+    v = 20 / over * (1 - np.cos(2 * math.pi * u))
+    a = 20 / over**2 * 2 * math.pi * np.sin(2 * math.pi * u)
+    r = 36 + 30 + s
+    bend = (r**2 + 2 * v**2 - r * a) / np.hypot(r, v) ** 3
+    largest = 2 * (30 - 1 / bend.min())
+    path = shaft(tmp_path, "recipe: hollow.yaml, at: 0, z: 30", body="  shaft: {diameter: 24, to: 60}\n")
+    (tmp_path / "hollow.yaml").write_text(HOLLOW, encoding="utf-8")
+    report = camgeo.check(path)
+    (failed,) = (check for check in report.checks if not check.ok)
+    (line,) = (line for line in report.explain(failed).splitlines() if "remedy" in line)
+    number = float(line.split("wheel of ")[1].split()[0])
+    assert 0.9995 * largest < number <= largest
+    assert line.endswith(" mm or less, in hollow.yaml")
+    (tmp_path / "hollow.yaml").write_text(HOLLOW.replace("400", repr(number)), encoding="utf-8")
+    assert camgeo.check(path).ok

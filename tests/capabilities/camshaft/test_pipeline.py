@@ -1,7 +1,7 @@
 """Camshafts: lobes where they belong, at their angle, judged in the solid as it lies on disk; an engine's events.
 
-Holds: camgeo.capabilities.camshaft, camgeo.capabilities.camshaft.body, camgeo.capabilities.camshaft.page,
-camgeo.capabilities.camshaft.record, camgeo.capabilities.camshaft.section,
+Holds: camgeo.capabilities.camshaft, camgeo.capabilities.camshaft.body, camgeo.capabilities.camshaft.shaft_page,
+camgeo.capabilities.camshaft.root, camgeo.capabilities.camshaft.extension, camgeo.capabilities.camshaft.section,
 camgeo.capabilities.camshaft.tables.
 """
 
@@ -139,7 +139,7 @@ def machine(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureReq
     return request.param, camgeo.export(path, folder / "out")
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 def test_lifts_of_a_machine_in_phase(machine: tuple[str, camgeo.Report]) -> None:
     """Case f24: over the shaft's angle, wherever the followers stand."""
     _, report = machine
@@ -155,6 +155,7 @@ def test_lifts_of_a_machine_in_phase(machine: tuple[str, camgeo.Report]) -> None
     assert "lifts over the shaft" in (report.path / "shaft.svg").read_text()
 
 
+@pytest.mark.slow
 def test_rollers_on_the_metal_of_a_machine_lift_as_its_table_says(machine: tuple[str, camgeo.Report]) -> None:
     """Case f24 by first contact: the solid is turned with the shaft, rollers come in along their directions."""
     rotation, report = machine
@@ -174,6 +175,7 @@ def test_rollers_on_the_metal_of_a_machine_lift_as_its_table_says(machine: tuple
             assert high.max() - lowest == pytest.approx(lifts[k], abs=0.02)
 
 
+@pytest.mark.slow
 def test_the_direction_turns_an_engines_metal_and_no_event(tmp_path: Path, engine: camgeo.Report) -> None:
     """A lobe that is placed by its valve follows its tappet; without the direction its file is judged out of phase."""
     row = "recipe: intake.yaml, cylinder: 3, valve: intake, z: 30, direction: {}"
@@ -218,6 +220,7 @@ STRETCHES = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["shaft.svg", "shaft.html"])
 def test_a_machine_has_a_bar_for_each_stretch_split_at_360(machine: tuple[str, camgeo.Report], name: str) -> None:
     """Case f24: rises, dwells and returns over the machine's angle."""
@@ -270,7 +273,7 @@ def test_a_solid_of_two_lobes(solid: tuple[Path, camgeo.Report]) -> None:
 def test_the_page_shows_timing_and_checks(solid: tuple[Path, camgeo.Report]) -> None:
     _, report = solid
     assert report.path is not None
-    text = (report.path / "shaft.html").read_text()
+    text = (report.path / "shaft.html").read_text(encoding="utf-8")
     assert "<script" not in text
     assert "{{" not in text
     assert "Content-Security-Policy" in text.partition("</head>")[0]
@@ -282,7 +285,7 @@ def test_the_page_shows_timing_and_checks(solid: tuple[Path, camgeo.Report]) -> 
 def test_events_of_the_page_are_to_a_hundredth_of_a_degree(engine: camgeo.Report) -> None:
     """All cells of a column have as many decimals; the exact number is a hint."""
     assert engine.path is not None
-    text = (engine.path / "shaft.html").read_text()
+    text = (engine.path / "shaft.html").read_text(encoding="utf-8")
     lobes, cylinders = (re.findall(r"<tr>(.*?)</tr>", table) for table in re.findall(r"<table>(.*?)</table>", text))
     columns = {}
     for head, *rows in (lobes, cylinders):
@@ -405,7 +408,7 @@ FLUSH = {  # lobes, journals and where the shaft ends: sums that round up and do
 }
 
 
-@pytest.mark.thin(6)
+@pytest.mark.slow
 @pytest.mark.parametrize(("first", "second", "journal", "end"), FLUSH.values(), ids=FLUSH)
 def test_bodies_that_meet_face_to_face(tmp_path: Path, first: str, second: str, journal: str, end: float) -> None:
     bar = f"  journals: [{journal[:-1]}, diameter: 30}}]\n" if journal else ""
@@ -433,6 +436,7 @@ def test_equal_lobes_side_by_side_are_one_stretch(tmp_path: Path) -> None:
     assert {"phase, intake 2", "contour, intake 2"} <= failing(camgeo.verify(turned, report.path / "shaft.3mf"))
 
 
+@pytest.mark.slow
 def test_equal_lobes_of_a_solid_need_no_face_and_others_do(tmp_path: Path) -> None:
     """A file in which the second lobe is as the first, where it is meant to be turned, has no face there."""
     rows = "recipe: intake.yaml, at: 30, z: 20, length: 10\nrecipe: intake.yaml, at: {}, z: 30, length: 10"
@@ -443,7 +447,7 @@ def test_equal_lobes_of_a_solid_need_no_face_and_others_do(tmp_path: Path) -> No
     assert {"phase, intake 2", "contour, intake 2", "motion, intake 2"} <= fails
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("z", ["6.2", "6.2101"], ids=["they meet", "farther apart"])
 def test_what_would_do_for_a_thin_gap_does(tmp_path: Path, z: str) -> None:
     rows = f"recipe: intake.yaml, at: 0, z: 1.1, length: 5.1\nrecipe: intake.yaml, at: 90, z: {z}, length: 12"
@@ -519,7 +523,7 @@ def test_the_page_has_the_diagrams_in_colours_of_its_own(solid: tuple[Path, camg
     assert "prefers-color-scheme: dark" in style.partition(".diagrams {")[2]
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["manifold3d", "OCP"])
 def test_a_solid_that_a_missing_package_would_make_is_left_out(tmp_path, monkeypatch, capsys, name):
     """The rest is judged and placed as one set; where nothing is left nothing is written."""

@@ -1,6 +1,7 @@
 """Recipes that ask for dynamics, from text to report: checks, runs, spoilt files, and what is refused.
 
-Holds: camgeo.capabilities.dynamics.checks, camgeo.capabilities.dynamics.record.
+Holds: camgeo.capabilities.dynamics.declared, camgeo.capabilities.dynamics.recipe,
+camgeo.capabilities.dynamics.measures.
 """
 
 from __future__ import annotations
@@ -90,6 +91,25 @@ def test_the_report_of_a_train_under_a_spring() -> None:
     assert [check.get("file") for check in checks] == [None, "train.dxf"]
     assert checks[0]["value"] == intended["steady"]["least_force"]
     assert (checks[0]["limit"], checks[0]["unit"], checks[0]["sense"]) == (0.0, "N", "at_least")
+
+
+def test_the_speed_at_which_a_rigid_follower_floats_lies_between_any_places() -> None:
+    """Norton's modified sine by mpmath, (F + k s)/(m s'') over 110 degrees to 20 digits."""
+    disc = """\
+cam:
+  kind: disc
+  base_radius: 40
+  follower: {kind: roller, radius: 9}
+  motion:
+    - {rise: 18, over: 110, law: modified-sine}
+    - {dwell: 40}
+    - {return: 18, over: 130, law: modified-sine}
+    - {dwell: 80}
+export: {files: [csv]}
+"""
+    train = "dynamics: {mass: 0.8, stiffness: 3e5, damping: 60, preload: 900, rate: 4000, rpm: 420}\n"
+    (run,) = section(recipe(train, disc))["runs"]
+    assert run["float_rigid_rpm"] == pytest.approx(2024.3360245290977644, rel=2e-15)
 
 
 @pytest.mark.slow
@@ -233,7 +253,7 @@ def test_all_runs_together_look_at_a_bounded_number_of_places(stiffness: str, mo
     assert sum(places) < 1.1 * 300_000
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("held", ["preload: 8", "backlash: 0.02"])
 def test_a_follower_that_swings_has_figures_of_turning(held: str) -> None:
     train = f"dynamics: {{mass: 2.0e-3, damping: 5, stiffness: 3.0e4, {held}, rpm: 400}}\n"
@@ -247,6 +267,7 @@ def test_a_follower_that_swings_has_figures_of_turning(held: str) -> None:
         assert play["unit"] == "deg"
 
 
+@pytest.mark.slow
 def test_the_springs_force_is_given_at_the_lowest_place() -> None:
     slow = TRAIN.replace("600", "0.01")
     stiff = slow.replace("preload: 150", "preload: 150, rate: 1000")

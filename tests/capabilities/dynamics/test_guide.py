@@ -40,6 +40,7 @@ def test_a_roller_is_pushed_with_its_greatest_pressure_angle():
     assert (check.ok, check.value, check.unit) == (True, angle, "deg")
 
 
+@pytest.mark.slow
 def test_a_flat_face_is_pushed_beside_the_stem():
     recipe = read(TEXT.format(follower="{kind: flat, width: 40}").encode(), Path("guide.yaml"))
     (check,) = guide_checks(recipe, designed(recipe).exact)

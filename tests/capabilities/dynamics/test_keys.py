@@ -43,7 +43,7 @@ def test_seat_load_open_load_and_coil_bind(spring: str) -> None:
     assert found == pytest.approx([240.0, 486.0, 3.8], rel=1e-9)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("more", ["", ", stiffness: 8.0e6, damping: 60"])
 def test_a_spring_is_the_preload_and_the_rate_that_it_makes(more: str) -> None:
     own, plain = (report(spring + more) for spring in (COIL, PLAIN))
@@ -77,48 +77,57 @@ def test_pressure_float_and_transient_come_from_one_train() -> None:
     assert "forces" not in alone
 
 
+FAULTS = [
+    (f"{COIL}, preload: 9", "dynamics.spring: cannot be combined with preload; give exactly one of", COIL),
+    (f"{COIL}, rate: 9", "dynamics.rate: cannot be combined with spring; leave one of the two out", COIL),
+    (
+        "spring: {seat_length: 50, free_length: 48, rate: 30 N/mm}",
+        "dynamics.spring.seat_length: the spring is slack there; give less than 48 mm",
+        "spring: {seat_length: 47, free_length: 48, rate: 30 N/mm}",
+    ),
+    (
+        COIL.replace("28", "41"),
+        "dynamics.spring.solid_length: its coils touch before it moves; give less than 40 mm",
+        COIL.replace("28", "39"),
+    ),
+    (
+        "spring: {seat_length: 40, rate: 30 N/mm}",
+        "dynamics.spring.free_length: missing, needed with rate",
+        COIL,
+    ),
+    (
+        LOADS.replace("480", "100"),
+        "dynamics.spring.loads: the force does not grow as it is pressed; give the greater at the shorter",
+        LOADS,
+    ),
+    (
+        LOADS.replace("[32, 480 N]", "480"),
+        "dynamics.spring.loads[0]: not a length with its force, given 480; give [40, 250]",
+        LOADS,
+    ),
+    (
+        "spring: {seat_length: 40, loads: [[32, 480]]}",
+        "dynamics.spring.loads: one load tells no rate; give two lengths with their forces",
+        LOADS,
+    ),
+    (
+        "backlash: 0.02, stiffness: 8.0e6, material: steel",
+        "dynamics.material: belongs to a train without stiffness; leave stiffness out, or this",
+        f"{COIL}, stiffness: 8.0e6, material: steel",
+    ),
+]
+
+
+def test_faults_of_a_spring() -> None:
+    for train, message, _ in FAULTS:
+        with pytest.raises(RecipeErrors) as caught:
+            report(train)
+        assert message in str(caught.value)
+
+
 @pytest.mark.thin(8)
-@pytest.mark.parametrize(
-    ("train", "message", "remedy"),
-    [
-        (f"{COIL}, preload: 9", "dynamics.spring: cannot be combined with preload; give exactly one of", COIL),
-        (f"{COIL}, rate: 9", "dynamics.rate: cannot be combined with spring; leave one of the two out", COIL),
-        (
-            "spring: {seat_length: 50, free_length: 48, rate: 30 N/mm}",
-            "dynamics.spring.seat_length: the spring is slack there; give less than 48 mm",
-            "spring: {seat_length: 47, free_length: 48, rate: 30 N/mm}",
-        ),
-        (
-            COIL.replace("28", "41"),
-            "dynamics.spring.solid_length: its coils touch before it moves; give less than 40 mm",
-            COIL.replace("28", "39"),
-        ),
-        (
-            "spring: {seat_length: 40, rate: 30 N/mm}",
-            "dynamics.spring.free_length: missing, needed with rate",
-            COIL,
-        ),
-        (
-            LOADS.replace("480", "100"),
-            "dynamics.spring.loads: the force does not grow as it is pressed; give the greater at the shorter",
-            LOADS,
-        ),
-        (
-            "spring: {seat_length: 40, loads: [[32, 480]]}",
-            "dynamics.spring.loads: one load tells no rate; give two lengths with their forces",
-            LOADS,
-        ),
-        (
-            "backlash: 0.02, stiffness: 8.0e6, material: steel",
-            "dynamics.material: belongs to a train without stiffness; leave stiffness out, or this",
-            f"{COIL}, stiffness: 8.0e6, material: steel",
-        ),
-    ],
-)
-def test_faults_of_a_spring_and_what_mends_them(train: str, message: str, remedy: str) -> None:
-    with pytest.raises(RecipeErrors) as caught:
-        report(train)
-    assert message in str(caught.value)
+@pytest.mark.parametrize("remedy", sorted({remedy for *_, remedy in FAULTS}))
+def test_what_is_told_of_a_spring_mends_it(remedy: str) -> None:
     report(remedy)
 
 

@@ -245,7 +245,8 @@ def test_a_load_in_newton_metres_is_none_along_a_stem(tmp_path: Path) -> None:
 def test_of_many_rows_those_on_straight_lines_are_left_out(tmp_path: Path) -> None:
     angle = np.arange(0.0, 360.0, 0.05)
     load = np.round(100 + 60 * np.sin(np.radians(angle)) + 200 * (np.abs(angle - 200.0) < 20.0), 2)
-    table = running(recipe(tmp_path, "\n".join(f"{a:.2f};{f:.2f}" for a, f in zip(angle, load, strict=True)))).load
+    made = recipe(tmp_path, "\n".join(f"{a:.2f};{f:.2f}" for a, f in zip(angle, load, strict=True)))
+    table = running(made).train.load
     assert isinstance(table, LoadTable)
     assert len(table.theta) < 0.4 * len(angle)
     assert np.abs(table(np.radians(angle)) - load).max() <= 0.005 * (1 + 1e-9)

@@ -110,6 +110,7 @@ def test_the_page_of_an_elastic_train() -> None:
     assert f">{peak / PER_LBF:.6g}<" in table
 
 
+@pytest.mark.slow
 def test_the_table_has_columns_behind(tmp_path: Path) -> None:
     rows: dict[str, list[dict[str, str]]] = {}
     for name, text in (("inch", INCHES), ("mm", metric(INCHES))):

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("by_layer", [True, False])
 def test_centre_lines_are_no_outline(tmp_path: Path, *, by_layer: bool) -> None:
     document = ezdxf.new("R2010", setup=True)
@@ -30,8 +31,23 @@ def test_centre_lines_are_no_outline(tmp_path: Path, *, by_layer: bool) -> None:
     for line in space.query("LINE"):
         line.dxf.layer, line.dxf.linetype = "0", "BYLAYER"
     document.saveas(tmp_path / "lines.dxf")
-    with pytest.raises(camgeo.CallError, match="contour is open"):
-        camgeo.follow(tmp_path / "lines.dxf", flat=True)
+    followed = camgeo.follow(tmp_path / "lines.dxf", flat=True)
+    assert followed.lift == pytest.approx(10.0, abs=1e-3)
+    assert followed.remarks == ("what is no part of the cam is passed over: 1 LINE on 0",)
+    assert judged_by_recipe(followed).ok
+
+
+def test_a_unit_is_asked_for_beside_a_gap(tmp_path: Path) -> None:
+    document = ezdxf.new("R12")
+    document.modelspace().add_arc((0, 0), 1.0, 0.0, 179.0)
+    document.modelspace().add_arc((0, 0), 1.0, 180.0, 0.0)
+    document.saveas(tmp_path / "gap.dxf")
+    with pytest.raises(camgeo.CallError, match=r"give gap 0\.018 to join them, and units mm, or another and"):
+        camgeo.follow(tmp_path / "gap.dxf", flat=True)
+    with pytest.raises(camgeo.CallError, match=r"give gap 0\.018 to join them$"):
+        camgeo.follow(tmp_path / "gap.dxf", flat=True, units="mm")
+    with pytest.raises(camgeo.CallError, match=r"give gap 0\.45 to join them"):
+        camgeo.follow(tmp_path / "gap.dxf", flat=True, units="inch")
 
 
 def test_a_drawing_of_dashed_lines_alone_has_no_outline(tmp_path: Path) -> None:

@@ -15,7 +15,9 @@ from support.machine import milled, scattered
 from support.measured import RECIPES, bump, disc, measured, points, surfaces, table, turned
 
 import camgeo
+from camgeo.capabilities.made.keys import offered
 from camgeo.cli.main import main
+from camgeo.registry.formats import FORMATS as OF_FILES
 from kin.read.files import read_drawing
 
 ROLLER = disc("kind: roller, radius: 10, offset: 6", part="bore: 12, thickness: 4")
@@ -92,7 +94,7 @@ def runs_of(folder, text, *deviations, noise=0.0):
     return runs
 
 
-@pytest.mark.thin(16)
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", list(RECIPES))
 def test_every_kind_is_corrected_and_judged_against_that(kind, tmp_path):
     text = plain(RECIPES[kind])
@@ -118,15 +120,14 @@ FORMATS = (
     "dxf: {as: arcs, correct: 1}",
     "dxf: {as: spline, correct: 1}",
     "dxf: {as: polyline, correct: 1}",
-    *(f"{name}: {{correct: 1}}" for name in ("svg", "stl", "ply", "3mf", "step", "gcode")),
+    *(f"{name}: {{correct: 1}}" for name, record in OF_FILES.items() if name not in {"dxf", "csv"} and offered(record)),
     *(f"csv: {{as: {form}, correct: 1}}" for form in ("points", "grinding", "lift, roller: 25")),
 )
 
 
 # needs: milling
 @pytest.mark.slow
-@pytest.mark.parametrize("rounding", [5.0, 1.0, 0.3])
-@pytest.mark.parametrize("sides", [3, 5])
+@pytest.mark.parametrize(("sides", "rounding"), [(5, 5.0), (3, 1.0), (5, 0.3)])
 def test_every_file_of_a_corrected_reuleaux_polygon_holds(sides, rounding, tmp_path):
     """Its radius of curvature jumps from the rounding to the breadth less that, and the contour has no corner."""
     text = polygon(sides, rounding) + MILL.replace("cutter: 6", "wheel: 200, cutter: 6")
@@ -155,7 +156,9 @@ def test_a_jump_of_acceleration_leaves_no_corner_either(kind, tmp_path):
 def test_tables_that_grind_or_draw_the_contour_are_corrected(kind, tmp_path):
     """Where a wheel of 200 mm stands, and which way it faces, say where it leaves the metal."""
     text = plain(RECIPES[kind]) + "\nmanufacture: {wheel: 200}"
-    forms = ", ".join(f"{{csv: {{as: {form}, correct: 0.8}}}}" for form in ("grinding", "points", "lift, roller: 25"))
+    forms = ", ".join(
+        f"{{csv: {{as: {form}, correct: 0.8, local: take}}}}" for form in ("grinding", "points", "lift, roller: 25")
+    )
     recipe = written(tmp_path, text, runs_of(tmp_path, text, wavy), forms)
     report = camgeo.export(recipe, tmp_path / "out")
     files = [report.path / file["path"] for file in report["files"]]
@@ -179,13 +182,13 @@ def read_contour(path):
     return chain.contour.sample(8)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.5, 1.5])
 def test_the_contour_is_the_exact_one_less_the_sum_along_its_normals(share, tmp_path):
     """Of two runs, the first measured in two files, whose mean counts; places are those of a formula."""
     runs = runs_of(tmp_path, ROLLER, bump(0.02), bump(0.01), lambda t: 0.006 * np.cos(2.0 * t))
     runs = [f"[{runs[0][1:-1]}, {runs[1][1:-1]}]", runs[2]]
-    recipe = written(tmp_path, ROLLER, runs, f"{{dxf: {{as: arcs, correct: {share}}}}}")
+    recipe = written(tmp_path, ROLLER, runs, f"{{dxf: {{as: arcs, correct: {share}, local: take}}}}")
     report = camgeo.export(recipe, tmp_path / "out")
     file = report["files"][0]
     ((_, _, surface),) = surfaces(ROLLER)
@@ -202,7 +205,7 @@ def test_the_contour_is_the_exact_one_less_the_sum_along_its_normals(share, tmp_
     # the nominal contour, under the name of the corrected file, is told from it
     other = written(tmp_path, ROLLER, (), "{dxf: {as: arcs}}")
     (nominal,) = camgeo.export(other, tmp_path / "nominal").path.glob("*.dxf")
-    recipe = written(tmp_path, ROLLER, runs, f"{{dxf: {{as: arcs, correct: {share}}}}}")
+    recipe = written(tmp_path, ROLLER, runs, f"{{dxf: {{as: arcs, correct: {share}, local: take}}}}")
     shutil.copy(nominal, tmp_path / file["path"])
     failed = {one["name"]: one for one in camgeo.verify(recipe, tmp_path / file["path"])["checks"] if not one["ok"]}
     assert failed["contour"]["value"] == pytest.approx(share * np.abs(off).max(), abs=0.002)
@@ -212,7 +215,7 @@ def test_the_contour_is_the_exact_one_less_the_sum_along_its_normals(share, tmp_
 @pytest.mark.slow
 def test_a_correction_goes_with_kerf_and_shrinkage(tmp_path):
     runs = runs_of(tmp_path, ROLLER, bump(0.02))
-    recipe = written(tmp_path, ROLLER, runs, "{dxf: {as: arcs, correct: 1, kerf: 0.2, shrinkage: 1}}")
+    recipe = written(tmp_path, ROLLER, runs, "{dxf: {as: arcs, correct: 1, local: take, kerf: 0.2, shrinkage: 1}}")
     report = camgeo.export(recipe, tmp_path / "out")
     file = report["files"][0]
     assert file["path"] == "part-kerf-shrinkage-correct.dxf"
@@ -252,7 +255,9 @@ def test_a_file_of_a_run_has_its_own_unit_probe_and_placing(tmp_path):
 
 def test_runs_are_told_with_the_scatter_of_their_files(tmp_path, capsys):
     """Of two files that differ by 0.002 sin(5 t) the standard deviation about their mean is half of that, 0.001."""
-    runs = runs_of(tmp_path, ROLLER, bump(0.02), lambda t: bump(0.02)(t) + 0.002 * np.sin(5.0 * t), bump(0.004))
+    wave = np.array([0.02, 0.004])[:, None] * np.cos(np.arange(720) * np.pi / 360.0 - np.radians(50.0))
+    waves = lambda _: wave[0], lambda t: wave[0] + 0.002 * np.sin(5.0 * t), lambda _: wave[1]
+    runs = runs_of(tmp_path, ROLLER, *waves, noise=0.0002)
     runs = [f"[{runs[0][1:-1]}, {runs[1][1:-1]}]", runs[2]]
     recipe = written(tmp_path, ROLLER, runs, "html, {dxf: {correct: 0.5}}")
     assert main(["export", str(recipe), "--out", str(tmp_path / "out"), "-v"]) == 0
@@ -262,8 +267,8 @@ def test_runs_are_told_with_the_scatter_of_their_files(tmp_path, capsys):
     assert first["files_differ_by"] == pytest.approx(0.001, rel=0.02)
     assert "files_differ_by" not in second
     (total,) = section["systematic"]
-    assert total["greatest"] == pytest.approx(first["greatest"] + second["greatest"], rel=1e-3)
-    assert total["at_deg"] == pytest.approx(np.degrees(np.radians(50.0)), abs=2.0)
+    assert total["greatest"] == pytest.approx(first["greatest"] + second["greatest"], rel=0.01)
+    assert total["at_deg"] == pytest.approx(50.0, abs=15.0)
     assert section["corrections"][0]["greatest"] == pytest.approx(-0.5 * total["greatest"])
     assert re.search(r"run0-1\.csv, run1-1\.csv +1440 +\+0\.0\d+ +\d+\.\d\d deg .* 0\.0\d+\n", told)
     assert re.search(r"\nsum +\+0\.02\d* ", told)
@@ -273,6 +278,7 @@ def test_runs_are_told_with_the_scatter_of_their_files(tmp_path, capsys):
     assert '<th scope="row">run0-1.csv, run1-1.csv</th><td></td><td>1440</td>' in page
 
 
+@pytest.mark.slow
 def test_without_a_corrected_file_points_are_only_told(tmp_path):
     runs = runs_of(tmp_path, ROLLER, bump(0.02))
     report = camgeo.export(written(tmp_path, ROLLER, runs, "dxf"), tmp_path / "out")
@@ -287,8 +293,18 @@ def test_without_a_corrected_file_points_are_only_told(tmp_path):
 CORRECT = "{dxf: {correct: 0.8}}"
 BAD = {
     "no points": (ROLLER, (), CORRECT, "files[0].dxf.correct: there are no measured points to correct by; give made.p"),
-    "no file": (ROLLER, ["run9.csv"], CORRECT, "made.points[0]: no such file, given 'run9.csv'; give its path as seen"),
-    "in a list": (ROLLER, ["[run.csv, run9.csv]"], CORRECT, "made.points[0][1]: no such file, given 'run9.csv'"),
+    "no file": (
+        ROLLER,
+        ["run9.csv"],
+        CORRECT,
+        "made.points[0]: the file does not exist, given 'run9.csv'; give its path as seen",
+    ),
+    "in a list": (
+        ROLLER,
+        ["[run.csv, run9.csv]"],
+        CORRECT,
+        "made.points[0][1]: the file does not exist, given 'run9.csv'",
+    ),
     "no list": (ROLLER, ["[[run.csv]]"], CORRECT, "made.points[0][0]: not the path of a file"),
     "too much": (ROLLER, ["run.csv"], "{dxf: {correct: 2}}", "files[0].dxf.correct: above 1.5, given 2; give a number"),
     "units": (ROLLER, ["{file: run.csv, units: cm}"], CORRECT, "made.points[0].units: "),
@@ -331,7 +347,7 @@ BAD = {
 }
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", list(BAD))
 def test_bad_input_is_told_in_one_line(name, tmp_path, capsys):
     text, runs, files, told = BAD[name]

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from support.measured import RECIPES, disc
 
 import camgeo
+from camgeo.capabilities.made import dmis
+from camgeo.capabilities.made.dmis import shaft_program
 from camgeo.cli.main import main
 from camgeo.common.errors import CallError
 
@@ -93,3 +98,19 @@ def test_a_program_is_not_what_it_measures(tmp_path):
     recipe, report = exported(tmp_path, next(iter(RECIPES.values())), "{dmis: {step: 5}}")
     with pytest.raises(CallError, match=r"a program that measures, and no point FA\(label\)=FEAT/POINT,CART of what"):
         camgeo.verify(recipe, report.path / "part.dmi")
+
+
+@pytest.mark.parametrize(("units", "word"), [(None, "MM"), ("inch", "INCH")])
+def test_a_program_of_a_shaft_is_in_the_units_asked_for_or_its_recipe_s(units, word):
+    recipe = SimpleNamespace(name="shaft", units="mm", verify=SimpleNamespace(angles=8))
+    assert list(shaft_program(recipe, [], None, units)) == ["DMISMN/'shaft'", f"UNITS/{word},ANGDEC", "ENDFIL"]
+
+
+def test_a_program_of_a_shaft_measures_each_cam_halfway_along_its_length_in_its_zone(monkeypatch):
+    cam: Any = SimpleNamespace(
+        recipe=SimpleNamespace(profile=0.02), low=20.0, high=32.0, design=SimpleNamespace(contours=()), at=1.5
+    )
+    monkeypatch.setattr(dmis, "_program", lambda _, discs, step, units: [*discs, step, units])
+    found: Any = shaft_program(SimpleNamespace(units="mm"), [cam], 0.5)
+    disc, step, units = found
+    assert (disc.zone, disc.height, step, units) == (0.02, 26.0, 0.5, "mm")

@@ -81,6 +81,7 @@ def test_lift_and_velocity_are_those_of_brute_force(tmp_path):
     assert told["velocity"]["intended"] < told["velocity"]["made"]
 
 
+@pytest.mark.slow
 def test_size_is_no_duration_and_a_turn_is_phase_alone(tmp_path):
     """The lash is set on the base circle as it was made."""
     recipe, files = measured(tmp_path, LOBE, lambda t: np.full_like(t, 0.02))

@@ -34,8 +34,13 @@ def test_a_run_is_a_file_or_a_list_of_files_with_options_of_their_own(tmp_path: 
 
 
 def test_a_file_that_is_missing_is_named_where_it_stands(tmp_path: Path) -> None:
-    with pytest.raises(RecipeErrors, match=r"made\.points\[0\]\[1\]: no such file, given 'c\.csv'"):
+    with pytest.raises(RecipeErrors, match=r"made\.points\[0\]\[1\]: the file does not exist, given 'c\.csv'"):
         recipe(tmp_path, "[[a.csv, c.csv]]")
+
+
+def test_a_name_longer_than_any_file_has_a_place(tmp_path: Path) -> None:
+    with pytest.raises(RecipeErrors, match=r"made\.points\[0\]: cannot be read: .*, given 'x+\.\.\.'; give its path"):
+        recipe(tmp_path, f"[{'x' * 300}.csv]")
 
 
 def test_remedies_name_keys_of_the_entry() -> None:

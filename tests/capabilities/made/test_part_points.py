@@ -34,7 +34,7 @@ def lifts(folder, text, late=0.0, *, heading="angle_deg,lift_mm", angles=(1.0,),
     return recipe, file
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("late", [12.3, -90.0, 180.0, 154.3])
 def test_lifts_from_any_zero_are_told_and_judged(late, tmp_path, capsys):
     recipe, file = lifts(tmp_path, ROLLER + LIMIT, late)
@@ -48,7 +48,7 @@ def test_lifts_from_any_zero_are_told_and_judged(late, tmp_path, capsys):
     assert made["verdicts"] == {"made-profile": "ok"}
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("late", [0.1, 1.5, -3.0])
 def test_lifts_that_are_a_little_late_show_their_phase(late, tmp_path):
     """As they stand the motion is that of the turned cam, by contact: a phase and the fault, and nothing else."""
@@ -61,12 +61,14 @@ def test_lifts_that_are_a_little_late_show_their_phase(late, tmp_path):
     assert looks == ([] if late == 0.1 else [f"the lifts look turned by {late:.3g} degrees: `--align rotation`"])
 
 
+@pytest.mark.slow
 def test_the_sense_of_lifts_is_told_with_their_turn(tmp_path, capsys):
     recipe, file = lifts(tmp_path, ROLLER, 200.0, angles=(-1.0,))
     assert main(["verify", str(recipe), str(file), "--align", "rotation"]) == 2
     assert "run in the other sense, turned by -160 degrees: let angles grow as the shaft" in capsys.readouterr().err
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("heading", ["crank_deg,lift_mm", "Crank angle [deg],lift_mm", "angle (deg) CA,lift_mm"])
 def test_crank_degrees_of_a_heading_are_halved(heading, tmp_path):
     recipe, file = lifts(tmp_path, ROLLER, heading=heading, angles=(2.0,))
@@ -75,7 +77,7 @@ def test_crank_degrees_of_a_heading_are_halved(heading, tmp_path):
     assert abs(made["motion"]["phase_deg"]) < 0.005
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("wrong", "factor", "right"),
     [
@@ -91,6 +93,7 @@ def test_angles_of_the_other_shaft_are_told_and_the_remedy_helps(wrong, factor, 
     assert abs(camgeo.verify(recipe, file)["made"]["motion"]["phase_deg"]) < 0.005
 
 
+@pytest.mark.slow
 def test_two_turns_are_repeats(tmp_path):
     recipe, file = lifts(tmp_path, ROLLER, turns=2)
     made = camgeo.verify(recipe, file)["made"]
@@ -126,7 +129,7 @@ def test_lifts_of_another_cam(tmp_path):
         camgeo.verify(recipe, file)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "told"),
     [

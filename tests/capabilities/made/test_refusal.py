@@ -29,8 +29,10 @@ def refuse(error: Exception) -> None:
         (UnlikePointsError("they look turned"), "", "a.csv, b.csv: they look turned"),
         (UnlikePointsError("they look turned"), "intake", "a.csv, b.csv: intake: they look turned"),
         (FrameError("it binds"), "", "a.csv, b.csv: on the metal that these points tell, it binds"),
-        (CallError("a file is missing"), "", "a file is missing"),
-        (CallError("a file is missing"), "intake", "intake: a file is missing"),
+        (CallError("its lifts are in degrees"), "", "a.csv, b.csv: its lifts are in degrees"),
+        (CallError("its lifts are in degrees"), "intake", "a.csv, b.csv: intake: its lifts are in degrees"),
+        (CallError("b.csv: no such disc"), "", "b.csv: no such disc"),
+        (CallError("b.csv: no such disc"), "intake", "intake: b.csv: no such disc"),
     ],
 )
 def test_what_is_refused_of_points_names_their_files(error: Exception, lobe: str, message: str) -> None:

@@ -88,6 +88,7 @@ YOKE = (
 PAIR = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {bore: 12}\nverify: {angles: 360}"
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("more", "share"), [(0.005, 1.25), (-0.008, 0.6), (-0.03, 0.0)])
 def test_a_preload_is_what_the_metal_leaves(more, share, tmp_path):
     """Metal that is larger all round overlaps each roller by as much more: half the interference lies on either."""
@@ -134,6 +135,7 @@ def steady_by_steps(text, error, stiffness, damping):
     return max(forces), min(forces)
 
 
+@pytest.mark.slow
 def test_an_elastic_train_follows_the_made_motion(tmp_path):
     stiffness, damping = 2e6, 180.0
     text = (
@@ -156,6 +158,7 @@ def test_an_elastic_train_follows_the_made_motion(tmp_path):
     assert any("floats is not searched" in text for text in made["remarks"])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("recipe", "told"),
     [

@@ -20,6 +20,7 @@ SECTION: dict[str, Any] = {
         "velocity": ERROR,
         "acceleration": ERROR,
         "offset": -0.5,
+        "offset_uncertainty": 0.002,
         "unit": "mm",
         "phase_deg": 0.25,
         "phase_uncertainty_deg": 0.01,
@@ -41,12 +42,13 @@ MADE, OTHER = (
         ("failed", [MADE], "FAILED"),
         ("not proved", [MADE, OTHER], "FAILED"),
         ("ok", [], "ok"),
+        (None, [], "measured, no limit given"),
     ],
 )
 def test_the_verdict_is_not_proved_where_nothing_fails_for_certain(
-    verdict: str, checks: list[dict[str, Any]], word: str
+    verdict: str | None, checks: list[dict[str, Any]], word: str
 ) -> None:
-    section = SECTION | {"verdicts": {"made-motion": verdict}}
+    section = SECTION | {"verdicts": {"made-motion": verdict} if verdict else {}}
     text = shown({"recipe": "cam", "ok": not checks, "checks": checks, "made": section}, everything=False)
     assert text.startswith(f"cam: {word}  points.csv\n")
     assert "  remark: no limit is given" in text
@@ -57,5 +59,6 @@ def test_figures_stand_beside_the_intended_ones() -> None:
     event = {"made": 8.05, "intended": 8.0, "uncertainty": 0.004, "unit": "mm"}
     rows = dict(table_rows(SECTION | {"events": {"follower": {"lift": event}}}, everything=False))
     assert rows["motion, error"] == "+0.01235 +- 0.0012 mm at 50.00 degrees"
-    assert rows["  phase"] == "+0.25 +- 0.01 degrees; 0.002 mm remain without it"
+    assert rows["  constant offset"] == "-0.5 +- 0.002 mm, set on assembly"
+    assert rows["  phase, by the motion"] == "+0.25 +- 0.01 degrees; 0.002 mm remain without it"
     assert rows["follower, greatest lift"] == "8.05 +- 0.004 mm, intended 8: +0.05"

@@ -1,7 +1,8 @@
 # needs: camshaft
 """Points of camshafts: each lobe by its own recipe, phases between lobes, and what is no point of a lobe.
 
-Holds: kin.made.shaft_alike.
+Holds: kin.made.shaft_alike, camgeo.capabilities.made.camshaft, camgeo.capabilities.made.verify_shaft,
+camgeo.synthesis.shaft_cam.
 """
 
 from __future__ import annotations
@@ -52,6 +53,7 @@ def test_a_clean_shaft_holds_and_shows_no_phase(more, tmp_path):
         assert lobe["surfaces"][0]["noise"] * scale == pytest.approx(0.001, rel=0.15)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("more", ["", "rotation: ccw\n"])
 def test_planted_faults_are_found_on_their_lobe_alone(more, tmp_path):
     """A lobe that stands late by 0.1 degrees is told as that; a burr elsewhere is no phase of the others."""
@@ -106,6 +108,7 @@ def test_lifts_are_those_of_the_shafts_own_table(rotation, tmp_path):
             assert abs(lobe["motion"]["error"]["max"]) < 1e-5
 
 
+@pytest.mark.slow
 def test_lifts_of_all_lobes_turn_as_one(tmp_path):
     recipe = camshaft(tmp_path)
     angle, rows = np.arange(0.0, 360.0, 1.0), []
@@ -131,6 +134,7 @@ def lift_table(recipe, file, late=0.0, *, alone=(0.0, 0.0, 0.0), step=1.0, facto
     return file
 
 
+@pytest.mark.costly("three lobes, each judged before and after it is turned")
 @pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("late", "alone"),
@@ -195,7 +199,7 @@ def test_crank_degrees_of_an_engine(engine, tmp_path, capsys):
         assert halved not in made["remarks"]
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("label", ["number", "name", "2.0"])
 def test_lobes_by_a_column(label, tmp_path):
     recipe = camshaft(tmp_path)
@@ -226,6 +230,7 @@ def test_a_file_for_each_lobe_and_lobes_that_are_missing_are_said(tmp_path, caps
     assert (made["datum"], made["missing"]) == ("flat", ["roller"])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("columns", "change", "message"),
     [
@@ -270,6 +275,7 @@ def test_too_few_points_of_one_lobe(tmp_path):
         camgeo.verify(recipe, written(tmp_path / "points.csv", rows, "lobe,x_mm,y_mm"))
 
 
+@pytest.mark.slow
 def test_lobes_that_meet_need_a_column(tmp_path):
     recipe = camshaft(tmp_path)
     recipe.write_text(recipe.read_text("utf-8").replace("z: 40", "z: 34"), "utf-8")
@@ -385,7 +391,7 @@ OFF = r"points.csv: the points lie \S+ mm off the contours on average: "
 UP = "measure it with the upper end up, as the file is drawn, or turn y round"
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize(
     ("wrong", "columns", "message"),
     [
@@ -441,10 +447,11 @@ def test_points_that_are_not_of_this_shaft_are_told_what_they_look_like(wrong, c
     assert re.search(message, line)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("wrong", "right", "options"),
     [
+        # the only quick one that looks for a shaft of points at every angle, which takes seconds
         (lambda n, z, x, y: (n, z, y, x), lambda n, z, x, y: (n, z, x, -y), {"align": "rotation"}),
         (lambda n, z, x, y: (n, 92.0 - z, x, -y), lambda n, z, x, y: (n, 92.0 - z, x, -y), {}),
         (lambda n, z, x, y: (n, z, x / 25.4, y / 25.4), lambda *row: row, {"units": "inch"}),
@@ -452,12 +459,13 @@ def test_points_that_are_not_of_this_shaft_are_told_what_they_look_like(wrong, c
 )
 def test_what_is_told_helps(wrong, right, options, tmp_path):
     recipe = camshaft(tmp_path)
-    rows = [right(*wrong(*row)) for row in shaft_points(recipe, count=120)]
+    rows = [right(*wrong(*row)) for row in shaft_points(recipe, count=48)]
     columns = "lobe,x,y" if "units" in options else "z_mm,x_mm,y_mm"
     report = camgeo.verify(recipe, written(tmp_path / "points.csv", rows, columns), spans=12, **options)
     assert all(lobe["discs"][0]["profile"] < 1e-6 for lobe in lobes_of(report).values())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("late", [2.0, -30.0])
 def test_a_lobe_that_stands_elsewhere_is_judged_and_told(late, tmp_path):
     """It is the part that is wrong, not its points: a turn of one lobe is none of the shaft."""

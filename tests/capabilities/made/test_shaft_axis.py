@@ -66,6 +66,7 @@ def test_a_lean_is_found_and_taken_out_when_that_is_said(more, tmp_path):
     assert all(abs(lobe["motion"]["error"]["max"]) < 0.002 for lobe in made["lobes"] if lobe["name"] != "arm")
 
 
+@pytest.mark.slow
 def test_a_straight_shaft_does_not_lean(tmp_path):
     recipe = camshaft(tmp_path)
     file = written(tmp_path / "points.csv", shaft_points(recipe, noise=0.001))
@@ -74,6 +75,7 @@ def test_a_straight_shaft_does_not_lean(tmp_path):
     assert not any("leans" in text for text in made["remarks"])
 
 
+@pytest.mark.slow
 def test_an_eccentric_lobe_is_no_lean(tmp_path, capsys):
     recipe = more_lobes(camshaft(tmp_path))
     rows = shaft_points(recipe, noise=0.001, count=180)

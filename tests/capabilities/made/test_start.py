@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import os
 import re
 
 import numpy as np
@@ -9,6 +11,7 @@ import pytest
 from support.measured import ARM, MOTION, RECIPES, SWING, bump, disc, measured, nothing, points, surfaces, table, turned
 
 import camgeo
+from camgeo.cli import progress
 from camgeo.cli.main import main
 from kin.law.sources.laws import NAMES
 
@@ -128,6 +131,7 @@ def start(folder, text, deviation=nothing, noise=0.0005, recipe=None):
     return main(["new", "--from", str(folder / "points.csv"), str(folder / "bare.yaml"), str(folder / "new.yaml")])
 
 
+@pytest.mark.costly("laws are told apart by fits of each")
 @pytest.mark.thin(9)
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_recipe_of_a_clean_cam_comes_back(kind, tmp_path, capsys):
@@ -147,7 +151,7 @@ def test_the_recipe_of_a_clean_cam_comes_back(kind, tmp_path, capsys):
     assert camgeo.verify(tmp_path / "new.yaml", tmp_path / "points.csv")["made"]["discs"][0]["profile"] < 0.007
 
 
-@pytest.mark.thin(12)
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", TWO_CONTACTS)
 def test_the_recipe_of_a_clean_cam_with_two_contacts_comes_back(kind, tmp_path, capsys):
     text = TWO_CONTACTS[kind]
@@ -165,7 +169,7 @@ def test_the_recipe_of_a_clean_cam_with_two_contacts_comes_back(kind, tmp_path, 
     assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", SERIES)
 def test_a_support_function_comes_back_as_its_series(name, tmp_path, capsys):
     """Harmonics within 0.2 um, and none besides; of jumps of curvature the low ones, by what they leave."""
@@ -207,9 +211,13 @@ def test_a_frame_under_a_linkage_comes_back(tmp_path):
     assert camgeo.export(tmp_path / "new.yaml", tmp_path / "out").ok
 
 
+LAWS = sorted(set(NAMES) - {"constant-velocity"})  # of which alone no motion is made
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["groove", "yoke", "double roller"])
-@pytest.mark.parametrize("law", sorted(set(NAMES) - {"constant-velocity"}))  # of which alone no motion is made
+@pytest.mark.parametrize(  # each law of one kind, in turn
+    ("law", "kind"), list(zip(LAWS, itertools.cycle(["groove", "yoke", "double roller"]), strict=False))
+)
 def test_each_law_of_two_contacts_is_told(kind, law, tmp_path):
     text = TWO_CONTACTS[kind].replace("cycloidal", law).replace("roller_radius: 8", "roller_radius: 6")  # no undercut
     assert start_all(tmp_path, text) == 0
@@ -231,6 +239,7 @@ def test_play_is_told_and_halved_between_both_sides(tmp_path, capsys):
     assert "the contacts have +0.02 mm more play than the recipe says, from +0.02 to +0.02" in capsys.readouterr().out
 
 
+@pytest.mark.costly("points of a whole part, with a start from them")
 def test_the_breadth_of_a_yoke_is_that_of_its_points(tmp_path, capsys):
     """A cam 0.03 mm too large all round has a larger base circle; a bump on one side shows in the breadth."""
     text = TWO_CONTACTS["yoke"]
@@ -271,9 +280,16 @@ def test_round_numbers_are_written_where_the_points_let_them_be(tmp_path):
     )
 
 
-def test_comments_and_other_keys_stay(tmp_path):
-    text = "# my cam\n" + bare(RECIPES["flat"]) + "\nexport: {tolerance: 0.002}  # as asked\n"
-    assert start(tmp_path, RECIPES["flat"], recipe=text) == 0
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (SUPPORT + SERIES["odd"][0], SUPPORT + SERIES["odd"][1]),
+        pytest.param(RECIPES["flat"], bare(RECIPES["flat"]), marks=pytest.mark.slow),
+    ],
+)
+def test_comments_and_other_keys_stay(text, said, tmp_path):
+    recipe = f"# my cam\n{said}\nexport: {{tolerance: 0.002}}  # as asked\n"
+    assert start(tmp_path, text, recipe=recipe) == 0
     new = (tmp_path / "new.yaml").read_text("utf-8")
     assert new.startswith("# my cam\n")
     assert "# as asked" in new
@@ -353,6 +369,7 @@ OTHERS = {  # the cam, as what it is told, and by how many degrees its points ar
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", OTHERS)
 def test_points_that_keep_from_the_symmetry_of_a_kind_are_refused(name, tmp_path, capsys):
     cam, told_as, turn, told = OTHERS[name]
@@ -408,3 +425,31 @@ def test_files_that_are_there_or_not_there(tmp_path, capsys):
     assert main(["new", "--from", str(tmp_path / "points.csv")]) == 2
     assert "give a recipe that says what follows the cam" in capsys.readouterr().err
     assert not (tmp_path / "other.yaml").exists()
+
+
+# needs: follow
+def test_a_drawing_has_no_points(tmp_path, capsys):
+    (tmp_path / "cam.dxf").write_text("0\nEOF\n")
+    (tmp_path / "bare.yaml").write_text(bare(RECIPES["flat"]), "utf-8")
+    words = ["new", "--from", *(str(tmp_path / name) for name in ("cam.dxf", "bare.yaml", "new.yaml"))]
+    assert main(words) == 2
+    problem = "a drawing, and no points: its recipe is made by camgeo follow with --recipe"
+    assert f"cam.dxf: {problem}" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+def test_pipes_are_not_waited_for(tmp_path, capsys):
+    os.mkfifo(tmp_path / "pipe.csv")
+    os.mkfifo(tmp_path / "pipe.yaml")
+    (tmp_path / "bare.yaml").write_text(bare(RECIPES["flat"]), "utf-8")
+    for source, recipe in (("pipe.csv", "bare.yaml"), ("pipe.csv", "pipe.yaml")):
+        words = ["new", "--from", str(tmp_path / source), str(tmp_path / recipe), str(tmp_path / "new.yaml")]
+        assert main(words) == 2
+        assert "a pipe, a socket or a device, not a file" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_what_takes_long_is_said(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(progress, "LONG", 0.01)
+    assert start(tmp_path, RECIPES["flat"]) == 0
+    assert capsys.readouterr().err == "new.yaml: make the recipe ...\n"

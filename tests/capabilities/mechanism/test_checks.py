@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from camgeo.capabilities.mechanism.checks import CHECKS, slimmer_sizes
+from camgeo.capabilities.mechanism.checks import ANSWERS, slimmer_sizes
 from camgeo.recipe.loading import load_text
 
 RECIPE = """
@@ -15,8 +15,8 @@ part: {{thickness: 8, bore: {{hexagon: 10}}}}
 
 
 def test_what_is_checked_of_bodies():
-    assert {check.name for check in CHECKS} == {"clearance", "collision", "outline"}
-    assert all(check.units == ("mm",) for check in CHECKS)
+    assert {check.name for check in ANSWERS.checks} == {"clearance", "collision", "outline"}
+    assert all(check.units == ("mm",) for check in ANSWERS.checks)
 
 
 @pytest.mark.parametrize(

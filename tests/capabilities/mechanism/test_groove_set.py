@@ -110,6 +110,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("path", REFUSED)
 def test_what_cannot_be_printed_is_refused(path, tmp_path):
     text, before, after, told = REFUSED[path]

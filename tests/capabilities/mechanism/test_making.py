@@ -1,7 +1,8 @@
 """Printable bodies of every kind of mechanism: fits, joints, sections and gaps, by means of their own.
 
 Holds: camgeo.capabilities.mechanism.arms, camgeo.capabilities.mechanism.disc_followers,
-camgeo.capabilities.mechanism.yoke.
+camgeo.capabilities.mechanism.yoke, camgeo.capabilities.mechanism.recipe, camgeo.capabilities.mechanism.figures,
+camgeo.capabilities.mechanism.output.
 """
 
 from __future__ import annotations
@@ -127,7 +128,7 @@ def test_every_body_is_one_closed_piece_with_the_volume_of_its_plates(name: str)
         assert solid.volume == pytest.approx(volume, rel=2e-3), member.name
 
 
-@pytest.mark.thin(12)
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(SHAPES, 3))
 def test_bodies_stand_apart_at_some_angles_by_another_means(name: str) -> None:
     """shapely sees no overlap where kin's search has proved that there is none."""
@@ -145,7 +146,7 @@ def test_bodies_stand_apart_at_some_angles_by_another_means(name: str) -> None:
                         assert first.distance(second) >= least, (one.name, other.name, phi)
 
 
-@pytest.mark.thin(16)
+@pytest.mark.thin(32)
 @pytest.mark.parametrize("name", SHAPES)
 def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) -> None:
     assembly = made(name)[2]
@@ -276,7 +277,7 @@ def test_a_single_flat_face_is_exact_and_says_what_holds_it() -> None:
     assert "gravity or a spring" in assembly.remarks[0]
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", GUIDED)
 def test_what_touches_the_cam_on_a_guide_touches_it_at_every_angle(name: str) -> None:
     """shapely: no farther from the cam than the fit of the contour, and no deeper in it."""
@@ -548,7 +549,7 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
     assert caught.value.field == field
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("name", "old", "new", "field", "part", "remedy", "mended"),
     [

@@ -20,9 +20,9 @@ from camgeo.fit.pieces import ArcSpline, Bound, Polygon
 from camgeo.output.job import Job
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
-from kin.clearance.clearance import Slab
 from kin.contour.contour import Contour
-from kin.judge.printed import judge_body
+from kin.mechanism.clearance import Slab
+from kin.mechanism.printed import judge_body
 
 NONE = Bound(0.0, 0.0)
 E = 0.01
@@ -301,6 +301,15 @@ def test_fault_of_a_body(sound, name):
     one, mesh = sound
     change, caught = FAULTS[name]
     assert caught in failing(spoilt(mesh, change), one)
+
+
+def test_the_check_says_what_is_wrong_with_the_mesh(sound):
+    """Of a closed mesh that lacks one triangle three edges have one triangle alone."""
+    one, mesh = sound
+    corners = spoilt(mesh, lambda c: c[1:])
+    first = judge_body(one.name, corners, slabs(one), E, "body.stl")[0]
+    assert (first.value, first.detail) == (1, f"{one.name}; 3 edges with one triangle")
+    assert judge_body(one.name, spoilt(mesh, lambda c: c), slabs(one), E, "body.stl")[0].detail == one.name
 
 
 MEANT = {

@@ -62,6 +62,7 @@ def failed(checks):
     return {(check.file, check.name) for check in checks if not check.ok}
 
 
+@pytest.mark.slow
 def test_an_stl_for_each_body_lying_flat(tmp_path):
     recipe, design, (files, checks) = made(tmp_path, "stl")
     assert [file.path.name for file in files] == ["part-cam.stl", "part-base.stl", "part-rocker.stl"]
@@ -83,6 +84,7 @@ def test_an_stl_for_each_body_lying_flat(tmp_path):
     assert trimesh.load(tmp_path / "part-base.stl").volume == pytest.approx(5.0 * (6000.0 - math.pi * 5.2**2), rel=1e-4)
 
 
+@pytest.mark.costly("a set of bodies, made and judged twice")
 def test_one_3mf_for_printing_and_one_in_place(tmp_path):
     recipe, design, (files, checks) = made(tmp_path, "3mf")
     assert [file.path.name for file in files] == ["part-parts.3mf", "part-assembly.3mf"]
@@ -133,7 +135,7 @@ def test_the_assembly_moves(tmp_path):
     assert {channel["target"]["node"] for channel in document["animations"][0]["channels"]} == {0, 2}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", ["stl", "3mf", "glb"])
 def test_the_same_bytes_twice(tmp_path, kind):
     found = []

@@ -1,7 +1,7 @@
 """Milling programs: what they leave, by a simulation of its own; what the reader refuses; planted faults.
 
 Holds: camgeo.capabilities.milling.checks, camgeo.capabilities.milling.format, camgeo.capabilities.milling.keys,
-camgeo.capabilities.milling.program, camgeo.capabilities.milling.record, kin.judge.cuts.
+camgeo.capabilities.milling.program, kin.judge.cuts.
 """
 
 import math
@@ -19,10 +19,10 @@ from support.cases import examples, few
 from support.heavy import shapely
 from support.milled import swept
 
-from camgeo.capabilities.milling.gcode import places, rounding
 from camgeo.capabilities.milling.milling import milling_intent
-from camgeo.capabilities.milling.toolpath import depths
 from camgeo.cli.main import main
+from camgeo.files.gcode import places, rounding
+from camgeo.machining.toolpath import depths
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
@@ -60,7 +60,7 @@ def made(folder, **asked):
     return recipe, outcome, outcome.folder / "c.ngc"
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("cam", "more", "top"),
     few(
@@ -144,6 +144,7 @@ def test_the_report_and_the_header(tmp_path):
     assert path.read_text().endswith("G0 Z5.00000\nM5\nM30\n")
 
 
+@pytest.mark.slow
 def test_the_same_bytes_twice_and_mirrored(tmp_path):
     _, _, one = made(tmp_path / "a")
     _, _, two = made(tmp_path / "b")
@@ -172,6 +173,7 @@ def test_inches(tmp_path):
     assert parts[0].area == pytest.approx(np.pi * (25.4**2 - 4 * (0.08 * 25.4) ** 2), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_program_in_inches_of_a_coarse_tolerance_can_be_read(tmp_path):
     text = (
         "units: inch\ncam: {kind: disc, base_radius: 24.5, follower: {kind: roller, radius: 8, offset: -1.45},\n"
@@ -214,7 +216,7 @@ SLIGHT = {
 }
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("usual", few(SLIGHT, 2))
 @pytest.mark.parametrize("tolerance", [0.001, 0.1])
 def test_slight_figures_do_not_round_away(tmp_path, usual, tolerance):
@@ -318,7 +320,7 @@ def test_a_hub_stays_and_what_is_not_milled_is_named(tmp_path, side, safe):
     assert sorted(told) == sorted(one.name for one in foreseen(recipe) if one.file == "c.ngc")
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "check"),
     [
@@ -468,7 +470,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_planted_faults(program, tmp_path, fault):
     change, expected = FAULTS[fault]
@@ -589,7 +591,7 @@ def test_a_path_tighter_than_the_cutter(tmp_path):
     assert {check.name for check in found.checks if not check.ok} == {"direction"}
 
 
-@pytest.mark.thin(8)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("part", "more"),
     few([(PLAIN, ", holes: true"), (PLAIN, ""), (FEATURED, ", holes: true"), (FEATURED, ", layer: true")], 2),

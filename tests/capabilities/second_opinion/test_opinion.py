@@ -1,7 +1,4 @@
-"""A second opinion: each row catches the fault it is for, sound files of every kind pass, nothing else imports it.
-
-Holds: camgeo.capabilities.second_opinion.record.
-"""
+"""A second opinion: each row catches the fault it is for, sound files of every kind pass, nothing else imports it."""
 
 from __future__ import annotations
 
@@ -24,6 +21,7 @@ from camgeo.cli.main import main
 from camgeo.report.failure import remedy
 from kin.contour.contour import Contour
 from kin.contour.nearest import nearest
+from kin.read.formats import FORMATS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -70,6 +68,7 @@ def asked(recipe: Any, path: Path, **more: Any) -> Any:
 
 # --- sound files ------------------------------------------------------------------------------------------------------
 
+CONTOURS = [name for name, record in FORMATS.items() if record.contents in {"drawing", "solid"}]
 KINDS = (
     "shu-wu",
     "disc-ring",  # needs: milling
@@ -87,13 +86,14 @@ def test_shipped_recipes_pass(name: str) -> None:
     report = camgeo.check(camgeo.load(RECIPES / f"{name}.yaml"), second_opinion=True)
     assert report.ok, failed(report)
     assert {check.file for check in report.checks if check.name == "shapely:distance"} == {
-        file.name for file in report.files if file.kind in {"dxf", "svg", "stl", "3mf", "step"}
+        file.name for file in report.files if file.kind in CONTOURS
     }
     assert set(rows(report)) >= {"shapely:valid"}
     skipped = {entry["what"]: entry["why"] for entry in report["skipped"]}
     assert skipped.get(f"second opinion[{name}.csv]") == "a table has no contour"
 
 
+@pytest.mark.costly("files in each form, each judged twice")
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("units", "rotation", "compensation"), [("mm", "ccw", "{kerf: 0.2}"), ("inch", "cw", "{clearance: 0.01}")]
@@ -140,7 +140,7 @@ def crossed() -> Any:
     return spoilt
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("vertices", "caught"),
     [
@@ -188,7 +188,7 @@ def with_a_box(mesh: Any) -> Any:
     return np.concatenate([mesh, box + np.array([60.0, 0.0, 0.0])])
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("write", [write_stl, write_3mf])
 @pytest.mark.parametrize(
     ("spoil", "caught"),
@@ -224,7 +224,7 @@ def test_what_trimesh_cannot_open_fails(tmp_path: Path, recipe: Any) -> None:
 
 @pytest.mark.parametrize("text", ["", "solid", "0\nSECTION\n"])
 def test_what_cannot_be_read_is_left_out_and_fails_as_ever(tmp_path: Path, recipe: Any, text: str) -> None:
-    for name in ("cam.dxf", "cam.stl", "cam.3mf", "cam.svg", "cam.step"):
+    for name in (f"cam.{kind}" for kind in CONTOURS):
         (tmp_path / name).write_text(text)
         report = asked(recipe, tmp_path / name)
         assert not report.ok
@@ -302,6 +302,7 @@ def test_without_a_library_the_command_says_how_to_get_it(
     assert main(["verify", str(recipe.path), str(path)]) == 0
 
 
+@pytest.mark.slow
 def test_the_command_asks_where_it_is_told_to(tmp_path: Path, recipe: Any, capsys: pytest.CaptureFixture[str]) -> None:
     path = str(write_dxf(tmp_path / "cam.dxf", moved(0.0023)))
     assert main(["verify", str(recipe.path), path, "--tolerance", "0.0025", "-v"]) == 0
@@ -310,6 +311,7 @@ def test_the_command_asks_where_it_is_told_to(tmp_path: Path, recipe: Any, capsy
     assert "shapely:distance (cam.dxf): " in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_assertions_take_the_rows_along(tmp_path: Path, recipe: Any) -> None:
     sound = write_dxf(tmp_path / "sound.dxf", VERTICES, extra=lambda _: None)
     testing.assert_contour(recipe, sound, second_opinion=True)
@@ -322,6 +324,7 @@ def test_assertions_take_the_rows_along(tmp_path: Path, recipe: Any) -> None:
             wanted(recipe, path, second_opinion=True)
 
 
+@pytest.mark.slow
 def test_nothing_else_imports_the_libraries(tmp_path: Path, recipe: Any) -> None:
     path = write_stl(tmp_path / "cam.stl", triangles())
     code = (

@@ -11,27 +11,25 @@ import json
 import math
 import re
 import zlib
-from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import ezdxf
+import ezdxf.bbox
 import numpy as np
 import pytest
 from ezdxf.entities.lwpolyline import LWPolyline
-from support.cases import few
 from support.places import SHIPPED
+from support.sheets import demand_clear
 
 import camgeo
-from camgeo.capabilities.sheet import drawing, lettering
-from camgeo.capabilities.sheet.marks import CircleMark, Dimension, LineMark
+from camgeo.capabilities.sheet import drawing, lettering, views
+from camgeo.capabilities.sheet.marks import Dimension
 from camgeo.cli.main import main
 from camgeo.recipe.recipe import load_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
-    from camgeo.capabilities.sheet.marks import Page
 
 CAM = """\
 cam:
@@ -94,50 +92,6 @@ def dimensions(path: Path) -> list[Any]:
     return [entity for entity in ezdxf.readfile(path).modelspace() if entity.dxftype() == "DIMENSION"]
 
 
-def overlapping(page: Page) -> Iterator[tuple[str, str]]:
-    for one, other in combinations(page.texts, 2):
-        a, b = one.box, other.box
-        if a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]:
-            yield one.text, other.text
-
-
-def strokes(page: Page) -> np.ndarray:
-    """All lines of a page as ends of chords (n, 2, 2): those of dimensions, circles, and arrows among them."""
-    chains = []
-    for mark in page.marks:
-        lines = mark.lines if isinstance(mark, Dimension) else [mark] if isinstance(mark, LineMark) else []
-        chains += [np.vstack([line.points, line.points[:1]]) if line.closed else line.points for line in lines]
-        if isinstance(mark, CircleMark):
-            turn = np.linspace(0.0, 2.0 * np.pi, 181)
-            chains.append(np.array(mark.centre) + mark.radius * np.column_stack([np.cos(turn), np.sin(turn)]))
-    return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
-
-
-def crossed(page: Page) -> Iterator[str]:
-    """Texts through whose box a line runs."""
-    starts, ends = strokes(page).swapaxes(0, 1)
-    ways = np.where(ends == starts, 1e-12, ends - starts)
-    for text in page.texts:
-        low, high = np.array(text.box[:2]) + 0.01, np.array(text.box[2:]) - 0.01
-        both = np.stack([(low - starts) / ways, (high - starts) / ways])
-        enters, leaves = both.min(axis=0).max(axis=1), both.max(axis=0).min(axis=1)
-        if (np.maximum(enters, 0.0) < np.minimum(leaves, 1.0)).any():
-            yield text.text
-
-
-def demand_clear(pages: drawing.Pages) -> None:
-    """Every text is legible, within the frame, over no other one, and no line runs through it."""
-    for page in pages.all:
-        assert page.texts
-        assert list(overlapping(page)) == []
-        assert list(crossed(page)) == []
-        for text in page.texts:
-            x0, y0, x1, y1 = text.box
-            assert text.height >= 2.5
-            assert 20.0 < x0 < x1 < page.width - 10.0, text
-            assert 10.0 < y0 < y1 < page.height - 10.0, text
-
-
 def with_sheet(text: str, options: str) -> str:
     """A shipped recipe that asks for its drawing alone."""
     text = re.sub(r"files: *\n( +- .*\n)+|files: .*\n?", f"files: [{{sheet: {{{options}}}}}]\n", text)
@@ -147,9 +101,11 @@ def with_sheet(text: str, options: str) -> str:
 # --- pages ------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.costly("a sheet of each kind of cam")
 @pytest.mark.thin(18)
-@pytest.mark.parametrize("paper", ["A3", "A4"])
-@pytest.mark.parametrize("path", few(SHIPPED, 12), ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    ("path", "paper"), [pytest.param(path, f"A{3 + number % 2}", id=path.stem) for number, path in enumerate(SHIPPED)]
+)
 def test_nothing_lies_over_anything_else(path: Path, paper: str, drawn: list[drawing.Pages], tmp_path: Path) -> None:
     text = with_sheet(path.read_text(encoding="utf-8"), f"paper: {paper}, profile: 0.02")
     camgeo.export(load_text(text, path), tmp_path)
@@ -175,6 +131,7 @@ def test_lengths_stand_below_what_is_seen_behind_the_cut(drawn: list[drawing.Pag
     demand_clear(drawn[0])
 
 
+@pytest.mark.slow
 def test_a_planted_text_over_another_is_seen(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     exported(CAM, tmp_path)
     (pages,) = drawn
@@ -184,6 +141,7 @@ def test_a_planted_text_over_another_is_seen(drawn: list[drawing.Pages], tmp_pat
         demand_clear(pages)
 
 
+@pytest.mark.slow
 def test_a_planted_line_through_a_text_is_seen(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     exported(CAM, tmp_path)
     first = drawn[0].annotated[0]
@@ -276,6 +234,7 @@ def test_a_slot_has_its_sizes_and_its_circle(drawn: list[drawing.Pages], tmp_pat
 # --- the DXF ----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_dimensions_measure_what_they_say(tmp_path: Path) -> None:
     found = dimensions(exported(ALL_SIZES, tmp_path) / "cam-sheet.dxf")
     assert len(found) >= 12
@@ -292,7 +251,6 @@ def test_dimensions_measure_what_they_say(tmp_path: Path) -> None:
 def test_the_contour_is_judged_and_a_planted_error_is_seen(tmp_path: Path) -> None:
     folder = exported(CAM, tmp_path)
     recipe = load_text(CAM, tmp_path / "cam.yaml")
-    assert camgeo.verify(recipe, folder / "cam-sheet.dxf").ok
     document = ezdxf.readfile(folder / "cam-sheet.dxf")
     (contour,) = (one for one in document.modelspace() if isinstance(one, LWPolyline) and one.dxf.layer == "CUT")
     contour.lwpoints.values[5, 0] += 0.01
@@ -300,6 +258,7 @@ def test_the_contour_is_judged_and_a_planted_error_is_seen(tmp_path: Path) -> No
     assert not camgeo.verify(recipe, tmp_path / "planted.dxf").ok
 
 
+@pytest.mark.slow
 def test_the_table_is_that_of_the_contour(tmp_path: Path) -> None:
     folder = exported(CAM.replace("profile:", "step: 30, profile:"), tmp_path)
     texts = list(ezdxf.readfile(folder / "cam-sheet.dxf").modelspace().query("TEXT[layer=='TABLE']"))
@@ -345,6 +304,7 @@ def streams(path: Path) -> list[str]:
     return found
 
 
+@pytest.mark.slow
 def test_the_last_page_has_a_bar_of_100_mm(tmp_path: Path) -> None:
     folder = exported(CAM, tmp_path)
     lines = [
@@ -356,6 +316,23 @@ def test_the_last_page_has_a_bar_of_100_mm(tmp_path: Path) -> None:
     assert any(abs(one - 100.0) < 0.1 for one in long)
 
 
+@pytest.mark.slow
+def test_the_last_page_and_the_dxf_have_the_contour_at_its_size(tmp_path: Path) -> None:
+    """Whatever the scale of the views: extents of the longest path, against those of the exact contour."""
+    folder = exported(CAM.replace("profile:", "scale: '1:2', profile:"), tmp_path)
+    exact = camgeo.design(load_text(CAM, tmp_path / "cam.yaml")).contour(36_000)
+    wanted = (exact.max(axis=0) - exact.min(axis=0)).tolist()
+    last = [text for text in streams(folder / "cam-sheet.pdf") if re.search(r"\d l\b", text)][-1]
+    paths = [re.findall(r"([\d.]+) ([\d.]+) [ml]\b", path) for path in re.split(r"\b[SbBsf]\b", last)]
+    longest = np.array(max(paths, key=len), dtype=float) * 25.4 / 72.0
+    assert (longest.max(axis=0) - longest.min(axis=0)).tolist() == pytest.approx(wanted, abs=0.02)
+    space = ezdxf.readfile(folder / "cam-sheet.dxf").modelspace()
+    (contour,) = (one for one in space if isinstance(one, LWPolyline) and one.dxf.layer == "CUT")
+    box = ezdxf.bbox.extents([contour]).size
+    assert [box.x, box.y] == pytest.approx(wanted, abs=0.01)
+
+
+@pytest.mark.slow
 def test_text_can_be_searched_in_an_embedded_font(tmp_path: Path) -> None:
     folder = exported(CAM.replace("profile:", "title: Kurve Łódź, profile:"), tmp_path)
     data = (folder / "cam-sheet.pdf").read_bytes()
@@ -391,7 +368,7 @@ def test_a_failed_check_stands_on_the_drawing(drawn: list[drawing.Pages], tmp_pa
 # --- faults -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(5)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "message", "remedy"),
     [
@@ -420,11 +397,11 @@ def test_faults_are_told_with_what_helps(
 
 def test_two_tolerances_that_disagree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     recipe = load_text(CAM, tmp_path / "cam.yaml")
-    monkeypatch.setattr(type(recipe), "zone", ("part.bore", 0.05))
+    monkeypatch.setattr(type(recipe), "zones", (("part.bore", 0.05),))
     match = r"export\.files\[0\]\.sheet\.profile: part\.bore in line \d+ makes it 0\.05, given 0\.04"
     with pytest.raises(camgeo.RecipeErrors, match=match):
         camgeo.export(recipe, tmp_path / "out")
-    monkeypatch.setattr(type(recipe), "zone", ("part.bore", 0.04))
+    monkeypatch.setattr(type(recipe), "zones", (("part.bore", 0.04),))
     assert camgeo.export(recipe, tmp_path / "out").ok
 
 
@@ -455,7 +432,7 @@ def test_a_made_part_states_the_tolerance(drawn: list[drawing.Pages], tmp_path: 
 
 def test_a_bore_has_its_fit(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     exported(CAM.replace("bore: 16", "bore: {diameter: 16, fit: H7}"), tmp_path)
-    assert "Ø16 H7" in [text.text for text in drawn[0].annotated[0].texts]
+    assert "Ø16 H7 (+0.018/0)" in [text.text for text in drawn[0].annotated[0].texts]
 
 
 # needs: camshaft
@@ -464,7 +441,7 @@ def test_a_camshaft_has_no_sheet(tmp_path: Path, capsys: pytest.CaptureFixture[s
     text = "camshaft: [{recipe: cam.yaml, angle: 0, at: 0}]\nexport: {files: [sheet]}\n"
     (tmp_path / "shaft.yaml").write_text(text, encoding="utf-8")
     assert main(["export", str(tmp_path / "shaft.yaml")]) == 2
-    assert "unknown file format, given 'sheet'" in capsys.readouterr().err
+    assert "a camshaft takes no sheet; leave it out, or give the recipe of a lobe" in capsys.readouterr().err
 
 
 def test_a_text_is_as_wide_as_its_letters() -> None:
@@ -472,3 +449,7 @@ def test_a_text_is_as_wide_as_its_letters() -> None:
     assert lettering.width("0000", 5.0) == pytest.approx(8.0 * lettering.width("0", 2.5))
     assert lettering.unknown("Ø20 H7 ± Łódź Ω ж") == ""
     assert lettering.unknown("a王b王") == "王"
+
+
+def test_points_of_a_view_turn_counter_clockwise() -> None:
+    assert views._turned(np.eye(2), 0.5 * math.pi) == pytest.approx(np.array([[0.0, 1.0], [-1.0, 0.0]]), abs=1e-15)

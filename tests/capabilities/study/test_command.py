@@ -8,12 +8,14 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from support.places import RECIPES
 
+from camgeo.capabilities.study import command
 from camgeo.capabilities.study.least_pieces import least_pieces
 from camgeo.capabilities.study.margins import FailureMargin, margins
 from camgeo.capabilities.study.tolerance_ladder import End, Rung, climb
@@ -90,6 +92,7 @@ def test_a_dwell_counts_as_one_arc_at_least() -> None:
     assert least_pieces("arcs", contour, 1e-3) == 6.0
 
 
+@pytest.mark.slow
 def test_a_run_that_takes_too_long_ends_the_ladder(tmp_path: Path) -> None:
     recipe = read(b"cam: {kind: support, p: 25 + 2*cos(3*t)}\nverify: {angles: 8}", Path("cam.yaml"))
     found = list(climb(recipe, designed(recipe), "arcs", tmp_path, patience=1e-9))
@@ -99,6 +102,7 @@ def test_a_run_that_takes_too_long_ends_the_ladder(tmp_path: Path) -> None:
     assert "longer than" in found[1].why
 
 
+@pytest.mark.slow
 def test_a_rung_of_two_discs_is_of_both_files(tmp_path: Path) -> None:
     """Its pieces and bytes are those of both, its errors those of the worse."""
     recipe = load(RECIPES / "conjugate-stem.yaml")
@@ -112,6 +116,18 @@ def test_a_rung_of_two_discs_is_of_both_files(tmp_path: Path) -> None:
     assert rung.pieces == sum(one["pieces"] for one in entries)
     assert rung.geometry_error == pytest.approx(max(one["measured_error"] for one in entries), rel=1e-9)
     assert not rung.failed
+
+
+@pytest.mark.parametrize(("ok", "folder"), [(True, "cam"), (False, "cam.rejected")])
+def test_a_study_and_its_picture_stand_together(
+    ok: bool, folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("camgeo.capabilities.study.picture.picture", lambda _: b"drawn")
+    recipe: Any = SimpleNamespace(name="cam")
+    command._write(recipe, {"rows": [1], "skipped": []}, tmp_path, ok=ok)
+    assert (tmp_path / folder / "study.png").read_bytes() == b"drawn"
+    (file,) = json.loads((tmp_path / folder / "study.json").read_text(encoding="utf-8"))["files"]
+    assert (file["path"], file["bytes"]) == ("study.png", 5)
 
 
 def test_a_picture_left_out_for_want_of_a_package_exits_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

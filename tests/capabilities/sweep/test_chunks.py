@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,7 +33,7 @@ from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.loading import load_text, read
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from pathlib import Path
 
 BEST = Ranking("dwell", most=True)
 
@@ -112,44 +111,6 @@ def test_a_chunk_that_is_spoilt_before_it_is_gathered_is_computed_again(filled: 
     again = gather_chunks(job(), filled, BEST)
     assert again.index.tolist() == expected.index.tolist()
     assert again.counts == expected.counts
-
-
-def _pipe(path: Path) -> None:
-    os.mkfifo(path)
-
-
-def _device(path: Path) -> None:
-    path.symlink_to("/dev/zero")
-
-
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="a system without pipes among its files")
-@pytest.mark.parametrize("fresh", [False, True])
-@pytest.mark.parametrize(
-    ("place", "kind"), [(_pipe, "a pipe or a device"), (_device, "a pipe or a device"), (Path.mkdir, "a folder")]
-)
-def test_what_is_no_file_is_not_opened_but_told(
-    filled: Chunks, tmp_path: Path, place: Callable[[Path], None], kind: str, fresh: bool
-) -> None:
-    path = filled.path(1)
-    path.unlink()
-    place(path)
-    with pytest.raises(SurroundingsError, match=rf"chunk-0000001.bin: {kind}, where .*: move it or remove it"):
-        compute(job(compute=fail), filled, Workers(1), fresh=fresh)
-    with pytest.raises(SurroundingsError, match=kind):
-        filled.read(1)
-    path.rename(tmp_path / "elsewhere")  # as the message says
-    assert compute(job(), filled, Workers(1), fresh=fresh).damaged == 0
-
-
-def test_of_a_large_file_no_more_is_read_than_a_chunk_may_have(filled: Chunks, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = filled.path(1)
-    with path.open("r+b") as stream:
-        stream.truncate(1 << 27)
-    work = compute(job(), filled, Workers(1))
-    assert (work.damaged, work.computed) == (1, filled.plan.chunk)
-    monkeypatch.setattr(storing, "_MOST_BYTES", 64)
-    with pytest.raises(ChunkError, match="torn or changed"):
-        filled.read(1)
 
 
 @pytest.mark.parametrize("place", ["out", "out/sweep", "out/sweep/KEY"])

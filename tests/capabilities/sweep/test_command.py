@@ -21,6 +21,7 @@ from support.sweepers import FOUR_BAR, PROCEDURES
 
 from camgeo.capabilities.sweep import command as sweep
 from camgeo.capabilities.sweep import search
+from camgeo.cli import progress as terminal
 from camgeo.cli.main import main
 from camgeo.cli.progress import Progress
 
@@ -50,6 +51,7 @@ def written(folder: Path, *, comment="", margin=1.0, rank="dwell", refine="false
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_what_was_found_is_said_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
@@ -71,6 +73,7 @@ def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.Capture
     assert f"  best-1.yaml: cam.shaft[0] 15.8333, linkage.rocker 95\n    {FIRST}\n" in said
 
 
+@pytest.mark.thin(2)
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.parametrize(("margin", "status"), [(1.0, 3), (99.0, 1)])
 def test_a_file_left_out_for_want_of_a_package_exits_3(
@@ -89,6 +92,7 @@ def test_a_file_left_out_for_want_of_a_package_exits_3(
     assert capsys.readouterr().err == f"camgeo: four-bar: without sweep.parquet: {why}\n"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_json_is_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "--json"]) == 0
@@ -260,24 +264,24 @@ def test_progress_is_shown_on_a_terminal_and_taken_away_again(tmp_path: Path) ->
     assert said.endswith(b"\r\x1b[K")
 
 
-def test_progress_is_said_in_lines_where_there_is_no_terminal(capsys: pytest.CaptureFixture[str]) -> None:
-    progress = Progress("four-bar", every=0.0)
-    progress("448 of 825 designs")
-    progress("2 of 3 polished")
-    progress.clear()
-    assert capsys.readouterr().err == "four-bar: 448 of 825 designs\nfour-bar: 2 of 3 polished\n"
-    for every in (None, 1e9):
-        soon = Progress("four-bar", every)
-        soon("448 of 825 designs")
-        soon.clear()
-    assert capsys.readouterr().err == ""
+def test_progress_is_said_in_lines_where_there_is_no_terminal(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for long, said in ((0.0, "four-bar: 448 of 825 designs ...\nfour-bar: 2 of 3 polished ...\n"), (1e6, "")):
+        monkeypatch.setattr(terminal, "LONG", long)
+        progress = Progress("four-bar")
+        progress("448 of 825 designs")
+        progress("2 of 3 polished")
+        progress.clear()
+        assert capsys.readouterr().err == said
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_a_sweep_whose_standard_error_is_piped_says_how_far_it_is(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sweep, "_EVERY", 0.0)
+    monkeypatch.setattr(terminal, "LONG", 0.0)
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
     assert "four-bar: 448 of 825 designs, " in capsys.readouterr().err
 

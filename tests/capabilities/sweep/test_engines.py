@@ -59,6 +59,14 @@ def cluster():
         yield cluster
 
 
+@pytest.fixture
+def near():
+    """A scheduler whose only worker is a thread of this process."""
+    how = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "protocol": "tcp", "dashboard_address": ":0"}
+    with distributed.LocalCluster(**how) as cluster:
+        yield cluster
+
+
 @pytest.fixture(scope="module")
 def plain(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """Files of a sweep that one process computed in one go."""
@@ -105,10 +113,12 @@ def test_every_engine_writes_the_same_files(
 @pytest.mark.usefixtures("pooled")
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("engine", ["serial", "processes", "dask"])
-def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, cluster: LocalCluster) -> None:
+def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, request: pytest.FixtureRequest) -> None:
     slow = SweepJob(GRID, Aside(), hasty)
     numbers = list(range(GRID.chunks))
-    how = {"serial": Workers(1), "processes": Workers(2), "dask": Workers(scheduler=cluster.scheduler_address)}[engine]
+    how = Workers({"serial": 1, "processes": 2, "dask": None}[engine])
+    if engine == "dask":
+        how = Workers(scheduler=request.getfixturevalue("cluster").scheduler_address)
     landed = dict(how.results(slow, numbers))
     assert landed == {number: result(slow, number, slow.key) for number in numbers}
 
@@ -157,20 +167,24 @@ def test_more_processes_are_started_only_where_they_pay(monkeypatch: pytest.Monk
 
 @pytest.mark.usefixtures("pooled")
 @pytest.mark.parametrize("engine", ["serial", "processes", "dask"])
-def test_a_fault_of_what_computes_comes_through(engine: str, cluster: LocalCluster, tmp_path: Path) -> None:
-    how = {"serial": Workers(1), "processes": Workers(2), "dask": Workers(scheduler=cluster.scheduler_address)}[engine]
+def test_a_fault_of_what_computes_comes_through(engine: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    how = Workers({"serial": 1, "processes": 2, "dask": None}[engine])
+    if engine == "dask":
+        how = Workers(scheduler=request.getfixturevalue("near").scheduler_address)
     faulty = SweepJob(GRID, Aside(), failing)
     with pytest.raises(ArithmeticError, match="no figures beyond 12"):
         compute(faulty, chunks_of(faulty, tmp_path), how)
 
 
 @pytest.mark.usefixtures("pooled")
-@pytest.mark.parametrize("engine", ["processes", "dask"])
+@pytest.mark.parametrize("engine", few(["processes", "dask"]))  # Dask's workers take seconds to start
 def test_workers_refuse_a_job_that_they_read_otherwise(
-    engine: str, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
+    engine: str, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("camgeo.capabilities.sweep.chunks.__version__", "99.0")
-    how = Workers(2) if engine == "processes" else Workers(scheduler=cluster.scheduler_address)
+    how = Workers(2)
+    if engine == "dask":
+        how = Workers(scheduler=request.getfixturevalue("cluster").scheduler_address)
     with pytest.raises(VersionsError, match="a worker has other versions than this run") as caught:
         list(how.results(job(), [0, 1]))
     if engine == "dask":
@@ -256,12 +270,15 @@ def test_a_worker_is_no_scheduler(cluster: LocalCluster) -> None:
 @pytest.mark.slow
 def test_a_scheduler_without_workers_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engines, "_TIMEOUT", 0.5)
-    monkeypatch.setattr(engines, "_MOST_TIMEOUTS", 2)
+    said: list[str] = []
     with (
         distributed.LocalCluster(n_workers=0, dashboard_address=":0") as empty,
         pytest.raises(EngineError, match="has no workers"),
     ):
-        next(engines.dask(job(), [0], empty.scheduler_address))
+        next(Workers(scheduler=empty.scheduler_address, waiting=said.append).results(job(), [0]))
+    assert said == [f"the scheduler at {empty.scheduler_address} is asked"] + 2 * [
+        f"the scheduler at {empty.scheduler_address} has no workers yet"
+    ]
 
 
 def slowly(seconds: float) -> float:
@@ -312,22 +329,27 @@ if __name__ == "__main__":
 
 
 def killed(scene, values):
-    """A chunk of which its process dies."""
-    if values[0, 0] > 12.0:
+    """A chunk of which its process dies, from a value on."""
+    if values[0, 0] > float(scene):
         os.kill(os.getpid(), signal.SIGKILL)
-    return hills(scene, values)
+    return hills("", values)
 
 
 @pytest.mark.usefixtures("pooled")
 @pytest.mark.slow
-def test_a_worker_that_is_killed_ends_the_run_and_what_landed_stays(tmp_path: Path) -> None:
-    deadly = SweepJob(GRID, Aside(), killed)
-    chunks = chunks_of(deadly, tmp_path)
+@pytest.mark.parametrize("deadly", ["19.5", "12"])
+def test_chunks_that_kill_their_process_fail_the_run_and_others_land(deadly: str, tmp_path: Path) -> None:
+    """Where they are few all others land; where they are many the run soon ends."""
+    sweep = SweepJob(GRID, deadly, killed)
+    chunks = chunks_of(sweep, tmp_path)
     with pytest.raises(EngineError, match="a process was killed before it was done"):
-        compute(deadly, chunks, Workers(2))
+        compute(sweep, chunks, Workers(2))
+    first = [GRID.values(*GRID.span(number))[0, 0] for number in range(GRID.chunks)]
+    kill = [number for number, value in enumerate(first) if value > float(deadly)]
     missing, damaged = chunks.missing_chunks()
-    assert missing
     assert damaged == 0
+    assert set(kill) <= set(missing)
+    assert len(kill) > 4 or missing == kill
 
 
 # --- killed and resumed -----------------------------------------------------------------------------------------------

@@ -20,7 +20,8 @@ from camgeo.capabilities.sweep.linkages import LOOPS, Lengths, Support, angles, 
 from camgeo.capabilities.sweep.single_designs import recipe_with
 from camgeo.capabilities.sweep.task import SweepTask
 from camgeo.measures.figures import design_figures
-from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_LINKAGE
+from camgeo.recipe.design_figure import NOTHING
+from camgeo.recipe.figures import OF_DWELL, OF_FACE, OF_LINKAGE
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.linkage import mechanism_of
@@ -99,7 +100,7 @@ def test_figures_are_those_of_the_mechanism(linkage, shape, assembly):
     assert_like(found.figures, exact(one))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("linkage", list(PATHS))
 def test_a_joint_off_the_mid_line(linkage):
     one, path = recipe(linkage=linkage, more=", joint_offset: 0", pivot="[12, 6]"), ("linkage.joint_offset",)
@@ -157,6 +158,7 @@ def test_designs_anywhere_have_the_figures_of_their_mechanism_or_none(linkage, x
     assert_like(found.figures, wanted, tolerance=2e-4)
 
 
+@pytest.mark.slow
 def test_a_design_depends_on_no_other_to_the_last_bit():
     rng = np.random.default_rng(1)
     paths = (*PIVOT, "linkage.ground", "cam.fourier.cos.3", "cam.fourier.sin.5", "cam.fourier.mean")
@@ -324,6 +326,7 @@ def test_dyads_are_figured_design_by_design():
         assert_like(found.figures, exact(recipe_with(one, paths, values)), row=row)
 
 
+@pytest.mark.slow
 def test_a_recipe_without_a_linkage():
     one = recipe(linkage="")
     found = evaluate(one, ("cam.shaft[0]",), np.array([[18.0], [0.0]]))
@@ -426,7 +429,7 @@ def test_links_that_shape_the_cam_make_it_anew():
 
 
 # needs: dynamics
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("figure", ["contact-force-least", "shaft-torque", "contact-pressure", "guide-force"])
 def test_forces_of_a_rigid_train_are_ranked_by(figure):
     """Those of each design's own cam, as limits have them."""

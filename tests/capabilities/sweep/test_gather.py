@@ -15,6 +15,7 @@ from camgeo.capabilities.sweep.plan import Plan
 from camgeo.recipe.limits import Limit
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("most", [True, False])
 @pytest.mark.parametrize(
     "limits",
@@ -43,6 +44,7 @@ def test_counts_tell_why_designs_are_not_kept() -> None:
     assert counts.kept == ((x >= 13.0) & (dwell >= 45.0)).sum() > 0
 
 
+@pytest.mark.slow
 @given(most=st.integers(1, 300))
 def test_a_table_that_is_cut_holds_the_best(most: int) -> None:
     expected = by_hand(RANKING)

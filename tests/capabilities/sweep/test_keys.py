@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from camgeo.capabilities.sweep.keys import MOST_AXES, MOST_VALUES, Axis, Sweep, sweep_figures, varied_fields
-from camgeo.capabilities.sweep.record import CAPABILITY
-from camgeo.recipe.figures import NOTHING, OF_DWELL, OF_FACE, OF_FOLLOWER, OF_LINKAGE, OF_ROLLER, OF_SWING
+from camgeo.capabilities.sweep.starter import ANSWERS
+from camgeo.recipe.design_figure import NOTHING
+from camgeo.recipe.figures import OF_DWELL, OF_FACE, OF_FOLLOWER, OF_LINKAGE, OF_ROLLER, OF_SWING
 from camgeo.recipe.keys import recipe_table
 from camgeo.recipe.limits import Limit
 from camgeo.recipe.loading import load_text
@@ -471,8 +472,8 @@ def test_a_sweep_varies_in_the_unit_of_its_field() -> None:
 
 
 def test_the_starter_is_a_search_of_its_own() -> None:
-    assert sorted(CAPABILITY.starters()) == ["sweep"]
-    search = CAPABILITY.starters()["sweep"].more["sweep"]
+    assert sorted(ANSWERS.starters) == ["sweep"]
+    search = ANSWERS.starters["sweep"].more["sweep"]
     assert isinstance(search, dict)
     assert search["rank"] == "dwell"
     assert str(search["vary"]).count("steps") == 2

@@ -74,6 +74,7 @@ sweep: {vary: {cam.motion.lobe.lift: {from: 0.5, to: 8, steps: 3}}, rank: durati
 """
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_designs_whose_figure_has_no_value_are_counted_by_that_reason(tmp_path: Path) -> None:
     """A lobe of 0.5 mm is never above the lift of 1.27 mm between whose crossings the duration counts."""

@@ -88,8 +88,8 @@ def test_the_report_tells_what_was_asked_and_what_came_of_it(swept: Path) -> Non
     assert report["run"]["designs_per_second"] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
-@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("package", "left_out"),
     [

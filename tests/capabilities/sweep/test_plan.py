@@ -26,6 +26,7 @@ def test_a_grid_is_every_combination_in_order_with_exact_ends() -> None:
     assert plan.values(0, 12)[[0, -1], 0].tolist() == [0.1, 0.7]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("method", ["random", "sobol"])
 @given(seed=st.integers(0, 2**32 - 1), first=st.integers(0, 999), length=st.integers(0, 300))
 def test_a_design_follows_from_its_index_alone(method: str, seed: int, first: int, length: int) -> None:
@@ -36,6 +37,7 @@ def test_a_design_follows_from_its_index_alone(method: str, seed: int, first: in
     assert np.array_equal(Plan(AXES, method, 5000, seed).values(0, 1300), whole)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("width", [1, 2, 5, 11])
 def test_sobol_is_scipys_scrambled_sequence(width: int) -> None:
     plan = Plan(tuple(Axis(f"x{i}", 0.0, 1.0) for i in range(width)), "sobol", 4096, 7)

@@ -1,6 +1,6 @@
 """Estimates of cams without a linkage against their exact designs; and that no design is kept by an estimate alone.
 
-Holds: camgeo.capabilities.sweep.samples.
+Holds: camgeo.capabilities.sweep.samples, camgeo.capabilities.sweep.extension.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def assert_near(estimates, exact):
             assert math.isnan(value) or error_of(name, float(estimate), float(value)) < most, name
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", CAMS)
 def test_estimates_are_near_the_exact_designs(name):
     text, ranges = CAMS[name]
@@ -205,6 +205,7 @@ def test_words_are_compared_in_the_lists_order():
     assert len(np.unique(plan.values(0, 200)[:, 1])) == 2
 
 
+@pytest.mark.slow
 def test_designs_with_words_have_the_figures_of_their_recipes():
     asked = SweepTask.from_recipe(worded())
     values = asked.plan.values(0, 8)[[0, 5, 6]]

@@ -1,4 +1,7 @@
-"""A whole sweep: which designs are polished and kept, whose files are replaced, an angle that each design finds."""
+"""A whole sweep: which designs are polished and kept, whose files are replaced, an angle that each design finds.
+
+Holds: camgeo.capabilities.sweep.earlier.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,9 @@ import pytest
 from support.sweepers import GRID, PROCEDURES, RANKING, by_hand, task
 
 import camgeo
+from camgeo.capabilities.sweep import search as searches
 from camgeo.capabilities.sweep.engines import Workers
+from camgeo.capabilities.sweep.outputs import outputs
 from camgeo.capabilities.sweep.refine import PolishError
 from camgeo.capabilities.sweep.search import search
 from camgeo.capabilities.sweep.task import SweepTask
@@ -110,6 +115,27 @@ def test_a_sweep_that_finds_nothing_leaves_the_last_files_alone(tmp_path: Path) 
     assert {path.name for path in outcome.folder.iterdir()} >= {"sweep.json", "sweep.csv", "sweep-map.png"}
     assert (tmp_path / "four-bar" / "sweep.json").read_bytes() == before
     assert outcome.work.computed == 0  # other limits, the same figures
+
+
+@pytest.mark.usefixtures("no_pictures")
+def test_a_run_that_finds_all_as_it_was_makes_no_file_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(searches, "COMPUTING", PROCEDURES)
+    made, folder = [], tmp_path / "four-bar"
+    monkeypatch.setattr(searches, "outputs", lambda *given: made.append(1) or outputs(*given))
+    first = search(task(), tmp_path, Workers(1))
+    before = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    again = search(task(), tmp_path, Workers(1))
+    assert len(made) == 1
+    assert (again.report["run"]["designs_computed"], again.report["run"]["designs_found"]) == (0, 825)
+    assert {**again.report, "run": None} == {**first.report, "run": None}
+    after = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    assert {**after, "sweep.json": b""} == {**before, "sweep.json": b""}
+    (folder / "sweep.csv").write_text("changed")
+    search(task(), tmp_path, Workers(1))
+    assert (len(made), (folder / "sweep.csv").read_bytes()) == (2, before["sweep.csv"])
+    search(task(margin=2.0), tmp_path, Workers(1))
+    search(task(margin=2.0), tmp_path, Workers(1), fresh=True)
+    assert len(made) == 4
 
 
 @pytest.mark.slow

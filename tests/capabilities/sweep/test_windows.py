@@ -199,6 +199,7 @@ def test_bounds_of_cells_hold_the_function():
     assert np.abs(high - inside.max(axis=2)).max() < 1e-5
 
 
+@pytest.mark.slow
 def test_where_cubics_pass_a_level():
     """Every hundredth of such cubics takes more steps than all are given together."""
     rng = np.random.default_rng(8)

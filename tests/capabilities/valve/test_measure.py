@@ -1,6 +1,6 @@
 """The valve that a tappet works: its events and peaks by hand, a rocker by a table, limits, files, camshafts.
 
-Holds: camgeo.capabilities.valve.figures, camgeo.capabilities.valve.keys, camgeo.capabilities.valve.record,
+Holds: camgeo.capabilities.valve.figures, camgeo.capabilities.valve.keys, camgeo.capabilities.valve.measures,
 camgeo.capabilities.valve.section, camgeo.capabilities.valve.table.
 """
 
@@ -46,6 +46,7 @@ def lift(degrees: Any) -> Any:
     return made
 
 
+@pytest.mark.slow
 def test_durations_are_those_of_the_tappet_at_the_lift_less_the_lash() -> None:
     """Case f18 by the key: the valve is 1 mm open where the tappet lifts 1.3/1.6 mm."""
     lifts = "[{at_lift: 0, at_least: 1}, {at_lift: 1, at_least: 1}, {at_lift: 0.18, at_least: 1}]"
@@ -82,6 +83,7 @@ def test_a_rocker_by_a_table_is_a_natural_cubic_spline_of_the_ratio() -> None:
     assert found == pytest.approx([rows[0].max(), np.abs(rows[2]).max()], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_table_of_one_ratio_is_that_ratio() -> None:
     flat = "valve: {ratio: {table: [[0, 1.6], [4, 1.6], [8, 1.6]]}, lash: 0.30}\n"
     bounds = "valve-duration: {at_least: 1}, valve-velocity: {at_most: 1}, valve-acceleration: {at_most: 1}"
@@ -109,7 +111,7 @@ def test_files_report_and_page(tmp_path: Path) -> None:
     assert all(words in page for words in ("Valve lift", "Valve acceleration", "Valve events", "ratio by a table"))
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("lash", ["", ", lash: 0"])
 @pytest.mark.parametrize("nose", ["180", "0"])
 def test_without_lash_the_valve_is_open_while_the_tappet_is_off_its_lowest_place(lash: str, nose: str) -> None:
@@ -147,6 +149,7 @@ def test_a_rockers_table_of_angles_is_refused(tmp_path: Path) -> None:
         camgeo.load(tmp_path / "lobe.yaml")
 
 
+@pytest.mark.slow
 def test_a_limit_says_that_the_valve_does_not_lift_so_far() -> None:
     bounds = "limits: {valve-duration: {at_lift: 13, at_least: 1}}\n"
     for lash, words in (("0.30", "the valve lifts 12.5 mm"), ("20", "the valve never opens with a lash of 20 mm")):
@@ -200,6 +203,14 @@ def test_faults_and_what_mends_them(valve: str, message: str, remedy: str) -> No
     assert camgeo.check(camgeo.load(f"{LOBE}valve: {remedy}\n")).ok
 
 
+def test_a_ratio_that_falls_steeply_between_close_rows_lets_the_valve_fall() -> None:
+    """Rows 0.1 um apart, of which two fall by 4e-5: the travel's slope 1.5 - 4 (4e-5/1e-4) is below 0 over 0.1 um."""
+    steps = [[round(4.002 + 1e-4 * k, 6), 1.5 if k < 0 else 1.49996] for k in range(-8, 8)]
+    table = f"valve: {{ratio: {{table: {[[0, 1.5], *steps, [9, 1.49996]]}}}, lash: 0.1}}\n"
+    with pytest.raises(camgeo.RecipeErrors, match="the valve falls while the tappet rises"):
+        camgeo.check(camgeo.load(LOBE + table))
+
+
 def test_a_follower_on_an_arm_works_no_valve() -> None:
     arm = "cam: {kind: disc, base_radius: 30, follower: {kind: roller, radius: 8, arm: {length: 60, pivot: 70}}, "
     arm += "motion: [{rise: 10, over: 120, law: cycloidal}, {return: 10, over: 120, law: cycloidal}, {dwell: 120}]}\n"
@@ -248,3 +259,40 @@ def test_a_camshaft_at_valves_that_no_lobe_tells_of_is_refused(tmp_path: Path) -
         camgeo.check(path)
     (tmp_path / "lobe.yaml").write_text(LOBE + VALVE, encoding="utf-8")
     assert camgeo.check(path).ok
+
+
+# needs: camshaft
+@pytest.mark.slow
+def test_a_lobe_without_a_valve_has_no_events_at_the_lift_of_valves(tmp_path: Path) -> None:
+    """Of a lobe that works no valve, as a pump's, the middle of its stroke is told, as of one whose follower swings."""
+    (tmp_path / "lobe.yaml").write_text(LOBE + VALVE, encoding="utf-8")
+    (tmp_path / "pump.yaml").write_text(LOBE, encoding="utf-8")
+    path = tmp_path / "shaft.yaml"
+    path.write_text(
+        "camshaft:\n  shaft: {diameter: 24, to: 60}\n  lobes:\n"
+        "    - {recipe: lobe.yaml, cylinder: 1, valve: intake, z: 5}\n"
+        "    - {recipe: pump.yaml, at: 40, z: 30}\n"
+        "  engine: {order: [1], separation: 110, valve_lift: 1}\n",
+        encoding="utf-8",
+    )
+    report: dict[str, Any] = dict(camgeo.check(path))
+    own, pump = report["camshaft"]["lobes"]
+    assert own["lift"] == pytest.approx((1.0 + 0.30) / 1.6, abs=1e-12)
+    assert pump["lift"] == pytest.approx(4.0, abs=1e-9)
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize(("units", "lifts"), [("mm", (0.1, 1.0)), ("inch", (0.006, 0.05, 0.2))])
+def test_the_tappets_durations_at_the_lifts_of_cards_are_told_without_a_limit(
+    units: str, lifts: tuple[float, ...]
+) -> None:
+    """A formula's lift of 4 (1 - cos t): above s for 2 (pi - acos(1 - s/4)) of the cam, twice that of the crank."""
+    mm = 1.0 if units == "mm" else 25.4
+    text = f"units: {units}\ncam: {{kind: disc, base_radius: {30 / mm}, follower: {{kind: flat}}, "
+    text += f"motion: {{formula: {4 / mm}*(1 - cos(t))}}}}\nvalve: {{ratio: 1.5}}\n"
+    told = camgeo.check(camgeo.load(text))["valve"]["tappet"]
+    assert tuple(row["lift"] for row in told) == lifts
+    for row in told:
+        open_for = 2.0 * (math.pi - math.acos(1.0 - row["lift"] * mm / 4.0))
+        assert row["duration_crank_deg"] == pytest.approx(2.0 * math.degrees(open_for), abs=1e-6)
+        assert row["centre_deg"] == pytest.approx(180.0, abs=1e-6)

@@ -67,7 +67,7 @@ def test_the_neck_of_a_pear_is_a_double_normal():
     assert neck.half <= least_of_pairs(curve) <= 1.001 * neck.half
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [0.0, 0.3, 1.234])
 def test_opposite_notches_make_a_neck(place):
     # on a circle of 30 mm, about as narrow as their shoulders allow

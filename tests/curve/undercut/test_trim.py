@@ -221,6 +221,7 @@ def test_any_star_is_eroded_or_refused(terms, e):
     assert area(curve) == pytest.approx(body.area, abs=2e-3 * body.length)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("e", [8.0, 10.0, 12.0])
 def test_no_contact_cuts_into_what_is_left(e):
     curve = trimmed(roller(STAR, e))
@@ -261,6 +262,7 @@ def test_corners_of_radius_zero_are_corners():
     assert area(curve) == pytest.approx(0.5 * (math.pi - math.sqrt(3.0)) * 2500.0, rel=1e-13)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("margin", [1e-5, 1e-8, 1e-11])
 def test_what_is_lost_in_rounding_is_trimmed_all_the_same(margin):
     whole = flat(8.0 - margin, {3: 1.0}, pivot=(1.0, 0.5))
@@ -271,7 +273,7 @@ def test_what_is_lost_in_rounding_is_trimmed_all_the_same(margin):
     )
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("curve", "message"),
     [
@@ -306,7 +308,7 @@ def test_a_neck_leaves_two_corners_and_two_pieces():
         assert body.boundary.distance(shapely.Point(corner.point)) < 1e-3
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize("shift", [0.0, 1.0, 2.5, 4.0])
 def test_the_origin_of_the_parameter_does_not_matter(shift):
     turned = waves(20.0, (5, 5.0, 5 * shift), (2, 2.0, np.pi / 2 + 2 * shift))
@@ -393,6 +395,7 @@ def test_fits_keep_the_corners_and_their_promise(case, form, tolerance):
         assert np.hypot(*(points - corner).T).min() < 1e-11
 
 
+@pytest.mark.slow
 def test_a_moved_shaft_moves_nothing_else():
     whole, moved = roller(STAR, 8.0), roller(Moved(STAR, (2.0, -1.0)), 8.0)
     assert [r.low for r in trimmed(whole).runs] == pytest.approx([r.low for r in trimmed(moved).runs], abs=1e-12)

@@ -18,10 +18,11 @@ from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.curve.support import SupportShape
 from camgeo.curve.undercut.bottleneck import rolling_radius
-from camgeo.curve.undercut.causes import UndercutError
+from camgeo.curve.undercut.causes import UndercutError, causes
 from camgeo.curve.undercut.pairs import Pitch
 from camgeo.curve.undercut.trim import trimmed
 from camgeo.curve.undercut.undercut import undercuts
+from camgeo.recipe.loading import load_text
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 
 TURN = 2.0 * math.pi
@@ -88,6 +89,7 @@ def test_cusps_of_one_harmonic():
         assert u.depth == pytest.approx(17.0 - corner, abs=1e-12)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("margin", [1e-3, 1e-6, 1e-9, 1e-11])
 def test_depth_follows_its_law_however_small(margin):
     # sigma = 36 (t^2 - d^2), 36 d^2 = margin: the depth is 3/4 36 d^4 = margin^2 / 48, far below rounding
@@ -178,6 +180,7 @@ def test_lobes_too_sharp_for_the_roller(e):
     assert all(within(x, found, 2e-3) for x in t[reach < 0.999 * e])
 
 
+@pytest.mark.slow
 def test_the_largest_roller_for_a_star():
     largest = min(u.free_at for u in undercuts(roller(STAR, 8.0)))
     assert largest == pytest.approx(least_radius(Curve.whole(STAR))[0], rel=1e-14)
@@ -195,7 +198,7 @@ def test_depth_of_a_roller_is_how_far_it_hangs_free():
         assert u.depth == pytest.approx(np.hypot(apart[..., 0], apart[..., 1]).min(axis=1).max() - e, abs=1e-5)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("excess", [1e-9, 1e-6, 1e-3, 0.1, 0.5])
 def test_the_neck_of_booths_lemniscate(excess):
     # m^2/l^2 = 0.9: the waist is sqrt(0.2) l, the ends have a radius of 60.06 mm
@@ -222,6 +225,7 @@ def test_contact_lost_at_a_neck_of_a_lemniscate():
     assert corners[1] == pytest.approx(corners[2], abs=1e-12)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("e", [14.0, 16.0, 18.0])
 def test_a_neck_off_the_axis_of_symmetry(e):
     found = undercuts(roller(PEAR, e))
@@ -230,6 +234,7 @@ def test_a_neck_off_the_axis_of_symmetry(e):
     assert np.hypot(*(frame.point[0] - frame.point[1])) == pytest.approx(2.0 * found[0].free_at, rel=1e-13)
 
 
+@pytest.mark.slow
 def test_both_kinds_at_once():
     found = undercuts(roller(PEAR, 19.0))
     assert [u.kind for u in found] == ["local", "global"]
@@ -266,6 +271,7 @@ def test_the_largest_roller_is_the_least_over_all_pairs(terms, e):
         assert min(u.free_at for u in found) == pytest.approx(seen, rel=0.02)
 
 
+@pytest.mark.slow
 def test_nothing_left():
     for u in undercuts(roller(STAR, 15.0)) + undercuts(flat(1.0, {3: 2.0})):
         assert u.depth == math.inf
@@ -275,7 +281,33 @@ def test_nothing_left():
         trimmed(flat(1.0, {3: 2.0}))
 
 
+@pytest.mark.slow
 def test_where_the_shaft_is_does_not_matter():
     here, there = undercuts(roller(STAR, 8.0)), undercuts(roller(Moved(STAR, (3.0, 2.0)), 8.0))
     assert [u.depth for u in there] == pytest.approx([u.depth for u in here], abs=1e-11)
     assert [u.start for u in there] == pytest.approx([u.start for u in here], abs=1e-12)
+
+
+def test_necks_wider_than_the_sharpest_place_count_for_nothing_where_that_is_undercut():
+    """The waist of this lemniscate, sqrt(250) = 15.811 to either side, is above its least radius, 15.783."""
+    shape = booth(15.0, 10.0)
+    assert least_radius(Curve.whole(shape))[0] == pytest.approx(15.783, abs=1e-3)
+    found = causes(roller(shape, 24.0))
+    assert len(found.reversals) == 2
+    assert found.necks == ()
+
+
+def test_parts_of_a_turn_that_are_alike_are_undercut_alike():
+    """A motion that repeats three times: each part has the same stretch, a third of a turn on."""
+    segments = "[{rise: 9, over: 30, law: cycloidal}, {return: 9, over: 30, law: cycloidal}, {dwell: 60}]"
+    cam = f"{{kind: disc, base_radius: 20, motion: {{repeat: 3, segments: {segments}}}}}"
+    recipe = f"cam: {cam[:-1]}, undercut: trim, follower: {{kind: roller, radius: 17}}}}"
+    (surface,) = load_text(recipe, "cam.yaml").cam.exact().surfaces
+    found = undercuts(surface.curve)
+    assert surface.curve.shape.repeats == len(found) == 3
+    for k in (1, 2):
+        later, first = found[k], found[0]
+        assert [later.start, later.end, later.at] == pytest.approx(
+            [place + k * TURN / 3.0 for place in (first.start, first.end, first.at)], abs=1e-9
+        )
+        assert later.depth == pytest.approx(first.depth, rel=1e-9)

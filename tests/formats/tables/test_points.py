@@ -37,7 +37,7 @@ def written(folder: Path, cam: str, options: str = "", tolerance: str = "0.001")
     return path
 
 
-@pytest.mark.thin(5)
+@pytest.mark.slow
 @pytest.mark.parametrize("cam", CAMS)
 def test_the_spline_through_the_points_is_judged_as_a_contour(cam: str, tmp_path: Path) -> None:
     report = camgeo.export(written(tmp_path, cam, tolerance="0.0001" if cam == "inch" else "0.001"), tmp_path / "out")
@@ -60,6 +60,7 @@ def test_a_text_has_blanks_between_the_numbers(suffix: str, tmp_path: Path) -> N
     assert contour.area == pytest.approx(np.pi * 35**2, rel=1e-4)  # an eccentric
 
 
+@pytest.mark.slow
 def test_points_beside_another_table_have_a_name_of_their_own(tmp_path: Path) -> None:
     path = tmp_path / "cam.yaml"
     files = "[csv, {csv: {as: points}}, {csv: {as: points, suffix: xyz}}, {csv: {as: points, suffix: txt}}]"
@@ -98,6 +99,7 @@ def test_a_closed_spline_is_the_periodic_cubic_over_its_chords() -> None:
         assert here == pytest.approx(other(along[:-1] + x * np.diff(along)), abs=1e-12)
 
 
+@pytest.mark.costly("both remedies are tried, an export each")
 def test_a_step_that_does_not_hold_the_tolerance_is_refused_with_one_that_does(tmp_path: Path) -> None:
     told = r"a spline through points so far apart is off by .*; give (\S+) or less, or a tolerance of (\S+) mm"
     with pytest.raises(RecipeErrors, match=told) as caught:

@@ -6,23 +6,26 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import lsq_linear
 from support.cases import examples
+from support.heavy import optimize
 
 from kin.law.sources import least_jerk
 from kin.law.sources.least_jerk import (
     Bounds,
     CrowdedError,
+    Curve,
     FunctionSpace,
     LowerLimit,
     Touch,
     curve_through,
     excess_of_bounds,
     least,
+    nearest_parabola,
     pulls,
 )
 
 TURN = 2 * math.pi
+FREE = (None, None)
 
 
 def bounds(x, s, reading):
@@ -44,7 +47,7 @@ def by_kernel(x, lo, hi):
     energy = inverse - np.outer(one, one) / one.sum()  # less the constant that costs nothing
     values, vectors = np.linalg.eigh(energy)
     root = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
-    return 2.0 * lsq_linear(root, np.zeros(len(x)), (lo, hi), tol=1e-15, max_iter=1000).cost
+    return 2.0 * optimize.lsq_linear(root, np.zeros(len(x)), (lo, hi), tol=1e-15, max_iter=1000).cost
 
 
 @pytest.mark.thin(2)
@@ -54,6 +57,79 @@ def test_the_integral_is_that_of_the_kernel(reading):
     s = 3 - 3 * np.cos(x) + 0.4 * np.sin(5 * x)
     found = least(FunctionSpace(0.0, TURN), bounds(x, s, reading))
     assert found.square == pytest.approx(by_kernel(x, s - reading, s + reading), rel=1e-6)
+
+
+def by_free_kernel(x, lo, hi):
+    """The same of functions with free ends, by the kernel |x - t|^5 of the sixth derivative (Wahba 1990, chapter 2)."""
+    kernel = -(np.abs(np.subtract.outer(x, x)) ** 5) / (2.0 * math.factorial(5))
+    across = np.linalg.qr(np.vander(x, 3), mode="complete")[0][:, 3:]  # less the parabolas that cost nothing
+    energy = across @ np.linalg.inv(across.T @ kernel @ across) @ across.T
+    values, vectors = np.linalg.eigh(energy)
+    root = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
+    return 2.0 * optimize.lsq_linear(root, np.zeros(len(x)), (lo, hi), tol=1e-15, max_iter=1000).cost
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("reading", [0.002, 0.02, 0.2])
+def test_with_free_ends_the_integral_is_that_of_their_kernel(reading):
+    x = np.linspace(0.0, 3.0, 13) + 0.03 * np.sin(7.0 * np.arange(13))
+    s = 2.0 * x - np.exp(-x) + 0.3 * np.sin(3 * x)
+    space = FunctionSpace(-0.5, 3.5, FREE)
+    found = least(space, bounds(x, s, reading))
+    assert found.square == pytest.approx(by_free_kernel(x, s - reading, s + reading), rel=1e-6)
+    conditions(found, space, bounds(x, s, reading))
+    # towards the ends of the space it goes on as a parabola
+    for end, beyond in ((found.x[0], space.begin), (found.x[-1], space.end)):
+        u = np.linspace(end, beyond, 5)
+        fit = np.polyfit(u - end, found.curve(u), 2)
+        assert np.polyval(fit, u - end) == pytest.approx(found.curve(u), abs=1e-12)
+
+
+@settings(max_examples=examples(40), deadline=None)
+@given(seed=st.integers(0, 10**6), count=st.integers(4, 40), share=st.floats(0.0, 3.0))
+@pytest.mark.parametrize("stretch", [1.0, 250.0])
+def test_a_parabola_is_found_where_one_keeps_the_bounds_and_none_else(seed, count, share, stretch):
+    """Against linear programming: the least miss of any parabola."""
+    rng = np.random.default_rng(seed)
+    x = np.cumsum(rng.uniform(0.01, 0.2, count)) * stretch
+    s = np.polyval(rng.normal(size=3), x / stretch) + 0.01 * share * rng.uniform(-1, 1, count)
+    limits = bounds(x, s, 0.01 * rng.uniform(0.5, 1.5, count))
+    space = FunctionSpace(float(x[0]), float(x[-1]), FREE)
+    found = nearest_parabola(space, limits)
+    powers = np.vander((x - x[0]) / (x[-1] - x[0]), 3)
+    # least m with lo - m unit <= p(x) <= hi + m unit
+    sides = np.block([[powers, -limits.unit[:, None]], [-powers, -limits.unit[:, None]]])
+    miss = optimize.linprog([0, 0, 0, 1], sides, np.append(limits.hi, -limits.lo), bounds=[(None, None)] * 4).fun
+    if miss > 1e-4:
+        assert isinstance(found, Touch)
+        at = found.which
+        pull, _ = pulls(space, x[at], np.where(found.upper, limits.hi[at], limits.lo[at]))
+        assert (pull * np.where(found.upper, -1.0, 1.0) > 0).all()
+    elif miss < -1e-4:
+        excess, _ = excess_of_bounds(found, limits)
+        assert excess.max() == pytest.approx(miss, abs=1e-5)
+        assert found.square(space.begin, space.end) == pytest.approx(0.0, abs=1e-20)
+
+
+@pytest.mark.parametrize("rest", [(None, 0.4), (0.4, None)])
+@pytest.mark.parametrize("count", [0, 1, 2, 9, 80])
+def test_one_end_may_be_free_and_the_other_at_rest(rest, count):
+    """The spline keeps to its values and both ends, is C4, and its fifth derivative jumps by the multipliers."""
+    rng = np.random.default_rng(count)
+    x = np.sort(rng.uniform(0.1, 1.9, count)) if count < 80 else np.linspace(0.1, 1.9, count)
+    s = 0.4 + (2.0 - x if rest[0] is None else x) ** 3 * np.cos(x)
+    space = FunctionSpace(0.0, 2.0, rest)
+    curve = curve_through(space, x, s)
+    assert curve(x) == pytest.approx(s, abs=1e-12)
+    at_rest, free = (2.0, 0.0) if rest[0] is None else (0.0, 2.0)
+    assert [float(curve(np.array([at_rest]), k)[0]) for k in range(3)] == pytest.approx([0.4, 0, 0], abs=1e-8)
+    assert float(curve(np.array([free]), 3)[0]) == 0.0
+    pull, square = pulls(space, x, s)
+    assert curve.square(0.0, 2.0) == pytest.approx(square, rel=1e-8, abs=1e-20)
+    size = np.abs(pull).max(initial=1.0)
+    *jumps, last = (curve(x, k) - curve(x - 1e-9, k) for k in range(6))
+    assert all(np.abs(jump).max(initial=0.0) <= 1e-6 * size for jump in jumps)
+    assert -last == pytest.approx(pull, rel=1e-5, abs=1e-6 * size)
 
 
 def conditions(found, space, limits):
@@ -92,7 +168,7 @@ def test_the_conditions_of_a_least_hold(seed, count, places, stroke, rest):
 
 
 @pytest.mark.thin(2)
-@pytest.mark.parametrize("rest", [None, (0.3, -0.2)])
+@pytest.mark.parametrize("rest", [None, (0.3, -0.2), FREE, (None, -0.2)])
 @pytest.mark.parametrize("count", [69, 70, 71, 72, 73, 95, 96, 97, 120, 241, 700])
 def test_equations_in_blocks_have_the_solution_of_all_at_once(count, rest, monkeypatch):
     rng = np.random.default_rng(count)
@@ -211,3 +287,15 @@ def test_jumps_of_the_fifth_derivative_are_the_multipliers():
     for order in range(5):
         ends = [curve(np.array([place - 1e-9, place + 1e-9]), order) for place in x]
         assert all(abs(b - a) < 1e-5 * max(1.0, abs(a)) for a, b in ends)
+
+
+def test_the_peak_of_a_curve_is_its_greatest_second_derivative():
+    """Of pieces whose second derivatives are cubics, parabolas and lines, against many samples."""
+    rng = np.random.default_rng(3)
+    rows = rng.normal(size=(6, 40))
+    rows[5, 10:] = rows[4, 25:] = 0.0
+    for k in range(40):
+        curve = Curve(np.zeros(1), np.array([rng.uniform(0.3, 2.0)]), rows[:, k : k + 1], 0.0)
+        x = np.linspace(0.0, curve.widths[0], 2001)
+        sampled = float(np.abs(curve(x, 2)).max())
+        assert sampled * (1.0 - 1e-12) <= curve.peak(0.0, x[-1]) <= sampled * 1.00001 + 1e-5

@@ -13,8 +13,9 @@ from support.cases import examples
 import camgeo
 from camgeo.motions.segments import SccaLaw, UniformLaw
 from camgeo.schema.errors import RecipeErrors
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.sources.laws import blended, from_rows, named, through_points
+from kin.law.sources.peaks import peaks
 from kin.law.sources.ring import Samples
 
 CAM = "cam: {kind: disc, base_radius: 40, follower: {kind: roller, radius: 8}, motion: MOTION}\n"
@@ -47,8 +48,8 @@ def test_a_blended_law_is_uniform_between_its_blends(first: float, last: float) 
     ends = law.derivatives(np.array([0.0, 1.0]), 2, np.array([1, -1]))
     assert ends[0] == pytest.approx([0.0, 1.0], abs=0)
     assert ends[1:] == pytest.approx(0.0, abs=0)
-    assert law.peaks.velocity == pytest.approx(velocity, rel=1e-12)
-    assert law.peaks.acceleration == pytest.approx(1.5 * velocity / min(first, last), rel=1e-9)
+    assert peaks(law.motion).velocity == pytest.approx(velocity, rel=1e-12)
+    assert peaks(law.motion).acceleration == pytest.approx(1.5 * velocity / min(first, last), rel=1e-9)
     # by difference quotients on the blends
     x, h = np.array([0.3 * first, 0.8 * first, 1.0 - 0.4 * last]), 1e-6
     below, here, above = (law.derivatives(x + k * h, 1) for k in (-1, 0, 1))
@@ -61,7 +62,7 @@ def test_blends_of_nothing_or_of_all(first: float, last: float) -> None:
     s = law.derivatives(np.linspace(0.0, 1.0, 101), 0)[0]
     assert (np.diff(s) > 0.0).all()
     assert s[[0, -1]].tolist() == [0.0, 1.0]
-    assert math.isfinite(law.peaks.acceleration) == (first > 0.0 and last > 0.0)
+    assert math.isfinite(peaks(law.motion).acceleration) == (first > 0.0 and last > 0.0)
     if first == last == 0.0:
         assert s == pytest.approx(named("constant-velocity").derivatives(np.linspace(0, 1, 101), 0)[0], abs=1e-15)
 

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from kin.law.programme import IntentError
+from kin.law.normalised import IntentError
 from kin.law.sources.points import from_points
 from kin.law.support_function import lift_constant_breadth
 
@@ -26,6 +26,17 @@ def test_points_without_a_dwell_are_periodic():
     theta = np.linspace(0, TURN, 100)
     mid, radius = motion.enclosure(theta[:-1], theta[1:], 3)
     assert (np.abs(motion.derivatives(0.5 * (theta[:-1] + theta[1:]), 3) - mid) <= radius).all()
+
+
+@pytest.mark.parametrize("level", [0.0, 4.0])
+def test_a_last_point_after_a_whole_turn_is_the_first(level):
+    """With equal neighbours over the end of the turn it bounds a dwell, as the point at 0 does."""
+    late, early = np.radians([30.0, 180.0, 360.0]), np.radians([0.0, 30.0, 180.0])
+    dwells = ([(TURN, TURN + rad(30))], [(0.0, rad(30))]) if level == 0.0 else ([], [])
+    last = from_points(late, [0.0, 10.0, level], dwells=dwells[0])
+    first = from_points(early, [level, 0.0, 10.0], dwells=dwells[1])
+    theta = np.linspace(0, TURN, 50)
+    assert last.derivatives(theta, 2) == pytest.approx(first.derivatives(theta, 2), abs=1e-12)
 
 
 def test_points_rest_beside_dwells():

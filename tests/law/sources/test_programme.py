@@ -12,16 +12,17 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from kin.law.formula.formula import Formula
-from kin.law.programme import IntentError, polynomial_law
+from kin.law.normalised import IntentError, polynomial_law
 from kin.law.sources.laws import NAMES, named, scca, split
 from kin.law.sources.motion import Motion
+from kin.law.sources.peaks import peaks
 from kin.law.sources.programme import Dwell, Given, JointState, Matched, Move, RiseAndFall, programme
 from kin.law.sources.whole_turn import from_formula
 from kin.law.support_function import lift_constant_breadth
 
 TURN = 2 * math.pi
 rad = math.radians
-SMOOTH = [name for name in NAMES if math.isfinite(named(name).peaks.jerk)]
+SMOOTH = [name for name in NAMES if math.isfinite(peaks(named(name).motion).jerk)]
 
 
 def rise(degrees, by, name="modified-sine"):

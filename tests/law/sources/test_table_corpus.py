@@ -1,4 +1,4 @@
-"""A corpus of tables: laws at rows of any step, rounded to any digits in any unit, are followed, spoilt ones refused.
+"""A corpus of tables: laws at rows of any step, rounded to any digits in any unit, are followed.
 
 A thin diagonal runs quickly, all of it with the slow tests. `python tests/law/sources/test_table_corpus.py` writes the
 figures of docs/accuracy.md.
@@ -13,10 +13,9 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from support.table_corpus import LAWS, PLACES, SPOILT, STEPS, TURN, UNITS, drawn, tables
+from support.table_corpus import LAWS, PLACES, STEPS, TURN, UNITS, drawn, tables
 
 from kin.law.sources.table import from_table
-from kin.law.sources.tabled import TableError
 
 COUNT, QUICK = 240, 24
 UNEVEN = 120
@@ -75,7 +74,9 @@ def test_noise_is_followed_and_remarked_where_it_is_more_than_the_digits(noise):
     for law in ("cycloidal", "modified-sine", "polynomial-345"):
         table = next(long_strokes(rng, law, 1, noise))
         motion = from_table(table.rows, table.reading)
-        assert motion.kept.distance <= table.reading
+        # noise beyond the digits takes the least row below 0 by more than its reading: the rows are lowered as a whole
+        kept = motion.kept.distance if noise <= 1.0 else motion.kept.distance_lowered
+        assert kept <= table.reading
         remarked.append("table-noise" in {remark.name for remark in motion.kept.remarks})
     assert remarked == [noise > 1.0] * 3
 
@@ -88,34 +89,6 @@ def long_strokes(rng, law, step, noise=0.0):
             yield table
 
 
-def spoilt(rng, step, k):
-    """A table with one row off on a flank, and the row's line."""
-    table = next(long_strokes(rng, LAWS[k % len(LAWS)], step))
-    speed = np.abs(table.motion.derivatives(table.rows.theta, 1)[1])
-    i = int(rng.choice(np.flatnonzero(speed > 0.3 * speed.max())))
-    s = table.rows.s.copy()
-    s[i] += rng.choice([-1.0, 1.0]) * SPOILT[step] * (table.reading if step == 1 else table.stroke)
-    return table, table.rounded(table.rows.theta, s), i + 1
-
-
-@pytest.mark.thin(4)
-@pytest.mark.parametrize(
-    ("step", "count"),
-    [*((step, 4) for step in SPOILT), *(pytest.param(step, 60, marks=pytest.mark.slow) for step in SPOILT)],
-)
-def test_a_row_that_is_off_is_refused_with_its_line(step, count):
-    rng, passed = np.random.default_rng(100 + step), []
-    for k in range(count):
-        table, rows, line = spoilt(rng, step, k)
-        try:
-            from_table(rows, table.reading)
-            passed.append(table)
-        except TableError as error:
-            if abs(error.line - line) > 1:
-                passed.append(table)
-    assert len(passed) <= count / 20, passed
-
-
 def figures():
     """Errors of the acceleration by step and decimals, of smooth laws and of laws with jumps, of ten tables each."""
     rng, errors = np.random.default_rng(41), defaultdict(list)
@@ -123,7 +96,7 @@ def figures():
         for places in PLACES:
             for k in range(2 * len(LAWS)):
                 table = drawn(rng, LAWS[k % len(LAWS)], "mm", step, places)
-                motion = from_table(table.rows, table.reading, suspects="keep")
+                motion = from_table(table.rows, table.reading)
                 figure = (table.error(motion), peak(motion) / peak(table.motion), *table.greatest(motion))
                 errors[table.smooth, step, places].append(figure)
                 if table.smooth and table.rows_a_stroke >= 12:

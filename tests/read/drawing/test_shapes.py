@@ -24,11 +24,18 @@ def test_a_moved_arc_is_where_its_points_are():
     assert moved.heights.tolist() == [-3.0]
 
 
-def test_a_map_that_makes_an_ellipse_moves_lines_alone():
-    wide = Affine(a=2.0)
-    assert wide.moved(shape(chords=(0, 0, 1, 1, 0), heights=0.0)).chords.tolist() == [[0, 0, 2, 1, 0]]
-    with pytest.raises(UnfitError, match="a transform makes ellipses of its circles"):
-        wide.moved(shape(arcs=(0, 0, 1, 0, 1), heights=0.0))
+def test_a_map_that_makes_ellipses_of_circles_makes_curves_of_arcs():
+    """Every point of them is where the map has it, an arc's ends and middle, and a line beside it stays straight."""
+    wide = Affine(a=2.0, c=0.5, e=1.0)
+    assert wide.moved(shape(chords=(0, 0, 1, 1, 0), heights=0.0)).chords.tolist() == [[1, 0, 3.5, 1, 0]]
+    arcs = wide.moved(shape(arcs=(0, 0, 1, 0, 0.5 * math.pi), heights=0.0))
+    mixed = wide.moved(shape(chords=[(1, 0, 0, 1, math.tan(math.pi / 8)), (0, 1, -1, 1, 0)], heights=0.0))
+    share, half = np.array([0.0, 0.5, 1.0]), math.sqrt(0.5)
+    circle = [wide.at(1.0, 0.0), wide.at(half, half), wide.at(0.0, 1.0)]
+    for curves in (arcs.beziers, mixed.beziers):
+        np.testing.assert_allclose(curves.point(np.zeros(3, dtype=int), share), circle, atol=1e-12)
+    line = [wide.at(0.0, 1.0), wide.at(-0.5, 1.0), wide.at(-1.0, 1.0)]
+    np.testing.assert_allclose(mixed.beziers.point(np.ones(3, dtype=int), share), line, atol=1e-12)
 
 
 KNOTS = [0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0]

@@ -24,9 +24,9 @@ from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
 from kin.linkage.four_bar import FourBar
 from kin.linkage.mechanism import Mechanism
+from kin.read.files import read_solid
 from kin.read.mesh.mesh import weld
 from kin.read.mesh.prism import evened, rounding, upright
-from kin.read.mesh.stl import read_stl
 
 THICK, EDGES = 8.0, 400
 HOLLOW = (4, 3, 60.0, {1: 625.0})
@@ -96,7 +96,7 @@ def failures(path, intent=YOKE, limits=LIMITS):
 @pytest.mark.parametrize("name", POINTS)
 def test_own_triangles_are_a_prism_to_the_bit(tmp_path, name):
     path = write_stl(tmp_path / "cam.stl", triangles_of(name))
-    solid = read_stl(path)
+    solid = read_solid(path)
     assert solid.prism
     assert solid.uneven == 0.0
     assert not failures(path, INTENTS[name])
@@ -107,7 +107,7 @@ def test_tilted_in_single_precision_and_back(tmp_path, name):
     triangles = tilted_and_back(triangles_of(name), single)
     assert not upright(triangles.astype(np.float32)).prism
     path = write_stl(tmp_path / "cam.stl", triangles)
-    solid = read_stl(path)
+    solid = read_solid(path)
     assert solid.prism
     assert 5e-7 < solid.uneven < 2e-5
     assert sound(solid)
@@ -126,7 +126,7 @@ def test_walls_with_corners_halfway_up(tmp_path, middle):
     whole = np.concatenate([walls, solid_triangles(points, bore, 0.0, THICK)[4 * EDGES :]])
     triangles = tilted_and_back(single(whole), single)
     path = write_stl(tmp_path / "cam.stl", triangles)
-    solid = read_stl(path)
+    solid = read_solid(path)
     assert solid.prism
     assert 5e-7 < solid.uneven < 2e-5
     assert sound(solid)
@@ -135,22 +135,23 @@ def test_walls_with_corners_halfway_up(tmp_path, middle):
     assert "thickness" in failures(write_stl(path, leaning))
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("form", ["%.6g", "%.8g", "%.6f", "%.9e", "%.17g"])
 def test_tilted_and_back_as_text_of_few_digits_or_many(tmp_path, form):
     triangles = tilted_and_back(triangles_of(), decimals(form))
     path = write_text(tmp_path / "cam.stl", triangles, form)
-    solid = read_stl(path)
+    solid = read_solid(path)
     assert solid.prism
     assert solid.uneven > 0.0
     assert not failures(path)
 
 
+@pytest.mark.slow
 def test_every_digit_of_single_precision_tells_no_more_than_that(tmp_path):
     """Numbers of single precision written with all the digits that a double has."""
     triangles = tilted_and_back(triangles_of(), single)
     path = write_text(tmp_path / "cam.stl", triangles, "%.17g")
-    assert read_stl(path).uneven > 5e-7
+    assert read_solid(path).uneven > 5e-7
     assert not failures(path)
 
 
@@ -180,7 +181,7 @@ def test_turned_about_the_shaft_in_single_precision_corner_by_corner(angle, size
 # --- faults: what rounding does not explain ---------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [1.0, 0.002])
 @pytest.mark.parametrize("angle", [0.0, 1.0, 2.5])
 def test_walls_that_lean_by_twice_what_rounding_explains(tmp_path, angle, share):
@@ -193,11 +194,11 @@ def test_walls_that_lean_by_twice_what_rounding_explains(tmp_path, angle, share)
         off = factor * rounding(triangles.astype(np.float32))
         leaning = triangles + at[:, :, None] * off * np.array([np.cos(angle), np.sin(angle), 0.0])
         path = write_stl(tmp_path / "cam.stl", leaning)
-        assert read_stl(path).prism is whole
+        assert read_solid(path).prism is whole
         assert ("thickness" in failures(path)) is not whole
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("form", ["%.6g", "%.9g"])
 @pytest.mark.parametrize("lean", [0.001, 0.02])
 def test_walls_that_lean_by_a_thousandth_in_text(tmp_path, form, lean):
@@ -237,7 +238,7 @@ def test_steps_are_left_alone():
 def test_what_was_found_counts_into_every_figure(tmp_path):
     """Six digits move corners by up to 1e-4 mm: the verdict is that of the evened section, and as much worse."""
     path = write_text(tmp_path / "cam.stl", tilted_and_back(triangles_of(), decimals("%.6g")), "%.6g")
-    solid = read_stl(path)
+    solid = read_solid(path)
     assert 2e-5 < solid.uneven < 3e-4
     verdict = verify(path, YOKE, 120, LIMITS)
     phi = 2.0 * np.pi / 120 * np.arange(120)
@@ -317,7 +318,7 @@ def test_openscad_moves_it_and_back(tmp_path, form, there, back):
         scad.write_text(f'{move} import("{path}");')
         path = tmp_path / f"{name}.stl"
         run("openscad", "-q", "-o", path, "--export-format", form, scad)
-    assert read_stl(path).prism
+    assert read_solid(path).prism
     assert not failures(path)
 
 
@@ -330,11 +331,12 @@ def test_prusa_slicer_turns_it_over_and_back(tmp_path):
         moved = tmp_path / f"{k}.stl"
         run("prusa-slicer", "--export-stl", *words, "--output", moved, path)
         path = moved
-    solid = read_stl(path)
+    solid = read_solid(path)
     assert solid.prism
     assert not failures(path)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["stl", "stl_ascii"])
 def test_trimesh_turns_and_shifts_it_and_back(tmp_path, form):
     trimesh = pytest.importorskip("trimesh")
@@ -346,5 +348,5 @@ def test_trimesh_turns_and_shifts_it_and_back(tmp_path, form):
         part.apply_transform(matrix)
         data = part.export(file_type=form)
         path.write_bytes(data if isinstance(data, bytes) else data.encode())
-    assert read_stl(path).prism
+    assert read_solid(path).prism
     assert not failures(path)

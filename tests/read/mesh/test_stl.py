@@ -14,16 +14,18 @@ from support.solids import sound
 
 from kin.contour.contour import Contour
 from kin.read.errors import ReadError
+from kin.read.files import read_solid, separate_bodies
 from kin.read.mesh.mesh import weld, welded
-from kin.read.mesh.stl import Solid, read_stl
 from kin.read.mesh.threemf import read_3mf
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kin.read.mesh.stl import Solid
+
 
 def test_a_ring(tmp_path: Path) -> None:
-    solid = read_stl(binary(tmp_path / "cam.stl", ring()))
+    solid = read_solid(binary(tmp_path / "cam.stl", ring()))
     assert solid.prism
     assert solid.edges[:2] == (0, 0)
     assert sound(solid)
@@ -50,7 +52,7 @@ def test_neither_the_order_of_triangles_nor_of_their_corners_matters(tmp_path: P
     triangles = triangles[rng.permutation(len(triangles))]
     shift = rng.integers(0, 3, len(triangles))
     triangles = triangles[np.arange(len(triangles))[:, None], (np.arange(3) + shift[:, None]) % 3]
-    solid = read_stl(binary(tmp_path / "cam.stl", triangles))
+    solid = read_solid(binary(tmp_path / "cam.stl", triangles))
     assert solid.prism
     assert sound(solid)
     assert len(solid.contour) == N
@@ -58,7 +60,7 @@ def test_neither_the_order_of_triangles_nor_of_their_corners_matters(tmp_path: P
 
 
 def test_the_text_form_gives_the_same(tmp_path: Path) -> None:
-    solid = read_stl(text(tmp_path / "cam.stl", ring()))
+    solid = read_solid(text(tmp_path / "cam.stl", ring()))
     assert solid.form == "text"
     assert sound(solid)
     assert solid.prism
@@ -66,7 +68,7 @@ def test_the_text_form_gives_the_same(tmp_path: Path) -> None:
 
 
 def test_a_binary_header_may_begin_with_solid(tmp_path: Path) -> None:
-    solid = read_stl(binary(tmp_path / "cam.stl", ring(), b"solid facet by some exporter"))
+    solid = read_solid(binary(tmp_path / "cam.stl", ring(), b"solid facet by some exporter"))
     assert solid.form == "binary"
 
 
@@ -75,7 +77,7 @@ def test_negative_zero_is_zero(tmp_path: Path) -> None:
     low = triangles[:, :, 2] == 0.0
     low[::2] = False
     triangles[:, :, 2][low] = -0.0
-    solid = read_stl(binary(tmp_path / "cam.stl", triangles))
+    solid = read_solid(binary(tmp_path / "cam.stl", triangles))
     assert sound(solid)
     assert solid.prism
 
@@ -90,7 +92,7 @@ def test_parts_made_by_trimesh_and_manifold(tmp_path: Path, scale: float) -> Non
     path = tmp_path / "cam.stl"
     for form in ("stl", "stl_ascii"):
         path.write_bytes(data if isinstance(data := part.export(file_type=form), bytes) else data.encode())
-        solid = read_stl(path)
+        solid = read_solid(path)
         assert solid.edges[:2] == (0, 0)
         assert sound(solid) == part.is_winding_consistent
         assert solid.volume == pytest.approx(part.volume, rel=1e-6)
@@ -105,7 +107,7 @@ def test_a_stepped_part_is_cut_where_it_is_widest(tmp_path: Path) -> None:
     hub = trimesh.creation.revolve(profile, sections=64)
     path = tmp_path / "hub.stl"
     hub.export(path)
-    solid = read_stl(path)
+    solid = read_solid(path)
     assert not solid.prism
     assert solid.edges[:2] == (0, 0)
     assert sound(solid)
@@ -114,13 +116,13 @@ def test_a_stepped_part_is_cut_where_it_is_widest(tmp_path: Path) -> None:
     round_share = 32.0 * np.sin(2.0 * np.pi / 64)
     assert solid.contour.area == pytest.approx(25.0**2 * round_share, rel=1e-5)
     assert solid.volume == pytest.approx(hub.volume, rel=1e-6)
-    at = read_stl(path, [10.0, 4.0])
+    at = read_solid(path, [10.0, 4.0])
     assert [section.height for section in at.sections] == [10.0, 4.0]
     assert at.contour.area == pytest.approx(8.0**2 * round_share, rel=1e-5)
     assert at.sections[1].contour.area == pytest.approx(25.0**2 * round_share, rel=1e-5)
 
 
-def test_a_cone_is_no_prism_and_a_level_at_half_height_is_avoided(tmp_path: Path) -> None:
+def test_a_cone_is_no_prism_and_is_cut_at_half_height_where_corners_lie_there_too(tmp_path: Path) -> None:
     top, middle = 0.6 * OUTER, 0.8 * OUTER
     cap = BORE * 0.5
 
@@ -137,30 +139,68 @@ def test_a_cone_is_no_prism_and_a_level_at_half_height_is_avoided(tmp_path: Path
     )
     inner = whole[2 * N : 4 * N]
     single = np.concatenate([tapered(OUTER, top, 0.0, HEIGHT), inner, lids])
-    solid = read_stl(binary(tmp_path / "cone.stl", single))
+    solid = read_solid(binary(tmp_path / "cone.stl", single))
     assert not solid.prism
     assert sound(solid)
     assert solid.height == 4.0
     assert solid.contour.area == pytest.approx(0.64 * Contour.from_vertices(OUTER).area, rel=1e-3)
     halves = [tapered(OUTER, middle, 0.0, 4.0), tapered(middle, top, 4.0, HEIGHT)]
-    solid = read_stl(binary(tmp_path / "cone.stl", np.concatenate([*halves, inner, lids])))
+    solid = read_solid(binary(tmp_path / "cone.stl", np.concatenate([*halves, inner, lids])))
     assert sound(solid)
-    assert solid.height == 6.0
-    assert solid.contour.area == pytest.approx(0.49 * Contour.from_vertices(OUTER).area, rel=1e-3)
+    assert solid.height == 4.0
+    assert solid.contour.area == pytest.approx(0.64 * Contour.from_vertices(OUTER).area, rel=1e-6)
+
+
+def in_four(triangles: np.ndarray) -> np.ndarray:
+    """Each triangle divided by the middles of its sides: the same solid."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
+    return np.concatenate([np.stack(rows, axis=1) for rows in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize(
+    ("times", "single"),
+    [(1, True), (1, False), *(pytest.param(2, is_single, marks=pytest.mark.slow) for is_single in (True, False))],
+)
+def test_a_plane_through_corners_or_close_to_them_cuts_the_same_section(
+    tmp_path: Path, times: int, single: bool
+) -> None:
+    """A disc that narrows evenly to 0.8 of its size at half of its height: the area of any section is known."""
+    half = 0.5 * HEIGHT
+    corners = ring()
+    edge = np.hypot(*corners[:, :, :2].transpose(2, 0, 1))[:, :, None] > 6.0
+    wall = edge.all(axis=1)[:, 0] & (np.ptp(corners[:, :, 2], axis=1) > 0.0)
+    narrow = np.where(edge & (corners[:, :, 2:] == HEIGHT), [0.8, 0.8, 1.0], 1.0)
+    low, high = corners[wall] * narrow[wall] * [1.0, 1.0, 0.5], corners[wall] * [0.8, 0.8, 0.5] + [0.0, 0.0, half]
+    triangles = np.concatenate([low, high, (corners * narrow)[~wall]])
+    for _ in range(times):
+        triangles = in_four(triangles)
+    planes = [z + off for z in (2.0, 1.0, 6.0) for off in (0.0, 1e-15, -1e-15, 3e-12, 1e-7)]
+    write = binary if single else text
+    solid = read_solid(write(tmp_path / "cam.stl", triangles), planes)
+    assert sound(solid)
+    whole, bore = Contour.from_vertices(OUTER).area, Contour.from_vertices(BORE).area
+    exact = 1e-6 if single else 1e-12
+    for z, section in zip(planes, solid.sections, strict=True):
+        size = 1.0 - 0.2 * min(z / half, 1.0)
+        assert section.height == z
+        assert section.contour.area == pytest.approx(size**2 * whole, rel=exact)
+        assert section.holes[0].area == pytest.approx(bore, rel=exact)
 
 
 def test_walls_with_corners_halfway_up_still_make_a_prism(tmp_path: Path) -> None:
     whole = ring()
     low, high = ring(high=3.0), ring(low=3.0)
     walls = np.concatenate([low[: 4 * N], high[: 4 * N]])
-    solid = read_stl(binary(tmp_path / "cam.stl", np.concatenate([walls, whole[4 * N :]])))
+    solid = read_solid(binary(tmp_path / "cam.stl", np.concatenate([walls, whole[4 * N :]])))
     assert sound(solid)
     assert solid.prism
     assert solid.height == 4.0
     assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area, rel=1e-13)
     leaning = np.concatenate([walls, whole[4 * N :]])
     leaning[:, :, :2] = np.where(leaning[:, :, 2:] == 3.0, leaning[:, :, :2] * (1.0 + 1e-6), leaning[:, :, :2])
-    assert not read_stl(binary(tmp_path / "cam.stl", leaning)).prism
+    assert not read_solid(binary(tmp_path / "cam.stl", leaning)).prism
 
 
 # --- planted faults: in the fields
@@ -172,19 +212,19 @@ def fields(solid: Solid) -> tuple[bool, bool, tuple[int, ...], int, int]:
 
 @pytest.mark.parametrize("lid", [4 * N, 5 * N + 7, 8 * N - 1])
 def test_a_hole_in_a_lid(tmp_path: Path, lid: int) -> None:
-    solid = read_stl(binary(tmp_path / "cam.stl", np.delete(ring(), lid, axis=0)))
+    solid = read_solid(binary(tmp_path / "cam.stl", np.delete(ring(), lid, axis=0)))
     assert fields(solid) == (False, False, (3, 0, 0), 0, 0)
 
 
 def test_a_lid_turned_over(tmp_path: Path) -> None:
     triangles = ring()
     triangles[5 * N] = triangles[5 * N, ::-1]
-    solid = read_stl(binary(tmp_path / "cam.stl", triangles))
+    solid = read_solid(binary(tmp_path / "cam.stl", triangles))
     assert fields(solid) == (True, False, (0, 0, 3), 0, 0)
 
 
 def test_a_part_turned_inside_out(tmp_path: Path) -> None:
-    solid = read_stl(binary(tmp_path / "cam.stl", ring()[:, ::-1]))
+    solid = read_solid(binary(tmp_path / "cam.stl", ring()[:, ::-1]))
     assert sound(solid)
     assert solid.volume < 0.0
     assert solid.contour.area > 0.0
@@ -194,10 +234,10 @@ def test_duplicate_triangles_the_same_way_and_the_other(tmp_path: Path) -> None:
     triangles = ring()
     lid = triangles[5 * N]
     again = np.concatenate([triangles, [lid[[1, 2, 0]]]])
-    assert fields(read_stl(binary(tmp_path / "cam.stl", again))) == (False, False, (0, 3, 0), 0, 1)
+    assert fields(read_solid(binary(tmp_path / "cam.stl", again))) == (False, False, (0, 3, 0), 0, 1)
     pillow = np.array([[8.0, 8.0, 1.0], [9.0, 8.0, 1.0], [8.0, 9.0, 1.0]])
     loose = np.concatenate([triangles, [pillow, pillow[::-1]]])
-    solid = read_stl(binary(tmp_path / "cam.stl", loose))
+    solid = read_solid(binary(tmp_path / "cam.stl", loose))
     assert sound(solid)
     assert solid.duplicate == 1
     assert not solid.prism
@@ -207,7 +247,7 @@ def test_triangles_without_area(tmp_path: Path) -> None:
     triangles = ring()
     a, b, _ = triangles[5 * N]
     flat = np.concatenate([triangles, [[a, b, b], [a, a, a], [a, (a + b) / 2.0, b]]])
-    solid = read_stl(binary(tmp_path / "cam.stl", flat))
+    solid = read_solid(binary(tmp_path / "cam.stl", flat))
     assert solid.degenerate >= 2
     assert solid.edges.open or solid.edges.crowded
 
@@ -217,7 +257,7 @@ def test_triangles_without_area(tmp_path: Path) -> None:
 
 def reason(path: Path) -> str:
     try:
-        read_stl(path)
+        read_solid(path)
     except ReadError as error:
         return error.reason
     return "read"
@@ -227,7 +267,7 @@ def reason(path: Path) -> str:
 def test_a_hole_in_the_wall_opens_the_section(tmp_path: Path, wall: int) -> None:
     path = binary(tmp_path / "cam.stl", np.delete(ring(), wall, axis=0))
     with pytest.raises(ReadError, match=r"the section is open at \(-?\d") as caught:
-        read_stl(path)
+        read_solid(path)
     assert caught.value.reason == "open"
     x, y = caught.value.place
     assert np.hypot(*(OUTER - (x, y)).T).min() < 2.0
@@ -268,11 +308,14 @@ def test_a_file_with_more_than_it_should_hold(tmp_path: Path) -> None:
     path = binary(tmp_path / "cam.stl", ring())
     path.write_bytes(path.read_bytes() + b"\0")
     with pytest.raises(ReadError, match=r"960 triangles make a file of 48084 bytes, not 48085") as caught:
-        read_stl(path)
+        read_solid(path)
     assert caught.value.reason == "syntax"
-    twice = text(path, ring()).read_bytes() * 2
+    twice = text(path, ring()).read_bytes() + text(path, ring() + np.array([100.0, 0.0, 0.0])).read_bytes()
     path.write_bytes(twice)
-    assert reason(path) == "unsupported"
+    assert reason(path) == "several"
+    first, second = (body.read((), 1) for body in separate_bodies(path))
+    assert first.volume == read_solid(text(path, ring())).volume == pytest.approx(second.volume)
+    assert second.contour.box.x_min == pytest.approx(100.0 + first.contour.box.x_min)
 
 
 @pytest.mark.parametrize(
@@ -292,7 +335,7 @@ def test_damage_in_the_text_form(tmp_path: Path, old: bytes, new: bytes, words: 
     assert old in raw
     path.write_bytes(raw.replace(old, new))
     with pytest.raises(ReadError, match=words):
-        read_stl(path)
+        read_solid(path)
 
 
 @given(st.lists(st.tuples(st.floats(0.0, 0.9999), st.integers(0, 255)), min_size=1, max_size=5), st.booleans())
@@ -330,7 +373,7 @@ def test_welding_survives_points_of_one_hash(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_a_missing_file_is_the_file_systems_error(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
-        read_stl(tmp_path / "none.stl")
+        read_solid(tmp_path / "none.stl")
 
 
 @pytest.mark.parametrize("stumps", [False, True])
@@ -341,8 +384,8 @@ def test_lids_without_walls(tmp_path: Path, stumps: bool) -> None:
     if stumps:
         triangles = np.concatenate([triangles, ring(high=0.25 * HEIGHT)[: 4 * N]])
     files = [
-        (read_stl, binary(tmp_path / "a.stl", triangles)),
-        (read_stl, text(tmp_path / "b.stl", triangles)),
+        (read_solid, binary(tmp_path / "a.stl", triangles)),
+        (read_solid, text(tmp_path / "b.stl", triangles)),
         (read_3mf, in_3mf(tmp_path / "c.3mf", triangles)),
     ]
     for read, path in files:
@@ -352,17 +395,17 @@ def test_lids_without_walls(tmp_path: Path, stumps: bool) -> None:
 
 def test_words_in_capitals(tmp_path: Path) -> None:
     path = text(tmp_path / "cam.stl", ring())
-    small = read_stl(path)
+    small = read_solid(path)
     path.write_text(path.read_text().upper())
-    assert read_stl(path).volume == small.volume
+    assert read_solid(path).volume == small.volume
     path.write_text(path.read_text().replace("OUTER LOOP", "OUTER RING", 1))
     with pytest.raises(ReadError, match='facet 1 has "ring" where "loop" belongs'):
-        read_stl(path)
+        read_solid(path)
 
 
 def test_what_is_no_stl_at_all_is_told_by_how_it_begins(tmp_path: Path) -> None:
     path = tmp_path / "cam.stl"
     path.write_bytes(b"ISO-10303-21;\nHEADER;\n" + b"FILE_DESCRIPTION(('a part'),'2;1');\n" * 40)
     with pytest.raises(ReadError, match=r"neither binary nor text: it begins with \"ISO-10303-21; HEADER\"$") as caught:
-        read_stl(path)
+        read_solid(path)
     assert caught.value.reason == "syntax"

@@ -83,6 +83,7 @@ def full(tmp_path_factory):
 # --- what is written --------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("which", ["plain", "full"])
 def test_the_consortium_s_own_reader_takes_it_without_a_warning(which, request):
     _, _, path, _ = request.getfixturevalue(which)

@@ -9,7 +9,7 @@ import re
 
 import numpy as np
 import pytest
-from support.stepfiles import stadium, swept, washer
+from support.stepfiles import Text, ring, stadium, swept, washer
 
 from camgeo.testing import assert_closed, assert_watertight
 from kin.read.errors import ReadError
@@ -95,6 +95,19 @@ def test_sections_are_taken_where_they_are_asked_for(tmp_path):
     assert all(one.contour.area == pytest.approx(math.pi * 400) for one in solid.sections)
     with pytest.raises(ReadError, match=r"from z = 0 to 8 mm: it has no section at 9"):
         read_step(path, [9.0])
+
+
+def test_a_section_where_walls_end_is_that_of_the_walls_above(tmp_path):
+    text = Text()
+    lower, low, _ = ring(text, (0.0, 0.0), 20.0, (0.0, 4.0), hole=False)
+    upper, _, high = ring(text, (0.0, 0.0), 15.0, (4.0, 8.0), hole=False)
+    inner, low_in, high_in = ring(text, (0.0, 0.0), 6.0, (0.0, 8.0), hole=True)
+    down, up = text.plane((0, 0, 0.0), (0, 0, -1), (1, 0, 0)), text.plane((0, 0, 8.0), (0, 0, 1), (1, 0, 0))
+    bottom = text.face([text.loop(f"-{low}"), text.loop(low_in, outer=False)], down)
+    top = text.face([text.loop(high), text.loop(f"-{high_in}", outer=False)], up)
+    solid = read_step(put(tmp_path, text.text([lower, upper, inner, bottom, top])), [4.0, 2.0])
+    assert [one.contour.area for one in solid.sections] == pytest.approx([math.pi * 225, math.pi * 400])
+    assert [one.holes[0].area for one in solid.sections] == pytest.approx([math.pi * 36, math.pi * 36])
 
 
 def test_text_is_read_however_it_is_laid_out(tmp_path):

@@ -45,6 +45,7 @@ def data(page: str) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outset", [0.0, 0.05])
 def test_a_drawing_has_its_error_ring(tmp_path: Path, outset: float) -> None:
     path = drawn(tmp_path / "old.dxf", outset)
@@ -82,6 +83,7 @@ def test_a_file_that_cannot_be_read_has_a_page_that_says_so(tmp_path: Path) -> N
     assert "nothing to cut" in report.page
 
 
+@pytest.mark.slow
 def test_the_command_writes_it_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recipe, page = tmp_path / "cam.yaml", tmp_path / "page.html"
     recipe.write_text(TEXT, encoding="utf-8")

@@ -175,6 +175,7 @@ def test_an_arm_keeps_its_pivot_and_swings_as_the_motion_says(name: str, rotatio
     assert (touch.imag < 0.0).all() == below
 
 
+@pytest.mark.slow
 def test_an_arm_whose_face_lies_beyond_its_pivot_does_not_cross_the_cam() -> None:
     recipe = load_text(
         "cam:\n  kind: disc\n  base_radius: 27\n  follower: {kind: flat, arm: {pivot: 45, face: -3}}\n"

@@ -103,6 +103,7 @@ def test_evolute_of_an_ellipse() -> None:
     assert ((centre - origin(normal)) / along(normal)).real.min() > 0.0
 
 
+@pytest.mark.slow
 def test_evolute_of_rounded_corners_is_their_centres_and_does_not_fail() -> None:
     """Arcs have no evolute but points; a linkage's cam turns with its frame."""
     assert "evolute" not in overlaid("reuleaux", "evolute")

@@ -40,6 +40,7 @@ from camgeo.report.page.content import content
 from camgeo.report.page.outline import MEASURED, contours_of
 from camgeo.report.page.page import LOCAL, RELOAD, pack_numbers, page, scene, script_json
 from camgeo.report.page.scene import STEPS
+from camgeo.report.plot import Plot, Series
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
 from kin.contour.contour import Contour
@@ -402,6 +403,7 @@ def judged(recipe: Recipe, path: Path) -> FileResult:
     return FileResult.of(path, FileRequest(verdict.kind), 1e-3, verdict)
 
 
+@pytest.mark.slow
 def test_a_shifted_contour_shows_as_an_error_on_one_side(tmp_path: Path) -> None:
     import ezdxf
 
@@ -489,6 +491,7 @@ def test_arcs_are_flattened_on_the_arc_and_written_as_arcs() -> None:
     assert np.hypot(*(disc(2.0, 3.0, 0.5).flattened() - (2.0, 3.0)).T) == pytest.approx(0.5)
 
 
+@pytest.mark.slow
 def test_a_picture_is_an_svg_by_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["report", str(RECIPES / "reuleaux.yaml"), "--out", str(tmp_path), "--picture", "svg", "--at", "-300"]
     assert main(arguments) == 0
@@ -517,6 +520,7 @@ def test_a_picture_is_a_png(tmp_path: Path) -> None:
     assert {(0xCD, 0xD7, 0xE2), (0xB2, 0x3A, 0x20)} <= colours  # metal and the links' edges
 
 
+@pytest.mark.slow
 def test_an_export_with_a_page_lists_it_and_leaves_the_other_page_alone(tmp_path: Path) -> None:
     path = tmp_path / "small.yaml"
     path.write_text("cam: {kind: support, p: 25 + cos(3*t)}\nexport: {files: [dxf, html]}\n", encoding="utf-8")
@@ -552,6 +556,7 @@ def test_a_wrong_recipe_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_the_page_imports_nothing_heavy() -> None:
     code = (
         "import sys, camgeo.report.page.content, camgeo.report.page.page, camgeo.cli.watch;"
@@ -560,6 +565,7 @@ def test_the_page_imports_nothing_heavy() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "set()\n"
 
 
+@pytest.mark.slow
 def test_the_data_is_small_and_holds_no_infinity(made: Made) -> None:
     text = script_json(scene(made.recipe, made.content, made.outcome.report))
     assert len(text) < 300_000
@@ -716,7 +722,7 @@ def test_the_limits_of_a_preload_are_lines() -> None:
 def test_what_is_the_same_is_plotted_once() -> None:
     wave, more = np.sin(SHAFT), np.sin(SHAFT) + 1e-3
     plots = [
-        curves.Plot(title, "mm", (curves.Series("a", values),), limits=limits)
+        Plot(title, "mm", (Series("a", values),), limits=limits)
         for title, values, limits in (
             ("Error of a.dxf", wave, ()),
             ("Error of a.svg", wave + 1e-9, ()),
@@ -727,7 +733,7 @@ def test_what_is_the_same_is_plotted_once() -> None:
     titles = [plot.title for plot in curves.merge_alike(plots)]
     assert titles == ["Error of a.dxf and a.svg", "Error of a.stl", "Error of b.dxf"]
     assert curves.join_titles(["Radius, inner", "Radius, outer", "Radius, third"]) == "Radius, inner, outer and third"
-    twice = curves.Plot("Preload", "N", tuple(curves.Series(name, np.full(9, 450.0)) for name in ("face A", "face B")))
+    twice = Plot("Preload", "N", tuple(Series(name, np.full(9, 450.0)) for name in ("face A", "face B")))
     assert [row.name for row in curves.merge_alike([twice])[0].series] == ["face A and face B"]
     assert curves.short(130534.2) == "130500"
     assert curves.join_titles(["Output", "Output of the first loop"]) == "Output and Output of the first loop"
@@ -749,7 +755,13 @@ def test_files_that_draw_the_same_are_one_error(tmp_path: Path) -> None:
 
 def test_the_watch_serves_each_version_and_goes_on_after_a_fault(tmp_path: Path) -> None:
     path = tmp_path / "a.yaml"
-    path.write_text("1", encoding="utf-8")
+
+    def put(text: str) -> None:
+        """At once: the watch would serve what it finds between an emptied file and its text."""
+        (tmp_path / "new").write_text(text, encoding="utf-8")
+        (tmp_path / "new").replace(path)
+
+    put("1")
     address: list[str] = []
     stop = threading.Event()
 
@@ -775,17 +787,17 @@ def test_the_watch_serves_each_version_and_goes_on_after_a_fault(tmp_path: Path)
             )
         with urllib.request.urlopen(address[0] + "events", timeout=20) as stream:
             assert told(stream)["fault"] == ""
-            path.write_text("?", encoding="utf-8")
+            put("?")
             assert told(stream)["fault"] == "half"
             assert "<p>1 " in fetched(address[0])  # the last good page stays
-            path.write_text("22", encoding="utf-8")
+            put("22")
             assert told(stream) == {"version": 3, "fault": ""}
         assert "<p>22 " in fetched(address[0])
         with pytest.raises(urllib.error.HTTPError):
             fetched(address[0] + "etc/passwd")
     finally:
         stop.set()
-        path.write_text("333", encoding="utf-8")
+        put("333")
         thread.join(20)
     assert not thread.is_alive()
     with pytest.raises(urllib.error.URLError):
@@ -876,10 +888,10 @@ def test_hub_and_timing_mark_are_drawn_on_the_cam(tmp_path: Path) -> None:
 )
 def test_the_line_under_the_title_names_the_linkage_as_the_pages_do(kind: str, said: str) -> None:
     report = {
-        "rotation": "ccw",
         "units": "inch",
         "follower": "square frame",
         "tolerance": 4e-5,
         "linkage": {"kind": kind},
     }
-    assert tables.facts(report) == f"square frame in {said} · the shaft turns counter-clockwise · tolerance 4e-05 in"
+    turns = "the shaft turns counter-clockwise"
+    assert tables.facts(report, turns) == f"square frame in {said} · {turns} · tolerance 4e-05 in"

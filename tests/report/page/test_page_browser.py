@@ -19,6 +19,7 @@ from support.rendered import rendered, share
 
 import camgeo
 from camgeo.cli.watch import watch
+from camgeo.recipe.starter import starter
 from camgeo.report.page.page import page
 from camgeo.synthesis.design import designed
 from kin.numeric.records import replace
@@ -67,7 +68,7 @@ def test_the_slider_moves_the_follower_by_the_right_amount(browser: Browser, tmp
     design = designed(made.recipe)
     for degrees in (0.0, 33.3, 90.1, 151.7, 288.8, 359.9):
         page_.ask(SLIDE.format(degrees))
-        assert page_.ask("document.documentElement.dataset.degrees") == f"{degrees:.4f}"
+        assert page_.ask("document.documentElement.dataset.at") == f"{degrees:.4f}"
         shaft = np.array([math.radians(degrees)])
         if design.driven is not None:
             mechanism = design.driven.mechanism
@@ -110,7 +111,7 @@ def test_keys_and_buttons_turn_the_shaft(browser: Browser, tmp_path: Path) -> No
     page_ = opened(browser, of("shu-wu"), tmp_path)
 
     def degrees() -> float:
-        return float(page_.ask("document.documentElement.dataset.degrees"))
+        return float(page_.ask("document.documentElement.dataset.at"))
 
     for key, shift, expected in (
         *(("ArrowRight", False, 1.0), ("ArrowRight", True, 11.0), ("ArrowLeft", False, 10.0)),
@@ -121,14 +122,14 @@ def test_keys_and_buttons_turn_the_shaft(browser: Browser, tmp_path: Path) -> No
     page_.key(" ")
     assert page_.ask("document.documentElement.dataset.playing") == "true"
     begun = degrees()
-    page_.wait(f"Math.abs(document.documentElement.dataset.degrees - {begun}) > 2")
+    page_.wait(f"Math.abs(document.documentElement.dataset.at - {begun}) > 2")
     page_.key(" ")
     assert page_.ask("document.getElementById('play').textContent") == "Play"
     still = degrees()
     time.sleep(0.2)
     assert degrees() == still
     # the place of a check
-    goal = float(page_.ask("(() => { const b = document.querySelector('.go'); b.click(); return b.dataset.deg; })()"))
+    goal = float(page_.ask("(() => { const b = document.querySelector('.go'); b.click(); return b.dataset.at; })()"))
     assert degrees() == pytest.approx(goal, abs=1e-3)
     assert page_.problems == []
 
@@ -143,11 +144,11 @@ def test_the_cam_can_be_dragged(browser: Browser, tmp_path: Path, name: str, sen
     reach = 13.0 * one  # within the metal of either cam, between the bore and what is cut round it
     angles = np.radians(np.linspace(100.0, 150.0, 9))
     page_.drag([(x + reach * math.cos(a), y - reach * math.sin(a)) for a in angles])
-    degrees = float(page_.ask("document.documentElement.dataset.degrees"))
+    degrees = float(page_.ask("document.documentElement.dataset.at"))
     assert (sense * degrees) % 360.0 == pytest.approx(50.0, abs=1.0)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize(("width", "dark"), [(360, False), (1280, True), (1600, False)])
 @pytest.mark.parametrize("name", ["shu-wu", "six-bar", "w-law"])
 def test_nothing_sticks_out_or_lies_over_its_neighbour(
@@ -180,6 +181,18 @@ def test_nothing_sticks_out_or_lies_over_its_neighbour(
         assert page_.problems == []
     finally:
         browser.size(1280, 800)
+
+
+@pytest.mark.slow
+def test_values_along_an_axis_differ_where_they_are_nearly_the_same(browser: Browser, tmp_path: Path) -> None:
+    text = re.sub(r"rise: 20|return: 20", lambda mark: mark[0].replace("20", "0.05"), starter("disc-roller"))
+    report = camgeo.export(camgeo.load(text), tmp_path, only=["html"])
+    browser.problems.clear()
+    browser.open((report.path / "recipe.html").as_uri())
+    told = browser.ask("""[...document.querySelectorAll('.plot svg')].map((plot) =>
+      [...plot.querySelectorAll('text[text-anchor=end]')].map((text) => text.textContent))""")
+    assert any(len(label) > 6 for labels in told for label in labels)
+    assert all(len(set(labels)) == len(labels) for labels in told), told
 
 
 @pytest.mark.slow
@@ -228,6 +241,7 @@ def test_a_force_begins_at_0_and_nothing_is_0_without_digits(browser: Browser, t
     assert page_.problems == []
 
 
+@pytest.mark.slow
 def test_the_error_goes_round_each_flank(browser: Browser, tmp_path: Path) -> None:
     """Each file's error of each surface is plotted between its tolerances, and is chosen round that surface."""
     path = tmp_path / "groove.yaml"
@@ -287,10 +301,11 @@ def test_each_plot_is_saved_as_a_picture_by_itself(browser: Browser, tmp_path: P
     assert page_.problems == []
 
 
+@pytest.mark.slow
 def test_the_address_leads_to_an_angle_and_follows_it(browser: Browser, tmp_path: Path) -> None:
     page_ = opened(browser, of("shu-wu"), tmp_path, "#deg=75")
     page_.ask("location.hash = '#deg=120'")
-    page_.wait("document.documentElement.dataset.degrees === '120.0000'")
+    page_.wait("document.documentElement.dataset.at === '120.0000'")
     page_.key("ArrowRight")
     page_.wait("location.hash === '#deg=121'")
     assert page_.problems == []
@@ -346,7 +361,7 @@ def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser:
         assert not browser.ask("document.getElementById('fault').hidden")
         path.write_text(text.replace("<h1>shu-wu</h1>", "<h1>another</h1>"), encoding="utf-8")
         browser.wait("document.querySelector('h1')?.textContent === 'another'")
-        browser.wait("document.documentElement.dataset.degrees === '45.0000'")
+        browser.wait("document.documentElement.dataset.at === '45.0000'")
         assert browser.problems == []
         browser.call("Page.navigate", url="about:blank")
     finally:
@@ -390,9 +405,9 @@ def test_one_player_shows_one_scene_after_another(browser: Browser, tmp_path: Pa
     )
     assert page_.ask("document.getElementById('errors').hidden")
     page_.ask(SLIDE.format(90))
-    assert page_.ask("document.documentElement.dataset.degrees") == "90.0000"
+    assert page_.ask("document.documentElement.dataset.at") == "90.0000"
     page_.key("ArrowRight")
-    assert page_.ask("document.documentElement.dataset.degrees") == "91.0000"  # one player hears the key
+    assert page_.ask("document.documentElement.dataset.at") == "91.0000"  # one player hears the key
     assert page_.problems == []
 
 
@@ -402,7 +417,7 @@ def test_a_frame_without_an_origin_shows_the_page(browser: Browser, tmp_path: Pa
     hear = "<script>addEventListener('error', (event) => parent.postMessage(event.message, '*'))</script></head>"
     turn = (
         "<script>const slider = document.getElementById('slider'); slider.value = 90;"
-        "slider.dispatchEvent(new Event('input')); const told = () => document.documentElement.dataset.degrees;"
+        "slider.dispatchEvent(new Event('input')); const told = () => document.documentElement.dataset.at;"
         "setTimeout(() => parent.postMessage(told(), '*'), 600);</script></body>"
     )
     text = replace_once(replace_once(of("shu-wu").text, "</head>", hear), "</body>", turn)

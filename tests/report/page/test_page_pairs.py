@@ -38,6 +38,7 @@ def ring_of(body, step):
     return body.placed(body.shapes[0].rings[0].flattened(), step)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["stem", "crank", pytest.param("shoe", marks=pytest.mark.slow)])
 def test_each_roller_touches_its_own_disc(name):
     content = check_and_show(recipe_of(name))[1]
@@ -62,6 +63,7 @@ def test_two_faces_stand_against_their_discs():
         assert ring_of(found["disc 2"], step)[:, 0].min() == pytest.approx(x - 110, abs=0.02)
 
 
+@pytest.mark.slow
 def test_the_error_of_each_disc_and_the_backlash_of_both():
     outcome, content = check_and_show(recipe_of("stem"))
     plots = {plot.title: plot for plot in content.plots}

@@ -70,6 +70,7 @@ def test_marks_lie_on_the_contour_where_checks_fail(rotation: str) -> None:
         assert mark["text"]
 
 
+@pytest.mark.slow
 def test_marks_of_a_groove_lie_on_the_flank_that_fails() -> None:
     scene = camgeo.design(
         camgeo.load(

@@ -41,7 +41,7 @@ def assert_is_seen(text: str) -> None:
     assert share(image, "#000000") == 0.0  # what a program paints that does not understand a colour
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("path", few(GALLERY, 8), ids=lambda path: path.stem)
 def test_the_gallery_is_seen_without_a_browser(path: Path) -> None:
     assert_is_seen(path.read_text(encoding="utf-8"))
@@ -54,6 +54,7 @@ def test_the_gallery_needs_no_style_sheet() -> None:
         assert not re.search(r"var\(|<style|\sstyle=|calc\(|vector-effect|paint-order", text), path.name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(SHOWN, 7))
 def test_a_picture_is_seen_without_a_browser(name: str) -> None:
     text = still(of(name).content.scene, 100, name)

@@ -9,12 +9,12 @@ from support.cases import few
 from support.heavy import shapely
 from support.milled import swept
 
-from camgeo.capabilities.milling.gcode import Cutting, write_gcode
 from camgeo.capabilities.milling.milling import milling_intent
-from camgeo.capabilities.milling.toolpath import Pass, begun_at, led, plunged, side_by_side
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
+from camgeo.files.gcode import Cutting, Pass, write_gcode
 from camgeo.fit.arcs import fit_arcs
+from camgeo.machining.toolpath import begun_at, led, plunged, side_by_side
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
@@ -208,7 +208,7 @@ MADE = {
 }  # fmt: skip
 
 
-@pytest.mark.thin(24)
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", MADE)
 def test_a_program_that_is_made_wrong(deep, tmp_path, fault):
     given, expected = MADE[fault]

@@ -13,12 +13,12 @@ from support.cases import few
 from support.heavy import Heavy, shapely
 from support.milled import swept
 
-from camgeo.capabilities.milling.gcode import Cutting, write_gcode
 from camgeo.capabilities.milling.milling import milling_intent
-from camgeo.capabilities.milling.toolpath import Pass, begun_at, led
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
+from camgeo.files.gcode import Cutting, Pass, write_gcode
 from camgeo.fit.arcs import fit_arcs
+from camgeo.machining.toolpath import begun_at, led
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.report.failure import remedy
@@ -187,6 +187,7 @@ def test_a_trimmed_ring_takes_no_wider_cutter_than_its_roller():
     assert "takes a cutter no wider than its roller, 18 mm" in failed["detail"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("top", few(["", "rotation: ccw\n"], 2))
 def test_the_path_on_a_layer_of_its_own(tmp_path, top):
     recipe = recipe_of(top=top, more=", layer: true", files="dxf")

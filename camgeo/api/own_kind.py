@@ -1,0 +1,123 @@
+"""What kinds of cams with recipes of their own have alike in the library: functions of a recipe, and designs."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any, Protocol
+
+from camgeo.api.root import Root
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+    from camgeo.api.check import Check, Figures
+    from camgeo.api.root import Designed
+    from camgeo.checks.declaration import Entry
+    from camgeo.output.extension import FileCall
+    from camgeo.output.own_kind import OwnKind
+    from camgeo.output.pipeline import Outcome
+    from camgeo.synthesis.expected_checks import Foreseen
+
+
+class Library(Protocol):
+    """Protocol of a module that answers for one kind of cam in the library."""
+
+    @property
+    def FIELDS(self) -> Mapping[str, str]:
+        """Field of the recipe that influences a check most, by the check's name; `cam` for one that is not named."""
+        ...
+
+    def cam_of(self, recipe: Any, /) -> Designed:  # noqa: ANN401 - the kind's own recipe, as below
+        """Design of a recipe; raises RecipeErrors where there is none."""
+        ...
+
+    def remedy(self, check: Entry, recipe: Any, /) -> str:  # noqa: ANN401
+        """Change that would let a failed check hold; empty where none is known."""
+        ...
+
+    def foreseen(self, recipe: Any, /) -> Sequence[Foreseen]:  # noqa: ANN401
+        """Checks that a run will make."""
+        ...
+
+
+def root_of_kind(
+    run: Callable[[], OwnKind[Any, Any]], library: Callable[[], Library], kind: str, judged: str
+) -> Root[Any]:
+    """Functions of a kind of cam, from what it answers in a run and in the library, each imported when it is called.
+
+    `kind` is its `cam.kind`; `judged` names the files of it that are judged: `a drawing of the plate`.
+    """
+
+    def export(recipe: Any, out: Path, only: tuple[str, ...], progress: Callable[[str], None]) -> Outcome:  # noqa: ANN401
+        return run().export(recipe, out, only=only, progress=progress)
+
+    def check(recipe: Any, progress: Callable[[str], None]) -> Outcome:  # noqa: ANN401
+        return run().check(recipe, progress=progress)
+
+    def claimed(recipe: Any, name: str, _call: FileCall) -> dict[str, Any]:  # noqa: ANN401
+        problem = f"{name.replace('_', ' ')} judges files of disc cams"
+        raise recipe.error("cam.kind", problem, kind, f"give verify {judged}")
+
+    def explain(entry: dict[str, Any], _: dict[str, Any], recipe: Any, shown: str | None) -> str:  # noqa: ANN401
+        from camgeo.checks.declared import LIMIT
+        from camgeo.report import failure
+
+        name, answers = entry["name"], library()
+        if name.startswith(LIMIT):
+            field = f"limits.{name.removeprefix(LIMIT)}"
+        else:
+            field = "export.files" if "file" in entry else answers.FIELDS.get(name, "cam")
+        return failure.failure_at(entry, recipe, recipe.stated(field), answers.remedy(entry, recipe), shown)
+
+    return Root(
+        design=lambda recipe: library().cam_of(recipe),
+        export=export,
+        check=check,
+        judge=lambda recipe, paths, *bounds: run().report_on(recipe, paths, bounds),
+        claimed=claimed,
+        explain=explain,
+        foresee=lambda recipe: library().foreseen(recipe),
+        show=lambda recipe, paths, *bounds: run().report_and_page(recipe, paths, bounds),
+    )
+
+
+class KindDesign(ABC):
+    """A design of a kind of its own: its verdict, in text and in a notebook, from its checks and figures."""
+
+    recipe: Any
+
+    @property
+    @abstractmethod
+    def checks(self) -> tuple[Check, ...]:
+        """Checks of the design that need no file."""
+
+    @property
+    @abstractmethod
+    def figures(self) -> Figures:
+        """Figures of the design by name."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether all checks that need no file hold."""
+        return all(check.ok for check in self.checks)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.recipe.name!r})"
+
+    def __str__(self) -> str:
+        """Write the verdict on one line, and each check that fails on one more."""
+        failed = [f"\n  {check}" for check in self.checks if not check.ok]
+        return f"{self.recipe.name}: {'FAILED' if failed else 'ok'}{''.join(failed)}"
+
+    def _drawing(self) -> str:
+        """SVG of the design; empty for a kind without one."""
+        return ""
+
+    def _repr_html_(self) -> str:
+        from camgeo.api import notebook
+
+        rows = [(name, str(figure)) for name, figure in self.figures.items()]
+        return notebook.notebook_html(
+            self._drawing(), self.recipe.name, self.checks, notebook.table(("figure", ""), rows)
+        )

@@ -1,0 +1,183 @@
+"""Proved bounds of the second derivatives of a flank over (theta, r), by which its triangles are as fine as need be.
+
+Over (theta, r), r the real radius, a flank is r e^(i phi), z with phi = theta + f(v, r), z = level + S + g(v, r) and
+v = S' (`camgeo.capabilities.cylindrical.flank`), so that all its second derivatives follow from those of f and g and
+from S'' and S'''. All are balls over a cell.
+
+A triangle whose corners lie on the surface within h1 by h2 of its parameters is off by at most
+
+    (h1^2 M11 + 2 h1 h2 M12 + h2^2 M22)/8,   M bounds of |p_ij|
+
+(D. Filip, R. Magedson, R. Markot, Surface algorithms using bounds on derivatives, CAGD 3, 1986; the corners may lie
+anywhere in the cell, as the sum of a weight times the square of a difference from the mean is a variance). Of what lies
+along the surface only the second order counts: with N bounds of |p_ij . n| and n turning by t over the cell, the
+distance from the surface is at most that of N, and `BESIDE` t times that of M.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.numeric.interval import Ball
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.cylindrical.flank import Flank
+    from kin.numeric.arrays import Array, Indices
+
+BESIDE = 2.1  # once for the normal of the place in place of the cell's, once for the surface beside the foot
+TINY = 1e-300
+STEPS = 2
+
+
+class Bends(NamedTuple):
+    """Bounds over cells (n,), in mm and rad.
+
+    across   of |p_ij . n|, (3, n): twice by theta, by theta and r, twice by r
+    whole    of |p_ij|, (3, n)
+    turns    of the turn of the normal by theta and by r, (2, n)
+    regular  least D/w, above 0 where the flank is proved regular
+    sweep    greatest |dphi/dtheta|
+    unrolled of the second derivative by theta of (r phi, z), a row unrolled
+    """
+
+    across: Array
+    whole: Array
+    turns: Array
+    regular: Array
+    sweep: Array
+    unrolled: Array
+
+    def off(self, h1: Array, h2: Array | float) -> Array:
+        """Bound of the distance of triangles from the surface, mm (n,), in cells of h1 rad (n,) by h2 mm."""
+        square = np.stack([h1 * h1, 2.0 * h1 * h2, h2 * h2 + 0.0 * h1]) / 8.0
+        turn = self.turns[0] * h1 + self.turns[1] * h2
+        bound: Array = np.sum(square * self.across, axis=0) + BESIDE * turn * np.sum(square * self.whole, axis=0)
+        return bound
+
+    def step(self, h2: float, tolerance: float) -> Array:
+        """Widths h1, rad (n,), of cells of h2 mm whose triangles are within a tolerance, mm; 0 where none is."""
+        rest = self.off(np.zeros_like(self.sweep), h2)
+        left = tolerance - rest
+        b = self.across[1] * h2
+        h1 = 8.0 * np.abs(left) / (b + np.sqrt(b * b + 8.0 * self.across[0] * np.abs(left)) + TINY)
+        h1 = np.minimum(h1, 1.0)
+        for _ in range(STEPS):  # above its value at 0 the bound is convex, so that it falls by the share at least
+            h1 = h1 * np.minimum(1.0, left / (self.off(h1, h2) - rest + TINY))
+        return np.where(left > 0.0, h1, 0.0)
+
+    def most(self, blocks: int) -> Bends:
+        """Bounds over so many blocks of cells together, (n / blocks,) of (blocks, n / blocks)."""
+
+        def over(values: Array) -> Array:
+            folded: Array = values.reshape(*values.shape[:-1], blocks, -1).max(axis=-2)
+            return folded
+
+        return Bends(*(over(part) for part in self))._replace(regular=-over(-self.regular))
+
+    def at(self, index: Indices) -> Bends:
+        """Bounds of some of the cells."""
+        return Bends(*(part[..., index] for part in self))
+
+    def joined(self, other: Bends) -> Bends:
+        """Bounds over both of two cells each."""
+        most = Bends(*(np.maximum(a, b) for a, b in zip(self, other, strict=True)))
+        return most._replace(regular=np.minimum(self.regular, other.regular))
+
+
+class _Second(NamedTuple):
+    """A function of v and r as balls: its value, and its first and second derivatives."""
+
+    value: Ball
+    v: Ball
+    r: Ball
+    vv: Ball
+    vr: Ball
+    rr: Ball
+
+    def times(self, other: _Second) -> _Second:
+        """The product."""
+        return _Second(
+            self.value * other.value,
+            self.v * other.value + self.value * other.v,
+            self.r * other.value + self.value * other.r,
+            self.vv * other.value + self.v * other.v * 2.0 + self.value * other.vv,
+            self.vr * other.value + self.v * other.r + self.r * other.v + self.value * other.vr,
+            self.rr * other.value + self.r * other.r * 2.0 + self.value * other.rr,
+        )
+
+    def through(self, value: Ball, first: Ball, second: Ball) -> _Second:
+        """A function of it, from that function's value and derivatives."""
+        return _Second(
+            value,
+            first * self.v,
+            first * self.r,
+            second * self.v * self.v + first * self.vv,
+            second * self.v * self.r + first * self.vr,
+            second * self.r * self.r + first * self.rr,
+        )
+
+
+def bends(flank: Flank, theta: tuple[Array, Array], r: tuple[Array, Array]) -> Bends:
+    """Bounds over cells from theta[0] to theta[1], rad, without a break inside, and r[0] to r[1], mm, (n,) each."""
+    rows = Ball(*flank.law.enclosure(theta[0], theta[1], 3))
+    v, bend, jerk = rows[1], rows[2], rows[3]
+    radius, side = flank.radius, float(flank.side)
+    s, c, h, square = _angles(v, Ball.between(*r), radius)
+
+    # phi = theta + f, sin f = -side h; z = level + S + g, g = side R c
+    k = 1.0 - h.value * h.value
+    f = h.through(h.value, k**-0.5 * -side, h.value * k**-1.5 * -side)
+    reach = side * radius
+    phi1, phi2 = f.v * bend + 1.0, f.r
+    phi11, phi12, phi22 = f.vv * bend * bend + f.v * jerk, f.vr * bend, f.rr
+    z11 = bend + (c.vv * bend * bend + c.v * jerk) * reach
+    z12, z22 = c.vr * bend * reach, c.rr * reach
+    radial = Ball.between(*r)
+    # along e^(i phi), square to it, and along z
+    second = (
+        (-(radial * phi1 * phi1), radial * phi11, z11),
+        (-(radial * phi1 * phi2), phi1 + radial * phi12, z12),
+        (-(radial * phi2 * phi2), phi2 * 2.0 + radial * phi22, z22),
+    )
+    normal = (s.value * h.value * side, -(s.value * k**0.5), c.value)
+    across = [p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2] for p in second]
+    whole = [np.sqrt(sum(part.magnitude**2 for part in parts)) for parts in second]
+    lean1, lean2 = s.v * bend * c.value**-1, s.r * c.value**-1
+    turns = np.stack([np.hypot(lean1.magnitude, s.value.magnitude), lean2.magnitude])
+    regular = 1.0 - (c.value * bend * reach + s.value * s.value * radius**2) * square**-1
+    return Bends(
+        np.stack([ball.magnitude for ball in across]),
+        np.stack(whole),
+        turns,
+        regular.bounds()[0],
+        phi1.magnitude,
+        np.hypot((radial * phi11).magnitude, z11.magnitude),
+    )
+
+
+def _angles(v: Ball, r: Ball, radius: float) -> tuple[_Second, _Second, _Second, Ball]:
+    """Sine and cosine of the pressure angle, R sin a/r, each with derivatives, and w^2."""
+    nothing, one = Ball.exact(np.zeros_like(v.mid)), Ball.exact(np.ones_like(v.mid))
+    vv, rr = v * v, r * r
+    total = vv + rr
+    sums = _Second(total, v * 2.0, r * 2.0, one * 2.0, nothing, one * 2.0)
+    apart = rr - vv
+    less = total - 2.0 * radius**2
+    q = _Second(
+        apart * apart + vv * (rr - radius**2) * 4.0,
+        v * less * 4.0,
+        r * total * 4.0,
+        less * 4.0 + vv * 8.0,
+        v * r * 8.0,
+        total * 4.0 + rr * 8.0,
+    )
+    root = q.through(q.value**0.5, q.value**-0.5 * 0.5, q.value**-1.5 * -0.25)
+    x = _Second(*((a + b) * 0.5 for a, b in zip(sums, root, strict=True)))
+    inverse = x.through(x.value**-0.5, x.value**-1.5 * -0.5, x.value**-2.5 * 0.75)
+    s = inverse.times(_Second(v, one, nothing, nothing, nothing, nothing))
+    u = 1.0 - s.value * s.value
+    c = s.through(u**0.5, -(s.value * u**-0.5), -(u**-1.5))
+    h = s.times(_Second(r**-1 * radius, nothing, r**-2 * -radius, nothing, nothing, r**-3 * (2.0 * radius)))
+    return s, c, h, x.value

@@ -1,0 +1,260 @@
+"""Charts of the page of a cylindrical cam: its development, and its pressure angle over shaft angle and radius.
+
+Both are SVG in their own px; lengths that they tell are in the recipe's unit.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.cylindrical.figures import carried_from, outer_end
+from camgeo.capabilities.cylindrical.shells import PLACES, height, shell
+from camgeo.capabilities.cylindrical.turning import LINES, levels, sense
+from camgeo.measures.units import UNIT_NAMES
+from camgeo.recipe.figures import PRESSURE_ANGLE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from kin.numeric.arrays import Array, Indices, Mask
+
+TURN = 2.0 * math.pi
+WIDTH, LEFT, RIGHT, TOP, FOOT = 420.0, 46.0, 10.0, 8.0, 30.0  # px of a chart, and of its margins
+FIELD = WIDTH - LEFT - RIGHT
+HIGH = 150.0  # px of the map's field
+ROUND = 48  # chords of a roller's section
+COLUMNS, ROWS = 180, 16  # cells of the map
+STEPS_OF = (1.0, 2.0, 5.0, 10.0, 15.0)  # degrees from colour to colour
+MOST_COLOURS = 8
+
+
+# --- development ------------------------------------------------------------------------------------------------------
+
+
+def flat_scale(design: DrumDesign) -> float:
+    """Px of a mm on the development, whose width is the turn on the blank."""
+    return FIELD / (TURN * design.recipe.radius)
+
+
+def development(design: DrumDesign) -> str:
+    """The blank unrolled over one turn, with the flanks there and at the roller's inner end, and the roller."""
+    recipe, scale = design.recipe, flat_scale(design)
+    tall = scale * recipe.height
+    blank, inner = recipe.radius, recipe.roller.inner
+    x = LEFT + FIELD * np.arange(PLACES + 1) / PLACES
+
+    def y(z: Array) -> Array:
+        return TOP + tall - scale * np.append(z, z[0])
+
+    parts = []
+    for low, high in shell(design, blank).bands:
+        outline = np.concatenate([np.column_stack([x, y(low)]), np.column_stack([x, y(high)])[::-1]])
+        parts.append(f'<path class="metal" d="{_path(outline)}Z"/>')
+    for radius, look in ((blank, "line"), (inner, "line inner")):
+        parts += [
+            f'<path class="{look}" d="{_path(np.column_stack([x, y(height(design, name, radius))]))}"/>'
+            for name in design.flanks
+        ]
+    theta = np.linspace(0.0, TURN, LINES + 1)
+    share = theta / TURN if sense(design) > 0.0 else 1.0 - theta / TURN
+    path = design.law.derivatives(theta, 0)[0]
+    short = lost_from(design, theta) > inner
+    for level in levels(design):
+        points = np.column_stack([LEFT + FIELD * share, TOP + tall - scale * (level + path)])
+        parts.append(f'<path class="line pitch" d="{_path(points)}"/>')
+        parts += [f'<path class="line lost" d="{_path(points[run])}"/>' for run in _runs(short) if run.size > 1]
+    sections = "".join(
+        f'<path class="section{look}" d="{_path(_section(design, radius, level))}Z"/>'
+        for level in levels(design)
+        for radius, look in ((blank, ""), (inner, " inner"))
+    )
+    at = 0.0 if sense(design) > 0.0 else FIELD
+    place = TOP + tall - scale * float(path[0])
+    rollers = "".join(
+        f'<g class="roller-at" transform="translate({LEFT + at + FIELD * (k - 1):.2f} {place:.2f})">{sections}</g>'
+        for k in range(3)
+    )
+    clip = f'<clipPath id="flat"><rect x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/></clipPath>'
+    field = f'<rect class="field" x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/>'
+    told = f"the drum unrolled over one turn: {', '.join(design.flanks)} flank and the path of the roller's axis"
+    axes = _axes(design, tall, (0.0, recipe.height), "angle on the drum, °", "z")
+    body = f'{clip}{field}<g clip-path="url(#flat)">{"".join(parts)}{rollers}</g>{axes}'
+    return _chart("development", tall, told, body)
+
+
+def lost_from(design: DrumDesign, theta: Array) -> Array:
+    """Distance along the roller (n,), mm, from which on all flanks carry it; from its inner end without undercut."""
+    return np.asarray(np.max([carried_from(design, name, theta) for name in design.flanks], axis=0))
+
+
+def _section(design: DrumDesign, radius: float, level: float) -> Array:
+    """The roller cut by a cylinder, unrolled, in px from the place of its axis at lift 0."""
+    roller = design.recipe.roller.radius
+    t = np.arange(ROUND) * (TURN / ROUND)
+    across = np.arcsin(np.minimum(roller / radius, 1.0) * np.sin(t)) * (FIELD / TURN)
+    return np.column_stack([across, -flat_scale(design) * (level + roller * np.cos(t))])
+
+
+# --- map --------------------------------------------------------------------------------------------------------------
+
+
+class AngleMap(NamedTuple):
+    """Pressure angles, degrees, of cells (ROWS, COLUMNS) at shaft angles, rad, and distances along the roller, mm.
+
+    nan beyond the end of contact; `short` where undercut takes the contact away.
+    """
+
+    theta: Array
+    rho: Array
+    angle: Array
+    short: Mask
+
+
+def angle_map(design: DrumDesign) -> AngleMap:
+    """The map at the middles of its cells."""
+    roller = design.recipe.roller
+    theta = np.asarray((np.arange(COLUMNS) + 0.5) * (TURN / COLUMNS), dtype=np.float64)
+    rho = np.asarray(roller.inner + (np.arange(ROWS) + 0.5) * (roller.outer - roller.inner) / ROWS, dtype=np.float64)
+    angle = np.degrees(np.arctan2(np.abs(design.law.derivatives(theta, 1)[1]), rho[:, None]))
+    outer = np.min([outer_end(design, name, theta) for name in design.flanks], axis=0)
+    short = rho[:, None] < lost_from(design, theta)
+    return AngleMap(theta, rho, np.where(rho[:, None] > outer, np.nan, angle), short)
+
+
+def greatest(design: DrumDesign) -> tuple[float, float, float]:
+    """Greatest pressure angle of what carries and its shaft angle, degrees, and its distance along the roller, mm."""
+    theta = np.linspace(0.0, TURN, COLUMNS * ROWS + 1)
+    begin = lost_from(design, theta)
+    outer = np.min([outer_end(design, name, theta) for name in design.flanks], axis=0)
+    angle = np.where(begin <= outer, np.arctan2(np.abs(design.law.derivatives(theta, 1)[1]), begin), 0.0)
+    k = int(angle.argmax())
+    return math.degrees(angle[k]), math.degrees(theta[k]), float(begin[k])
+
+
+def colour_step(most: float) -> float:
+    """Degrees from colour to colour, so that few are needed up to an angle."""
+    return next((step for step in STEPS_OF if most <= step * MOST_COLOURS), STEPS_OF[-1])
+
+
+def pressure_map(design: DrumDesign) -> str:
+    """The pressure angle over shaft angle and distance along the roller in colours, with their scale."""
+    recipe, found = design.recipe, angle_map(design)
+    most, at, rho = greatest(design)
+    step = colour_step(most)
+    number = np.where(np.isnan(found.angle) | found.short, -1, np.floor(np.nan_to_num(found.angle) / step)).astype(int)
+    over = found.angle > min(limits(design), default=math.inf)
+    count = max(math.ceil(most / step), 1)
+    parts = []
+    for k in range(count):
+        low, high = f"{k * step:g}", f"{(k + 1) * step:g}"
+        shade = f'fill-opacity="{opacity(k, count):.2f}"'
+        for cells, look in ((number == k) & ~over, "cell"), ((number == k) & over, "cell over"):
+            if cells.any():
+                parts.append(
+                    f'<path class="{look}" {shade} d="{_cells(cells)}"><title>{low}° to {high}°</title></path>'
+                )
+    if found.short.any():
+        parts.append(f'<path class="cell none" d="{_cells(found.short)}"><title>undercut</title></path>')
+    field = f'<rect class="field" x="{LEFT}" y="{TOP}" width="{FIELD}" height="{HIGH}"/>'
+    roller = recipe.roller
+    x = LEFT + FIELD * at / 360.0
+    y = TOP + HIGH * (roller.outer - rho) / (roller.outer - roller.inner)
+    side = "end" if at > 180.0 else "start"
+    shift = -8.0 if at > 180.0 else 8.0
+    mark = (
+        f'<circle class="greatest" cx="{x:.1f}" cy="{y:.1f}" r="4"/>'
+        f'<text class="told" x="{x + shift:.1f}" y="{y - 7.0:.1f}" text-anchor="{side}">{most:.2f}°</text>'
+    )
+    cursor = f'<g class="cursor" transform="translate({LEFT} 0)"><line y1="{TOP}" y2="{TOP + HIGH}"/></g>'
+    axes = _axes(design, HIGH, (roller.inner, roller.outer), "shaft angle, °", "radius")
+    told = (
+        f"pressure angle over shaft angle and radius, at most {most:.2f} degrees at a shaft angle of {at:.1f} degrees"
+    )
+    return _chart("map", HIGH, told, field + "".join(parts) + axes + cursor + mark, _scale(count, step), more=26.0)
+
+
+def opacity(k: int, count: int) -> float:
+    """Strength of the colour of a number of `count`."""
+    return 0.1 + 0.85 * k / max(count - 1, 1)
+
+
+def limits(design: DrumDesign) -> list[float]:
+    """Limits of the pressure angle, degrees."""
+    bounds = [bound.at_most for bound in design.recipe.limits if bound.figure == PRESSURE_ANGLE]
+    return [math.degrees(bound) for bound in bounds if bound is not None]
+
+
+def _scale(count: int, step: float) -> str:
+    """Colours with their angles, below the map."""
+    wide = FIELD / count
+    y = TOP + HIGH + FOOT + 2.0
+    parts = []
+    for k in range(count):
+        place = f'x="{LEFT + k * wide:.1f}" y="{y}" width="{wide:.1f}" height="9"'
+        parts.append(f'<rect class="cell" {place} fill-opacity="{opacity(k, count):.2f}"/>')
+    parts += [
+        f'<text x="{LEFT + k * wide:.1f}" y="{y + 20.0}" text-anchor="middle">{k * step:g}°</text>'
+        for k in range(count + 1)
+    ]
+    return "".join(parts)
+
+
+def _cells(cells: Mask) -> str:
+    """Path of the cells that hold, those beside one another as one."""
+    wide, tall = FIELD / COLUMNS, HIGH / ROWS
+    text = []
+    for row, line in enumerate(cells):
+        for run in _runs(line):
+            x, y = LEFT + wide * run[0], TOP + HIGH - tall * (row + 1)
+            text.append(f"M{x:.1f} {y:.1f}h{wide * run.size:.1f}v{tall:.1f}h{-wide * run.size:.1f}z")
+    return "".join(text)
+
+
+# --- of both ----------------------------------------------------------------------------------------------------------
+
+
+def _runs(good: Mask) -> list[Indices]:
+    """Indices of true values, run by run."""
+    at = np.flatnonzero(good)
+    return [run for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1) if run.size]
+
+
+def _path(points: Array) -> str:
+    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.tolist())
+
+
+def _axes(design: DrumDesign, tall: float, ends: tuple[float, float], along: str, upright: str) -> str:
+    """Degrees along a chart, and lengths between two ends, mm, up it."""
+    low, high = ends
+    mm, unit = design.recipe.mm, UNIT_NAMES[design.recipe.units]
+    foot = TOP + tall
+    parts = []
+    for k in range(5):
+        x = LEFT + FIELD * k / 4.0
+        parts.append(f'<line class="grid" x1="{x}" y1="{foot:.1f}" x2="{x}" y2="{foot + 4.0:.1f}"/>')
+        parts.append(f'<text x="{x}" y="{foot + 14.0:.1f}" text-anchor="middle">{90 * k}</text>')
+    for value, y in ((low, foot), (high, TOP)):
+        parts.append(f'<line class="grid" x1="{LEFT - 4.0}" y1="{y:.1f}" x2="{LEFT}" y2="{y:.1f}"/>')
+        parts.append(f'<text x="{LEFT - 6.0}" y="{y + 3.5:.1f}" text-anchor="end">{value / mm:.4g}</text>')
+    parts.append(f'<text x="{LEFT + 0.5 * FIELD}" y="{foot + 26.0:.1f}" text-anchor="middle">{along}</text>')
+    turned = f'transform="translate(9 {TOP + 0.5 * tall:.1f}) rotate(-90)"'
+    return "".join([*parts, f'<text {turned} text-anchor="middle">{upright}, {unit}</text>'])
+
+
+def _chart(name: str, tall: float, told: str, *parts: str, more: float = 0.0) -> str:
+    box = f"0 0 {WIDTH:g} {TOP + tall + FOOT + more:.1f}"
+    return f'<svg id="{name}" class="chart" role="img" aria-label="{told}" viewBox="{box}">{"".join(parts)}</svg>'
+
+
+def keys(design: DrumDesign) -> Sequence[str]:
+    """Sentences that say what the lines of the development are."""
+    mm, unit = design.recipe.mm, UNIT_NAMES[design.recipe.units]
+    blank, inner = f"{design.recipe.radius / mm:.6g} {unit}", f"{design.recipe.roller.inner / mm:.6g} {unit}"
+    found = [f"Metal and full lines: on the blank, {blank}; dashed: at {inner}, where the roller begins to bear."]
+    if (lost_from(design, np.linspace(0.0, TURN, LINES + 1)) > design.recipe.roller.inner).any():
+        found.append("Thick: here undercut takes away a part of the line of contact.")
+    return found

@@ -1,0 +1,159 @@
+"""Checks and remarks of the exact drum: figures in the report, walls, what a wrapped or an offset drawing costs."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.capabilities.cylindrical.development import radii
+from camgeo.capabilities.cylindrical.figures import at_angle, bears, steepest
+from camgeo.capabilities.cylindrical.flank import distance
+from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, Groove, Rib
+from camgeo.measures.placed import Figure, figure_check, greatest_of, limit_checks
+from camgeo.measures.rule_remark import RuleRemark
+from camgeo.measures.units import in_units
+from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
+from kin.numeric.check import Check
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+
+TURN = 2.0 * math.pi
+STEEP = 30.0  # degrees, by rule of thumb for a follower on a straight guide
+ROUNDING = 1e-9  # mm: a wall that is less by no more holds
+LENGTH, RIB = "contact-length", "rib-thickness"
+
+
+def design_checks(design: DrumDesign, figures: Sequence[Figure]) -> list[Check]:
+    """Checks that need no file; a figure that nothing limits is reported without a limit."""
+    known = {figure.name: figure for figure in figures}
+    checks = [figure_check(PRESSURE_ANGLE, known[PRESSURE_ANGLE], None, "at_most", at_unit="deg")]
+    length = figure_check(LENGTH, known[LENGTH], 0.0, "at_least", at_unit="deg")
+    cut = "shortened by undercut" if any(design.tips.values()) else ""
+    checks.append(Check(**{**vars(length), "ok": known[LENGTH].value > 0.0, "detail": cut}))
+    if RIB in known:
+        check = figure_check(RIB, known[RIB], 0.0, "at_least", at_unit="deg")
+        checks.append(Check(**{**vars(check), "ok": known[RIB].value > 0.0}))
+    wall, where = min(walls(design))
+    least = design.recipe.part.wall
+    holds = wall > 0.0 if least is None else wall >= least - ROUNDING
+    return [*checks, Check(LEAST_WALL, holds, wall, least or 0.0, "mm", sense="at_least", detail=where)]
+
+
+def walls(design: DrumDesign) -> list[tuple[float, str]]:
+    """Walls of a drum, mm, each with what it stands between; without a bore those of the ends alone."""
+    recipe, track = design.recipe, design.recipe.track
+    low, high = design.motion.range
+    radius, level, height = recipe.roller.radius, recipe.level, recipe.height
+    found = []
+    if isinstance(track, Groove):
+        found += [
+            (level + low - radius, "between the groove and the lower face"),
+            (height - (level + high + radius + track.clearance), "between the groove and the upper face"),
+        ]
+    elif isinstance(track, Rib):
+        half = 0.5 * track.distance
+        found += [
+            (level - half + low + radius, "between the rib and the lower face"),
+            (height - (level + half + high - radius), "between the rib and the upper face"),
+        ]
+    elif track.facing == "top":
+        found.append((level + low - radius, "between the flank and the lower face"))
+    else:
+        found.append((height - (level + high + radius), "between the flank and the upper face"))
+    if design.bore is not None:
+        points = design.bore.outline.points
+        reach = float(np.hypot(*points.T).max())
+        found.append((recipe.floor - reach, "between the bore and the floor"))
+    return found
+
+
+def limits_held(design: DrumDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
+    """Checks of the figures that the recipe limits, those of the least wall among them."""
+    wall = next((check for check in checks if check.name == LEAST_WALL and check.value is not None), None)
+    more = [] if wall is None or wall.value is None else [Figure(LEAST_WALL, wall.value, "mm")]
+    return limit_checks(design.recipe.limits, [*figures, *more], "deg")
+
+
+# --- remarks ----------------------------------------------------------------------------------------------------------
+
+
+def remarks_on(design: DrumDesign, figures: Sequence[Figure]) -> tuple[RuleRemark, ...]:
+    """Remarks on what is unusual, and on what becomes of a development that is taken for more than it is."""
+    recipe, known = design.recipe, {figure.name: figure for figure in figures}
+    remarks = []
+    steep = known[PRESSURE_ANGLE]
+    limited = {bound.figure for bound in recipe.limits}
+    if steep.value > STEEP and PRESSURE_ANGLE not in limited:
+        sentence = f"the pressure angle reaches {steep.value:.4g} degrees at the roller's inner end, {STEEP:g} is usual"
+        remarks.append(RuleRemark(PRESSURE_ANGLE, steep.value, STEEP, "deg", sentence, steep.at))
+    kept = design.motion.kept
+    remarks += [] if kept is None else [RuleRemark(name, None, None, "", told) for name, told in kept.remarks]
+    pressure, bearable = known.get("contact-pressure"), bears(design)
+    if pressure is not None and bearable is not None and pressure.value > bearable:
+        sentence = f"the contact's pressure reaches {pressure.value:.4g} N/mm^2, the materials bear {bearable:.4g}"
+        remarks.append(RuleRemark("contact-pressure", pressure.value, bearable, pressure.unit, sentence, pressure.at))
+    chosen = [each for request in recipe.export.files if request.as_ == DEVELOPMENT for each in radii(design, request)]
+    walls_at = dict.fromkeys(radius for radius, pitch in chosen if not pitch)
+    remarks += [] if any(design.tips.values()) else [_wrapped(design, radius) for radius in walls_at]
+    remarks += [_offset(design, radius) for radius in dict.fromkeys(radius for radius, pitch in chosen if pitch)]
+    return tuple(remarks)
+
+
+def wrapped_off(design: DrumDesign, radius: float) -> tuple[float, float, float]:
+    """By how much walls cut radially from a development of regular flanks are off along the axis, mm, and where.
+
+    The places are the roller's inner end or the blank, mm, whichever is worse, and the shaft angle, rad.
+    """
+    found = []
+    for name in design.flanks:
+        for other in (max(design.recipe.roller.inner, design.recipe.floor), design.recipe.radius):
+
+            def off(theta: np.ndarray, name: str = name, other: float = other) -> np.ndarray:
+                flank = design.flanks[name]
+                contact = flank.on(theta, other)
+                return np.abs(flank.on(at_angle(flank, contact.phi, radius, theta), radius).z - contact.z)
+
+            if abs(other - radius) > ROUNDING:
+                found.append((*greatest_of(off, TURN), other))
+    value, at, other = max(found, default=(0.0, 0.0, radius))
+    return value, other, at
+
+
+def offset_off(design: DrumDesign, radius: float) -> tuple[float, float]:
+    """By how much a development's path, offset by the roller's radius on the same cylinder, is off, mm, and where.
+
+    Square to the flank: E = r sin a asin(R sin a2/r) + R cos a cos a2 - R, tan a = S'/r, tan a2 = S'/rho(r); about
+    R^3 sin^4 a/(6 r^2). It leaves a groove too narrow by twice that. The shaft angle is in rad.
+    """
+    v, at = steepest(design)
+    roller = design.recipe.roller.radius
+    rho = float(distance(np.array([radius]), np.array([v]), roller)[0])
+    a, b = math.atan2(v, radius), math.atan2(v, rho)
+    part = radius * math.sin(a) * math.asin(roller * math.sin(b) / radius)
+    return part + roller * math.cos(a) * math.cos(b) - roller, at
+
+
+def _wrapped(design: DrumDesign, radius: float) -> RuleRemark:
+    value, other, at = wrapped_off(design, radius)
+    shown, unit = in_units(design.recipe, value, "mm")
+    mm = design.recipe.mm
+    sentence = (
+        f"the development at {radius / mm:.6g} {unit} is right at that radius alone: walls cut radially from it "
+        f"would be off by {shown:.4g} {unit} along the axis at {other / mm:.6g} {unit}"
+    )
+    return RuleRemark("wrapped-wall", value, 0.0, "mm", sentence, math.degrees(at))
+
+
+def _offset(design: DrumDesign, radius: float) -> RuleRemark:
+    value, at = offset_off(design, radius)
+    shown, unit = in_units(design.recipe, value, "mm")
+    sentence = (
+        f"the path at {radius / design.recipe.mm:.6g} {unit} leads a cutter of the roller's size: offset by its radius "
+        f"on that cylinder it would leave each flank {shown:.3g} {unit} too much metal"
+    )
+    return RuleRemark("offset-path", value, 0.0, "mm", sentence, math.degrees(at))

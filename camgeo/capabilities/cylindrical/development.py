@@ -1,0 +1,167 @@
+"""Developments: flanks and the path of the roller's axis, unrolled at a radius, as a drawing whose layers name it.
+
+A line holds for its radius alone. It covers one period, from x = 0 to the circumference, and goes on by an overlap,
+which two marks enclose.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.cylindrical.bends import bends
+from camgeo.capabilities.cylindrical.keys import OUTER, PITCH
+from camgeo.capabilities.cylindrical.undercut import cut_at
+from camgeo.fit.bound import Bound
+from camgeo.fit.nodes import ToleranceError
+from kin.cylindrical.intent import Developed
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ezdxf.layouts.layout import Modelspace
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.flank import Flank
+    from camgeo.fit.bound import Box
+    from camgeo.recipe.export import FileRequest
+    from kin.numeric.arrays import Array
+
+TURN = 2.0 * math.pi
+OVERLAP = TURN / 24.0  # by which a line goes on beyond its period
+LOOKS = 720  # parts of a turn over each of which a line's second derivative is bounded
+MOST_POINTS = 2_000_000
+NEWTON = 30
+COLOURS = {"lower": 5, "upper": 1, PITCH: 3}
+MARKS = "OVERLAP"
+
+
+class Line(NamedTuple):
+    """A line of a development: where it is, its points (n, 2), mm, and the bound, mm, of their distance from it."""
+
+    of: Developed
+    points: Array
+    off: float
+
+
+def radii(design: DrumDesign, request: FileRequest) -> list[tuple[float, bool]]:
+    """Radii of a request, mm, each with whether the path of the roller's axis is unrolled in place of the flanks."""
+    blank = design.recipe.radius
+    chosen = request.own.get("at", (OUTER, PITCH))
+    return [(blank if isinstance(each, str) else each, each == PITCH) for each in chosen]
+
+
+def developed(design: DrumDesign, request: FileRequest, mm: float) -> list[Developed]:
+    """Lines of a requested development, by their layers; `mm` is the drawing's unit."""
+    found = []
+    for radius, pitch in radii(design, request):
+        named = f"R{radius / mm:.9g}"
+        names: list[Literal["lower", "upper", "pitch"]] = ["pitch"] if pitch else list(design.flanks)  # type: ignore[arg-type]
+        found += [Developed(f"{named}_{name.upper()}", radius, name) for name in names]
+    return list({line.layer: line for line in found}.values())
+
+
+def drawn(design: DrumDesign, line: Developed, tolerance: float) -> Line:
+    """Points of a line over its period and the overlap, in the axes of the drawing; ToleranceError where too many."""
+    look = np.unique(np.concatenate([np.linspace(0.0, TURN, LOOKS + 1), np.mod(design.law.breaks, TURN), [TURN]]))
+    if line.flank == PITCH:
+        mid, rad = design.law.enclosure(look[:-1], look[1:], 2)
+        bend, begin = np.abs(mid[2]) + rad[2], 0.0
+    else:
+        flank, r = design.flanks[line.flank], np.full(look.size - 1, line.radius)
+        bend, begin = bends(flank, (look[:-1], look[1:]), (r, r)).unrolled, _start(flank, line.radius)
+    step = np.minimum(np.sqrt(8.0 * tolerance / np.maximum(bend, 1e-300)), TURN / 36.0)
+    count = np.maximum(np.ceil(np.diff(look) / step), 1).astype(np.intp)
+    if count.sum() > MOST_POINTS:
+        least = tolerance * (float(count.sum()) / MOST_POINTS) ** 2
+        raise ToleranceError(f"a development within {tolerance:.3g} mm would take too many points", least)
+    off = float((bend * (np.diff(look) / count) ** 2).max()) / 8.0
+    parts = np.repeat(np.diff(look) / count, count)
+    first = np.repeat(look[:-1], count) + parts * (np.arange(parts.size) - np.repeat(np.cumsum(count) - count, count))
+    theta = np.concatenate([first - TURN, first, first + TURN])
+    theta = np.unique(np.concatenate([theta, [begin, begin + TURN, begin + TURN + OVERLAP]]))
+    theta = theta[(theta >= begin) & (theta <= begin + TURN + OVERLAP)]
+    points = _pitch(design, line.radius, theta) if line.flank == PITCH else _flank(design, line, theta)
+    if design.recipe.rotation == "ccw":
+        points = points * np.array([-1.0, 1.0]) + 0.0
+    return Line(line, points, off)
+
+
+def _pitch(design: DrumDesign, radius: float, theta: Array) -> Array:
+    return np.column_stack([radius * theta, design.recipe.level + design.law.derivatives(theta, 0)[0]])
+
+
+def _flank(design: DrumDesign, line: Developed, theta: Array) -> Array:
+    """Points of a flank on a cylinder without those that are cut away."""
+    flank = design.flanks[line.flank]
+    for tip in design.tips[line.flank]:
+        if tip.r <= line.radius:
+            continue
+        cut = cut_at(flank, tip, np.array([line.radius]))
+        width = float(cut.last[0] - cut.first[0])
+        from_first = np.mod(theta - cut.first[0], TURN)
+        lost = (from_first > 0.0) & (from_first < width)
+        edges = cut.first[0] + TURN * np.arange(-3, 4)
+        edges = edges[(edges >= theta[0]) & (edges <= theta[-1])]
+        theta = np.unique(np.concatenate([theta[~lost], edges]))
+    contact = flank.on(theta, line.radius)
+    return np.column_stack([line.radius * contact.phi, contact.z])
+
+
+def _start(flank: Flank, radius: float) -> float:
+    """Shaft angle, rad, at which a flank on a cylinder has the polar angle 0."""
+    looks = np.linspace(-0.5 * math.pi, 0.5 * math.pi, LOOKS + 1)
+    phi = flank.on(looks, radius).phi
+    k = int(np.flatnonzero(phi <= 0.0)[-1])
+    low, high = looks[k], looks[k + 1]
+    for _ in range(2 * NEWTON):
+        middle = 0.5 * (low + high)
+        if flank.on(np.array([middle]), radius).phi[0] <= 0.0:
+            low = middle
+        else:
+            high = middle
+    return float(low)
+
+
+def write_development(
+    design: DrumDesign, request: FileRequest, path: Path, tolerance: float, mm: float
+) -> tuple[int, Bound]:
+    """Write a development; its number of points, and the bound of its lines.
+
+    Raises ToleranceError where the tolerance cannot be held, OSError where the file cannot be written.
+    """
+    from camgeo.formats.dxf import write_dxf
+
+    recipe = design.recipe
+    lines = [drawn(design, line, tolerance) for line in developed(design, request, mm)]
+
+    def annotate(space: Modelspace) -> Box:
+        boxes = [_draw(space, line.of.layer, COLOURS[line.of.flank], line.points / mm) for line in lines]
+        for radius in dict.fromkeys(line.of.radius for line in lines):
+            layer = f"R{radius / mm:.9g}_{MARKS}"
+            for at in (TURN, TURN + OVERLAP):
+                x = (radius if recipe.rotation == "cw" else -radius) * at
+                boxes.append(_draw(space, layer, 8, np.array([[x, 0.0], [x, recipe.height]]) / mm))
+        corners = np.array(boxes)
+        return (*corners[:, :2].min(axis=0).tolist(), *corners[:, 2:].max(axis=0).tolist())
+
+    notes = [
+        f"camgeo development: on {line.of.layer} x = {line.of.radius / mm:.9g} times the angle, "
+        f"one period of {TURN * line.of.radius / mm:.9g}, then an overlap; right at this radius alone"
+        for line in lines
+    ]
+    write_dxf(path, [], mm=mm, name=recipe.name, about=recipe.about, remarks=notes, annotate=annotate)
+    off = max(line.off for line in lines)
+    return sum(len(line.points) for line in lines), Bound(off, off)
+
+
+def _draw(space: Modelspace, layer: str, colour: int, points: Array) -> Box:
+    """Add an open line on a layer of its own, in drawing units; its extremes."""
+    layers = space.doc.layers if space.doc is not None else None
+    if layers is not None and layer not in layers:
+        layers.add(layer, color=colour)
+    entity = space.add_lwpolyline([], dxfattribs={"layer": layer})
+    entity.lwpoints.values = np.column_stack((points, np.zeros((len(points), 3))))
+    return (*points.min(axis=0).tolist(), *points.max(axis=0).tolist())

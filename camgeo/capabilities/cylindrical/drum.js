@@ -1,0 +1,113 @@
+"use strict";
+// what turns with the page's player: the drum, its lines of contact, the roller on the development, the map's cursor
+function playDrum(data) {
+  const root = document.documentElement;
+  const drum = document.querySelector("#drawing .drum");
+  const paths = [...drum.querySelectorAll("path")];
+  const arcs = [...document.querySelectorAll("#drawing .contacts path")];
+  const developed = document.querySelectorAll("#development .roller-at");
+  const cursor = document.querySelector("#map .cursor");
+  const TURN = 2 * Math.PI;
+
+  function unpacked(row) {
+    if ("c" in row) return null;
+    if ("n" in row) return row.n;
+    const scale = 10 ** row.d;
+    let sum = 0;
+    return row.v.map((step) => (sum += step) / scale);
+  }
+
+  // a function of the share of a turn: straight between values, which close over the turn or have their end
+  function along(row, count) {
+    const v = unpacked(row);
+    if (v === null) return () => row.c;
+    return (share) => {
+      const x = (share - Math.floor(share)) * count;
+      const i = Math.floor(x);
+      const [a, b] = [v[i % v.length], v[(i + 1) % v.length]];
+      return a === null || b === null ? NaN : a + (x - i) * (b - a);
+    };
+  }
+
+  const shells = data.shells.map((shell) => ({
+    radius: shell.radius,
+    bands: shell.bands.map((band) => band.map((row) => along(row, data.places))),
+  }));
+  const lines = data.lines.map((line) => ({ ...line, low: along(line.low, data.parts), high: along(line.high, data.parts) }));
+  const lift = along(data.lift, data.parts);
+
+  // outlines of the bands of a shell between two angles to the right of the viewer
+  function seen(shell, turn, low, high, chords) {
+    return shell.bands.map((band) => {
+      const sides = band.map((z) =>
+        Array.from({ length: chords + 1 }, (_, k) => {
+          const psi = low + (high - low) * (chords ? k / chords : 0);
+          return [shell.radius * Math.sin(psi), z((psi + turn) / TURN)];
+        }),
+      );
+      return sides[0].concat(sides[1].reverse());
+    });
+  }
+
+  const path = (points) => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(data.digits)} ${y.toFixed(data.digits)}`).join("");
+  const closed = (outlines) => outlines.map((points) => `${path(points)}Z`).join("");
+
+  function far(shell, turn) {
+    const beside = Math.PI - Math.asin(Math.min(data.core / shell.radius, 1));
+    const ends = [[0.5 * Math.PI, beside], [TURN - beside, 1.5 * Math.PI]];
+    return ends.flatMap(([low, high]) => seen(shell, turn, low, high, data.rim));
+  }
+
+  const near = (shell, turn) => seen(shell, turn, -0.5 * Math.PI, 0.5 * Math.PI, data.face);
+
+  function rims(turn) {
+    return [-0.5 * Math.PI, 0.5 * Math.PI].flatMap((at) => {
+      const ends = shells.map((shell) => seen(shell, turn, at, at, 0));
+      return ends[0].map((_, band) => ends.map((end) => end[band][0]).concat(ends.map((end) => end[band].at(-1)).reverse()));
+    });
+  }
+
+  function show() {
+    const share = (Number(root.dataset.at) || 0) / 360;
+    const turn = data.sense * share * TURN;
+    const n = shells.length;
+    shells.forEach((shell, k) => {
+      paths[n - 1 - k].setAttribute("d", closed(far(shell, turn)));
+      paths[k < n - 1 ? n + 1 + k : 2 * n + 1].setAttribute("d", closed(near(shell, turn)));
+    });
+    paths[2 * n].setAttribute("d", closed(rims(turn)));
+    lines.forEach((line, i) => {
+      const [low, high] = [line.low(share), line.high(share)];
+      const angles = Array.from({ length: 13 }, (_, k) => low + ((high - low) * k) / 12);
+      const place = (a) => [-data.sense * line.reach * Math.sin(a), line.level + line.reach * Math.cos(a)];
+      arcs[i].setAttribute("d", Number.isFinite(low) ? path(angles.map(place)) : "");
+    });
+    const [scale, width, height, left, top] = data.flat;
+    const at = data.sense > 0 ? share : 1 - share;
+    developed.forEach((roller, k) => {
+      roller.setAttribute("transform", `translate(${(left + width * (at + k - 1)).toFixed(2)} ${(top + height - scale * lift(share)).toFixed(2)})`);
+    });
+    cursor.setAttribute("transform", `translate(${(data.map[0] + data.map[1] * share).toFixed(2)} 0)`);
+  }
+
+  // the drum is dragged round as its near side goes
+  let grip = null;
+  drum.addEventListener("pointerdown", (event) => {
+    grip = event.clientX;
+    drum.setPointerCapture(event.pointerId);
+    event.preventDefault();
+  });
+  drum.addEventListener("pointermove", (event) => {
+    if (grip === null) return;
+    const radius = shells.at(-1).radius * drum.getScreenCTM().a;
+    const next = Number(root.dataset.at) - (data.sense * (event.clientX - grip) * 180) / (Math.PI * radius);
+    grip = event.clientX;
+    const slider = document.getElementById("slider");
+    slider.value = ((next % 360) + 360) % 360;
+    slider.dispatchEvent(new Event("input"));
+  });
+  for (const name of ["pointerup", "pointercancel"]) drum.addEventListener(name, () => (grip = null));
+
+  new MutationObserver(show).observe(root, { attributes: true, attributeFilter: ["data-at"] });
+  show();
+}

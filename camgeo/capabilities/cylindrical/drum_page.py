@@ -1,0 +1,132 @@
+"""The page of a cylindrical cam: the drum turns under its follower, development, pressure angles, curves and checks."""
+
+from __future__ import annotations
+
+import math
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.capabilities.cylindrical.charts import FIELD, LEFT, TOP, development, flat_scale, keys, limits, pressure_map
+from camgeo.capabilities.cylindrical.figures import contact_length
+from camgeo.capabilities.cylindrical.shells import FACE, PLACES, RIM, shells
+from camgeo.capabilities.cylindrical.turning import LINES, contact_angles, scene, sense
+from camgeo.measures.units import UNIT_NAMES
+from camgeo.report.page import tables
+from camgeo.report.page.page import filled, pack_numbers, picture, plotted, script_json
+from camgeo.report.page.scene import STEPS
+from camgeo.report.plot import Plot, Series
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.output.own_kind import Made
+    from kin.cylindrical.verdict import DrumVerdict
+
+
+def page(design: DrumDesign, _made: Sequence[Made[DrumVerdict]], report: dict[str, Any]) -> str:
+    """Return the HTML of the page, from the design, the files that were made or given, and the report."""
+    turn = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
+    data = {
+        **picture(design.recipe, scene(design), turn, -1 if design.recipe.rotation == "cw" else 1),
+        "marks": [],
+        "plots": [plotted(plot) for plot in _plots(design)],
+        "rests": [
+            [math.degrees(rest.begin), math.degrees(rest.end - rest.begin), "dwell"] for rest in design.motion.rests
+        ],
+        "linked": False,
+        "contours": {},
+        "errors": [],
+    }
+    panels = f'<div class="charts-and-figures">{_charts(design)}{_figures(report)}</div>{_script(design)}'
+    return filled(design.recipe, data, report, panels=panels, style=_asset("drum.css"))
+
+
+def _asset(name: str) -> str:
+    return (files("camgeo.capabilities.cylindrical") / name).read_text("utf-8")
+
+
+def _charts(design: DrumDesign) -> str:
+    """Return development and map, side by side where there is room."""
+    note = " ".join(keys(design))
+    limit = "Above the limit the colour is that of a failed check. " if limits(design) else ""
+    lost = "Violet: lost to undercut. " if design.recipe.shortens else ""
+    told = f"Magnitude along the roller's line of contact; the ring is at its greatest. {limit}{lost}".strip()
+    return (
+        '<section aria-labelledby="charts-head"><h2 id="charts-head">Development and pressure angle</h2>'
+        f'<div class="charts"><figure><h3>Development</h3>{development(design)}<figcaption>{note}</figcaption></figure>'
+        f"<figure><h3>Pressure angle</h3>{pressure_map(design)}<figcaption>{told}</figcaption></figure></div></section>"
+    )
+
+
+def _script(design: DrumDesign) -> str:
+    """Return the script that turns the drum with the page's player, and its data in the recipe's unit."""
+    recipe = design.recipe
+    mm = recipe.mm
+    theta = np.linspace(0.0, 2.0 * math.pi, LINES + 1)
+    data = {
+        "sense": sense(design),
+        "digits": scene(design).digits,
+        "places": PLACES,
+        "parts": LINES,
+        "face": FACE,
+        "rim": RIM,
+        "core": recipe.floor / mm,
+        "shells": [
+            {
+                "radius": each.radius / mm,
+                "bands": [[pack_numbers(z / mm, recipe.height / mm) for z in band] for band in each.bands],
+            }
+            for each in shells(design)
+        ],
+        "lines": [
+            {
+                "level": flank.level / mm,
+                "reach": flank.side * flank.radius / mm,
+                **dict(zip(("low", "high"), map(pack_numbers, contact_angles(design, name)), strict=True)),
+            }
+            for name, flank in design.flanks.items()
+        ],
+        "lift": pack_numbers(design.law.derivatives(theta, 0)[0] / mm),
+        "flat": [flat_scale(design) * mm, FIELD, flat_scale(design) * recipe.height, LEFT, TOP],
+        "map": [LEFT, FIELD],
+    }
+    return (
+        f'<script type="application/json" id="drum-data">{script_json(data)}</script>\n<script>\n{_asset("drum.js")}'
+        'playDrum(JSON.parse(document.getElementById("drum-data").textContent));\n</script>'
+    )
+
+
+def _figures(report: dict[str, Any]) -> str:
+    rows = []
+    for entry in report["drum"]["figures"]:
+        at = f"{entry['at']:.2f}°" if "at" in entry else ""
+        value = entry["value"]
+        shown = tables.number(value) if value is not None and math.isfinite(value) else tables.NONE
+        rows.append(tables.named_row(entry["name"], shown, entry["unit"], at))
+    return f"<section><h2>Figures</h2>{tables.html_table('Figures', ('figure', 'value', 'unit', 'at'), rows)}</section>"
+
+
+def _plots(design: DrumDesign) -> list[Plot]:
+    """Lift and its derivatives, pressure angle at both ends of contact, and the length of the line of contact."""
+    recipe = design.recipe
+    theta = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
+    unit = UNIT_NAMES[recipe.units]
+    rows = design.law.derivatives(theta, 2) / recipe.mm
+    names = (("lift", ""), ("velocity", "/rad"), ("acceleration", "/rad²"))
+    plots = [
+        Plot(name.capitalize(), f"{unit}{per}", (Series(name, rows[k]),), dwells=True)
+        for k, (name, per) in enumerate(names)
+    ]
+    ends = {"inner end": recipe.roller.inner / recipe.mm, "outer end": recipe.roller.outer / recipe.mm}
+    angles = tuple(Series(name, np.degrees(np.arctan2(rows[1], rho))) for name, rho in ends.items())
+    lines = tuple((sign * value, "limit" if sign > 0 else "") for value in limits(design) for sign in (1.0, -1.0))
+    note = "at both ends of the roller; above 0 where the drum drives a rise"
+    plots.append(Plot("Pressure angle", "°", angles, limits=lines, dwells=True, note=note))
+    lengths = tuple(
+        Series(name, np.maximum(contact_length(design, name, theta), 0.0) / recipe.mm) for name in design.flanks
+    )
+    plots.append(Plot("Line of contact", unit, lengths, dwells=True, axis="length", holds=(0.0,)))
+    return plots

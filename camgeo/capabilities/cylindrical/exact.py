@@ -1,0 +1,30 @@
+"""The exact cylindrical cam of a recipe."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.cylindrical.design import DrumDesign, in_recipe
+from camgeo.capabilities.cylindrical.refused import demand_sound
+from kin.law.normalised import IntentError
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.common.clock import Clock
+
+TURN = 2.0 * math.pi
+
+
+def designed(recipe: DrumRecipe, clock: Clock) -> DrumDesign:
+    """The exact cam of a recipe; raises RecipeErrors where there is none."""
+    with clock.stage("motion"):
+        try:
+            motion = recipe.motion.motion(TURN, "cam.motion", 1)
+            law = motion.periodic("cam.motion")
+        except IntentError as error:
+            raise recipe.error(recipe.stated(error.field), in_recipe(recipe, error.message)) from error
+        design = DrumDesign(recipe, motion, law)
+    with clock.stage("undercut"):
+        demand_sound(design)
+    return design

@@ -1,0 +1,274 @@
+"""Figures of a cylindrical cam, each with its shaft angle: of the exact flanks, of the drive in time, of its load."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.capabilities.cylindrical.flank import distance
+from camgeo.capabilities.cylindrical.grid import breaks_of
+from camgeo.capabilities.cylindrical.keys import Groove, Rib
+from camgeo.capabilities.cylindrical.undercut import below
+from camgeo.curve.extremes import both
+from camgeo.measures.hertz import bearable, line_pressure
+from camgeo.measures.placed import Figure, greatest_of
+from camgeo.recipe.figures import PRESSURE_ANGLE
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.flank import Flank
+    from camgeo.curve.curve import Side
+    from camgeo.curve.extremes import Extreme
+    from camgeo.curve.rates import Series
+    from kin.numeric.arrays import Array
+
+TURN = 2.0 * math.pi
+MINUTE = 60.0
+MIDDLE, OUTER = f"{PRESSURE_ANGLE}-middle", f"{PRESSURE_ANGLE}-outer"
+ALONG = 9  # places along a line of contact at which a greatest figure is sought
+RADII, PLACES = 24, 24  # of Gauss, over which a volume is integrated
+NEWTON = 40
+
+
+def slopes(design: DrumDesign, order: int = 1) -> tuple[Extreme, Extreme]:
+    """Least and greatest derivative of S of an order by the radian, mm."""
+
+    def figure(tau: Series, side: Side = 1) -> Series:
+        s = design.law.on(tau, side)
+        for _ in range(order):
+            s = s.derivative()
+        return s
+
+    knots = breaks_of(next(iter(design.flanks.values())))
+    return both(figure, np.column_stack([knots[:-1], knots[1:]]))
+
+
+def steepest(design: DrumDesign, order: int = 1) -> tuple[float, float]:
+    """Greatest magnitude of a derivative of S by the radian, mm, and its shaft angle, rad."""
+    low, high = slopes(design, order)
+    worst = high if high.value >= -low.value else low
+    return abs(worst.value), worst.at
+
+
+def outer_end(design: DrumDesign, name: str, theta: Array) -> Array:
+    """Distance along the roller (n,), mm, at which contact with a flank ends outside: at its end, or the blank's."""
+    recipe, flank = design.recipe, design.flanks[name]
+    v = design.law.derivatives(theta, 1)[1]
+    return np.minimum(recipe.roller.outer, distance(np.full_like(v, recipe.radius), v, flank.radius))
+
+
+def carried_from(design: DrumDesign, name: str, theta: Array) -> Array:
+    """Distance along the roller (n,), mm, from which on a flank carries it: from its inner end, or beyond a cut."""
+    flank = design.flanks[name]
+    rho = np.full(theta.shape, design.recipe.roller.inner)
+    for cut in design.cuts[name]:
+        offset = np.mod(theta - cut.tip.at + math.pi, TURN) - math.pi
+        r = np.append(cut.r, cut.tip.r)
+        for ends, sign in ((cut.first, -1.0), (cut.last, 1.0)):
+            # from the tip inwards the ends of what is lost lie farther and farther from it
+            away = sign * np.append(ends - cut.tip.at, 0.0)
+            within = (sign * offset >= 0.0) & (sign * offset <= away[0])
+            depth = np.interp(sign * offset[within], away[::-1], np.sqrt(cut.tip.r - r)[::-1])
+            reached = flank.on(theta[within], cut.tip.r - depth * depth).rho
+            rho[within] = np.maximum(rho[within], reached)
+    return rho
+
+
+def contact_length(design: DrumDesign, name: str, theta: Array) -> Array:
+    """Length (n,), mm, of the line along which a flank carries the roller; below 0 where nothing carries."""
+    return outer_end(design, name, theta) - carried_from(design, name, theta)
+
+
+def figures_of(design: DrumDesign) -> list[Figure]:
+    """All figures that a design has, in the order of reports."""
+    recipe = design.recipe
+    v, at = steepest(design)
+    ends = {name: float(outer_end(design, name, np.array([at]))[0]) for name in design.flanks}
+    outer, place = min(ends.values()), math.degrees(at)
+    middle = 0.5 * (recipe.roller.inner + recipe.roller.outer)
+    found = [
+        Figure(name, math.degrees(math.atan2(v, rho)), "deg", place)
+        for name, rho in ((PRESSURE_ANGLE, recipe.roller.inner), (MIDDLE, middle), (OUTER, outer))
+    ]
+    found += _carrying(design)
+    if isinstance(recipe.track, Groove):
+        play = recipe.track.clearance * math.hypot(v, outer) / outer
+        found.append(Figure("play", play, "mm", place))
+    if isinstance(recipe.track, Rib):
+        thickness, thin = greatest_of(lambda theta: -rib_thickness(design, theta, recipe.floor), TURN)
+        found.append(Figure("rib-thickness", -thickness, "mm", math.degrees(thin)))
+    return [*found, *_curved(design), *_driven(design), *_loaded(design), *_heavy(design)]
+
+
+def _carrying(design: DrumDesign) -> list[Figure]:
+    """Least length of the line of contact and its share, and how far out undercut reaches."""
+    least = []
+    for name in design.flanks:
+        value, at = greatest_of(lambda theta, name=name: -contact_length(design, name, theta), TURN)  # type: ignore[misc]
+        whole = float(outer_end(design, name, np.array([at]))[0]) - design.recipe.roller.inner
+        least.append((-value, max(-value, 0.0) / whole, math.degrees(at)))
+    length, share, place = min(least)
+    found = [Figure("contact-length", max(length, 0.0), "mm", place), Figure("carrying-share", share, "", place)]
+    if design.recipe.shortens:
+        ends = design.recipe.floor, design.recipe.radius
+        cut = [below(flank, *ends) for name, flank in design.flanks.items() if design.tips[name]]
+        reach, beside = max(cut, default=(0.0, math.nan))
+        found.append(Figure("undercut-radius", reach, "mm", math.degrees(beside) if cut else None))
+    return found
+
+
+def rib_thickness(design: DrumDesign, theta: Array, r: float) -> Array:
+    """Thickness (n,) of a rib along the axis, mm, on the cylinder r, mm, with its upper roller at theta (n,), rad."""
+    upper, lower = design.flanks["lower"], design.flanks["upper"]
+    contact = upper.on(theta, r)
+    other = at_angle(lower, contact.phi, r, theta)
+    return contact.z - lower.on(other, r).z
+
+
+def at_angle(flank: Flank, phi: Array, r: float, theta: Array) -> Array:
+    """Shaft angles (n,), rad, at which a flank on the cylinder r, mm, is touched at polar angles (n,), from a guess."""
+    low, high = theta - 0.5 * math.pi, theta + 0.5 * math.pi
+    for _ in range(NEWTON):  # on a regular flank the polar angle rises
+        middle = 0.5 * (low + high)
+        less = flank.on(middle, r).phi < phi
+        low, high = np.where(less, middle, low), np.where(less, high, middle)
+    return 0.5 * (low + high)
+
+
+def _curved(design: DrumDesign) -> list[Figure]:
+    """Least radius of both bodies together across the line of contact, mm; none where a cut may leave a sharp edge."""
+    if design.recipe.shortens:
+        return []
+    worst = [greatest_of(lambda theta, name=name: _sharpest(design, name, theta)[0], TURN) for name in design.flanks]  # type: ignore[misc]
+    curvature, at = max(worst)
+    return [Figure("mating-radius", 1.0 / curvature if curvature > 0.0 else math.inf, "mm", math.degrees(at))]
+
+
+def _along(design: DrumDesign, name: str, theta: Array) -> Array:
+    """Distances (ALONG, n) along the line that carries, mm."""
+    begin, end = carried_from(design, name, theta), outer_end(design, name, theta)
+    share = np.linspace(0.0, 1.0, ALONG)[:, None]
+    return np.minimum(begin, end) * (1.0 - share) + end * share
+
+
+def _sharpest(design: DrumDesign, name: str, theta: Array) -> tuple[Array, Array]:
+    """Greatest sum of curvatures along the line of contact (n,), 1/mm, and all of them (ALONG, n)."""
+    flank = design.flanks[name]
+    rows = np.stack([flank.curvature(theta, rho) for rho in _along(design, name, theta)])
+    return rows.max(axis=0), rows
+
+
+# --- in time, under load ----------------------------------------------------------------------------------------------
+
+
+def _driven(design: DrumDesign) -> list[Figure]:
+    """Greatest velocity and acceleration of the follower in time."""
+    rpm = design.recipe.drive.rpm
+    if rpm is None:
+        return []
+    rate = rpm * TURN / MINUTE
+    found = []
+    for order, name, unit in ((1, "velocity", "mm/s"), (2, "acceleration", "mm/s^2")):
+        value, at = steepest(design, order)
+        found.append(Figure(name, value * rate**order, unit, math.degrees(at)))
+    return found
+
+
+def _loaded(design: DrumDesign) -> list[Figure]:
+    """Forces under the load, N, the torque, N m, and the pressure of the contact, N/mm^2.
+
+    Force and thrust are those of a load that the roller's inner end carries alone, where the contact is steepest; for
+    the pressure the load is spread evenly along the line.
+    """
+    recipe, drive = design.recipe, design.recipe.drive
+    if drive.load is None:
+        return []
+    v, at = steepest(design)
+    place, inner = math.degrees(at), recipe.roller.inner
+    found = [
+        Figure("contact-force", drive.load * math.hypot(v, inner) / inner, "N", place),
+        Figure("side-thrust", drive.load * v / inner, "N", place),
+        Figure("torque", 1e-3 * drive.load * v, "N m", place),
+    ]
+    if drive.material is None or recipe.shortens:
+        return found
+    load, drum, roller = drive.load, drive.material, drive.roller_material or drive.material
+
+    def pressure(name: str, theta: Array) -> Array:
+        slope, length = design.law.derivatives(theta, 1)[1], contact_length(design, name, theta)
+        rho, curvature = _along(design, name, theta), _sharpest(design, name, theta)[1]
+        force = load * np.hypot(slope, rho) / rho
+        width = np.where(length > 0.0, length, np.inf)
+        found: Array = line_pressure(force * curvature / width, np.ones_like(force), 1.0, drum, roller).max(axis=0)
+        return found
+
+    names = design.flanks if not isinstance(recipe.track, Groove) else ("lower",)
+    value, at = max(greatest_of(lambda theta, name=name: pressure(name, theta), TURN) for name in names)  # type: ignore[misc]
+    return [*found, Figure("contact-pressure", value, "N/mm^2", math.degrees(at))]
+
+
+def bears(design: DrumDesign) -> float | None:
+    """Pressure that both materials bear, N/mm^2; None where neither states one."""
+    drive = design.recipe.drive
+    return bearable(drive.material, drive.roller_material)
+
+
+# --- volume -----------------------------------------------------------------------------------------------------------
+
+
+def _heavy(design: DrumDesign) -> list[Figure]:
+    density = design.recipe.part.density
+    return [] if density is None else [Figure("mass", volume(design) * density * 1e-9, "kg")]
+
+
+def volume(design: DrumDesign) -> float:
+    """Volume of the exact drum, mm^3: of its core, and of what stands round it, integrated cylinder by cylinder."""
+    recipe = design.recipe
+    floor, blank, height = recipe.floor, recipe.radius, recipe.height
+    bore = 0.0 if design.bore is None else design.bore.outline.area
+    node, weight = np.polynomial.legendre.leggauss(RADII)
+    r = floor + 0.5 * (blank - floor) * (node + 1.0)
+    flanks = {name: _areas(design, name, r) for name in design.flanks}
+    if isinstance(recipe.track, Rib):
+        stands = flanks["lower"] - flanks["upper"]
+    else:
+        stands = flanks.get("lower", np.zeros_like(r))
+        if "upper" in flanks:
+            stands = stands + TURN * r * height - flanks["upper"]
+    round_it = 0.5 * (blank - floor) * float(np.sum(weight * stands))
+    return (math.pi * floor**2 - bore) * height + round_it
+
+
+def _areas(design: DrumDesign, name: str, r: Array) -> Array:
+    """Integrals of z over the turn of a flank on cylinders r (k,), mm^2: from the lower face to the flank."""
+    flank = design.flanks[name]
+    node, weight = np.polynomial.legendre.leggauss(PLACES)
+    kept = [_kept(design, name, radius) for radius in r.tolist()]
+    count = np.array([len(stretches) for stretches in kept])
+    low, high = np.concatenate([np.array(stretches) for stretches in kept]).T
+    half, radius = 0.5 * (high - low), np.repeat(r, count)
+    theta = (low + half)[:, None] + half[:, None] * node
+    contact = flank.on(theta.ravel(), np.repeat(radius, PLACES))
+    parts = (contact.z * flank.sweep(contact)).reshape(theta.shape) @ weight
+    return r * np.add.reduceat(half * parts, np.cumsum(count) - count)
+
+
+def _kept(design: DrumDesign, name: str, radius: float) -> list[tuple[float, float]]:
+    """Stretches of shaft angles, rad, without a break, on which a flank on a cylinder is not cut away."""
+    knots = breaks_of(design.flanks[name])
+    knots = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], 13), knots]))
+    lost: list[tuple[float, float]] = []
+    for cut in design.cuts[name]:
+        if radius < cut.tip.r:
+            first, last = cut.at(np.array([radius]))
+            lost += [(float(first[0]) + turn, float(last[0]) + turn) for turn in (-TURN, 0.0, TURN)]
+    inside = [each for pair in lost for each in pair if knots[0] < each < knots[-1]]
+    ends = np.unique(np.concatenate([knots, inside]))
+    return [
+        (low, high)
+        for low, high in pairwise(ends.tolist())
+        if not any(begin < 0.5 * (low + high) < end for begin, end in lost)
+    ]

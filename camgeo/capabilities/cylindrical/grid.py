@@ -1,0 +1,144 @@
+"""Grids of shaft angles and radii whose triangles keep a flank within a tolerance, proved cell by cell."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.capabilities.cylindrical.bends import bends
+from camgeo.common.rounding import upward
+from camgeo.fit.nodes import ToleranceError
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.cylindrical.bends import Bends
+    from camgeo.capabilities.cylindrical.flank import Flank
+    from kin.numeric.arrays import Array
+
+TURN = 2.0 * math.pi
+LOOKS = 360  # parts of a turn, and
+BLOCKS = 8  # of the depth, over each of which second derivatives are bounded
+MOST_ROWS = 4000
+MOST_CELLS = 1_000_000
+COARSER = 1.2  # times the tolerance that the number of cells calls for, in a remedy
+MORE = 1.5  # times the fewest cells so far, from which on more rows are not tried
+NONE = np.zeros(0)
+SAME = 1e-12  # rad: shaft angles so near are one
+SAME_ROW = 1e-6  # mm: so are rows
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Shaft angles (n,), rising over one turn, and radii (m,), rising, mm, and the proved distance of its triangles.
+
+    The last angle is a turn beyond the first one.
+    """
+
+    theta: Array
+    r: Array
+    off: float
+
+
+def sag(radius: float, angle: Array | float) -> Array:
+    """Distance, mm, of a chord over an angle, rad, from its circle of a radius, mm."""
+    return np.asarray(2.0 * radius * np.sin(0.25 * np.asarray(angle)) ** 2)
+
+
+def widest(radius: float, tolerance: float) -> float:
+    """Angle, rad, whose chord is within a tolerance of a circle of a radius, mm; at most a sixth of a turn."""
+    return min(4.0 * math.asin(math.sqrt(min(0.5 * tolerance / radius, 0.5))), TURN / 6.0)
+
+
+def breaks_of(flank: Flank) -> Array:
+    """Shaft angles (b + 1,), rad, between which the motion has no break: a turn, rising."""
+    inner = np.asarray(flank.law.breaks, dtype=np.float64)
+    start = float(inner[0]) if inner.size else 0.0
+    return np.append(inner if inner.size else np.zeros(1), start + TURN)
+
+
+def bends_over(flank: Flank, knots: Array, low: float, high: float) -> tuple[Array, Bends]:
+    """Places (n + 1,), rad, and bounds of second derivatives (n,) between neighbours, from radius `low` to `high`, mm.
+
+    The `knots` are among the places.
+    """
+    look = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], LOOKS + 1), knots]))
+    look = look[np.append(np.diff(look) > SAME, True)]
+    edges, n = np.linspace(low, high, BLOCKS + 1), look.size - 1
+    cells = bends(
+        flank,
+        (np.tile(look[:-1], BLOCKS), np.tile(look[1:], BLOCKS)),
+        (np.repeat(edges[:-1], n), np.repeat(edges[1:], n)),
+    )
+    return look, cells.most(BLOCKS)
+
+
+def grid_of(
+    flank: Flank, ends: tuple[float, float], tolerance: float, rows: Array = NONE, columns: Array = NONE
+) -> Grid:
+    """Grid whose triangles are within a tolerance of a regular flank between the radii `ends`, mm.
+
+    Its edges on both cylinders are within the tolerance of them, too. `rows` are radii and `columns` shaft angles that
+    it has at least. Raises ToleranceError where it would have too many cells.
+    """
+    low, high = ends
+    knots = breaks_of(flank)
+    knots = np.unique(np.concatenate([knots, knots[0] + np.mod(columns - knots[0], TURN)]))
+    knots = knots[np.append(np.diff(knots) > SAME, True)]
+    look, found = bends_over(flank, knots, low, high)
+    turn = widest(high, tolerance) / found.sweep
+    count, step = _rows(found, np.diff(look), turn, high - low, tolerance)
+    r = np.linspace(low, high, count + 1)
+    r = np.unique(np.concatenate([r, rows]))
+    r = r[np.append(True, np.diff(r) > SAME_ROW)]
+    theta = _columns(knots, look, step)
+    while True:  # between places of unlike steps a column may be too wide
+        h1, cells = np.diff(theta), _touched(look, found, theta)
+        off = np.maximum(cells.off(h1, (high - low) / count), sag(high, np.minimum(cells.sweep * h1, math.pi)))
+        wide = off > tolerance
+        if not wide.any():
+            return Grid(theta, r, float(off.max()))
+        theta = np.sort(np.concatenate([theta, 0.5 * (theta[:-1] + theta[1:])[wide]]))
+
+
+def _rows(found: Bends, wide: Array, turn: Array, depth: float, tolerance: float) -> tuple[int, Array]:
+    """Number of rows that needs the fewest cells, and the greatest width of columns (n,), rad."""
+    best: tuple[float, int, Array] | None = None
+    count = 1
+    while count <= MOST_ROWS:
+        step = np.minimum(found.step(depth / count, tolerance), turn)
+        if step.min() > 0.0:
+            cells = count * float(np.sum(wide / step))
+            if best is None or cells < best[0]:
+                best = cells, count, step
+            elif cells > MORE * best[0]:
+                break
+        count += max(1, count // 8)
+    if best is None or best[0] > MOST_CELLS:
+        least = tolerance * (4.0 if best is None else COARSER * best[0] / MOST_CELLS)
+        problem = f"a flank within {tolerance:.3g} mm would take too many triangles"
+        raise ToleranceError(f"{problem}; give at least {upward(least, 3)} mm", least)
+    return best[1], best[2]
+
+
+def _columns(knots: Array, look: Array, step: Array) -> Array:
+    """Shaft angles, rad, from knot to knot, whose distances are about `step` (n,) between places (n + 1,)."""
+    along = np.concatenate([[0.0], np.cumsum(np.diff(look) / step)])
+    at = np.interp(knots, look, along)
+    found = []
+    for k, (low, high) in enumerate(pairwise(at.tolist())):
+        count = max(1, math.ceil(high - low))
+        found.append(np.append(knots[k], np.interp(np.linspace(low, high, count + 1)[1:-1], along, look)))
+    return np.append(np.concatenate(found), knots[-1])
+
+
+def _touched(look: Array, found: Bends, theta: Array) -> Bends:
+    """Bounds over the columns between neighbours of theta (m + 1,), from those between neighbours of `look`."""
+    first = np.searchsorted(look, theta[:-1] + SAME, side="right") - 1
+    last = np.searchsorted(look, theta[1:] - SAME, side="left") - 1
+    cells = found.at(first)
+    for between in range(1, int((last - first).max(initial=0)) + 1):
+        cells = cells.joined(found.at(np.minimum(first + between, last)))
+    return cells

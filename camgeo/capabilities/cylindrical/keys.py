@@ -1,0 +1,345 @@
+"""Keys of the recipe of a cylindrical cam: the drum, its track and roller, how it is driven, what it turns on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
+from camgeo.motions.inputs import WHOLE_PART
+from camgeo.motions.motion import motion_field
+from camgeo.part import bore
+from camgeo.part.keyway import FEATURE as KEYWAY
+from camgeo.part.part import DENSITY
+from camgeo.recipe.export import export_of
+from camgeo.recipe.figure_bounds import limits_of
+from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
+from camgeo.recipe.keys import CORE
+from camgeo.recipe.machining import MOST_RPM
+from camgeo.recipe.materials import material
+from camgeo.recipe.recipe import ShaftOrder
+from camgeo.registry.formats import FORMATS, Form
+from camgeo.registry.slot import NO_CHECK
+from camgeo.schema.errors import quote
+from camgeo.schema.fields import MOST, Field, FieldTable, Kind, OwnForm, either, length, mapping
+from camgeo.schema.json_schema import number_schema
+from camgeo.schema.read_scalar import read_numeric
+from camgeo.schema.yaml_source import Scalar, join
+from kin.numeric.records import dataclass, replace
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from camgeo.motions.motion import MotionSource
+    from camgeo.part.part import Part
+    from camgeo.recipe.figure_bounds import Bound
+    from camgeo.recipe.materials import Material
+    from camgeo.registry.formats import Format
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader
+    from camgeo.schema.yaml_source import Node
+
+FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it begins
+MOST_RADII = 20  # of one development
+OUTER, PITCH = "outer", "pitch"
+NOT_YET = "a roller that follows on an arm, beside the axis or with a cone is not made yet"
+
+
+@dataclass(frozen=True)
+class Groove:
+    """A groove of a depth with a clearance on its upper flank, square to it, mm."""
+
+    depth: float
+    clearance: float
+
+
+@dataclass(frozen=True)
+class Rib:
+    """A rib of a depth between two rollers, whose axes are a distance apart along the cam's axis, mm."""
+
+    depth: float
+    distance: float
+
+
+@dataclass(frozen=True)
+class End:
+    """An end face towards the top, with the metal below, or towards the bottom, to a depth below the blank, mm."""
+
+    facing: Literal["top", "bottom"]
+    depth: float
+
+
+Track: TypeAlias = Groove | Rib | End
+
+
+@dataclass(frozen=True)
+class Roller:
+    """A roller of a radius that bears from `inner` to `outer` along its axis, from the cam's, mm."""
+
+    radius: float
+    inner: float
+    outer: float
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Turns a minute, the load along the cam's axis, N, and what touches; None where the recipe does not say."""
+
+    rpm: float | None = None
+    load: float | None = None
+    material: Material | None = None
+    roller_material: Material | None = None
+
+
+@dataclass(frozen=True)
+class DrumRecipe(ShaftOrder):
+    """A recipe of a cylindrical cam; lengths in mm, angles in rad.
+
+    `radius` is the blank's, `level` the height of the roller's axis at lift 0 over the lower face, z = 0, in the middle
+    between the rollers of a rib. The thickness of `part` is the drum's length.
+    """
+
+    root: ClassVar[str] = "cylindrical"
+
+    radius: float
+    track: Track
+    roller: Roller
+    level: float
+    motion: MotionSource
+    part: Part
+    undercut: Literal["refuse", "shorten"] = "refuse"
+    drive: Drive = Drive()
+    limits: tuple[Bound, ...] = ()
+
+    __repr__ = ShaftOrder.__repr__
+
+    @property
+    def floor(self) -> float:
+        """Radius of the floor of the track, mm."""
+        return self.radius - self.track.depth
+
+    @property
+    def height(self) -> float:
+        """Length of the drum along its axis, mm."""
+        if self.part.thickness is None:
+            raise ValueError(self.name)
+        return self.part.thickness
+
+    @property
+    def shortens(self) -> bool:
+        """Whether an undercut shortens the line of contact, in place of an error."""
+        return self.undercut == "shorten"
+
+
+# --- keys -------------------------------------------------------------------------------------------------------------
+
+ROLLER = mapping(
+    "follower",
+    "the roller, on a carriage that travels along the cam's axis",
+    Field("kind", Kind.CHOICE, "what touches the drum", default="roller", choices=("roller",), others=NOT_YET),
+    length("radius", "radius of the roller", required=True),
+    length("from", "where it begins to bear along its axis, from the cam's axis", default="the floor and 0.5 mm"),
+    length("to", "where it ends", default="radius of the blank"),
+)
+_DEPTH = length("depth", "depth below the blank", required=True)
+TRACK = Field(
+    "track",
+    Kind.TABLE,
+    "what leads the roller",
+    required=True,
+    table=FieldTable(
+        (
+            mapping(
+                "groove",
+                "a groove for one roller",
+                _DEPTH,
+                Field(
+                    "clearance",
+                    Kind.LENGTH,
+                    "play of the roller, on the upper flank and square to it",
+                    default="0",
+                    at_least=0,
+                    at_most=MOST,
+                ),
+            ),
+            mapping(
+                "rib",
+                "a rib between two rollers",
+                length("distance", "distance of their axes along the cam's axis", required=True),
+                _DEPTH,
+            ),
+            Field(
+                "end",
+                Kind.CHOICE,
+                "an end face towards the top, with the metal below it, or towards the bottom, for a spring",
+                choices=("top", "bottom"),
+            ),
+        ),
+        alternatives=(("groove", ()), ("rib", ()), ("end", ())),
+    ),
+)
+DRIVE = mapping(
+    "drive",
+    "how fast the drum turns, and what it carries",
+    Field("rpm", Kind.NUMBER, "turns a minute", above=0, at_most=MOST_RPM),
+    Field("load", Kind.NUMBER, "load on the follower along the axis, N", above=0, at_most=MOST, unit=Kind.FORCE),
+    material("material", "material of the drum"),
+    material("roller_material", "that of the roller", default="that of the drum"),
+)
+CAM = FieldTable(
+    (
+        Field("kind", Kind.CHOICE, "a drum that turns about its axis", required=True, choices=("cylindrical",)),
+        length("radius", "radius of the blank", required=True),
+        TRACK,
+        replace(ROLLER, required=True),
+        Field(
+            "pitch_height",
+            Kind.LENGTH,
+            "height of the roller's axis at lift 0 over the lower face; of a rib's middle",
+            required=True,
+            at_least=-MOST,
+            at_most=MOST,
+        ),
+        motion_field("motion", Kind.STROKE, "lift over one turn, 360 degrees", over=WHOLE_PART, required=True),
+        Field(
+            "undercut",
+            Kind.CHOICE,
+            "what is done where the flank is undercut near the floor: an error, or contact begins farther out",
+            default="refuse",
+            choices=("refuse", "shorten"),
+        ),
+        DRIVE,
+    )
+)
+PART = replace(
+    mapping(
+        "part",
+        "the drum beside its track; angles from the roller's ray at shaft angle 0",
+        length(
+            "length",
+            "length of the drum along its axis; of an end cam that of what lies within the flank",
+            required=True,
+        ),
+        bore.FIELD,
+        KEYWAY.field,
+        length("wall", "least wall between any two edges", default="reported, and above 0"),
+        DENSITY,
+    ),
+    required=True,
+)
+FIGURES = {
+    PRESSURE_ANGLE: ("greatest pressure angle, at the roller's inner end, degrees", Kind.ANGLE),
+    f"{PRESSURE_ANGLE}-middle": ("greatest pressure angle in the middle of the roller, degrees", Kind.ANGLE),
+    f"{PRESSURE_ANGLE}-outer": ("greatest pressure angle where the contact ends outside, degrees", Kind.ANGLE),
+    "contact-length": ("least length of the line of contact", Kind.LENGTH),
+    "carrying-share": ("least share of the roller's line that carries, from 0 to 1", Kind.NUMBER),
+    "undercut-radius": ("distance from the axis within which a flank is undercut", Kind.LENGTH),
+    "rib-thickness": ("least thickness of a rib along the axis", Kind.LENGTH),
+    "play": ("greatest play in a groove along the axis", Kind.LENGTH),
+    "mating-radius": ("least radius, of both bodies together, across the line of contact", Kind.LENGTH),
+    "velocity": ("greatest velocity of the follower, a second", Kind.LENGTH),
+    "acceleration": ("greatest acceleration of the follower, a second squared", Kind.LENGTH),
+    "contact-force": ("greatest force between drum and roller, N", Kind.FORCE),
+    "side-thrust": ("greatest force on the follower's guide, N", Kind.FORCE),
+    "torque": ("greatest torque that turns the drum against the load, N m", Kind.NUMBER),
+    "contact-pressure": ("greatest pressure of the contact by Hertz, N/mm²", Kind.NUMBER),
+    "mass": ("mass, kg", Kind.NUMBER),
+    LEAST_WALL: ("least wall between two edges of the drum", Kind.LENGTH),
+}
+"""Figures of a cylindrical cam that a recipe may limit, each with what it is and the kind of its values."""
+
+
+LIMITS = limits_of(FIGURES)
+
+
+def _read_radii(reader: Reader, field: Field, node: Node, path: str) -> tuple[str | float, ...] | None:
+    """Read where a development is drawn: words, or radii in mm; None after a fault."""
+    found: list[str | float] = []
+    faults = len(reader.errors)
+    for i, item in enumerate(reader.items(field, node, path, MOST_RADII)):
+        if isinstance(item, Scalar) and item.text in {OUTER, PITCH}:
+            found.append(item.text)
+            continue
+        value = read_numeric(reader, length("at", field.about), item, join(path, i))
+        if value is not None and value not in found:
+            found.append(value)
+        elif value is not None:
+            reader.fault(item.mark, join(path, i), "the same radius twice", quote(str(value)), "leave one out")
+    return tuple(found) if len(reader.errors) == faults else None
+
+
+def _radii_schema(_: Field) -> Schema:
+    item = {"anyOf": [{"enum": [OUTER, PITCH]}, number_schema(length("", ""))]}
+    return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_RADII}
+
+
+_RADII: OwnForm[Reader] = OwnForm(
+    "a list of radii",
+    f"a list of {either((OUTER, PITCH))} and radii, such as [outer, pitch, 38]",
+    _read_radii,
+    _radii_schema,
+)
+DEVELOPMENT = "development"
+TABLES = ("motion", "flank")
+"""Tables of CSV, by their words."""
+
+
+def _one_of(name: str, word: str, about: str, *options: Field, contour: bool) -> Format:
+    """A format with one form, which a file may name after `as`."""
+    form = Field("as", Kind.CHOICE, about, default=word, choices=(word,))
+    return replace(
+        FORMATS[name],
+        options=FieldTable((form, *options)),
+        forms={word: Form(name=word, pieces="lines")},
+        check=NO_CHECK,
+        contour=contour,
+    )
+
+
+def _tables() -> Format:
+    form = Field("as", Kind.CHOICE, "which table it is", default=TABLES[0], choices=TABLES)
+    step = Field("step", Kind.ANGLE, "shaft angle between rows", default="0.5", at_least=0.001, at_most=90)
+    forms = {name: Form(name=name) for name in TABLES}
+    return replace(FORMATS["csv"], options=FieldTable((form, step, RECIPE_UNITS)), forms=forms, check=NO_CHECK)
+
+
+def _mesh(name: str, *options: Field) -> Format:
+    return replace(FORMATS[name], options=FieldTable(options), forms={"": Form(pieces="triangles")}, solid=False)
+
+
+FILES: dict[str, Format] = {
+    **{name: _mesh(name, SOLID_UNITS, TOLERANCE) for name in ("stl", "ply", "3mf")},
+    "glb": replace(_mesh("glb", TOLERANCE), contour=False),
+    "dxf": _one_of(
+        "dxf",
+        DEVELOPMENT,
+        "the flanks and the path of the roller's axis, unrolled",
+        Field("at", Kind.OWN, "radii at which it is unrolled", default="[outer, pitch]", form=_RADII),
+        RECIPE_UNITS,
+        TOLERANCE,
+        contour=True,
+    ),
+    "csv": _tables(),
+    "html": replace(FORMATS["html"], options=FieldTable(())),
+}
+"""Formats of the files of a cylindrical cam, with the options that they take."""
+RECIPE = FieldTable(
+    (
+        *(CORE.field(name) for name in ("name", "about", "units", "rotation")),
+        Field("cam", Kind.TABLE, "the drum", required=True, table=CAM),
+        PART,
+        export_of(FILES, "{dxf: {as: development, at: [outer, 38]}}", "[stl]"),
+        mapping(
+            "verify",
+            "how each file is judged",
+            Field(
+                "motion_error",
+                Kind.LENGTH,
+                "greatest motion error permitted, along the axis",
+                default="what the tolerance implies",
+                above=0,
+                at_most=MOST,
+            ),
+        ),
+        LIMITS,
+    )
+)

@@ -1,0 +1,149 @@
+"""Designs of cylindrical cams for the library, exact and without files; texts of failed checks; expected checks."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.api.check import Check, Figure, Figures
+from camgeo.api.log import stage_reporter
+from camgeo.api.own_kind import KindDesign
+from camgeo.capabilities.cylindrical.checks_of import LENGTH, RIB, design_checks, limits_held
+from camgeo.capabilities.cylindrical.exact import designed
+from camgeo.capabilities.cylindrical.figures import figures_of
+from camgeo.capabilities.cylindrical.keys import Groove, Rib
+from camgeo.checks.declared import FORM_CLOSURE, LIMIT, WATERTIGHT
+from camgeo.common.arguments import numbers_of, short_repr, whole_of
+from camgeo.common.clock import Clock
+from camgeo.common.errors import CallError
+from camgeo.common.rounding import downward, upward
+from camgeo.measures.units import in_units
+from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
+from camgeo.synthesis.expected_checks import Foreseen
+from kin.numeric.records import dataclass, field
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.checks.declaration import Entry
+    from camgeo.recipe.export import FileRequest
+    from kin.numeric.arrays import Array
+
+MOST_DERIVATIVE = 6  # of the motion by the shaft angle
+FIELDS = {
+    PRESSURE_ANGLE: "cam.motion",
+    LENGTH: "cam.follower",
+    RIB: "cam.track.rib.distance",
+    LEAST_WALL: "part",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class CylindricalCam(KindDesign):
+    """The exact drum of a cylindrical cam; no file is made. Checks and figures are in the recipe's units."""
+
+    recipe: DrumRecipe
+    _design: DrumDesign = field(repr=False)
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """The checks that need no file, those of limits among them."""
+        figures = figures_of(self._design)
+        checks = design_checks(self._design, figures)
+        return tuple(Check.of(self.recipe, check) for check in (*checks, *limits_held(self._design, figures, checks)))
+
+    @cached_property
+    def figures(self) -> Figures:
+        """The figures of the drum by name, each with its shaft angle, degrees."""
+        found = {}
+        for figure in figures_of(self._design):
+            value, unit = in_units(self.recipe, figure.value, figure.unit)
+            finite = value is not None and bool(np.isfinite(value))
+            detail, at_unit = "" if finite else "nowhere", "" if figure.at is None else "deg"
+            found[figure.name] = Figure(value if finite else None, unit, figure.at, detail, at_unit)
+        return Figures(found)
+
+    def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array:
+        """Lift, mm, at shaft angles, rad, or a derivative by the radian, up to the sixth, in the shape of `theta`.
+
+        Raises CallError for another order and for angles that are not finite; TypeError for what is no number.
+        """
+        places, order = numbers_of("theta", theta), whole_of("derivative", derivative)
+        if order not in range(MOST_DERIVATIVE + 1):
+            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {short_repr(order)}")
+        if not np.isfinite(places).all():
+            raise CallError("shaft angles are finite")
+        return np.asarray(self._design.law.derivatives(places.ravel(), order)[order].reshape(places.shape))
+
+    def flank(self, theta: ArrayLike, radius: float, *, upper: bool = False) -> Array:
+        """Points (n, 3), mm, of the lower flank, or of the upper one, on a cylinder about the axis.
+
+        They are touched at shaft angles (n,), rad, and lie where the drum is made, mirrored for `rotation: ccw`. Raises
+        CallError for a flank that the drum does not have, and for a radius outside floor and blank.
+        """
+        name, recipe = ("upper" if upper else "lower"), self.recipe
+        if name not in self._design.flanks:
+            raise CallError(f"this drum has no {name} flank")
+        if not recipe.floor <= radius <= recipe.radius:
+            raise CallError(f"flanks reach from {recipe.floor:.9g} to {recipe.radius:.9g} mm")
+        contact = self._design.flanks[name].on(numbers_of("theta", theta).ravel(), radius)
+        sign = -1.0 if recipe.rotation == "ccw" else 1.0
+        return np.column_stack([radius * np.cos(contact.phi), sign * radius * np.sin(contact.phi), contact.z])
+
+
+def cam_of(recipe: DrumRecipe) -> CylindricalCam:
+    """Design a cylindrical cam; raises RecipeErrors where there is none."""
+    return CylindricalCam(recipe, designed(recipe, Clock(stage_reporter(recipe))))
+
+
+def remedy(check: Entry, recipe: DrumRecipe) -> str:
+    """Change that would let a check of the exact drum hold; empty where none is known."""
+    name, value, limit = check["name"], check.get("value"), check.get("limit")
+    if value is None or limit is None or "file" in check:
+        return ""
+    share = 100.0 * limit / value if value else 0.0
+    if name == f"{LIMIT}{PRESSURE_ANGLE}" and check["sense"] == "at_most":
+        factor = np.tan(np.radians(value)) / np.tan(np.radians(limit))
+        inner = f"{upward(recipe.roller.inner / recipe.mm * factor, 5)} {recipe.units}"
+        return f"a larger drum, whose roller begins at {inner} from the axis, or a longer motion"
+    if name in {f"{LIMIT}velocity", f"{LIMIT}acceleration"}:
+        turns = (limit / value) ** (1.0 if name.endswith("velocity") else 0.5) * (recipe.drive.rpm or 0.0)
+        return f"cam.drive.rpm of at most {downward(turns, 5)}"
+    if name in {f"{LIMIT}contact-force", f"{LIMIT}side-thrust", f"{LIMIT}torque"}:
+        return f"a load of {downward(share, 4)} percent"
+    if name == f"{LIMIT}contact-pressure":
+        return f"a load of {downward(1e-2 * share * share, 4)} percent"
+    if name == f"{LIMIT}play":
+        clearance = recipe.track.clearance if isinstance(recipe.track, Groove) else 0.0
+        return f"a clearance of at most {downward(clearance / recipe.mm * limit / value, 4)} {recipe.units}"
+    return ""
+
+
+OF_SOLIDS = ("volume", "floor", "blank", "ends")
+
+
+def foreseen(recipe: DrumRecipe) -> tuple[Foreseen, ...]:
+    """Checks that the report is sure to have."""
+    expected = [Foreseen(PRESSURE_ANGLE), Foreseen(LENGTH)]
+    if isinstance(recipe.track, Rib):
+        expected.append(Foreseen(RIB))
+    expected.append(Foreseen(LEAST_WALL))
+    expected += [Foreseen(f"{LIMIT}{bound.figure}") for bound in recipe.limits]
+    for request in recipe.export.files:
+        if request.format.contour:
+            (name,) = recipe.filenames(request)
+            expected += [Foreseen(each, name) for each in _of_file(recipe, request)]
+    return tuple(dict.fromkeys(expected))
+
+
+def _of_file(recipe: DrumRecipe, request: FileRequest) -> list[str]:
+    """Names of the checks of a file."""
+    if request.kind == "dxf":
+        return ["units", "contour", "motion"]
+    names = [WATERTIGHT.name, "contour", "motion", *OF_SOLIDS]
+    names += ["bore"] if recipe.part.bore is not None else []
+    return [*names, FORM_CLOSURE.name] if isinstance(recipe.track, (Groove, Rib)) else names

@@ -1,0 +1,98 @@
+"""Files of a cylindrical cam: what is made and written, and what kin's verdict on each is."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.cylindrical.design import in_recipe
+from camgeo.capabilities.cylindrical.solid import drum_mesh
+from camgeo.capabilities.cylindrical.verdicts import judged_file
+from camgeo.common.units import UNIT_MM
+from camgeo.files.errors import demand_package
+from camgeo.files.mesh import Item
+from camgeo.formats.glb import COLOURS, Actor, steady_turn, write_glb
+from camgeo.measures.file_result import FileResult
+from camgeo.output.extension import MAKING, numbers_of
+from camgeo.output.own_kind import Made
+from camgeo.output.refusals import refusals
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.common.clock import Clock
+    from camgeo.fit.bound import Bound
+    from camgeo.recipe.export import FileRequest
+    from kin.cylindrical.verdict import DrumVerdict
+
+
+def foresee(_: DrumDesign, request: FileRequest) -> None:
+    """Raise MissingExtraError where a package is missing that makes a file."""
+    if request.kind == "dxf":
+        demand_package("ezdxf", "a DXF file needs ezdxf")
+
+
+def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+    """Make, write, read back and judge one file.
+
+    Raises RecipeErrors where the tolerance cannot be held or no sound file can be made, OSError where it cannot be
+    written.
+    """
+    recipe, kind = design.recipe, request.kind
+    if kind == "csv":
+        from camgeo.capabilities.cylindrical.tables import write_csv
+
+        with clock.stage("table"):
+            write_csv(design, request, path)
+        return Made(FileResult(path, request, units=UNIT_MM[request.unit_for(recipe.units)]))
+    with refusals(recipe, request, partial(in_recipe, recipe)):
+        if kind == "dxf":
+            return _development(design, clock, request, path)
+        if kind == "glb":
+            return _view(design, clock, request, path)
+        return _mesh(design, clock, request, path)
+
+
+def _tolerance(design: DrumDesign, request: FileRequest) -> float:
+    return request.tolerance or design.recipe.export.tolerance
+
+
+def _judged(
+    design: DrumDesign, clock: Clock, request: FileRequest, path: Path, fit: tuple[int | None, Bound]
+) -> Made[DrumVerdict]:
+    """A written file with kin's verdict on it; `fit` is number of points, None for a mesh, and bound."""
+    tolerance = _tolerance(design, request)
+    with clock.stage(f"judge {request.kind}"):
+        verdict = judged_file(design, path, request, tolerance)
+    return Made(FileResult(path, request, tolerance, *fit, units=verdict.units), verdict.checks, verdict)
+
+
+def _mesh(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+    recipe, mm, write = design.recipe, UNIT_MM[request.unit_for(design.recipe.units)], MAKING[request.kind].write
+    if write is None:
+        raise ValueError(f"{request.kind} holds no mesh")
+    with clock.stage(f"mesh {request.kind}"):
+        mesh, facts = drum_mesh(design, _tolerance(design, request), numbers_of(request.kind, mm))
+    with clock.stage(f"write {request.kind}"):
+        write(path, [Item("drum", mesh)], recipe.name, mm, recipe.about)
+    return _judged(design, clock, request, path, (None, facts.bound))
+
+
+def _view(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+    """The drum as it turns, to look at."""
+    with clock.stage("mesh glb"):
+        mesh, _ = drum_mesh(design, _tolerance(design, request), numbers_of("glb", 1.0))
+    with clock.stage("write glb"):
+        actor = Actor("drum", mesh, steady_turn(design.recipe.rotation), COLOURS[0])
+        write_glb(path, [actor], title=design.recipe.name)
+    return Made(FileResult(path, request, units=UNIT_MM["m"]))
+
+
+def _development(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+    from camgeo.capabilities.cylindrical.development import write_development
+
+    mm = UNIT_MM[request.unit_for(design.recipe.units)]
+    with clock.stage("write dxf"):
+        fit = write_development(design, request, path, _tolerance(design, request), mm)
+    return _judged(design, clock, request, path, fit)

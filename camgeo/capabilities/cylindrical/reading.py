@@ -1,0 +1,222 @@
+"""Reading the recipe of a cylindrical cam: its faults between keys, and its value."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.cylindrical.keys import FILES, FLOOR_GAP, RECIPE, Drive, DrumRecipe, End, Groove, Rib, Roller
+from camgeo.motions.motion import check_filled
+from camgeo.part import bore
+from camgeo.part.keyway import FEATURE as KEYWAY
+from camgeo.part.part import Part
+from camgeo.recipe.document import Document
+from camgeo.recipe.export import build_export, check_files
+from camgeo.recipe.figure_bounds import build_bounds, check_bounds
+from camgeo.recipe.keys import read_units
+from camgeo.recipe.recipe import Verify, name_by_stem, reader_of_kind
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.yaml_source import Mapping
+from kin.numeric.records import replace
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.capabilities.cylindrical.keys import Track
+    from camgeo.schema.errors import RecipeError
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Source
+
+ANGLES = 1  # what a disc would be judged at: a drum is judged at all angles
+TURN = 2.0 * math.pi
+_FOLLOWER = "the roller is a cylinder on a carriage along the axis, and its own axis a radius of the drum"
+NOT_YET = {
+    **dict.fromkeys((f"cam.follower.{key}" for key in ("arm", "offset", "taper", "cone", "half_angle")), _FOLLOWER),
+    "cam.turns": "a track closes after one turn",
+    "cam.sizing": "give the radius of the blank",
+    "manufacture": "a machine of four axes takes the path of the roller's axis from the development",
+}
+"""Keys of what is not made yet, each with what is."""
+FORMATS_NOT_YET = ("step", "gcode", "svg")
+REFUSE = "undercut: refuse, as a cut ends in a sharp edge"
+NOTHING = 1e-9  # mm: a length below it is none
+
+
+def read_cylindrical(source: Source, path: Path) -> DrumRecipe:
+    """Read the recipe of a cylindrical cam; raises RecipeErrors with all its faults."""
+    reader = reader_of_kind(source, "cylindrical")
+    read_units(reader)
+    root = source.root
+    values = reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
+    name_by_stem(values, reader, path)
+    reader.errors = [_not_yet(error) for error in reader.errors]
+    if not reader.errors:
+        _check(values, reader)
+    if reader.errors:
+        raise RecipeErrors(reader.errors)
+    document = Document(path=path, text=source.text, marks=reader.marks, kinds=reader.kinds)
+    return _built(values, document, reader.mm)
+
+
+def _not_yet(error: RecipeError) -> RecipeError:
+    """The fault of a key or a format that is not made yet, said so; any other fault as it is."""
+    unknown = error.problem == "unknown key" or error.problem.endswith(f" takes no {error.path}")
+    if unknown and error.path in NOT_YET:
+        return replace(error, problem="not made yet", remedy=f"leave it out: {NOT_YET[error.path]}")
+    for word in FORMATS_NOT_YET:
+        if error.problem.endswith(f" takes no {word}"):
+            return replace(error, problem=f"{word} is not made yet of a cylindrical cam", remedy="give stl, 3mf or ply")
+    return error
+
+
+def _check(values: Values, reader: Reader) -> None:
+    cam, part = values["cam"], values["part"]
+    whole, several = "the whole turn, 360 degrees", "a track of several turns is not made yet"
+    check_filled(cam["motion"], "cam.motion", TURN, whole, reader, why=several)
+    _check_track(cam, reader)
+    _check_drive(cam.get("drive", {}), reader)
+    _check_part(part, reader)
+    check_files(values, reader, FILES)
+    if reader.errors:
+        return
+    _check_radii(values, reader)
+    _check_limits(values, reader)
+
+
+def _shown(value: float, reader: Reader) -> str:
+    return f"{value / reader.mm:.9g} {reader.units}"
+
+
+def _check_track(cam: Values, reader: Reader) -> None:
+    """Note a roller that does not lie between the floor of its track and the blank."""
+    radius, roller, path = cam["radius"], cam["follower"], "cam.follower"
+    (kind, track), begins = next(iter(cam["track"].items())), roller.get("from")
+    if kind == "end" and begins is None:
+        remedy = "give where the roller begins along its axis: within that the drum is turned round"
+        reader.fault(reader.marks[path], f"{path}.from", "missing, needed with an end face", None, remedy)
+        return
+    depth = radius - begins + FLOOR_GAP if kind == "end" else track["depth"]
+    floor, ends = radius - depth, roller.get("to", radius)
+    if not floor > roller["radius"]:
+        at = f"{path}.from" if kind == "end" else f"cam.track.{kind}.depth"
+        most = radius - roller["radius"]
+        remedy = (
+            f"give more than {_shown(roller['radius'] + FLOOR_GAP, reader)}, or a smaller roller"
+            if kind == "end"
+            else f"give less than {_shown(most, reader)}, or a smaller roller"
+        )
+        reader.fault_at(at, "the floor is no farther from the axis than the radius of the roller", None, remedy)
+        return
+    clearance = track["clearance"] if kind == "groove" and "clearance" in track else 0.0
+    if not floor > roller["radius"] + clearance:
+        remedy = f"give less than {_shown(floor - roller['radius'], reader)}"
+        problem = "the upper flank is that of a roller whose radius is no less than that of the floor"
+        reader.fault_at("cam.track.groove.clearance", problem, _shown(clearance, reader), remedy)
+        return
+    if begins is not None and not begins > floor:
+        remedy = f"give more than {_shown(floor, reader)}, or a greater depth"
+        reader.fault_at(f"{path}.from", "the roller's end stands on the floor", _shown(begins, reader), remedy)
+    inner = floor + FLOOR_GAP if begins is None else begins
+    if not ends > inner or not inner < radius:
+        at = f"{path}.to" if f"{path}.to" in reader.marks else f"{path}.from" if begins is not None else path
+        remedy = f"let it bear between {_shown(floor, reader)} and {_shown(radius, reader)}"
+        reader.fault_at(at, "the roller bears nowhere", None, remedy)
+    if kind == "rib" and not track["distance"] > 2.0 * roller["radius"]:
+        remedy = f"give more than {_shown(2.0 * roller['radius'], reader)}, and the rib's thickness"
+        reader.fault_at("cam.track.rib.distance", "the rollers leave no rib", _shown(track["distance"], reader), remedy)
+
+
+def _check_drive(drive: Values, reader: Reader) -> None:
+    for key in ("material", "roller_material"):
+        if key in drive and "load" not in drive:
+            reader.fault_at(
+                f"cam.drive.{key}", "cannot stand without load", None, "give load beside it, or leave it out"
+            )
+    if "roller_material" in drive and "material" not in drive:
+        remedy = "give material beside it"
+        reader.fault_at("cam.drive.roller_material", "cannot stand without material", None, remedy)
+
+
+def _check_part(part: Values, reader: Reader) -> None:
+    bore.check_bore(part, reader, [KEYWAY.name] if KEYWAY.name in part else [])
+    if KEYWAY.name in part:
+        for key, why in KEYWAY.needs:
+            if key not in part:
+                reader.fault_at(f"part.{KEYWAY.name}", f"needs part.{key}: {why}", None, f"give part.{key}")
+        KEYWAY.check(part, reader)
+
+
+def _check_radii(values: Values, reader: Reader) -> None:
+    """Note radii of a development that lie on no flank."""
+    cam = values["cam"]
+    low, high = cam["radius"] - _track(cam).depth, cam["radius"]
+    for file in values.get("export", {}).get("files", []):
+        for i, radius in enumerate(file.get("at", ())):
+            if not isinstance(radius, str) and not low - NOTHING <= radius <= high + NOTHING:
+                remedy = f"give one from {_shown(low, reader)} to {_shown(high, reader)}"
+                where = f"{file['path']}.{file['kind']}.at[{i}]"
+                reader.fault_at(where, "no flank there", _shown(radius, reader), remedy)
+
+
+def _check_limits(values: Values, reader: Reader) -> None:
+    cam, part = values["cam"], values["part"]
+    drive, track = cam.get("drive", {}), cam["track"]
+    regular = cam.get("undercut") != "shorten"
+    driven, loaded = ("rpm" in drive, "cam.drive.rpm"), ("load" in drive, "cam.drive.load")
+    there = {
+        "rib-thickness": ("rib" in track, "a rib"),
+        "play": ("groove" in track, "a groove"),
+        "velocity": driven,
+        "acceleration": driven,
+        "contact-force": loaded,
+        "side-thrust": loaded,
+        "torque": loaded,
+        "contact-pressure": ("material" in drive and regular, f"cam.drive.load and material, and {REFUSE}"),
+        "mating-radius": (regular, REFUSE),
+        "undercut-radius": (not regular, "undercut: shorten"),
+        "mass": ("density" in part, "part.density"),
+    }
+    check_bounds(values.get("limits", {}), there, reader)
+
+
+def _track(cam: Values) -> Track:
+    """The track of values in which there is no fault."""
+    ((kind, track),) = cam["track"].items()
+    if kind == "groove":
+        return Groove(track["depth"], track.get("clearance", 0.0))
+    if kind == "rib":
+        return Rib(track["depth"], track["distance"])
+    return End(track, cam["radius"] - cam["follower"]["from"] + FLOOR_GAP)
+
+
+def _built(values: Values, document: Document, mm: float) -> DrumRecipe:
+    """Make the recipe of values in which there is no fault."""
+    cam, part = values["cam"], values["part"]
+    track, roller = _track(cam), cam["follower"]
+    inner = roller.get("from", cam["radius"] - track.depth + FLOOR_GAP)
+    keyway = KEYWAY.build(part)
+    return DrumRecipe(
+        name=values["name"],
+        about=values.get("about", ""),
+        units=values.get("units", "mm"),
+        mm=mm,
+        rotation=values.get("rotation", "cw"),
+        export=build_export(values.get("export", {}), FILES, "stl"),
+        verify=Verify(angles=ANGLES, **values.get("verify", {})),
+        radius=cam["radius"],
+        track=track,
+        roller=Roller(roller["radius"], inner, roller.get("to", cam["radius"])),
+        level=cam["pitch_height"],
+        motion=cam["motion"],
+        part=Part(
+            thickness=part["length"],
+            wall=part.get("wall"),
+            density=part.get("density"),
+            features=() if keyway is None else (keyway,),
+            **bore.build_bore(part),
+        ),
+        undercut=cam.get("undercut", "refuse"),
+        drive=Drive(**cam.get("drive", {})),
+        limits=build_bounds(values.get("limits", {})),
+        **vars(document),
+    )

@@ -1,0 +1,124 @@
+"""Drums that are not made: undercut where it is refused or loses motion, and ends that stand within the flank."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.cylindrical.keys import End
+from camgeo.capabilities.cylindrical.undercut import CutError, tips
+from camgeo.common.rounding import downward, upward
+from camgeo.curve.curve import CurveError
+from camgeo.measures.placed import greatest_of
+from kin.numeric.records import replace
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.undercut import Tip
+
+TURN = 2.0 * math.pi
+SHARP = 1e-3  # of a radius in a remedy, and its distance from the size at which undercut begins
+ROLLER = "cam.follower.radius"
+
+
+def demand_sound(design: DrumDesign) -> None:
+    """Raise RecipeErrors where a drum is not made as its recipe has it, with the changes that serve."""
+    _demand_core(design)
+    try:
+        found = design.tips
+    except CurveError as error:
+        raise design.error("cam", f"{error}, near {math.degrees(error.parameter) % 360.0:.6g} degrees") from error
+    if not any(found.values()):
+        return
+    if not design.recipe.shortens:
+        raise _undercut(design)
+    try:
+        _ = design.cuts
+    except CutError as error:
+        where = f"near {math.degrees(error.parameter) % 360.0:.6g} degrees"
+        raise design.error("cam.undercut", f"{error} {where}", _smaller(design)) from error
+    _demand_carried(design)
+
+
+def _undercut(design: DrumDesign) -> Exception:
+    """Error of an undercut drum: how far out it reaches, and the roller or the depth without it."""
+    recipe, mm, units = design.recipe, design.recipe.mm, design.recipe.units
+    name, tip = _outermost(design)
+    problem = (
+        f"the {name} flank is undercut from the floor out to {tip.r / mm:.6g} {units} from the axis, "
+        f"near {math.degrees(tip.at) % 360.0:.6g} degrees"
+    )
+    remedies = [_smaller(design)]
+    if tip.r < recipe.radius - SHARP * recipe.radius:
+        if isinstance(recipe.track, End):
+            remedies.append(f"let the roller begin at {upward(tip.r / mm + 0.5 / mm, 5)} {units}")
+        else:
+            remedies.append(
+                f"give a depth of at most {downward((1.0 - SHARP) * (recipe.radius - tip.r) / mm, 4)} {units}"
+            )
+        remedies.append("let contact begin farther out: undercut: shorten")
+    return design.error(ROLLER, problem, ", or ".join(filter(None, remedies)))
+
+
+def _outermost(design: DrumDesign) -> tuple[str, Tip]:
+    return max(((name, tip) for name, found in design.tips.items() for tip in found), key=lambda each: each[1].r)
+
+
+def _smaller(design: DrumDesign) -> str:
+    """Remedy with the largest roller, to a thousandth, that undercuts no flank; empty where none is found."""
+    recipe = design.recipe
+    ends = recipe.floor, recipe.radius
+
+    def free(radius: float) -> bool:
+        more = radius - recipe.roller.radius
+        return not any(tips(replace(flank, radius=flank.radius + more), *ends) for flank in design.flanks.values())
+
+    low, high = 0.0, recipe.roller.radius
+    while high - low > SHARP * high:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if free(middle) else (low, middle)
+    return (
+        f"give a roller radius of at most {downward((1.0 - SHARP) * low / recipe.mm, 4)} {recipe.units}"
+        if low > 0.0
+        else ""
+    )
+
+
+def _demand_carried(design: DrumDesign) -> None:
+    """Raise RecipeErrors where a shortened line carries nothing at some shaft angle, so that motion is lost."""
+    from camgeo.capabilities.cylindrical.figures import contact_length
+
+    for name in design.flanks:
+
+        def missing(theta: np.ndarray, name: str = name) -> np.ndarray:
+            return -contact_length(design, name, theta)
+
+        most, at = greatest_of(missing, TURN)
+        if most >= 0.0:
+            problem = f"nothing of the roller's line carries it near {math.degrees(at):.6g} degrees: motion is lost"
+            raise design.error("cam.undercut", problem, _smaller(design))
+
+
+def _demand_core(design: DrumDesign) -> None:
+    """Raise RecipeErrors for an end cam whose core ends between the lowest and the highest place of its flank."""
+    recipe, track = design.recipe, design.recipe.track
+    if not isinstance(track, End):
+        return
+    low, high = design.motion.range
+    radius, level = recipe.roller.radius, recipe.level
+    if track.facing == "top":
+        least, most, end, field = level + low - radius, level + high - radius, recipe.height, "part.length"
+        problem = "the drum ends between the lowest and the highest place of its flank"
+    else:
+        least, most, end, field = level + low + radius, level + high + radius, 0.0, "cam.pitch_height"
+        problem = "the lower face lies between the lowest and the highest place of the flank"
+    if least < end < most:
+        mm, units = recipe.mm, recipe.units
+        remedy = (
+            f"give more than {most / mm:.6g} {units}, or less than {least / mm:.6g} {units}"
+            if track.facing == "top"
+            else f"give more than {(level - least) / mm:.6g} {units}"
+        )
+        raise design.error(field, problem, remedy)

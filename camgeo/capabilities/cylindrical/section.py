@@ -1,0 +1,32 @@
+"""Section `drum` of the report of a cylindrical cam: its sizes, and all figures with their shaft angles."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from camgeo.measures.placed import figure_entry
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.measures.placed import Figure
+
+
+def drum_section(design: DrumDesign, figures: Sequence[Figure]) -> dict[str, Any]:
+    """The section as plain data, in the recipe's unit, angles in degrees."""
+    recipe = design.recipe
+    section: dict[str, Any] = {
+        "radius": recipe.radius / recipe.mm,
+        "floor": recipe.floor / recipe.mm,
+        "from": recipe.roller.inner / recipe.mm,
+        "to": recipe.roller.outer / recipe.mm,
+        "figures": [figure_entry(recipe, figure, 1.0) for figure in figures],
+    }
+    undercuts = [
+        {"flank": name, "inside": tip.r / recipe.mm, "at_deg": math.degrees(tip.at) % 360.0}
+        for name, found in design.tips.items()
+        for tip in found
+    ]
+    return {**section, "undercut": undercuts} if undercuts else section

@@ -1,0 +1,198 @@
+"""The drum as a mesh: a ring of strips between closed lines about the axis, watertight by construction.
+
+A section through the axis runs counter-clockwise round the metal, and every corner of it is a closed line about the
+axis, along which the polar angle rises. Two lines are joined in the order of their angles, so that a triangle of a
+cylinder spans no more of the turn than an edge of either line does; flanks have grids, end faces are plane regions.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.cylindrical.grid import sag, widest
+from camgeo.capabilities.cylindrical.keys import End, Groove
+from camgeo.files.errors import RegionError
+from camgeo.files.mesh import Mesh, MeshFacts
+from camgeo.files.prism import rounded_loop
+from camgeo.files.triangulate import disc, region
+from camgeo.fit.bound import Bound
+
+if TYPE_CHECKING:
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.sheet import Sheet
+    from camgeo.files.precision import Precision
+    from camgeo.files.triangulate import Triangles
+    from kin.numeric.arrays import Array, Indices
+
+TURN = 2.0 * math.pi
+ROUNDINGS = math.sqrt(1.5)  # of a point in space, in those of a plane point
+LEAST_EDGES = 6  # of a circle
+
+
+class _Line(NamedTuple):
+    """A closed line about the axis: numbers of its points (n,), in the order of rising angles (n,), rad."""
+
+    number: Indices
+    angle: Array
+
+
+class _Body:
+    """Points and triangles of a body under construction, with the bound, mm, of its lines and cylinders."""
+
+    def __init__(self, precision: Precision, tolerance: float) -> None:
+        self.precision, self.tolerance = precision, tolerance
+        self.points: list[Array] = []
+        self.triangles: list[Triangles] = []
+        self.count, self.moved, self.off = 0, 0.0, 0.0
+
+    def add(self, points: Array) -> Indices:
+        """Indices of new points (n, 3), rounded as the file has them."""
+        rounded, moved = self.precision.rounded(points)
+        self.moved = max(self.moved, moved)
+        self.points.append(rounded)
+        self.count += len(points)
+        return np.arange(self.count - len(points), self.count)
+
+    def line(self, points: Array) -> _Line:
+        """A closed line through points (n, 3), in their order."""
+        return _Line(self.add(points), np.unwrap(np.arctan2(points[:, 1], points[:, 0])))
+
+    def circle(self, radius: float, z: float) -> _Line:
+        """A circle about the axis, drawn by chords."""
+        count = max(LEAST_EDGES, math.ceil(TURN / widest(radius, self.tolerance)))
+        self.off = max(self.off, float(sag(radius, TURN / count)))
+        angle = np.asarray(np.arange(count) * (TURN / count), dtype=np.float64)
+        at = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(count, z)])
+        return _Line(self.add(at), angle)
+
+    def strip(self, first: _Line, second: _Line) -> None:
+        """Join two lines that follow one another round the section, in the order of their angles."""
+        a, b = _from_least(first), _from_least(second)
+        n, m = a.number.size, b.number.size
+        # going round, an edge of either line is joined to the point then reached on the other one
+        at_a, at_b = np.append(a.angle[1:], a.angle[0] + TURN), np.append(b.angle[1:], b.angle[0] + TURN)
+        of_a = np.searchsorted(at_b, at_a, side="left")
+        of_b = np.searchsorted(at_a, at_b, side="right")
+        i, j = np.arange(n), np.arange(m)
+        from_a = (a.number, a.number[(i + 1) % n], b.number[of_a % m])
+        from_b = (b.number[(j + 1) % m], b.number, a.number[of_b % n])
+        self.triangles += [np.column_stack(from_a), np.column_stack(from_b)]
+
+    def wall(self, first: _Line, second: _Line) -> None:
+        """Join two lines of as many points, point by point."""
+        a, b = first.number, second.number
+        c, d = np.roll(a, -1), np.roll(b, -1)
+        self.triangles += [np.column_stack((a, c, b)), np.column_stack((d, b, c))]
+
+    def face(self, outer: _Line, inner: _Line | None, *, up: bool) -> None:
+        """Plane end face between two lines, or within one."""
+        points = np.concatenate(self.points)
+        loop = points[outer.number, :2]
+        if inner is None:
+            number, triangles = outer.number, disc(loop)
+        else:
+            number = np.concatenate([outer.number, inner.number])
+            triangles = region(loop, [points[inner.number, :2]])
+        faces = number[triangles]
+        self.triangles.append(faces if up else faces[:, ::-1])
+
+    def flank(self, sheet: Sheet, *, inwards: bool) -> tuple[_Line, _Line]:
+        """Add the grid of a flank; its lines on the blank and on the floor. The section runs inwards, or outwards."""
+        rows, columns = sheet.at.shape
+        own = self.add(sheet.points)
+        number = own[sheet.at]
+        rising = number[::-1] if inwards else number
+        a, b = rising[:-1], rising[1:]
+        c, d = np.roll(a, -1, axis=1), np.roll(b, -1, axis=1)
+        quads = (a, c, b), (d, b, c)
+        found = np.concatenate([np.column_stack([part.ravel() for part in quad]) for quad in quads])
+        if len(own) < rows * columns:  # where rows are cut short neighbours are one point
+            x, y, z = found.T
+            found = found[(x != y) & (y != z) & (z != x)]
+        self.triangles.append(found)
+        return self._edge(number[-1]), self._edge(number[0])
+
+    def _edge(self, row: Indices) -> _Line:
+        row = row[row != np.roll(row, 1)]
+        points = np.concatenate(self.points)[row]
+        return _Line(row, np.unwrap(np.arctan2(points[:, 1], points[:, 0])))
+
+    def mesh(self, *, mirrored: bool) -> Mesh:
+        """The mesh; raises RegionError where rounding makes two neighbours one."""
+        points, triangles = np.concatenate(self.points), np.concatenate(self.triangles)
+        if mirrored:
+            points = points * np.array([1.0, -1.0, 1.0]) + 0.0
+            triangles = triangles[:, ::-1]
+        mesh = Mesh(points, triangles)
+        if not bool(mesh.area_vectors.any(axis=1).all()):
+            raise RegionError(f"a triangle of the drum has no area in {self.precision.name}")
+        return mesh
+
+
+def _from_least(line: _Line) -> _Line:
+    """The line from the point of its least angle in [0, 2 pi) on."""
+    angle = np.mod(line.angle, TURN)
+    first = int(np.argmin(angle))
+    return _Line(np.roll(line.number, -first), np.roll(angle, -first))
+
+
+def drum_mesh(design: DrumDesign, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
+    """Closed, oriented mesh of the drum, mm, within a tolerance of every surface, and facts on it.
+
+    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where no sound body is made.
+    """
+    recipe = design.recipe
+    size = max(recipe.radius, abs(recipe.height))
+    fine = precision.fit_tolerance(tolerance, ROUNDINGS * size)
+    body = _Body(precision, fine)
+    sheets = {name: design.sheet(name, fine) for name in design.flanks}
+    bottom, top = 0.0, recipe.height
+    core, blank = recipe.floor, recipe.radius
+    bore_low, bore_high, bore_off = _bore(body, design, tolerance)
+    track = recipe.track
+    inner, outer = None, None  # lines of the lower and of the upper end face
+    if isinstance(track, Groove):
+        inner = body.circle(blank, bottom)
+        edge, foot = body.flank(sheets["lower"], inwards=True)
+        body.strip(inner, edge)
+        rim, root = body.flank(sheets["upper"], inwards=False)
+        body.strip(foot, root)
+        outer = body.circle(blank, top)
+        body.strip(rim, outer)
+    elif isinstance(track, End):
+        facing = track.facing == "top"
+        inner = body.circle(blank if facing else core, bottom)
+        edge, foot = body.flank(sheets["lower" if facing else "upper"], inwards=facing)
+        outer = body.circle(core if facing else blank, top)
+        body.strip(inner, edge if facing else foot)
+        body.strip(foot if facing else edge, outer)
+    else:
+        inner = body.circle(core, bottom)
+        rim, root = body.flank(sheets["upper"], inwards=False)
+        body.strip(inner, root)
+        edge, foot = body.flank(sheets["lower"], inwards=True)
+        body.strip(rim, edge)
+        outer = body.circle(core, top)
+        body.strip(foot, outer)
+    body.face(inner, bore_low, up=False)
+    body.face(outer, bore_high, up=True)
+    if bore_low is not None and bore_high is not None:
+        body.wall(bore_high, bore_low)
+    mesh = body.mesh(mirrored=recipe.rotation == "ccw")
+    off = max(sheet.off for sheet in sheets.values()) + body.moved
+    precision.within("the flank", off, tolerance)
+    rest = max(body.off + body.moved, bore_off)
+    return mesh, MeshFacts(len(mesh.points), body.moved, Bound(off, off).wider(Bound(rest, rest)))
+
+
+def _bore(body: _Body, design: DrumDesign, tolerance: float) -> tuple[_Line | None, _Line | None, float]:
+    """Lines of the bore on the lower and the upper end face, None without one, and the distance of its walls, mm."""
+    opening = design.bore
+    if opening is None:
+        return None, None, 0.0
+    loop, off, _ = rounded_loop(opening.outline, tolerance, body.precision, "the bore")
+    low, high = (body.line(np.column_stack([loop, np.full(len(loop), z)])) for z in (0.0, design.recipe.height))
+    return low, high, off

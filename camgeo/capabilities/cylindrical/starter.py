@@ -1,0 +1,67 @@
+"""Cylindrical cams to start from."""
+
+from __future__ import annotations
+
+from camgeo.recipe.starter import Given, Starter, Starters
+
+_MOTION = (
+    "\n    - {{rise: {0}, over: 120, law: modified-sine}}"
+    "\n    - {{dwell: 60}}"
+    "\n    - {{return: {0}, over: 120, law: cycloidal}}"
+    "\n    - {{dwell: 60}}"
+)
+
+
+def _starter(title: str, task: str, track: Given, cam: Given, part: Given) -> Starter:
+    roller: Given = {"kind": "roller", "radius": "8", **({"from": "40"} if "end" in track else {})}
+    return Starter(
+        title,
+        "",
+        {},
+        {
+            "cam": {
+                "kind": "cylindrical",
+                "radius": "50",
+                "track": track,
+                "follower": roller,
+                **cam,
+                "motion": _MOTION.format("25"),
+            },
+            "part": {**part, "bore": "{diameter: 25, fit: H7}", "keyway": "din6885"},
+            "export": {
+                "tolerance": "0.01",
+                "files": "[stl, {dxf: {as: development, at: [outer, pitch]}}, {csv: {as: flank}}]",
+            },
+            "verify": {"motion_error": "0.02"},
+        },
+        root="cylindrical",
+        task=task,
+        also="barrel drum",
+    )
+
+
+ANSWERS = Starters(
+    starters={
+        "cylindrical": _starter(
+            "A drum with a groove that leads a roller along its axis.",
+            "a barrel or drum cam with a groove",
+            {"groove": {"depth": "11", "clearance": "0.03"}},
+            {"pitch_height": "25"},
+            {"length": "75"},
+        ),
+        "cylindrical-rib": _starter(
+            "A drum with a rib between two rollers.",
+            "a drum cam with a rib between two rollers",
+            {"rib": {"distance": "30", "depth": "11"}},
+            {"pitch_height": "28"},
+            {"length": "80"},
+        ),
+        "cylindrical-end": _starter(
+            "A drum whose end face lifts a roller against a spring.",
+            "a bell or face cam on the end of a drum",
+            {"end": "top"},
+            {"pitch_height": "40"},
+            {"length": "80"},
+        ),
+    }
+)

@@ -1,0 +1,104 @@
+"""What kin judges the files of a cylindrical cam by, and its verdicts in the report's terms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.cylindrical.development import developed
+from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, FILES, End, Groove
+from camgeo.measures.units import in_units
+from camgeo.part.as_intent import holes_of
+from camgeo.part.body import Body
+from camgeo.recipe.export import requests
+from kin.cylindrical import intent
+from kin.cylindrical.follower import DrumFollower
+from kin.cylindrical.judge import verify, verify_development
+from kin.read.formats import format_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+    from camgeo.recipe.export import FileRequest
+    from kin.cylindrical.verdict import DrumVerdict, FlankVerdict
+
+
+def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
+    """The drum in kin's words; `mm` is the unit of a drawing."""
+    recipe, track = design.recipe, design.recipe.track
+    own: intent.Track
+    if isinstance(track, Groove):
+        own = intent.Groove(track.depth, track.clearance)
+    elif isinstance(track, End):
+        own = intent.End(track.facing, track.depth)
+    else:
+        own = intent.Rib(track.depth, track.distance)
+    roller = recipe.roller
+    bore = None if design.bore is None else holes_of(Body(recipe.height, (design.bore,)))[0]
+    return intent.DrumIntent(
+        DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law),
+        own,
+        recipe.radius,
+        recipe.height,
+        bore,
+        shortened=any(design.tips.values()),
+        mirrored=recipe.rotation == "ccw",
+        mm=mm,
+    )
+
+
+def judged_file(
+    design: DrumDesign,
+    path: Path,
+    request: FileRequest | None,
+    tolerance: float,
+    *,
+    units: float | None = None,
+    gap: float | None = None,  # noqa: ARG001 - lines of a development are not joined
+) -> DrumVerdict:
+    """Kin's verdict on a file; `units` is mm in the unit of a file that states none.
+
+    A drawing that the recipe does not ask for is held against the lines that the recipe's developments have, or those
+    of one by default.
+    """
+    recipe = design.recipe
+    limits = intent.Limits(tolerance, recipe.verify.motion_error)
+    stated = format_of(path).units
+    if format_of(path).contents != "drawing":
+        own = 1.0 if request is None or request.unit_for("mm") == "mm" else 25.4
+        return verify(path, intended(design), limits, None if stated else units or own)
+    asked = [request] if request is not None else [each for each in recipe.export.files if each.as_ == DEVELOPMENT]
+    asked = asked or list(requests([{"kind": "dxf"}], FILES))
+    mm = 25.4 if asked[0].unit_for(recipe.units) == "inch" else 1.0
+    lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
+    return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
+
+
+# --- in a report ------------------------------------------------------------------------------------------------------
+
+
+def file_rows(recipe: DrumRecipe, verdict: DrumVerdict) -> dict[str, Any]:
+    """Entries of a file in a report: what was measured on each of its flanks, and the play between two."""
+    entry: dict[str, Any] = {}
+    if len(verdict.flanks) == 1:
+        entry |= _flank(recipe, verdict.flanks[0])
+    elif verdict.flanks:
+        entry["surfaces"] = [{"name": flank.name, **_flank(recipe, flank)} for flank in verdict.flanks]
+    if verdict.play is not None:
+        play = verdict.play
+        (least, unit), (most, _) = in_units(recipe, play.least, "mm"), in_units(recipe, play.most, "mm")
+        places = {"min_at": play.least_at, "max_at": play.most_at}
+        entry["play"] = [{"between": ["lower", "upper"], "min": least, "max": most, "unit": unit, **places}]
+    return entry
+
+
+def _flank(recipe: DrumRecipe, flank: FlankVerdict) -> dict[str, Any]:
+    error = None if flank.measured_error is None else flank.measured_error / recipe.mm
+    if flank.motion is None:
+        return {"measured_error": error, "motion": None}
+    motion: dict[str, Any] = {}
+    for key in ("max", "least", "most", "rms", "remainder"):
+        motion[key], unit = in_units(recipe, getattr(flank.motion, key), "mm")
+    motion |= {"unit": unit, "at": flank.motion.at, "at_unit": "deg", "extremes": "proved"}
+    return {"measured_error": error, "motion": motion}

@@ -1,0 +1,53 @@
+"""What `camgeo follow` asks of cams that are no discs: the motion that a contour of theirs gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+from camgeo.registry.slot import NO_CHECK, Slot
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable
+
+
+class FollowedOver(Protocol):
+    """A motion over another input than a turn, as the command prints and writes it."""
+
+    def summary(self) -> str:
+        """Text for a terminal."""
+        ...
+
+    def document(self) -> dict[str, Any]:
+        """The same as plain data; lengths in mm, angles in degrees."""
+        ...
+
+    def table(self) -> str:
+        """Motion over the input as CSV text."""
+        ...
+
+    def recipe(self, table: str) -> str:
+        """Text of a recipe of a cam with this motion, whose lifts are in the file `table`; CallError where none is."""
+        ...
+
+    def lifts(self) -> str:
+        """Lifts over the input as CSV text that the recipe reads."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class OtherInputs:
+    """Answers of a capability whose cams are no discs.
+
+    option         attribute of the arguments that is not None where its motion is asked for; empty: it has none
+    add_arguments  adds the options of its own to the parser of the command
+    follow         the motion by the arguments of the command; raises CallError where there is none
+    """
+
+    option: str = ""
+    add_arguments: Callable[[argparse.ArgumentParser], None] = NO_CHECK
+    follow: Callable[[argparse.Namespace], FollowedOver] | None = None
+
+
+OTHER_INPUTS = Slot("follow", OtherInputs())

@@ -1,0 +1,80 @@
+"""What linear cams answer in a run, from a recipe to files on disk and a verdict on them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from camgeo.capabilities.linear.checks_of import design_checks, limits_held, remarks_on
+from camgeo.capabilities.linear.design import designed
+from camgeo.capabilities.linear.figures import figures_of
+from camgeo.capabilities.linear.job import Job
+from camgeo.capabilities.linear.making import foresee, make
+from camgeo.capabilities.linear.section import plate_section
+from camgeo.capabilities.linear.verdicts import file_rows, judged_file
+from camgeo.measures.units import report_unit
+from camgeo.output.own_kind import OwnKind, Told
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from camgeo.capabilities.linear.design import LinearDesign
+    from camgeo.common.clock import Clock
+    from camgeo.measures.placed import Figure
+    from camgeo.output.own_kind import Made
+    from camgeo.recipe.export import FileRequest
+    from kin.linear.verdict import PlateVerdict
+    from kin.numeric.check import Check
+
+
+def _examined(design: LinearDesign, _: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
+    figures = tuple(figures_of(design))
+    return [*design_checks(design, figures)], figures
+
+
+def _limited(design: LinearDesign, figures: Sequence[Figure], checks: Sequence[Check]) -> list[Check]:
+    return limits_held(design.recipe, figures, checks)
+
+
+def _told(design: LinearDesign, figures: Sequence[Figure]) -> Told:
+    unit = report_unit(design.recipe, design.path.guide.unit)
+    return Told(design.recipe.follower.name, remarks_on(design, figures), design.motion.kept, unit)
+
+
+def _section(design: LinearDesign, figures: Sequence[Figure]) -> dict[str, Any]:
+    return {"plate": plate_section(design, figures)}
+
+
+def _rows(design: LinearDesign, verdict: PlateVerdict) -> dict[str, Any]:
+    return file_rows(design.recipe, verdict)
+
+
+def _maker(design: LinearDesign, clock: Clock) -> Callable[[FileRequest, Path], Made[PlateVerdict]]:
+    job = Job(design, clock)
+    return lambda request, path: make(job, request, path)
+
+
+def _pieces(verdict: PlateVerdict) -> int:
+    return sum(flank.pieces or 0 for flank in verdict.flanks)
+
+
+def _page(design: LinearDesign, made: Sequence[Made[PlateVerdict]], report: dict[str, Any]) -> str:
+    from camgeo.capabilities.linear.plate_page import page
+
+    return page(design, made, report)
+
+
+PLATES = OwnKind(
+    designed=designed,
+    examined=_examined,
+    limited=_limited,
+    told=_told,
+    section=_section,
+    rows=_rows,
+    foresee=foresee,
+    maker=_maker,
+    judged=judged_file,
+    pieces=_pieces,
+    page=_page,
+    formats=("dxf", "svg", "stl", "ply", "3mf", "step"),
+)

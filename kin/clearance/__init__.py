@@ -1,1 +1,0 @@
-"""Distance and interference between moving plane bodies, proved over the turn."""

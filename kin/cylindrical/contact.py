@@ -1,0 +1,121 @@
+"""A roller with ends set down on triangles at given angles, in closed form on edges and on cuts at its ends.
+
+Seen along the roller's axis, the part of a triangle within the roller's length is a polygon, and the roller a circle.
+On a side of it, from (y, v) on by s (dy, dv), F = v + sqrt(R^2 - y^2) is greatest at one of its ends or where
+y = R dv/hypot(dy, dv), with the sign of dy.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from kin.cylindrical.gauge import Gauge
+    from kin.numeric.arrays import Array, Indices, Mask
+
+PAIRS = 200_000  # of a triangle and an angle at a time
+
+
+def set_down(gauge: Gauge, corners: Array, spans: tuple[Array, Array], theta: Array) -> Array:
+    """How far triangles keep a roller from its intended place, mm along z, (n,) at angles theta (n,), rad.
+
+    `corners` (t, 3, 3); `spans` are the least and the greatest angle (t,), rad, at which each triangle counts, the
+    greatest above the least by less than a turn. The roller stands above 0 where the metal does; -inf where it touches
+    nothing.
+    """
+    order = np.argsort(theta % TURN)
+    rising = (theta % TURN)[order]
+    best = np.full(len(theta), -np.inf)
+    low = spans[0] % TURN
+    for turn in (0.0, -TURN):  # a span may go on over the end of the turn
+        first = np.searchsorted(rising, low + turn)
+        last = np.searchsorted(rising, low + turn + (spans[1] - spans[0]), side="right")
+        count = np.maximum(last - first, 0)
+        total, begin = np.cumsum(count), 0
+        while begin < len(count):
+            done = int(total[begin - 1]) if begin else 0
+            end = max(begin + 1, int(np.searchsorted(total, done + PAIRS, side="right")))
+            here = count[begin:end]
+            own = np.repeat(np.arange(begin, end), here)
+            step = np.arange(len(own)) - np.repeat(np.cumsum(here) - here, here)
+            at = first[own] + step
+            np.maximum.at(best, at, _gives(gauge, corners[own], rising[at]))
+            begin = end
+    found = np.empty(len(theta))
+    found[order] = best
+    return found
+
+
+def _gives(gauge: Gauge, corners: Array, theta: Array) -> Array:
+    """F (n,) of triangles (n, 3, 3), each at its angle (n,), as far as they lie within the roller's length."""
+    sine, cosine = np.sin(theta)[:, None], np.cos(theta)[:, None]
+    px, py, pz = np.moveaxis(corners, 2, 0)
+    y, along = py * cosine - px * sine, px * cosine + py * sine
+    v = gauge.side * (gauge.axis(theta)[:, None] - pz)
+    best = np.full(len(theta), -np.inf)
+    cuts: dict[float, list[tuple[Array, Array, Array]]] = {gauge.inner: [], gauge.outer: []}
+    for j in range(3):
+        k = (j + 1) % 3
+        low, high = np.zeros(len(theta)), np.ones(len(theta))
+        for place, sense in ((gauge.inner, 1.0), (gauge.outer, -1.0)):
+            start, last = sense * (along[:, j] - place), sense * (along[:, k] - place)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                share = start / (start - last)
+            crosses = (start < 0.0) != (last < 0.0)
+            low = np.where(crosses & (start < 0.0), np.maximum(low, share), low)
+            high = np.where(crosses & (last < 0.0), np.minimum(high, share), high)
+            high = np.where((start < 0.0) & (last < 0.0), -1.0, high)
+            share = np.where(crosses, share, 0.0)
+            points = [first[:, j] + share * (first[:, k] - first[:, j]) for first in (y, v)]
+            cuts[place].append((crosses, points[0], points[1]))
+        best = np.maximum(best, _on_side(gauge.radius, (y[:, j], y[:, k]), (v[:, j], v[:, k]), (low, high)))
+    for crossings in cuts.values():
+        flags = np.stack([flag for flag, _, _ in crossings])
+        met = flags.any(axis=0)
+        first, last = np.argmax(flags, axis=0), 2 - np.argmax(flags[::-1], axis=0)
+        ends = []
+        for row in (1, 2):
+            rows = np.stack([crossing[row] for crossing in crossings])
+            ends.append([np.take_along_axis(rows, which[None], axis=0)[0] for which in (first, last)])
+        whole = np.zeros(len(theta)), np.where(met, 1.0, -1.0)
+        best = np.maximum(best, _on_side(gauge.radius, (ends[0][0], ends[0][1]), (ends[1][0], ends[1][1]), whole))
+    return best
+
+
+def best_share(
+    radius: float, y: tuple[Array, Array], v: tuple[Array, Array], shares: tuple[Array, Array]
+) -> tuple[Array, Mask]:
+    """Share (n,) of segments at which F is greatest, from the first to the last of two shares of each, and if any is.
+
+    A segment goes from y[0], v[0] to y[1], v[1], (n,) each.
+    """
+    dy, dv = y[1] - y[0], v[1] - v[0]
+    low, high = shares
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reach = [(sense * radius - y[0]) / dy for sense in (-1.0, 1.0)]
+        flat = dy == 0.0
+        low = np.where(flat, low, np.maximum(low, np.minimum(*reach)))
+        high = np.where(flat, high, np.minimum(high, np.maximum(*reach)))
+        there = (low <= high) & (~flat | (np.abs(y[0]) <= radius))
+        best = (radius * dv * np.sign(dy) / np.hypot(dy, dv) - y[0]) / dy
+        best = np.where(flat, np.where(dv > 0.0, high, low), best)
+    return np.clip(best, low, high), there
+
+
+def _on_side(radius: float, y: tuple[Array, Array], v: tuple[Array, Array], shares: tuple[Array, Array]) -> Array:
+    """Greatest F (n,) on segments between two shares of each; -inf where none is."""
+    share, there = best_share(radius, y, v, shares)
+    across = y[0] + share * (y[1] - y[0])
+    gives = v[0] + share * (v[1] - v[0]) + np.sqrt(np.maximum(radius**2 - across**2, 0.0))
+    return np.where(there, gives, -np.inf)
+
+
+def spans_of(theta: Array, corners: Indices, more: float) -> tuple[Array, Array]:
+    """Least and greatest angle (t,) at which triangles (t, 3) count, by those of their corners (v,), rad."""
+    own = theta[corners]
+    own = own[:, :1] + np.remainder(own - own[:, :1] + 0.5 * TURN, TURN) - 0.5 * TURN
+    return own.min(axis=1) - more, own.max(axis=1) + more

@@ -1,0 +1,195 @@
+"""Developments: lines of a drawing laid round a cylinder, and a roller set down on them there.
+
+A straight line of the drawing becomes a helix. Along it, in its polar angle, F of `kin.cylindrical.gauge` bends by no
+more than r^2 R^2/(R^2 - y^2)^(3/2), and in the shaft angle it is concave about its greatest value, so that points close
+to one another settle both what stands out and what holds the roller. A development says nothing of any other radius.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.cylindrical.gauge import gauges_of
+from kin.cylindrical.lifts import Lifts
+from kin.cylindrical.verdict import FlankVerdict, MotionError
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.check import ROUNDING, Check, at_most, failed
+from kin.numeric.lengths import UNIT, length_words
+from kin.numeric.limits import limit_of
+from kin.numeric.records import replace
+from kin.read.drawing.dxf import COMMENT_BYTES, check_whole, damage_reported, everything, gather, unit_of
+from kin.read.drawing.dxf_document import opened
+from kin.read.errors import ReadError
+from kin.read.formats import contents
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.intent import Developed, DrumIntent, Limits
+    from kin.numeric.arrays import Array
+
+CONTOUR, MOTION = "contour", "motion"
+FINE = 0.05  # of the tolerance, within which what lies between points is known
+MOST = 400_000  # points of a line
+GAP = 1e-6  # of the radius: ends of lines that are so close meet
+
+
+class _Line(NamedTuple):
+    """Points of a line round its cylinder (n,) each: polar angle, rad, height, mm; `joined` (n - 1,) to the next."""
+
+    phi: Array
+    z: Array
+    joined: Array
+
+
+class _Measured(NamedTuple):
+    """What a line shows: its distance in the drawing, mm, at a shaft angle, rad, and the motion on it."""
+
+    off: float
+    at: float
+    remainder: float
+    motion: MotionError
+
+
+def read_lines(path: Path, lines: Sequence[Developed]) -> tuple[float | None, dict[str, list[Array]]]:
+    """Mm in a unit of a DXF, None where it states none, and runs of points (n, 2) on the layer of each line, in it.
+
+    Raises OSError where the file cannot be read, ReadError for a damaged file and for curves on these layers.
+    """
+    raw = contents(path, "dxf")
+    check_whole(raw, path)
+    found: dict[str, list[Array]] = {}
+    with damage_reported(path):
+        document, space = opened(raw)
+        unit = unit_of(document, raw[:COMMENT_BYTES], path)
+        drawn = everything(document, space, path)
+        for line in lines:
+            entities = gather(drawn, {line.layer.upper()}, path)
+            parts = []
+            for shape, name in zip(entities.shapes, entities.names, strict=True):
+                if len(shape.arcs) or shape.beziers.count or shape.chords[:, 4].any():
+                    raise ReadError("unsupported", f"{name} is no straight line of a development", path)
+                parts.append(np.concatenate([shape.chords[:1, :2], shape.chords[:, 2:4]]))
+            found[line.layer] = parts
+    return unit, found
+
+
+def judged_line(
+    parts: list[Array], drum: DrumIntent, line: Developed, limits: Limits
+) -> tuple[FlankVerdict, list[Check]]:
+    """Verdict on one line, in mm and as if not mirrored, and its checks."""
+    tolerance, alone = limits.tolerance, f"at a radius of {length_words(line.radius)} {UNIT} alone"
+    if not parts:
+        missing = failed(CONTOUR, f"nothing is drawn on the layer {line.layer}", unit="mm", limit=tolerance)
+        return FlankVerdict(line.flank), [missing]
+    short = _uncovered(parts, line.radius)
+    if short is not None:
+        why = f"the line is missing at x = {length_words(short)} {UNIT}: it does not go round"
+        return FlankVerdict(line.flank), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
+    if line.flank == "pitch":
+        lifts, gauge = Lifts(drum.follower.law), None
+        found = _measured_pitch(
+            _laid(parts, line.radius, _step(lifts, line.radius, tolerance)), drum, lifts, line.radius
+        )
+    else:
+        (gauge,) = (one for one in gauges_of(drum) if one.name == line.flank)
+        lifts = gauge.lifts
+        bend = line.radius**2 * gauge.radius**2 / (gauge.radius**2 - _widest(gauge, line.radius) ** 2) ** 1.5
+        step = math.sqrt(8.0 * FINE * tolerance / (bend + float(lifts.bends(-gauge.side).max())))
+        found = _measured_flank(_laid(parts, line.radius, step), gauge, line.radius, bend)
+    slack = ROUNDING * max(float(np.abs(part).max()) for part in parts)
+    sure = f"true within {length_words(found.remainder, '.2g')} {UNIT}"
+    check = at_most(CONTOUR, found.off, tolerance, "mm", detail=f"{alone}; {sure}", slack=slack)
+    checks = [replace(check, at=degrees(found.at))]
+    steep = math.hypot(1.0, lifts.steepest / line.radius) * (1.0 + 1e-6)
+    limit, room = limit_of(lambda e: e * steep, limits.motion, tolerance, slack)
+    if not drum.shortened or gauge is None:  # what an undercut loses at one radius, another carries
+        check = at_most(MOTION, found.motion.max, limit, "mm", detail=alone, slack=room)
+        checks.append(replace(check, at=found.motion.at))
+    return FlankVerdict(line.flank, found.motion, found.off), checks
+
+
+def _widest(gauge: Gauge, radius: float) -> float:
+    """Upper bound of |y| at contact on a cylinder, mm."""
+    nearest = math.sqrt(max(radius**2 - gauge.radius**2, (0.1 * radius) ** 2))
+    return gauge.radius * math.sin(math.atan2(gauge.lifts.steepest, nearest))
+
+
+def _step(lifts: Lifts, radius: float, tolerance: float) -> float:
+    bend = max(float(lifts.bends(side).max()) for side in (-1, 1))
+    return math.sqrt(8.0 * FINE * tolerance / max(bend, 1e-3 * radius))
+
+
+def _uncovered(parts: list[Array], radius: float) -> float | None:
+    """A place x, mm, of the period that no line covers; None where the lines go round."""
+    turn, gap = TURN * radius, GAP * radius
+    spans = sorted((float(part[:, 0].min()), float(part[:, 0].max())) for part in parts)
+    if spans[-1][1] - spans[0][0] < turn - gap:
+        return spans[-1][1]
+    reached = spans[0][1]
+    for low, high in spans:
+        if low > reached + gap:
+            return reached
+        reached = max(reached, high)
+    return None
+
+
+def _laid(parts: list[Array], radius: float, step: float) -> _Line:
+    """Points of the lines round their cylinder, none farther from the next along a line than a step, rad."""
+    phi: list[Array] = []
+    z: list[Array] = []
+    joined = []
+    length = sum(float(np.abs(np.diff(part[:, 0])).sum()) for part in parts) / radius
+    step = max(step, length / MOST)
+    for part in parts:
+        angle, height = part[:, 0] / radius, part[:, 1]
+        count = np.maximum(np.ceil(np.abs(np.diff(angle)) / step), 1.0).astype(np.intp)
+        own = np.repeat(np.arange(len(count)), count)
+        share = (np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)) / count[own]
+        for rows, values in ((phi, angle), (z, height)):
+            rows.append(np.append(values[own] + share * np.diff(values)[own], values[-1]))
+        joined.append(np.append(np.ones(len(own), dtype=np.bool_), False))
+    return _Line(np.concatenate(phi), np.concatenate(z), np.concatenate(joined)[:-1])
+
+
+def _measured_pitch(line: _Line, drum: DrumIntent, lifts: Lifts, radius: float) -> _Measured:
+    """The path of the roller's axis: its height is the position itself."""
+    lift, slope, _ = lifts.at(line.phi)
+    error = line.z - drum.follower.level - lift
+    off = np.abs(error) / np.hypot(1.0, slope / radius)
+    bend = max(float(lifts.bends(side).max()) for side in (-1, 1))
+    room = 0.125 * bend * float((np.diff(line.phi)[line.joined] ** 2).max(initial=0.0))
+    k, worst = int(np.argmax(off)), int(np.argmax(np.abs(error)))
+    motion = MotionError(
+        float(np.abs(error).max()),
+        degrees(float(line.phi[worst])),
+        room,
+        float(error.min()),
+        float(error.max()),
+        float(np.sqrt(np.mean(error**2))),
+    )
+    return _Measured(float(off[k]), float(line.phi[k]), room, motion)
+
+
+def _measured_flank(line: _Line, gauge: Gauge, radius: float, bend: float) -> _Measured:
+    """A flank: how far it stands out at the worst angles of its points, and how high it holds the roller between."""
+    points = np.stack([radius * np.cos(line.phi), radius * np.sin(line.phi), line.z], axis=-1)
+    worst = gauge.worst(points)
+    # on the cylinder the exact flank rises by the lift's own slope
+    off = np.abs(worst.height) / np.hypot(1.0, gauge.lifts.at(worst.theta)[1] / radius)
+    room = 0.125 * bend * float((np.diff(line.phi)[line.joined] ** 2).max(initial=0.0))
+    first, last = worst.theta[:-1][line.joined], worst.theta[1:][line.joined]
+    middle = first + 0.5 * (np.remainder(last - first + math.pi, TURN) - math.pi)
+    held = [gauge.stand(side, middle).gives for side in (points[:-1][line.joined], points[1:][line.joined])]
+    between = np.minimum(*(np.where(np.isfinite(one), one, -np.inf) for one in held))
+    k, least, most = int(np.argmax(off)), int(np.argmin(between)), int(np.argmax(worst.height))
+    low, high = min(float(between[least]), float(worst.height.min())), float(worst.height[most])
+    value, at = (high, float(worst.theta[most])) if high >= -low else (-low, float(middle[least]))
+    rms = float(np.sqrt(np.mean(worst.height**2)))
+    motion = MotionError(value, degrees(at), room, low, high, rms)
+    return _Measured(float(off[k]), float(worst.theta[k]), room, motion)

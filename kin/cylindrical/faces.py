@@ -1,0 +1,278 @@
+"""Which face of the intended drum each triangle belongs to, and how far it is from it.
+
+A triangle belongs to the face that it is nearest to: blank and floor are cylinders about the axis, ends are level, the
+bore is an outline drawn along z, flanks are known by the roller (`kin.cylindrical.gauge`). Corners alone do not tell:
+all three may lie on the edge between two faces, so that middles of sides and the inside count as well. Normals are not
+asked: a coarse blank has skew facets.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from kin.contour.arcs import Arcs
+from kin.contour.holes import farthest
+from kin.contour.nearest import nearest
+from kin.cylindrical.edges import Edges
+from kin.cylindrical.gauge import BESIDE, Worst
+from kin.cylindrical.intent import End
+from kin.numeric.angles import TURN
+from kin.numeric.arrays import paired
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.contour.holes import Hole
+    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.intent import DrumIntent
+    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.read.mesh.mesh import Mesh
+
+Entry = TypeVar("Entry", bound=np.generic)
+
+BLANK, FLOOR, BOTTOM, TOP, BORE = "blank", "floor", "bottom", "top", "bore"
+FINE = 1e-2  # of the tolerance, to which the bore is measured
+NEAR = 0.1  # of the radius of a roller: what is farther below its flank holds it nowhere
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A mesh, mm, as if not mirrored: corners' places (v, 3), and triangles by corner numbers (t, 3)."""
+
+    points: Array
+    corners: Indices
+
+    @staticmethod
+    def of(mesh: Mesh, *, mirrored: bool) -> Body:
+        """The body of a file's mesh."""
+        if not mirrored:
+            return Body(mesh.points, mesh.corners)
+        return Body(mesh.points * [1.0, -1.0, 1.0], mesh.corners[:, ::-1])
+
+    @cached_property
+    def r(self) -> Array:
+        """Distances (v,) of corners from the axis, mm."""
+        return np.hypot(self.points[:, 0], self.points[:, 1])
+
+    @cached_property
+    def phi(self) -> Array:
+        """Polar angles (v,) of corners, rad."""
+        return np.arctan2(self.points[:, 1], self.points[:, 0])
+
+    def each(self, values: NDArray[Entry]) -> tuple[NDArray[Entry], NDArray[Entry], NDArray[Entry]]:
+        """Values of the three corners (t,) each, out of those of all corners (v,)."""
+        a, b, c = (values[column] for column in self.corners.T)
+        return a, b, c
+
+    def edges_of(self, *groups: Mask) -> tuple[Indices, Indices, list[Mask]]:
+        """Ends (e,), (e,) of the edges of some triangles, each once, and which of them are edges of each group."""
+        which = np.flatnonzero(np.logical_or.reduce(groups))
+        chosen, size = self.corners[which], len(self.points)
+        a, b = chosen.T.ravel(), np.roll(chosen, -1, axis=1).T.ravel()
+        bits = sum(group[which].astype(np.int64) << k for k, group in enumerate(groups))
+        codes = paired(np.minimum(a, b), np.maximum(a, b), size) * (1 << len(groups)) + np.tile(bits, 3)
+        codes.sort()
+        edge = codes >> len(groups)
+        heads = np.flatnonzero(np.diff(edge, prepend=-1))
+        bits = np.bitwise_or.reduceat(codes, heads) if len(heads) else codes
+        edge = edge[heads]
+        members = [np.asarray(bits >> k & 1, dtype=np.bool_) for k in range(len(groups))]
+        return (edge // size).astype(np.intp), (edge % size).astype(np.intp), members
+
+
+@dataclass(frozen=True, eq=False)
+class Faces:
+    """Triangles of a body by face.
+
+    kinds   names of the faces that the drum has, those of the flanks last
+    kind    (t,) number of each triangle's face among them
+    off     greatest distance, mm, of a plain face's triangles from it, by its name; nan where it has none
+    stands  of each gauge: its roller, what it may touch, and the corners at their worst angles
+    """
+
+    kinds: tuple[str, ...]
+    kind: Indices
+    off: dict[str, float]
+    stands: tuple[Stands, ...]
+
+    def of(self, name: str) -> Mask:
+        """Triangles (t,) of a face."""
+        return np.asarray(self.kind == self.kinds.index(name))
+
+    def edges(self, body: Body, stands: Stands) -> Edges:
+        """Edges that a roller may touch, or that are of its flank."""
+        a, b, (flank, reached) = body.edges_of(self.of(stands.gauge.name), stands.touched)
+        return Edges(body.points, stands.worst, a, b, flank, reached, body.corners[stands.touched])
+
+
+@dataclass(frozen=True, eq=False)
+class Stands:
+    """How a body stands to a gauge.
+
+    touched  triangles (t,) that the roller may touch: within its reach, and high enough
+    across   triangles (t,) within its reach that its axis passes through
+    worst    corners (v,) at their worst angles, as far as they are asked for; nan for others
+    """
+
+    gauge: Gauge
+    touched: Mask
+    across: Mask
+    worst: Worst
+
+
+def faces_of(body: Body, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance: float) -> Faces:
+    """Sort the triangles of a body by face; those within the tolerance, mm, of a plain face belong to one."""
+    plain = _plain(body, drum)
+    names = tuple(plain)
+    offs = np.stack([np.maximum.reduce(body.each(off)) for off in plain.values()])
+    edged = np.flatnonzero(offs.min(axis=0) <= tolerance)
+    for name, row in zip(names, offs, strict=True):
+        near = edged[row[edged] <= tolerance]
+        row[near] = np.maximum(row[near], _inside(body, drum, name, body.corners[near]))
+    kind, least = offs.argmin(axis=0), offs.min(axis=0)
+    rest = np.flatnonzero(least > tolerance)
+    bent = np.isin(rest, edged)  # only the inside shows that they are of none of the plain faces
+    stands = tuple(_stands(body, gauge, rest) for gauge in gauges)
+    for number, own in enumerate(stands, len(names)):
+        off = _off_flank(own.gauge, own.worst)
+        away = np.maximum.reduce([off[column] for column in body.corners[rest].T])
+        within = _between(body, body.corners[rest[bent]])
+        inside = _off_flank(own.gauge, own.gauge.worst(within.reshape(-1, 3))).reshape(within.shape[:2])
+        away[bent] = np.maximum(away[bent], inside.max(axis=1, initial=0.0))
+        nearer = away < least[rest]
+        kind[rest[nearer]], least[rest[nearer]] = number, away[nearer]
+    found = {name: _farthest(body, drum, (name, tolerance), kind == k, offs[k]) for k, name in enumerate(names)}
+    return Faces((*names, *(gauge.name for gauge in gauges)), kind, found, stands)
+
+
+def _between(body: Body, corners: Indices) -> Array:
+    """Middles of the sides and of the whole (n, 4, 3) of triangles by their corners (n, 3)."""
+    places = body.points[corners]
+    sides = 0.5 * (places + np.roll(places, -1, axis=1))
+    return np.concatenate([sides, places.mean(axis=1, keepdims=True)], axis=1)
+
+
+def _inside(body: Body, drum: DrumIntent, name: str, corners: Indices) -> Array:
+    """How far the inside of triangles (n, 3) is from a plain face, mm (n,), if their corners lie on it."""
+    if name in {BOTTOM, TOP}:
+        return np.zeros(len(corners))
+    if name == BORE and drum.bore is not None:
+        flat, number = _once(_between(body, corners)[..., :2].reshape(-1, 2))
+        off: Array = nearest(drum.bore.contour.as_arcs()[0], flat)[1][number].reshape(-1, 4).max(axis=1, initial=0.0)
+        return off
+    radius = drum.radius if name == BLANK else drum.floor
+    flat = body.points[corners][..., :2]
+    ends = [(flat[:, k], flat[:, k - 1]) for k in range(3)]
+    sag: Array = np.maximum(radius - np.minimum.reduce([_least_radius(*each) for each in ends]), 0.0)
+    return sag
+
+
+def _least_radius(start: Array, last: Array) -> Array:
+    """Least distance (n,) from the axis of lines from one to another place (n, 2), mm."""
+    way = last - start
+    square = np.einsum("nk,nk->n", way, way)
+    share = np.clip(-np.einsum("nk,nk->n", start, way) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    foot = start + share[:, None] * way
+    least: Array = np.hypot(foot[:, 0], foot[:, 1])
+    return least
+
+
+def _off_flank(gauge: Gauge, worst: Worst) -> Array:
+    """Distance (n,) of points from a flank, mm; infinite on the other side of the roller's axis, where it has none."""
+    off: Array = np.where(worst.height < gauge.radius, np.abs(worst.distance), np.inf)
+    return off
+
+
+def _stands(body: Body, gauge: Gauge, rest: Indices) -> Stands:
+    """How a body stands to a gauge; `rest` are the triangles whose corners are asked for at any rate."""
+    z = body.points[:, 2]
+    above = gauge.beyond(body.phi, z) > 0.0
+    signs = body.each(above)
+    within = np.maximum.reduce(body.each(body.r)) >= gauge.inner
+    metal = ~np.logical_or.reduce(signs)
+    across = within & ~metal & ~np.logical_and.reduce(signs)
+    first, *others = body.each(body.phi)
+    turn = np.maximum.reduce([np.abs(np.remainder(one - first + np.pi, TURN) - np.pi) for one in others])
+    near = (np.maximum.reduce(body.each(gauge.most(body.phi, z))) >= -NEAR * gauge.radius) | (turn > BESIDE)
+    touched = within & metal & near
+    corner = np.zeros(len(z), dtype=np.bool_)
+    corner[body.corners[rest]] = corner[body.corners[touched]] = True
+    asked = np.flatnonzero(corner & ~above & (body.r > 0.0))
+    worst = Worst(*(np.full(len(z), np.nan) for _ in range(4)))
+    for row, values in zip(worst, gauge.worst(body.points[asked]), strict=True):
+        row[asked] = values
+    return Stands(gauge, touched, across, worst)
+
+
+def _plain(body: Body, drum: DrumIntent) -> dict[str, Array]:
+    """Distances (v,) of corners from each plain face, mm."""
+    r, z = body.r, body.points[:, 2]
+    faces = {BLANK: np.abs(r - drum.radius)}
+    track = drum.track
+    if track.depth is not None:
+        faces[FLOOR] = np.abs(r - drum.floor)
+    # an end whose flank goes down to the bore takes the place of a level one
+    whole = isinstance(track, End) and track.depth is None
+    if not (whole and isinstance(track, End) and track.facing == "bottom"):
+        faces[BOTTOM] = np.abs(z)
+    if not (whole and isinstance(track, End) and track.facing == "top"):
+        faces[TOP] = np.abs(z - drum.length)
+    if drum.bore is not None:
+        arcs = drum.bore.contour.as_arcs()[0]
+        reach = float(np.abs(drum.bore.contour.box).max()) * math.sqrt(2.0)
+        near = np.flatnonzero(r <= reach + 0.5 * (drum.radius - reach))
+        off = np.full(len(r), np.inf)
+        flat = body.points[near, :2]
+        distinct, number = _once(flat)
+        off[near] = nearest(arcs, distinct)[1][number]
+        faces[BORE] = off
+    return faces
+
+
+def _once(points: Array) -> tuple[Array, Indices]:
+    """Points (k, 2) each once, and the number among them of each of the points (n, 2)."""
+    order = np.lexsort(points.T)
+    rising = points[order]
+    new = np.ones(len(points), dtype=np.bool_)
+    new[1:] = (rising[1:] != rising[:-1]).any(axis=1)
+    number = np.empty(len(points), dtype=np.intp)
+    number[order] = np.cumsum(new) - 1
+    return rising[new], number
+
+
+def _farthest(body: Body, drum: DrumIntent, what: tuple[str, float], own: Mask, off: Array) -> float:
+    """Greatest distance, mm, of some triangles from a plain face, by its name and the tolerance; nan for none.
+
+    `own` (t,) marks the triangles, whose corners are `off` (t,) from it.
+    """
+    name, tolerance = what
+    if not own.any():
+        return math.nan
+    worst = float(off[own].max())
+    if name in {BOTTOM, TOP}:
+        return worst
+    a, b, _ = body.edges_of(own)
+    start, last = body.points[a, :2], body.points[b, :2]
+    if name == BORE and drum.bore is not None:
+        return max(worst, _off_outline(drum.bore, start, last, FINE * tolerance))
+    radius = drum.radius if name == BLANK else drum.floor
+    return max(worst, radius - float(_least_radius(start, last).min()))
+
+
+def _off_outline(bore: Hole, start: Array, last: Array, fine: float) -> float:
+    """Greatest distance, mm, of lines from the outline of a bore, seen along z, to within `fine`."""
+    back = (start[:, 0] > last[:, 0]) | ((start[:, 0] == last[:, 0]) & (start[:, 1] > last[:, 1]))
+    pairs = np.where(back[:, None], np.hstack([last, start]), np.hstack([start, last]))
+    pairs, _ = _once(pairs[(pairs[:, :2] != pairs[:, 2:]).any(axis=1)])
+    if not len(pairs):
+        return 0.0
+    way = pairs[:, 2:] - pairs[:, :2]
+    length = np.hypot(way[:, 0], way[:, 1])
+    lines = Arcs(pairs[:, :2], way / length[:, None], np.zeros(len(length)), length)
+    outline = bore.contour.as_arcs()[0]
+    return farthest(lines, outline, float(np.abs(outline.curvature).max()), fine)

@@ -1,0 +1,267 @@
+"""Figures of a cylindrical cam from the intended motion alone: pressure angles, undercut, walls, play, forces.
+
+`side` is -1 for a lower flank and 1 for an upper one, `clearance` makes its roller larger. Places are shaft angles,
+rad. Extremes are those of smooth functions between the law's cells (`kin.numeric.extrema`), with derivatives from jets.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.cylindrical.frame import along_roller, rates, regularity_jet
+from kin.cylindrical.gauge import gauges_of
+from kin.cylindrical.intent import Groove, Rib
+from kin.numeric.angles import TURN
+from kin.numeric.extrema import extremes_over
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.cylindrical.follower import DrumFollower
+    from kin.cylindrical.intent import DrumIntent
+    from kin.law.contacts import Side
+    from kin.numeric.arrays import Array
+    from kin.numeric.elementary import Jet
+
+ANGLES = 1440  # of a turn, from which a figure without derivatives is looked for
+ACROSS = 33  # places across a roller
+ROUNDS = 7  # of a search for a level place, each 8 times as fine
+CORNERED = 13  # of one for a corner
+WITHIN = 0.999  # of a roller's radius: so far across it contact is looked for
+SECANTS = 60
+
+
+class At(NamedTuple):
+    """A value and the shaft angle at which it is reached, rad."""
+
+    value: float
+    at: float
+
+
+class Angles(NamedTuple):
+    """Greatest and least pressure angle, rad, at a place along the roller: above 0 where the cam drives a rise."""
+
+    greatest: At
+    least: At
+
+
+class Undercut(NamedTuple):
+    """Where a flank is undercut, and what of the line of contact is left.
+
+    below   mm from the cam's axis, along the roller: nearer to the axis the flank is undercut somewhere; 0: nowhere
+            from the floor outwards
+    at      shaft angle, rad, at which undercut reaches out so far; nan: nowhere
+    length  length of the line of contact, mm, that is left at that angle: from there, or from the roller's inner end,
+            to its outer end or to where the blank ends the contact; without undercut the least of all angles
+    share   of what the line would be there without undercut
+    """
+
+    below: float
+    at: float
+    length: float
+    share: float
+
+
+class Forces(NamedTuple):
+    """Greatest contact force, N, and greatest and least torque on the cam, N mm, under a load along z."""
+
+    contact: At
+    torque: At
+    back: At
+
+
+class Thickness(NamedTuple):
+    """Least thickness of a rib along z, mm, at a distance `radius`, mm, from the axis; `at` of its upper roller."""
+
+    value: float
+    at: float
+    radius: float
+
+
+class Plays(NamedTuple):
+    """Least and greatest free travel along z, mm, over all shaft angles."""
+
+    least: At
+    most: At
+
+
+def _extremes(follower: DrumFollower, figure: Callable[[Array, int], Jet]) -> tuple[At, At]:
+    found = extremes_over(follower.cells, figure)
+    return At(found.least, found.least_at), At(found.greatest, found.greatest_at)
+
+
+def slopes(follower: DrumFollower) -> tuple[At, At]:
+    """Least and greatest slope S', mm per rad."""
+    return _extremes(follower, lambda theta, side: rates(follower, theta, 2, side).slope)
+
+
+def pressure_angles(follower: DrumFollower, rho: float) -> Angles:
+    """Greatest and least pressure angle at the place rho, mm, along the roller, over all shaft angles."""
+    least, greatest = (At(math.atan2(slope.value, rho), slope.at) for slope in slopes(follower))
+    return Angles(greatest, least)
+
+
+def outer_contact(follower: DrumFollower, radius: float, clearance: float = 0.0) -> At:
+    """Least place along the roller, mm, at which a blank of `radius`, mm, ends the contact, over all shaft angles."""
+    steepest = max(slopes(follower), key=lambda slope: abs(slope.value))
+    return At(float(along_roller(steepest.value, radius, follower.radius + clearance)), steepest.at)
+
+
+def least_regularity(follower: DrumFollower, rho: float, side: Side = -1, clearance: float = 0.0) -> At:
+    """Least regularity D of a flank, mm, at a place along the roller, over all shaft angles."""
+    radius = follower.radius + clearance
+
+    def figure(theta: Array, knot_side: int) -> Jet:
+        return regularity_jet(rates(follower, theta, 2, knot_side), rho, radius, side)
+
+    return _extremes(follower, figure)[0]
+
+
+def undercut(drum: DrumIntent, side: Side = -1) -> Undercut:
+    """Where a drum's flank is undercut, from its floor outwards, and the length of contact that is left."""
+    follower = drum.follower
+    clearance = drum.track.clearance if isinstance(drum.track, Groove) and side > 0 else 0.0
+
+    def least(rho: float) -> At:
+        return least_regularity(follower, rho, side, clearance)
+
+    def ends(slope: float) -> float:
+        roller = follower.radius + clearance
+        return min(follower.outer, float(along_roller(slope, drum.radius, roller)))
+
+    low, high = max(drum.floor, 0.1 * drum.radius), drum.radius
+    inner = least(low)
+    if inner.value > 0.0:
+        length = ends(max(abs(slope.value) for slope in slopes(follower))) - follower.inner
+        return Undercut(0.0, math.nan, length, 1.0)
+    below = _rising_zero(lambda rho: least(rho).value, low, high)
+    at = least(below).at
+    whole = ends(float(rates(follower, np.array([at])).slope.c[0, 0])) - follower.inner
+    left = max(whole - max(below - follower.inner, 0.0), 0.0)
+    return Undercut(below, at, left, left / whole)
+
+
+def _rising_zero(function: Callable[[float], float], low: float, high: float) -> float:
+    """Zero of a function that is below 0 at `low`, by the secant method kept in a bracket; `high` if it stays below."""
+    below, above = function(low), function(high)
+    if above <= 0.0:
+        return high
+    kept = 0
+    for _ in range(SECANTS):
+        middle = high - above * (high - low) / (above - below)
+        value = function(middle)
+        if value <= 0.0:
+            low, below = middle, value
+            above *= 0.5 if kept < 0 else 1.0
+            kept = -1
+        else:
+            high, above = middle, value
+            below *= 0.5 if kept > 0 else 1.0
+            kept = 1
+        if abs(value) <= 1e-13 * high or high - low <= 1e-13 * high:
+            return middle
+    return 0.5 * (low + high)
+
+
+def lost_alone(drum: DrumIntent, radius: float, theta: Array, side: Side = -1) -> Array:
+    """Motion lost (n,), mm, at angles (n,), rad, if the flank carried the roller on one cylinder, mm, alone.
+
+    There the flank is what rollers at all angles leave; 0 where it is not undercut.
+    """
+    (gauge,) = (one for one in gauges_of(drum) if one.side == side)
+
+    def gives(y: Array) -> Array:
+        points = _beside(theta, y, np.sqrt(radius**2 - y * y))
+        flat = points.reshape(-1, 3)
+        stand = gauge.stand(flat, np.repeat(theta, y.shape[1]))
+        gone: Array = (gauge.worst(flat).height - stand.gives).reshape(y.shape)
+        return gone
+
+    return _least_across(gives, len(theta), gauge.radius, CORNERED)[1]
+
+
+def _beside(theta: Array, y: Array, x: Array) -> Array:
+    """Points (n, m, 3) at z = 0, x along and y across (n, m) a roller's axis at angles (n,)."""
+    sine, cosine = np.sin(theta)[:, None], np.cos(theta)[:, None]
+    return np.stack([x * cosine - y * sine, x * sine + y * cosine, np.zeros_like(y)], axis=-1)
+
+
+def _least_across(function: Callable[[Array], Array], count: int, roller: float, rounds: int) -> tuple[Array, Array]:
+    """Place across a roller, mm, at which a function of places (count, m) is least, and its value, by closer grids."""
+    middle, width = np.zeros((count, 1)), WITHIN * roller
+    for _ in range(rounds):
+        y = np.clip(middle + width * np.linspace(-1.0, 1.0, ACROSS), -WITHIN * roller, WITHIN * roller)
+        values = function(y)
+        best = values.argmin(axis=1)[:, None]
+        middle = np.take_along_axis(y, best, axis=1)
+        width /= 0.25 * ACROSS
+    return middle[:, 0], np.take_along_axis(values, best, axis=1)[:, 0]
+
+
+def rib_thickness(drum: DrumIntent) -> Thickness:
+    """Least thickness of a rib along z between its floor and the blank; raises ValueError for another track."""
+    if not isinstance(drum.track, Rib):
+        raise ValueError("the track is no rib")  # noqa: TRY004 - the drum is of the right type
+    upper, lower = gauges_of(drum)
+    best = Thickness(math.inf, math.nan, math.nan)
+    for radius in (drum.floor, drum.radius):
+
+        def thick(phi: Array, radius: float = radius) -> Array:
+            points = np.stack([radius * np.cos(phi), radius * np.sin(phi), np.zeros_like(phi)], axis=-1)
+            # the height of z = 0 over a flank is that of the flank over it, but for its sign
+            return -upper.worst(points).height - lower.worst(points).height
+
+        phi = _least_place(thick)
+        point = np.array([[radius * math.cos(phi), radius * math.sin(phi), 0.0]])
+        value = float(thick(np.array([phi]))[0])
+        if value < best.value:
+            best = Thickness(value, float(upper.worst(point).theta[0]) % TURN, radius)
+    return best
+
+
+def _least_place(function: Callable[[Array], Array], angles: int = ANGLES) -> float:
+    """Angle, rad, at which a function of angles (n,) of period 2 pi is least, by ever closer grids."""
+    width = TURN / angles
+    at = width * np.arange(angles, dtype=np.float64)
+    for _ in range(ROUNDS):
+        best = float(at[int(np.argmin(function(at)))])
+        at = best + width * np.linspace(-1.0, 1.0, ACROSS)
+        width /= 0.25 * ACROSS
+    return best
+
+
+def exact_play(drum: DrumIntent, theta: Array) -> Array:
+    """Travel (n,), mm along z, of the follower between exact flanks at shaft angles (n,), rad, cam at rest.
+
+    In a groove the roller goes up until it meets the upper flank, which it does at its outer end, or where the blank
+    ends there; elsewhere there is no play.
+    """
+    if not isinstance(drum.track, Groove):
+        return np.zeros(len(theta))
+    outer, roller, (_, upper) = drum.follower.outer, drum.follower.radius, gauges_of(drum)
+    axis = upper.axis(theta)[:, None]
+
+    def room(y: Array) -> Array:
+        points = _beside(theta, y, np.minimum(outer, np.sqrt(drum.radius**2 - y * y)))
+        height: Array = upper.worst(points.reshape(-1, 3)).height.reshape(y.shape)
+        return height - np.sqrt(roller**2 - y * y) - axis
+
+    return _least_across(room, len(theta), roller, ROUNDS)[1]
+
+
+def plays(drum: DrumIntent) -> Plays:
+    """Least and greatest play of the follower between exact flanks over all shaft angles."""
+    least = _least_place(lambda theta: exact_play(drum, theta), ANGLES // 4)
+    most = _least_place(lambda theta: -exact_play(drum, theta), ANGLES // 4)
+    return Plays(*(At(float(exact_play(drum, np.array([at]))[0]), at % TURN) for at in (least, most)))
+
+
+def forces(follower: DrumFollower, load: float, rho: float) -> Forces:
+    """Forces under a `load`, N, along z, all of it carried at the place rho, mm: N = F/cos a, torque F S'."""
+    least, greatest = slopes(follower)
+    steepest = max(least, greatest, key=lambda slope: abs(slope.value))
+    contact = At(load * math.hypot(1.0, steepest.value / rho), steepest.at)
+    return Forces(contact, At(load * greatest.value, greatest.at), At(load * least.value, least.at))

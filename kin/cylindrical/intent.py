@@ -1,0 +1,116 @@
+"""Intended drums and permitted errors: all that the judge of cylindrical cams takes beside the file itself.
+
+A drum reaches from z = 0 to its length, from its bore to its radius. Its track is cut from the radius inwards, by its
+depth, down to the floor, which is a cylinder about the axis. Lower flanks have the metal below and hold a roller from
+below; upper flanks have it above. The flanks are those of rollers without ends: they reach from the floor to the radius
+of the blank, however long the roller is.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from kin.contour.nearest import nearest
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.contour.holes import Hole
+    from kin.cylindrical.follower import DrumFollower
+
+
+@dataclass(frozen=True)
+class Groove:
+    """A groove of a `depth`, mm, between two flanks, for one roller.
+
+    The lower flank is that of the roller, the upper flank that of a roller larger by `clearance`, mm, on the same axis.
+    """
+
+    depth: float
+    clearance: float = 0.0
+
+
+@dataclass(frozen=True)
+class Rib:
+    """A rib of a `depth`, mm, between two rollers whose axes are a `distance`, mm, apart along z.
+
+    Its upper face is the lower flank of the roller at distance/2 above the level, its lower face the upper flank of
+    that at distance/2 below. Beside the rib the drum is turned down by the depth, over its whole length.
+    """
+
+    depth: float
+    distance: float
+
+
+@dataclass(frozen=True)
+class End:
+    """An end cam: one flank, on which a spring holds the roller.
+
+    facing  "top": the metal is below, the flank takes the place of the upper end; "bottom": the metal is above
+    depth   mm, to which the flank reaches inwards; within the drum goes on from z = 0 to its length. None: to the bore
+    """
+
+    facing: Literal["top", "bottom"] = "top"
+    depth: float | None = None
+
+
+Track: TypeAlias = Groove | Rib | End
+
+
+@dataclass(frozen=True, eq=False)
+class DrumIntent:
+    """Intended cylindrical cam in a file.
+
+    follower   the roller and its motion
+    track      groove, rib or end
+    radius     of the blank, mm
+    length     of the blank along z, mm; of an end cam that of what lies within its flank
+    bore       the opening along the axis, keyway included, mm, as if not mirrored; None for a drum without one
+    shortened  an undercut is cut off: what is lost is told; else an undercut drum has no exact flank and is refused
+    mirrored   the file is mirrored, y -> -y (rotation ccw), bore too
+    mm         mm in a unit of a development's DXF (solids are always in mm)
+    """
+
+    follower: DrumFollower
+    track: Track
+    radius: float
+    length: float
+    bore: Hole | None = None
+    shortened: bool = False
+    mirrored: bool = False
+    mm: float = 1.0
+
+    @property
+    def floor(self) -> float:
+        """Radius, mm, down to which the flanks reach: that of the floor, or of the bore's nearest point, 0 without."""
+        if self.track.depth is not None:
+            return self.radius - self.track.depth
+        if self.bore is None:
+            return 0.0
+        return float(nearest(self.bore.contour.as_arcs()[0], np.zeros((1, 2)))[1][0])
+
+
+@dataclass(frozen=True)
+class Developed:
+    """A line of a development, by its layer, unrolled at a `radius`, mm: x = radius phi over one period, y = z.
+
+    flank  "lower" or "upper", as the flank meets the cylinder of that radius; "pitch" for the roller's axis there
+    """
+
+    layer: str
+    radius: float
+    flank: Literal["lower", "upper", "pitch"]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Permitted errors, mm: `tolerance` of the surfaces along their normals; motion and play along z.
+
+    `motion` is the greatest error of the position, `play` the greatest play or interference of the gauges. None stands
+    for the most that flanks within the tolerance can cause.
+    """
+
+    tolerance: float
+    motion: float | None = None
+    play: float | None = None

@@ -1,0 +1,305 @@
+"""The verdict on a file of a cylindrical cam: whether it is the intended drum, and its roller moves as intended.
+
+A solid is taken as it lies on disk. The way it was made is not known here: the exact flank is what rollers leave at all
+angles (`kin.cylindrical.gauge`), the motion is that of the roller set down on the file's own triangles. Every triangle
+is measured against a face of the intended drum. Together with a closed surface and the volume that says that nothing of
+the drum is missing: a closed surface all of which is near that of the drum goes round it once, if it encloses as much.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.cylindrical.contact import set_down, spans_of
+from kin.cylindrical.edges import Edges, look
+from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, faces_of
+from kin.cylindrical.gauge import Worst, gauges_of
+from kin.cylindrical.grid import angles_for
+from kin.cylindrical.split import joined
+from kin.cylindrical.torn import missing, triangles_at
+from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
+from kin.cylindrical.volume import exact_volume
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.check import ROUNDING, Check, about, at_most, failed
+from kin.numeric.errors import UnsettledError
+from kin.numeric.lengths import UNIT, length_words
+from kin.numeric.limits import is_loose, limit_of, unlimited
+from kin.numeric.records import dataclass, replace
+from kin.read.checks import count_check, demand_same, units_check, unread_check
+from kin.read.errors import ReadError
+from kin.read.files import read_mesh
+from kin.read.formats import format_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kin.cylindrical.edges import Seen
+    from kin.cylindrical.faces import Faces, Stands
+    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.intent import Developed, DrumIntent, Limits
+    from kin.numeric.arrays import Array
+    from kin.read.mesh.checked import CheckedMesh
+
+WATERTIGHT, MOTION, PLAY, CONTOUR, ENDS, VOLUME = "watertight", "motion", "form-closure", "contour", "ends", "volume"
+OPEN = 0.25  # of the tolerance: what the proof may leave open, and is told
+SLACK = 1e-6  # of a limit that follows from the steepest slope
+
+
+def verify(path: Path, drum: DrumIntent, limits: Limits, units: float | None = None) -> DrumVerdict:
+    """Judge a solid by the suffix of its file, over all shaft angles.
+
+    `units`, mm, is the unit of a file that states none; None is mm. A file from which no mesh can be read gets a
+    verdict that says why. Raises OSError where the disk refuses, ValueError for a suffix of files without meshes.
+    """
+    kind = format_of(path)
+    try:
+        read = read_mesh(path, units)
+    except ReadError as error:
+        return DrumVerdict(kind.name, (about(unread_check("solid", error), path.name),))
+    verdict = judge_mesh(read, drum, limits, kind.name)
+    return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
+
+
+def verify_development(
+    path: Path, drum: DrumIntent, lines: Sequence[Developed], limits: Limits, units: float | None = None
+) -> DrumVerdict:
+    """Judge a development's DXF line by line, each for the radius at which it is unrolled, and for no other.
+
+    A line may go on beyond its period, as an overlap does. `units`, mm, is the unit of a file that states none. Raises
+    OSError where the disk refuses, UnitsError where the file states another unit than `units`, ValueError for a file
+    that is no DXF.
+    """
+    from kin.cylindrical.development import judged_line, read_lines
+
+    kind = format_of(path)
+    if kind.name != "dxf":
+        raise ValueError(f"{path.name} is no DXF")
+    try:
+        stated, read = read_lines(path, lines)
+    except ReadError as error:
+        return DrumVerdict(kind.name, (about(unread_check(kind.contents, error), path.name),))
+    demand_same(stated, units, path)
+    mm = stated or units or drum.mm
+    widest = max((float(np.ptp(part[:, 0])) for parts in read.values() for part in parts), default=0.0)
+    turn = TURN * max((line.radius for line in lines), default=1.0)
+    checks = [units_check(stated, units, drum.mm, lambda: drum.mm * widest / turn)]
+    verdicts, drawn = [], []
+    for line in lines:
+        parts = [mm * part * ([-1.0, 1.0] if drum.mirrored else [1.0, 1.0]) for part in read[line.layer]]
+        drawn += [(line.layer, part) for part in parts]
+        flank, own = judged_line(parts, drum, line, limits)
+        verdicts.append(replace(flank, name=line.layer))
+        checks += [replace(check, surface=line.layer) for check in own]
+    told = tuple(about(check, path.name) for check in checks)
+    return DrumVerdict(kind.name, told, tuple(verdicts), units=mm, lines=tuple(drawn))
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """A body being judged: its faces, the intent, the limits, and the rounding of the file's places, `slack`, mm."""
+
+    body: Body
+    faces: Faces
+    drum: DrumIntent
+    limits: Limits
+    slack: float
+
+
+def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = "") -> DrumVerdict:
+    """Judge a mesh, mm, as its file has it; corners that it keeps apart by less than the tolerance are joined."""
+    read, count, apart = joined(read, limits.tolerance)
+    body = Body.of(read.mesh, mirrored=drum.mirrored)
+    closed = count_check(WATERTIGHT, list(read.faults))
+    told = f"joined at {count} corners that the file keeps up to {length_words(apart, '.2g')} {UNIT} apart"
+    checks = [replace(closed, detail=told) if count else closed]
+    slack = read.rounding * math.sqrt(3.0) + ROUNDING * float(np.abs(body.points).max())
+    gauges = gauges_of(drum)
+    verdicts, seen, play = [], [], None
+    try:
+        faces = faces_of(body, drum, gauges, limits.tolerance + slack)
+        job = _Judged(body, faces, drum, limits, slack)
+        checks += _plain_checks(job)
+        angles = angles_for(gauges, limits.tolerance)
+        for stands in faces.stands:
+            flank, found, own = _flank(job, stands, angles)
+            verdicts.append(flank)
+            seen.append(found)
+            checks += [replace(check, surface=flank.name) for check in own]
+        both = [found for found, flank in zip(seen, verdicts, strict=True) if found is not None and flank.motion]
+        if len(both) > 1:
+            play, check = _play(job, both)
+            checks.append(check)
+        checks.append(_volume_check(read, drum, gauges, limits.tolerance))
+    except UnsettledError as error:
+        checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
+    return DrumVerdict(kind, tuple(checks), tuple(verdicts), play, read.units_mm or 1.0, read.mesh)
+
+
+def positions(read: CheckedMesh, drum: DrumIntent, theta: Array) -> tuple[Array, Array]:
+    """Heights (n,), (n,), mm, of the roller's axis set down on the lower and on the upper flank at angles (n,), rad.
+
+    Of a rib the heights are those of the middle between its rollers; nan where there is no such flank, or no contact.
+    The roller of an upper flank is the drum's own, without the clearance.
+    """
+    body = Body.of(read.mesh, mirrored=drum.mirrored)
+    found = {"lower": np.full(len(theta), np.nan), "upper": np.full(len(theta), np.nan)}
+    faces = faces_of(body, drum, gauges_of(drum), read.rounding)
+    for stands in faces.stands:
+        lift = stands.gauge.lifts.at(theta)[0]
+        gives = _own_gives(body, stands, drum, theta)
+        away = gives if stands.gauge.side < 0 else -gives
+        found[stands.gauge.name] = np.where(np.isfinite(gives), drum.follower.level + lift + away, np.nan)
+    return found["lower"], found["upper"]
+
+
+def _plain_checks(job: _Judged) -> list[Check]:
+    """Checks of blank, floor, ends and bore."""
+    off, drum, tolerance = job.faces.off, job.drum, job.limits.tolerance
+    checks = []
+
+    def check(name: str, worst: float, detail: str) -> None:
+        if math.isnan(worst):
+            checks.append(failed(name, f"nothing is there; {detail}", unit="mm", limit=tolerance))
+        else:
+            checks.append(at_most(name, worst, tolerance, "mm", detail=detail, slack=job.slack))
+
+    check(BLANK, off[BLANK], f"from a radius of {length_words(drum.radius)} {UNIT}")
+    if FLOOR in off:
+        room = f"the roller ends at {length_words(drum.follower.inner)} {UNIT}"
+        check(FLOOR, off[FLOOR], f"from a radius of {length_words(drum.floor)} {UNIT}; {room}")
+    ends = [name for name in (BOTTOM, TOP) if name in off]
+    worst = max(off[name] for name in ends) if not any(math.isnan(off[name]) for name in ends) else math.nan
+    heights = " and ".join(length_words(0.0 if name == BOTTOM else drum.length) for name in ends)
+    check(ENDS, worst, f"from z = {heights} {UNIT}")
+    if drum.bore is not None:
+        check(BORE, off[BORE], f"from {drum.bore.name}")
+    return checks
+
+
+def _flank(job: _Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, Seen | None, list[Check]]:
+    """Verdict on one flank by a grid of so many angles, what was seen of it, and its checks."""
+    body, faces, gauge, tolerance = job.body, job.faces, stands.gauge, job.limits.tolerance
+    own = faces.of(gauge.name)
+    count = int(np.count_nonzero(own))
+    if not count:
+        nothing = failed(CONTOUR, "the flank is missing", unit="mm", limit=tolerance)
+        return FlankVerdict(gauge.name), None, [nothing]
+    edges = faces.edges(body, stands)
+    seen = look(gauge, edges, tolerance, angles)
+    bare = seen.bare
+    if len(seen.torn):
+        beside = triangles_at(body, own, (edges.a[seen.torn], edges.b[seen.torn]))
+        bare = missing(gauge, body.points[beside], stands.worst.theta[beside], bare, tolerance)
+    proud, worst = seen.proud, max(_sure(peak.value, peak.remainder, tolerance) for peak in (seen.proud, bare))
+    at = proud.at if proud.value >= bare.value else bare.at
+    words = " and ".join(
+        f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((proud, "proud"), (bare, "bare"))
+    )
+    sure = f"true within {length_words(max(proud.remainder, bare.remainder), '.2g')} {UNIT}"
+    check = at_most(CONTOUR, worst, tolerance, "mm", detail=f"{words} of the exact flank; {sure}", slack=job.slack)
+    checks = [_at(check, at)]
+    if stands.across.any():
+        where = body.points[body.corners[stands.across][0]].mean(axis=0)
+        angle = degrees(math.atan2(where[1], where[0]))
+        blocked = failed(MOTION, f"metal stands in the roller's way, about an angle of {angle:.6g} degrees", unit="mm")
+        return FlankVerdict(gauge.name, None, worst, count), seen, [*checks, blocked]
+    if not np.isfinite(seen.least).all():
+        free = degrees(float(np.flatnonzero(~np.isfinite(seen.least))[0]) * seen.grid.width)
+        loose = failed(MOTION, f"the roller touches nothing at an angle of {free:.6g} degrees", unit="mm")
+        return FlankVerdict(gauge.name, None, worst, count), seen, [*checks, loose]
+    motion = _motion_error(seen)
+    checks.append(_motion_check(motion, gauge, job.limits, job.slack))
+    return FlankVerdict(gauge.name, motion, worst, count), seen, checks
+
+
+def _motion_error(seen: Seen) -> MotionError:
+    k = int(np.argmin(seen.holds))
+    least, most = float(seen.holds[k]), seen.out.value
+    bound = max(seen.out.value + seen.out.remainder, -float(seen.least.min()))
+    worst, at = (-least, k * seen.grid.width) if -least > most else (most, seen.out.at)
+    rms = float(np.sqrt(np.mean(seen.holds**2)))
+    return MotionError(worst, degrees(at), max(bound - worst, 0.0), least, most, rms)
+
+
+def _motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: float) -> Check:
+    limit, room = limit_of(lambda e: _implied(gauge, e), limits.motion, limits.tolerance, slack)
+    worst = _sure(motion.max, motion.remainder, limits.tolerance) if limits.motion is None else motion.bound
+    detail = f"true within {length_words(motion.remainder, '.2g')} {UNIT}" if motion.remainder else ""
+    check = at_most(MOTION, worst, limit, "mm", detail=detail, slack=room)
+    check = replace(check, at=motion.at)
+    loose = limits.motion is None and is_loose(limit, limits.tolerance, lambda: gauge.lifts.stroke)
+    return unlimited(check) if loose else check
+
+
+def _sure(value: float, remainder: float, tolerance: float) -> float:
+    """A value found, mm, or its bound where the proof leaves more open than a share of the tolerance."""
+    return value if remainder <= OPEN * tolerance else value + remainder
+
+
+def _implied(gauge: Gauge, tolerance: float) -> float:
+    """Greatest motion error, mm, by a flank within a tolerance, mm: at the roller's inner end, where it is steepest."""
+    return tolerance * math.hypot(1.0, gauge.lifts.steepest / gauge.inner) * (1.0 + SLACK)
+
+
+def _at(check: Check, theta: float) -> Check:
+    return replace(check, at=degrees(theta) if math.isfinite(theta) else None)
+
+
+def _own_gives(body: Body, stands: Stands, drum: DrumIntent, theta: Array) -> Array:
+    """How far the drum's own roller is kept from its place at angles (n,), rad, mm, above 0 away from the metal."""
+    gauge = replace(stands.gauge, radius=drum.follower.radius)
+    corners = body.corners[stands.touched]
+    reach = math.asin(min(1.0, gauge.radius / gauge.inner))
+    return set_down(gauge, body.points[corners], spans_of(body.phi, corners, reach), theta)
+
+
+def _held(job: _Judged, stands: Stands, seen: Seen) -> Array:
+    """How far the drum's own roller is kept from the intended place at the angles of the grid, above 0 from the metal.
+
+    The roller of a groove is smaller than the gauge of its upper flank, by the clearance.
+    """
+    radius = job.drum.follower.radius
+    if stands.gauge.radius == radius:
+        return seen.holds
+    gauge = replace(stands.gauge, radius=radius)
+    touched = np.flatnonzero(np.bincount(job.body.corners[stands.touched].ravel(), minlength=len(job.body.points)))
+    worst = Worst(*(np.full(len(job.body.points), np.nan) for _ in range(4)))
+    for row, values in zip(worst, gauge.worst(job.body.points[touched]), strict=True):
+        row[touched] = values
+    a, b, (reached,) = job.body.edges_of(stands.touched)
+    corners = job.body.corners[stands.touched]
+    edges = Edges(job.body.points, worst, a, b, np.zeros(len(a), dtype=np.bool_), reached, corners)
+    return look(gauge, edges, job.limits.tolerance, len(seen.grid)).holds
+
+
+def _play(job: _Judged, both: Sequence[Seen]) -> tuple[Play, Check]:
+    """Play of the follower between two flanks, and the check on that of the gauges, which should fit without any."""
+    stands, width = job.faces.stands, both[0].grid.width
+    pinched: Array = both[0].holds + both[1].holds
+    k = int(np.argmax(np.abs(pinched)))
+    held = [_held(job, one, found) for one, found in zip(stands, both, strict=True)]
+    own: Array = -(held[0] + held[1])
+    least, most = int(np.argmin(own)), int(np.argmax(own))
+    play = Play(float(own[least]), degrees(least * width), float(own[most]), degrees(most * width), len(own))
+
+    def implied(tolerance: float) -> float:
+        return sum(_implied(one.gauge, tolerance) for one in stands)
+
+    limit, room = limit_of(implied, job.limits.play, job.limits.tolerance, job.slack)
+    told = f"the follower's own play is {length_words(play.least)} to {length_words(play.most)} {UNIT}"
+    if play.least < 0.0:
+        told += f": it is pinched by up to {length_words(-play.least, '.3g')} {UNIT}"
+    check = at_most(PLAY, float(abs(pinched[k])), limit, "mm", detail=told, slack=room)
+    return play, _at(check, k * width)
+
+
+def _volume_check(read: CheckedMesh, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance: float) -> Check:
+    expected, measured = exact_volume(drum, gauges), read.mesh.volume
+    x, y, z = read.mesh.area_vectors
+    limit = tolerance * 0.5 * float(np.sqrt(x * x + y * y + z * z).sum())
+    detail = f"{length_words(measured, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
+    return at_most(VOLUME, abs(measured - expected), limit, "mm^3", detail=detail, slack=ROUNDING * expected)

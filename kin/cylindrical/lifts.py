@@ -1,0 +1,114 @@
+"""The intended lift over a turn as a row of cubics, for many angles at a time, and proved bounds of its derivatives."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.bounds import cubic_cells
+from kin.numeric.angles import TURN
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from kin.law.piecewise import Piecewise
+    from kin.numeric.arrays import Array
+
+NEAR = 1e-10  # mm: cubics are proved to be so near the law
+BINS = 2048  # parts of a turn, of each of which the greatest second derivative is known
+VELOCITY = 1e-9  # mm per rad: a jump of the velocity below this is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Lifts:
+    """A law of period 2 pi, mm over rad, with its cubics. Raises UnsettledError, when asked, for one too rough."""
+
+    law: Piecewise
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Angles (m + 1,), rad, from 0 to 2 pi, between which the law is all but a cubic."""
+        return cubic_cells(self.law, self.law.breaks, NEAR)
+
+    @cached_property
+    def _cubics(self) -> Array:
+        """Coefficients (4, m) of the cubics through value and slope at both ends of each cell."""
+        low, high = self.nodes[:-1], self.nodes[1:]
+        (f, g), (f1, g1) = self.law.derivatives(low, 1, 1), self.law.derivatives(high, 1, -1)
+        h = high - low
+        rise = (f1 - f) / h
+        cubics: Array = np.stack([f, g, (3.0 * rise - 2.0 * g - g1) / h, (g + g1 - 2.0 * rise) / h**2])
+        return cubics
+
+    def at(self, theta: Array) -> tuple[Array, Array, Array]:
+        """Lift, mm, its slope and bend (n,) each, per rad and rad^2, at angles (n,), rad, of any turn."""
+        folded = theta - TURN * np.floor(theta / TURN)
+        cell = np.minimum(np.searchsorted(self.nodes, folded, side="right") - 1, len(self.nodes) - 2)
+        x = folded - self.nodes[cell]
+        a, b, c, d = (row[cell] for row in self._cubics)
+        return a + x * (b + x * (c + x * d)), b + x * (2.0 * c + 3.0 * x * d), 2.0 * c + 6.0 * x * d
+
+    @cached_property
+    def _enclosed(self) -> tuple[Array, Array]:
+        """Lower and upper bounds (3, m) of lift, slope and bend over the cells."""
+        mid, rad = self.law.enclosure(self.nodes[:-1], self.nodes[1:], 2)
+        return mid - rad, mid + rad
+
+    @cached_property
+    def steepest(self) -> float:
+        """Upper bound of the magnitude of the slope, mm per rad."""
+        low, high = self._enclosed
+        return float(max(-low[1].min(), high[1].max()))
+
+    @cached_property
+    def stroke(self) -> float:
+        """Greatest less least lift, mm, as far as the cells' ends tell it."""
+        return float(np.ptp(self._cubics[0]))
+
+    @cached_property
+    def corners(self) -> Array:
+        """Angles (k,), rad, at which the velocity jumps."""
+        if not len(self.law.breaks):
+            return np.empty(0)
+        at, jumps = self.law.jumps(1)
+        corners: Array = at[np.abs(jumps[1]) > VELOCITY]
+        return corners
+
+    @cached_property
+    def jump(self) -> float:
+        """Greatest jump of the velocity, mm per rad."""
+        return float(np.abs(self.law.jumps(1)[1][1]).max()) if len(self.corners) else 0.0
+
+    def bends(self, side: int) -> Array:
+        """Upper bounds (BINS,) of side times the bend, mm per rad^2, over each part of a turn, beside its corners."""
+        return self._greatest(side, 2)
+
+    def bends_near(self, side: int, reach: float) -> Array:
+        """The same over parts that are longer by `reach`, rad, at both ends; infinite where the velocity jumps."""
+        bins = self.bends(side)
+        bins[np.floor(self.corners * (BINS / TURN)).astype(np.intp) % BINS] = np.inf
+        return widened(bins, reach)
+
+    def highest_near(self, side: int, reach: float) -> Array:
+        """Upper bounds (BINS,) of side times the lift, mm, over parts that are longer by `reach`, rad, at both ends."""
+        return widened(self._greatest(side, 0), reach)
+
+    def _greatest(self, side: int, order: int) -> Array:
+        """Upper bounds (BINS,) of side times a derivative over each part of a turn."""
+        low, high = self._enclosed
+        row = high[order] if side > 0 else -low[order]
+        width = TURN / BINS
+        first = np.minimum(np.floor(self.nodes[:-1] / width).astype(np.intp), BINS - 1)
+        last = np.minimum(np.floor(self.nodes[1:] / width).astype(np.intp), BINS - 1)
+        bins = np.full(BINS, -np.inf)
+        for step in range(int((last - first).max()) + 1):
+            np.maximum.at(bins, np.minimum(first + step, last), row)
+        return bins
+
+
+def widened(bins: Array, reach: float) -> Array:
+    """Greatest of the parts of a turn (BINS,) within `reach`, rad, of each."""
+    more = min(int(reach * (BINS / TURN)) + 1, BINS // 2 - 1)
+    padded = np.concatenate([bins[-more:], bins, bins[:more]])
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * more + 1).max(axis=1))

@@ -1,0 +1,52 @@
+"""The exact volume of a drum: the blank less what rollers sweep, by quadrature over the cylinders that flanks reach."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.nearest import signed_distance
+from kin.cylindrical.intent import Groove, Rib
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.intent import DrumIntent
+
+ANGLES = 1440  # of a turn
+RADII = 16  # by Gauss' rule from the floor to the blank
+
+
+def exact_volume(drum: DrumIntent, gauges: tuple[Gauge, ...]) -> float:
+    """Volume, mm^3, of a drum with the envelopes of all rollers as its flanks, trimmed where they are undercut."""
+    bore = 0.0 if drum.bore is None else drum.bore.contour.area
+    floor, radius, length = drum.floor, drum.radius, drum.length
+    below = [_below(drum, gauge) for gauge in gauges]
+    # what lies within the floor is as long as the blank; where flanks go down to the bore, there is nothing
+    core = 0.0 if drum.track.depth is None else (math.pi * floor**2 - bore) * length
+    area = math.pi * (radius**2 - floor**2) if core else math.pi * radius**2 - bore
+    if isinstance(drum.track, Groove):
+        return core + area * length - (below[1] - below[0])
+    if isinstance(drum.track, Rib):
+        return core + below[0] - below[1]
+    return core + (below[0] if drum.track.facing == "top" else area * length - below[0])
+
+
+def _below(drum: DrumIntent, gauge: Gauge) -> float:
+    """Volume, mm^3, from z = 0 up to a flank, between floor and blank, without what the bore takes of it."""
+    floor, radius = drum.floor, drum.radius
+    shares, weights = np.polynomial.legendre.leggauss(RADII)
+    r = 0.5 * (floor + radius) + 0.5 * (radius - floor) * shares
+    phi = np.arange(ANGLES) * (TURN / ANGLES)
+    x, y = np.cos(phi)[:, None] * r, np.sin(phi)[:, None] * r
+    points = np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)
+    height = gauge.side * gauge.worst(points).height.reshape(x.shape)
+    volume = float((height @ (weights * r)).sum()) * 0.5 * (radius - floor) * (TURN / ANGLES)
+    if drum.bore is None or drum.track.depth is not None:
+        return volume
+    # a keyway reaches beyond the nearest point of the bore: its area, times the mean height over it
+    keyed = drum.bore.contour.area - math.pi * floor**2
+    own = signed_distance(drum.bore.contour.as_arcs()[0], points[:, :2]) < 0.0
+    return volume - keyed * float(height.ravel()[own].mean()) if own.any() else volume

@@ -1,0 +1,1 @@
+"""Distance and interference between moving plane bodies, proved over the turn, and the metal of printed bodies."""

@@ -1,0 +1,88 @@
+# needs: cylindrical
+"""Random cylindrical cams, whose developments are held against rollers at all angles by positions alone; and slips."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+from capabilities.cylindrical.made_drums import random_drum
+from capabilities.cylindrical.positions import Lift, envelope
+from support.heavy import ezdxf
+
+from attacks.outcome import Attack
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from random import Random
+
+    from attacks.outcome import Done
+
+SLIPS = (
+    ("radius:", "raduis:"),
+    ("depth", "deep"),
+    ("over: ", "over: 1e9"),
+    ("pitch_height: ", "pitch_height: -"),
+    ("rotation: cw", "rotation: left"),
+    ("length: ", "length: 1e-9"),
+    ("law: cycloidal", "law: linear"),
+    ("bore: ", "bore: 9"),
+    ("radius: ", "radius: 0"),
+)
+
+
+def turned(rng: Random, number: int) -> Attack:
+    """A random drum: the development at the blank is what all rollers leave there."""
+    inch, ccw = rng.random() < 0.5, rng.random() < 0.5
+    track = rng.choice(["groove", "rib", "top", "bottom"])
+    text, rows = random_drum(rng, track, inch=inch, ccw=ccw, undercut=False)
+    text = text.replace("files: [stl]", "files: [{dxf: {at: [outer]}}, csv]")
+
+    def judge(done: Done, folder: Path) -> list[str]:
+        if done.status:
+            return [] if done.status in {1, 2} else [f"verdict: {done.err[:200]}"]
+        return wrong(folder, text, rows)
+
+    return Attack(f"drum {number}", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2), judge)
+
+
+def slipped(rng: Random, number: int) -> Attack:
+    """A random drum with a slip in it: it is refused, or made, and nothing is half written."""
+    text, _ = random_drum(rng, rng.choice(["groove", "rib", "top"]), inch=False, ccw=False, undercut=False)
+    old, new = rng.choice([slip for slip in SLIPS if slip[0] in text])
+    text = text.replace("files: [stl]", "files: [csv]").replace(old, new, 1)
+    return Attack(f"slipped drum {number}", ("check", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2))
+
+
+def number_after(text: str, key: str) -> float:
+    """First number behind a key."""
+    return float(re.split(r"[\s,}\]]", text.split(key, 1)[1], maxsplit=1)[0])
+
+
+def wrong(folder: Path, text: str, rows: list[tuple]) -> list[str]:
+    """Lines of a development that are not what rollers leave on the blank, within ten tolerances of their own."""
+    mm = 25.4 if "units: inch" in text else 1.0
+    level_at_0, tolerance = (number_after(text, f"{key}: ") * mm for key in ("pitch_height", "tolerance"))
+    _, blank, touching, *_ = text.split("radius: ")
+    radius, roller = (number_after(f"radius: {part}", "radius: ") * mm for part in (blank, touching))
+    found, lift = [], Lift(rows)
+    for line in ezdxf.readfile(next(folder.rglob("*.dxf"))).modelspace().query("LWPOLYLINE"):
+        layer = line.dxf.layer
+        if not layer.endswith(("LOWER", "UPPER")):
+            continue
+        x, z = np.array(line.get_points("xy")).T * mm
+        side = -1 if layer.endswith("LOWER") else 1
+        more = 0.0
+        if "clearance: " in text and side > 0:
+            more = number_after(text, "clearance: ") * mm
+        level = level_at_0
+        if "distance: " in text:
+            level -= 0.5 * side * number_after(text, "distance: ") * mm
+        phi = (-x if "rotation: ccw" in text else x) / radius
+        wanted, _ = envelope(lift, side, roller + more, np.full_like(phi, radius), np.mod(phi, 2.0 * math.pi))
+        off = float(np.abs(z - level - wanted).max())
+        if off > 10.0 * tolerance:
+            found.append(f"flank: {layer} is off by {off:.4g} mm")
+    return found

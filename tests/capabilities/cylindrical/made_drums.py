@@ -1,0 +1,111 @@
+"""Recipes of drums for tests: one to begin with, changes of it, and random ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from camgeo.capabilities.cylindrical.exact import designed
+from camgeo.capabilities.cylindrical.reading import read_cylindrical
+from camgeo.common.clock import Clock
+from camgeo.schema.yaml_source import read_source
+
+if TYPE_CHECKING:
+    from random import Random
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.keys import DrumRecipe
+
+MOTION = (
+    "[{rise: 40, over: 120, law: cycloidal}, {dwell: 60}, {return: 40, over: 120, law: polynomial-345}, {dwell: 60}]"
+)
+GROOVE = f"""cam:
+  kind: cylindrical
+  radius: 50
+  track: {{groove: {{depth: 12.5}}}}
+  follower: {{radius: 10, from: 38}}
+  pitch_height: 20
+  motion: {MOTION}
+part: {{length: 80, bore: 24, keyway: din6885}}
+export: {{tolerance: 0.02, files: [stl]}}
+"""
+RIB = GROOVE.replace("groove: {depth: 12.5}", "rib: {distance: 50, depth: 12}").replace(", from: 38", "")
+RIB = RIB.replace("pitch_height: 20", "pitch_height: 40").replace("length: 80", "length: 125")
+TOP = GROOVE.replace("groove: {depth: 12.5}", "end: top")
+BOTTOM = GROOVE.replace("groove: {depth: 12.5}", "end: bottom")
+UNDERCUT = """cam:
+  kind: cylindrical
+  radius: 40
+  track: {groove: {depth: 20}}
+  follower: {radius: 12}
+  pitch_height: 25
+  undercut: shorten
+  motion:
+    [{rise: 15, over: 60, law: cycloidal}, {dwell: 120}, {return: 15, over: 60, law: cycloidal}, {dwell: 120}]
+part: {length: 65}
+export: {tolerance: 0.05, files: [stl]}
+"""
+"""Drums of the worked cases: a groove, its rib and end cams, and one that is undercut near its floor."""
+LAWS = ("cycloidal", "polynomial-345", "polynomial-4567")
+
+
+def changed(text: str, *pairs: tuple[str, str]) -> str:
+    """Text with the first of each pair replaced by the second; each has to be there."""
+    for old, new in pairs:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
+
+def recipe_of(text: str, name: str = "drum.yaml") -> DrumRecipe:
+    """Recipe of a text."""
+    return read_cylindrical(read_source(text.encode(), name), Path(name))
+
+
+def design_of(text: str) -> DrumDesign:
+    """Exact drum of a text."""
+    return designed(recipe_of(text), Clock())
+
+
+def random_drum(rng: Random, track: str, *, inch: bool, ccw: bool, undercut: bool) -> tuple[str, list[tuple]]:
+    """Text of a random recipe, and its motion as rows (kind, stroke in mm, degrees, law) for `positions.Lift`.
+
+    An undercut drum has a large roller and a sharp motion.
+    """
+    mm = 25.4 if inch else 1.0
+    radius = rng.uniform(35, 60)
+    roller = rng.uniform(0.2, 0.27) * radius if undercut else rng.uniform(0.1, 0.18) * radius
+    depth = rng.uniform(0.35, 0.45) * radius if undercut else rng.uniform(0.12, 0.25) * radius
+    strokes = [rng.uniform(0.25, 0.4) * radius] if undercut else [rng.uniform(0.2, 0.8) * radius]
+    over = rng.uniform(55, 65) if undercut else rng.uniform(100, 150)
+    back = rng.uniform(60, 75) if undercut else rng.uniform(100, 140)
+    rest = rng.uniform(0.3, 0.7) * (360 - over - back)
+    up, down = rng.choice(LAWS), rng.choice(LAWS)
+    (stroke,) = strokes
+    motion = [("rise", stroke, over, up), ("dwell", 0.0, rest, ""), ("return", stroke, back, down)]
+    motion.append(("dwell", 0.0, 360 - over - rest - back, ""))
+    rows = ", ".join(
+        f"{{dwell: {a!r}}}" if kind == "dwell" else f"{{{kind}: {s / mm!r}, over: {a!r}, law: {law}}}"
+        for kind, s, a, law in motion
+    )
+    distance = 2.0 * roller + rng.uniform(0.8, 1.5) * radius
+    clearance = rng.choice([0.0, rng.uniform(0.01, 0.1)])
+    low = roller + rng.uniform(3, 9) + (0.5 * distance if track == "rib" else 0.0)
+    level = low + 0.0
+    length = level + stroke + low + rng.uniform(0, 5)
+    own = {
+        "groove": f"{{groove: {{depth: {depth / mm!r}, clearance: {clearance / mm!r}}}}}",
+        "rib": f"{{rib: {{distance: {distance / mm!r}, depth: {depth / mm!r}}}}}",
+        "top": "{end: top}",
+        "bottom": "{end: bottom}",
+    }[track]
+    begins = f", from: {(radius - depth + 0.5) / mm!r}" if track in {"top", "bottom"} else ""
+    bore = 2.0 * rng.uniform(0.3, 0.6) * (radius - depth) / mm
+    return (
+        f"units: {'inch' if inch else 'mm'}\nrotation: {'ccw' if ccw else 'cw'}\n"
+        f"cam:\n  kind: cylindrical\n  radius: {radius / mm!r}\n  track: {own}\n"
+        f"  follower: {{radius: {roller / mm!r}{begins}}}\n  pitch_height: {level / mm!r}\n"
+        f"  undercut: {'shorten' if undercut else 'refuse'}\n  motion: [{rows}]\n"
+        f"part: {{length: {length / mm!r}, bore: {bore!r}}}\n"
+        f"export: {{tolerance: {rng.choice([0.1, 0.05, 0.02]) / mm!r}, files: [stl]}}\n"
+    ), motion

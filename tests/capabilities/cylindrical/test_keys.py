@@ -1,0 +1,156 @@
+"""Faults of a cylindrical cam's recipe: each names its line, its field and a change that helps.
+
+Holds: camgeo.capabilities.cylindrical.reading, camgeo.capabilities.cylindrical.keys,
+camgeo.capabilities.cylindrical.refused.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+from capabilities.cylindrical.made_drums import (
+    BOTTOM,
+    GROOVE,
+    RIB,
+    TOP,
+    UNDERCUT,
+    changed,
+    design_of,
+    recipe_of,
+)
+
+import camgeo
+from camgeo.capabilities.cylindrical.checks_of import walls
+from camgeo.recipe.recipe import load_text
+from camgeo.recipe.starter import starter
+from camgeo.schema.errors import RecipeErrors
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+REFUSE = changed(UNDERCUT, ("shorten", "refuse"))
+_THEN = ", law: cycloidal}, {dwell:"
+REFUSED = [
+    (GROOVE, ("radius: 50", "rdius: 50"), "cam.rdius: unknown key; did you mean radius?"),
+    (GROOVE, ("kind: cylindrical", "kind: cylindrical\n  turns: 3"), "cam.turns: not made yet; leave it out"),
+    (GROOVE, ("radius: 10,", "radius: 10, arm: {length: 80},"), "cam.follower.arm: not made yet; leave it out"),
+    (GROOVE, ("radius: 10,", "radius: 10, offset: 6,"), "cam.follower.offset: not made yet; leave it out"),
+    (GROOVE, ("radius: 10,", "kind: cone, radius: 10,"), "beside the axis or with a cone is not made yet"),
+    (GROOVE, ("[stl]", "[step]"), "step is not made yet of a cylindrical cam; give stl, 3mf or ply"),
+    (GROOVE, ("export:", "manufacture: {cutter: 20}\nexport:"), "manufacture: not made yet; leave it out"),
+    (GROOVE, ("bore: 24", "flat: 20, bore: 24"), "part.flat: unknown key; the keys here are"),
+    (GROOVE, ("bore: 24", "hub: {diameter: 30}, bore: 24"), "part.hub: unknown key"),
+    (GROOVE, ("bore: 24", "chamfer: 1, bore: 24"), "part.chamfer: unknown key"),
+    (GROOVE, ("bore: 24, ", ""), "part.keyway: needs part.bore: a keyway is cut into a bore; give part.bore"),
+    (GROOVE, ("from: 38", "from: 37.5"), "the roller's end stands on the floor, given 37.5 mm; give more than 37.5 mm"),
+    (GROOVE, ("from: 38", "from: 37.6"), None),
+    (GROOVE, ("from: 38", "from: 40, to: 39"), "the roller bears nowhere; let it bear between 37.5 mm and 50 mm"),
+    (GROOVE, ("depth: 12.5", "depth: 41"), "give less than 40 mm, or a smaller roller"),
+    (GROOVE, ("depth: 12.5", "depth: 12.5, clearance: 30"), "of the floor, given 30 mm; give less than 27.5 mm"),
+    (RIB, ("distance: 50", "distance: 20"), "give more than 20 mm, and the rib's thickness"),
+    (TOP, (", from: 38", ""), "cam.follower.from: missing, needed with an end face"),
+    (TOP, ("from: 38", "from: 9"), "give more than 10.5 mm, or a smaller roller"),
+    (TOP, ("length: 80", "length: 20"), "give more than 50 mm, or less than 10 mm"),
+    (TOP, ("length: 80", "length: 9"), None),
+    (BOTTOM, ("pitch_height: 20", "pitch_height: -20"), "give more than -10 mm"),
+    (GROOVE, ("{groove: {depth: 12.5}}", "{groove: {depth: 9}, end: top}"), "cam.track"),
+    (GROOVE, ("{dwell: 60}", "{dwell: 61}"), "a track of several turns is not made yet"),
+    (GROOVE, (", {dwell: 60}]", "]"), "let them cover the whole turn, 360 degrees"),
+    (GROOVE, ("return: 40", "return: 39"), "the motion does not join"),
+    (GROOVE, ("[stl]", "[{dxf: {at: [36]}}]"), "no flank there, given 36 mm; give one from 37.5 mm to 50 mm"),
+    (GROOVE, ("[stl]", "[{dxf: {at: [50]}}]"), None),
+    (GROOVE, ("[stl]", "[{dxf: {at: [outer, 40, 40]}}]"), "the same radius twice"),
+    (GROOVE, ("[stl]", "[{csv: {as: flank, step: 1e-9}}]"), "step: below 0.001, given 1e-9; give an angle from 0.001"),
+    (GROOVE, ("[stl]", "[{csv: {as: flank, step: 0.001}}]"), None),
+    (GROOVE, ("[stl]", "[{dxf: {as: arcs}}]"), "give development"),
+    (GROOVE, ("export:", "limits: {velocity: {at_most: 9}}\nexport:"), "velocity needs cam.drive.rpm; give that"),
+    (GROOVE, ("export:", "limits: {rib-thickness: {at_least: 9}}\nexport:"), "rib-thickness needs a rib"),
+    (GROOVE, ("export:", "limits: {undercut-radius: {at_most: 9}}\nexport:"), "needs undercut: shorten"),
+    (UNDERCUT, ("export:", "limits: {mating-radius: {at_least: 9}}\nexport:"), "needs undercut: refuse"),
+    (GROOVE, ("  motion", "  drive: {material: steel}\n  motion"), "cannot stand without load; give load beside it"),
+    (GROOVE, ("part:", "linkage: {kind: four-bar}\npart:"), "a cylindrical cam takes no linkage; leave it out"),
+    (REFUSE, ("radius: 40", "radius: 40"), "the lower flank is undercut from the floor out to 29.338"),
+    (
+        UNDERCUT,
+        ("over: 60, law: cycloidal}, {dwell: 120}", "over: 9, law: cycloidal}, {dwell: 171}"),
+        "reach into one another",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "change", "wanted"), REFUSED, ids=lambda item: "" if item == GROOVE else None)
+def test_a_fault_names_its_remedy(text: str, change: tuple[str, str], wanted: str | None) -> None:
+    """A row without words is a neighbour that is taken."""
+    text = changed(text, change)
+    if wanted is None:
+        design_of(text)
+        return
+    with pytest.raises(RecipeErrors) as error:
+        design_of(text)
+    assert wanted in str(error.value)
+    assert re.match(r"drum\.yaml:\d+:\d+: ", str(error.value))
+
+
+@pytest.mark.slow
+def test_remedies_of_an_undercut_hold() -> None:
+    """A smaller roller, a shallower groove and a shortened contact each give a drum; a bit less of either does not."""
+    with pytest.raises(RecipeErrors) as error:
+        design_of(REFUSE)
+    radius, depth = re.findall(r"at most ([\d.]+) mm", str(error.value))
+    assert "or let contact begin farther out: undercut: shorten" in str(error.value)
+    for old, new, beyond in (
+        ("radius: 12", f"radius: {radius}", f"radius: {1.003 * float(radius)}"),
+        ("depth: 20", f"depth: {depth}", f"depth: {1.003 * float(depth)}"),
+    ):
+        design_of(changed(REFUSE, (old, new)))
+        with pytest.raises(RecipeErrors):
+            design_of(changed(REFUSE, (old, beyond)))
+    design_of(UNDERCUT)
+
+
+@pytest.mark.parametrize("word", ["barrel", "drum"])
+def test_other_words_for_the_kind(word: str, tmp_path: Path) -> None:
+    path = tmp_path / "it.yaml"
+    path.write_text(changed(GROOVE, ("kind: cylindrical", f"kind: {word}")), "utf-8")
+    with pytest.raises(RecipeErrors) as error:
+        camgeo.load(path)
+    assert str(error.value).endswith(f"cam.kind: not one of the choices, given '{word}'; give cylindrical")
+    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-rib and cylindrical-end"):
+        starter(word)
+
+
+def test_defaults_and_units() -> None:
+    recipe = recipe_of(changed(GROOVE, (", from: 38", "")))
+    assert (recipe.floor, recipe.roller.inner, recipe.roller.outer) == (37.5, 38.0, 50.0)
+    inches = recipe_of(
+        changed("units: inch\n" + GROOVE, ("radius: 50", "radius: 2"), ("depth: 12.5", "depth: 0.5"))
+        .replace("radius: 10, from: 38", "radius: 10 mm")
+        .replace("pitch_height: 20", "pitch_height: 20 mm")
+        .replace("40, over", "40 mm, over")
+        .replace("bore: 24", "bore: 24 mm")
+        .replace("length: 80", "length: 80 mm")
+    )
+    assert inches.radius == pytest.approx(50.8)
+    assert inches.roller.inner == pytest.approx(0.5 * 76.2 + 0.5)
+    assert recipe_of(changed(GROOVE, ("[stl]", "[dxf]"))).export.files[0].as_ == "development"
+    assert [request.kind for request in recipe_of(GROOVE[: GROOVE.index("export")]).export.files] == ["stl"]
+
+
+def test_a_drum_is_no_disc() -> None:
+    with pytest.raises(RecipeErrors, match="a cylindrical cam is no disc cam; export, check and verify take it"):
+        load_text(GROOVE, "drum.yaml")
+
+
+def test_walls_of_every_track() -> None:
+    """What is left beside the track, and round the bore, is a check: the thinnest wall is named."""
+    assert min(walls(design_of(GROOVE)))[0] == pytest.approx(10.0)
+    groove = {where: wall for wall, where in walls(design_of(GROOVE))}
+    assert groove["between the bore and the floor"] == pytest.approx(37.5 - math.hypot(12 + 3.3, 4))
+    assert {b: a for a, b in walls(design_of(RIB))}["between the rib and the upper face"] == pytest.approx(
+        125 - (40 + 25 + 40 - 10)
+    )
+    assert min(walls(design_of(BOTTOM)))[0] == pytest.approx(10.0)
+    assert {b: a for a, b in walls(design_of(TOP))}["between the flank and the lower face"] == pytest.approx(10.0)

@@ -1,0 +1,135 @@
+"""The page of a cylindrical cam: what it draws is where brute force has it, and its script draws the same.
+
+Holds: camgeo.capabilities.cylindrical.shells, camgeo.capabilities.cylindrical.turning,
+camgeo.capabilities.cylindrical.charts.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from capabilities.cylindrical.made_drums import GROOVE, RIB, TOP, UNDERCUT, changed, design_of
+from capabilities.cylindrical.positions import Lift, envelope
+from support.browser import Browser, executable
+
+import camgeo
+from camgeo.capabilities.cylindrical.charts import development, pressure_map
+from camgeo.capabilities.cylindrical.shells import near, shell
+from camgeo.capabilities.cylindrical.turning import scene
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+
+LIFT = Lift([("rise", 40, 120, "cycloidal"), ("dwell", 0, 60, ""), ("return", 40, 120, "polynomial-345")])
+SMALL = Lift([("rise", 15, 60, "cycloidal"), ("dwell", 0, 120, ""), ("return", 15, 60, "cycloidal")])
+CCW = changed(GROOVE, ("cam:\n", "rotation: ccw\ncam:\n"))
+
+
+def edges(design: DrumDesign, radius: float, turn: float) -> tuple[np.ndarray, np.ndarray]:
+    """Places to the right, and heights there, of the lower flank on a cylinder as it is seen."""
+    outline = near(shell(design, radius), turn)[0]
+    return tuple(outline[len(outline) // 2 :].T)
+
+
+@pytest.mark.parametrize(("text", "sign"), [(GROOVE, 1.0), (CCW, -1.0)])
+def test_the_drum_is_seen_turned(text: str, sign: float) -> None:
+    """At a shaft angle of 75 degrees a place x to the right has the polar angle 75 degrees and asin(x/r)."""
+    theta = math.radians(75.0)
+    x, z = edges(design_of(text), 50.0, sign * theta)
+    phi = theta + sign * np.arcsin(np.clip(x / 50.0, -1.0, 1.0))
+    wanted = 20.0 + envelope(LIFT, -1, 10.0, np.full_like(x, 50.0), phi)[0]
+    np.testing.assert_allclose(z, wanted, atol=0.02)
+    assert np.ptp(z) > 30.0
+
+
+@pytest.mark.costly("what is cut away of a drum is sought on many cylinders")
+def test_a_drum_is_shown_without_what_is_cut_away() -> None:
+    design = design_of(UNDERCUT)
+    x, z = edges(design, 22.0, 0.9)
+    phi = 0.9 + np.arcsin(np.clip(x / 22.0, -1.0, 1.0))
+    wanted = 25.0 + envelope(SMALL, -1, 12.0, np.full_like(x, 22.0), phi)[0]
+    np.testing.assert_allclose(z, wanted, atol=0.03)
+    assert 'class="line lost"' in development(design)
+    assert "<title>undercut</title>" in pressure_map(design)
+
+
+def numbers(path: str) -> np.ndarray:
+    return np.array(re.findall(r"-?[\d.]+", path), dtype=float).reshape(-1, 2)
+
+
+def test_places_of_the_development() -> None:
+    """Px by hand: 364 px are the turn of 314.159 mm; at 30 degrees a cycloid has risen by 40 (1/4 - 1/(2 pi))."""
+    drawn = development(design_of(GROOVE))
+    (path,) = re.findall(r'class="line pitch" d="([^"]+)"', drawn)
+    x, y = numbers(path)[30]
+    scale = 364.0 / (100.0 * math.pi)
+    z = 20.0 + 40.0 * (0.25 - 1.0 / (2.0 * math.pi))
+    assert [x, y] == pytest.approx([46.0 + 364.0 / 12.0, 8.0 + scale * (80.0 - z)], abs=0.0501)
+    assert "line lost" not in drawn
+
+
+def test_cells_of_the_map() -> None:
+    """By hand: at 40 degrees S' = 60/pi (1 - cos 120) = 28.65 mm, so 36.5 degrees at 38.7 and 30.7 at 48.3 mm."""
+    drawn = pressure_map(design_of(GROOVE))
+    shown = {}
+    for path, title in re.findall(r'class="cell[^"]*" [^>]*d="([^"]+)"><title>([^<]+)', drawn):
+        for run in re.findall(r"M([\d.]+) ([\d.]+)h([\d.]+)v", path):
+            x, y, wide = map(float, run)
+            shown.update(
+                {
+                    (round((x - 46.0) * 180 / 364) + k, round((y - 8.0) * 16 / 150)): title
+                    for k in range(round(wide * 180 / 364))
+                }
+            )
+    slope = 60.0 / math.pi
+    for degrees, row in ((21, 8), (41, 15), (41, 0), (59, 15), (59, 2), (101, 5)):
+        v = slope * (1.0 - math.cos(3.0 * math.radians(degrees)))
+        angle = math.degrees(math.atan2(v, 49.0 - (row + 0.5) * 11.0 / 16.0))
+        low = 10 * int(angle / 10.0)
+        assert shown[degrees // 2, row] == f"{low}° to {low + 10}°"
+    assert ">45.15°</text>" in drawn
+    assert 'cx="106.7" cy="158.0"' in drawn  # at 60 degrees, 38 mm
+
+
+def test_cells_above_a_limit() -> None:
+    limited = changed(GROOVE, ("export:", "limits: {pressure-angle: {at_most: 46}}\nexport:"))
+    assert "cell over" not in pressure_map(design_of(limited))
+    assert "cell over" in pressure_map(design_of(limited.replace("at_most: 46", "at_most: 44")))
+
+
+@pytest.mark.costly("a page with the drum on six cylinders")
+def test_a_page_shows_drum_and_map_and_asks_for_nothing(tmp_path: Path) -> None:
+    (tmp_path / "drum.yaml").write_text(changed(TOP, ("[stl]", "[html]")), encoding="utf-8")
+    assert camgeo.export(tmp_path / "drum.yaml", tmp_path / "out").ok
+    text = (tmp_path / "out" / "drum" / "drum.html").read_text("utf-8")
+    steepest = math.degrees(math.atan(2 * 40 / math.radians(120) / 38))  # a cycloidal rise at the inner end
+    assert f"{steepest:.2f}" in text
+    assert not re.search(r'(?:src|href)="(?!#|data:)[^"]*//', text)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(executable() is None, reason="no browser")
+@pytest.mark.parametrize("text", [GROOVE, RIB, CCW, UNDERCUT])
+def test_the_script_draws_the_same(tmp_path: Path, text: str) -> None:
+    """At an angle between the values that a page has, and at one of them."""
+    text = text.replace("files: [stl]", "files: [html]")
+    (tmp_path / "drum.yaml").write_text(text, encoding="utf-8")
+    page = camgeo.export(tmp_path / "drum.yaml", tmp_path).files[-1].path
+    with Browser(tmp_path / "profile") as browser:
+        for step in (0, 150, 301):
+            browser.open(page.as_uri() + f"#deg={0.5 * step}")
+            ask = '[...document.querySelectorAll("#drawing .drum path")].map((p) => p.getAttribute("d"))'
+            found = browser.ask(ask)
+            wanted = scene(design_of(text), step).bodies[0].shapes
+            for path, shape in zip(found, wanted, strict=True):
+                outlines = np.concatenate([ring.points for ring in shape.rings])
+                if shape.role != "fixed":
+                    np.testing.assert_allclose(numbers(path), outlines, atol=0.01)
+        assert not browser.problems
+        assert not [each for each in browser.requests if not each.startswith("file:")]

@@ -1,0 +1,102 @@
+"""Shop drawings of parts by chance: nothing over anything else, all within the frame, leaders clear of openings.
+
+Holds: camgeo.capabilities.sheet.callouts.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pytest
+from shapely.geometry import LineString, Polygon
+from support.random_parts import random_part
+from support.sheets import demand_clear
+
+import camgeo
+from camgeo.capabilities.sheet import drawing, views
+from camgeo.recipe.recipe import load_text
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.capabilities.sheet.part import DrawnDisc
+    from camgeo.capabilities.sheet.views import Layout
+
+TRIES = 12  # of a seed, until a part keeps its walls
+
+
+class Made(NamedTuple):
+    """A drawing that was made: its pages, the disc, the places of its views."""
+
+    pages: drawing.Pages
+    drawn: DrawnDisc
+    layout: Layout
+
+
+def made(seed: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Made:
+    """The drawing of the first part of a seed that is made."""
+    seen: dict[str, Any] = {}
+    lay_out, pages = views.lay_out, drawing._pages
+
+    def kept(drawn: DrawnDisc, *arguments: Any) -> Layout:
+        seen["drawn"], seen["layout"] = drawn, lay_out(drawn, *arguments)
+        return seen["layout"]
+
+    def paged(*arguments: Any, **options: Any) -> drawing.Pages:
+        seen["pages"] = pages(*arguments, **options)
+        return seen["pages"]
+
+    monkeypatch.setattr(drawing, "lay_out", kept)
+    monkeypatch.setattr(drawing, "_pages", paged)
+    for attempt in range(TRIES):
+        text = random_part(seed, attempt)
+        try:
+            camgeo.export(load_text(text, folder / f"p{attempt}.yaml"), folder)
+        except camgeo.RecipeErrors:
+            continue
+        if seen:
+            return Made(seen["pages"], seen["drawn"], seen["layout"])
+    raise AssertionError(f"no part of seed {seed} is made")
+
+
+def through_openings(made: Made) -> list[str]:
+    """Texts whose leaders run through an opening of the face, by the outlines of the openings."""
+    k, openings = made.layout.scale, [loop.points for loop in made.drawn.loops if loop.layer != "CUT"]
+    areas = [Polygon(k * points).buffer(-1e-3) for points in openings]
+    found = []
+    for callout in made.layout.callouts:
+        line = LineString(callout.leader)
+        # a chord of an opening lies within its circle by less than this
+        if any(line.intersection(area).length > 0.05 for area in areas):
+            found.append(callout.row.text)
+    return found
+
+
+def demand_sound(made: Made) -> None:
+    demand_clear(made.pages)
+    assert through_openings(made) == []
+    texts = [text.text for text in made.pages.annotated[0].texts if text.layer == "DIM" and text.text.startswith("Ø")]
+    about = [text for text in texts if " " not in text]
+    assert len(about) == len(set(about)), about
+
+
+@pytest.mark.costly("a property over parts by chance: three of them")
+@pytest.mark.parametrize("seed", range(3))
+def test_of_a_part_by_chance(seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    demand_sound(made(seed, tmp_path, monkeypatch))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(3, 80))
+def test_of_many_parts_by_chance(seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    demand_sound(made(seed, tmp_path, monkeypatch))
+
+
+@pytest.mark.costly("the first part by chance that is made")
+def test_a_planted_leader_through_an_opening_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = made(0, tmp_path, monkeypatch)
+    callouts = found.layout.callouts
+    x = found.layout.scale * found.drawn.reach
+    planted = [callouts[0]._replace(leader=np.array([(-x, 0.0), (x, 0.01)])), *callouts[1:]]
+    assert through_openings(found._replace(layout=found.layout._replace(callouts=planted))) == [callouts[0].row.text]

@@ -1,0 +1,68 @@
+"""What takes its time: its stage, its seconds and Stop stand at its button, and what was made before is marked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from support import tab
+
+import camgeo
+from camgeo.recipe.starter import starter
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(tab.why_not()), reason=tab.why_not())]
+
+# What is seen when the first stage is told, kept by the page itself: a call may be done before a test looks again.
+SEEN = """((id) => {
+  const button = byId(id).getBoundingClientRect();
+  const shown = ["busy", "stop"].map((one) => byId(one).getBoundingClientRect());
+  const inView = (one) => one.width && one.bottom <= innerHeight && one.top >= 0;
+  const near = shown.every((one) => inView(one) && Math.abs(one.top - button.top) < 120);
+  const bar = document.querySelector("#at-work progress");
+  return [near && bar.offsetWidth > 0 && !byId("stop").disabled, byId("judged").className, byId("busy").textContent];
+})"""
+WATCHED = f"""((id) => {{
+  window.seen = null;
+  const watch = new MutationObserver(() => {{
+    if (!byId("busy").textContent.includes(":")) return;
+    window.seen = {SEEN}(id);
+    watch.disconnect();
+  }});
+  watch.observe(byId("busy"), {{ childList: true }});
+}})"""
+
+
+# needs: follow
+def test_status_progress_and_stop_stand_at_the_button(page: tab.Tab, tmp_path: Path) -> None:
+    text = starter("disc-roller")
+    report = camgeo.export(camgeo.load(text), tmp_path, only=["dxf"])
+    try:
+        page.load("disc-roller", text)
+        page.drop("cam.dxf", (report.path / "recipe.dxf").read_bytes())
+        page.wait("!byId('with-file').hidden")
+        for name, words, width in (("verify", "judging", 1280), ("follow", "following", 390)):
+            page.browser.size(width, 800)
+            page.ask(f"byId('{name}').scrollIntoView({{block: 'center', behavior: 'instant'}})")
+            page.ask(f"{WATCHED}('{name}')")
+            page.click(name)
+            page.wait("window.seen !== null")
+            there, looks, told = page.ask("window.seen")
+            assert there
+            assert "older" in looks
+            assert told.startswith(words)
+            page.wait("!underWay")
+            assert "done in" in page.text_of("busy")
+            assert page.ask("byId('judged').className") == "tables"
+            assert page.text_of("since") == ""
+        page.click("follow")
+        assert "of the run before" in page.text_of("since")
+        page.click("stop")
+        page.wait("byId('busy').textContent === 'stopped'")
+        assert "of a run before" in page.text_of("since")
+        assert "older" in page.ask("byId('judged').className")
+        page.settle()
+    finally:
+        page.browser.size(1280, 800)
