@@ -20,7 +20,14 @@ import camgeo
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
-BROUGHT = {"PIL": "matplotlib", "_pytest": "pytest", "resvg_py": "resvg-py", "xdist": "pytest-xdist", "yaml": "PyYAML"}
+BROUGHT = {
+    "PIL": "matplotlib",
+    "fontTools": "fpdf2",
+    "_pytest": "pytest",
+    "resvg_py": "resvg-py",
+    "xdist": "pytest-xdist",
+    "yaml": "PyYAML",
+}
 """Modules that a distribution of another name brings."""
 SKIPPED = {"OCP"}
 """Modules without which tests are skipped: no test imports one that the line in README installs."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 _SHOWN = 60  # characters of a value that an error repeats
 NEAR, NEARER = 0.6, 0.75  # likeness from which a word is suggested, and from which it is taken for a misspelling
+SLIP = 0.9  # likeness of a word with one wrong letter
 MOST_ALIKE = 3  # faults that differ in their places alone and have a line each
 _LONGEST_WORD = 40  # characters of a word for which a near one is sought
 
@@ -103,9 +104,9 @@ def suggestion(word: str, words: Iterable[str], near: float = NEAR) -> str:
 
 
 def nearest_word(word: str, words: Iterable[str], near: float = NEAR) -> str:
-    """The known word that ends it, as harmonic does simple-harmonic, or the nearest of a likeness of `near` or more.
+    """The known word that differs by a slip, or that ends it, as harmonic does simple-harmonic, or the nearest one.
 
-    Empty without one.
+    `near` is the least likeness of the nearest; empty without one.
     """
     from difflib import get_close_matches  # for the message alone
 
@@ -113,4 +114,5 @@ def nearest_word(word: str, words: Iterable[str], near: float = NEAR) -> str:
         return ""
     known, given = list(words), word.lower()
     ending = [one for one in known if given.endswith(f"-{one}")]
-    return next(iter(ending or get_close_matches(given, known, n=1, cutoff=near)), "")
+    slip = get_close_matches(given, known, n=1, cutoff=SLIP)
+    return next(iter(slip or ending or get_close_matches(given, known, n=1, cutoff=near)), "")

@@ -12,6 +12,7 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 from camgeo.schema.yaml_source import comments
+from kin.numeric.errors import CamgeoError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ class Entry:
     comment: str = ""
 
 
-class NoPlaceError(ValueError):
+class NoPlaceError(CamgeoError, ValueError):
     """An entry whose beginning or end cannot be told from what stands around it."""
 
 

@@ -156,7 +156,7 @@ def test_it_is_made_and_judged_over_its_travel(copy: Path) -> None:
         (STRAIGHT.replace("over: 4", "over: 0"), "cam.motion[0].over: not above 0"),
         (STRAIGHT.replace("kind: rack", "kind: rak"), "did you mean rack?"),
         (
-            STRAIGHT.replace("kind: rack", "kind: drum"),
+            STRAIGHT.replace("kind: rack", "kind: worm"),
             "racks are made for a follower on a straight flank (rack); ",
         ),
     ],
@@ -164,7 +164,7 @@ def test_it_is_made_and_judged_over_its_travel(copy: Path) -> None:
 def test_words_that_it_does_not_take_are_refused_in_a_sentence(copy: Path, text: str, problem: str) -> None:
     told = fault(copy, text)
     assert problem in told
-    assert "drum" not in text or told.rstrip().endswith("; other cams are not made")
+    assert "worm" not in text or told.rstrip().endswith("; other cams are not made")
 
 
 @pytest.mark.slow

@@ -37,7 +37,9 @@ def scene(design: DrumDesign, step: int = 0) -> Scene:
     shapes = drum_shapes(design, shells(design), sense(design) * float(theta[step]))
     bodies = [MovingBody("drum", DRUM, tuple(shapes), still()), *_follower(design, lift, size)]
     bodies += [
-        MovingBody(f"contact {name}", CONTACTS, (FilledShape("force", (_arc(design, name, step),)),), poses(0, lift, 0))
+        MovingBody(
+            f"contact {name}", CONTACTS, (FilledShape("contact line", (_arc(design, name, step),)),), poses(0, lift, 0)
+        )
         for name in design.flanks
     ]
     way = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"

@@ -10,12 +10,16 @@ from camgeo.report.page.asset import asset
 
 
 class Look(NamedTuple):
-    """Names of the colours of fill and edge, empty for none; width of the edge in px, opacity of the fill, 0 to 1."""
+    """Colours of fill and edge by name, empty for none; width of the edge in px, opacity of the fill, 0 to 1.
+
+    A line with `round` ends is seen even where it has no length.
+    """
 
     fill: str
     edge: str
     width: float = 0.0
     opacity: float = 1.0
+    ends: str = ""
 
 
 LOOKS = {
@@ -41,6 +45,7 @@ LOOKS = {
     "force": Look("", "contact", 1.8),
     "force tip": Look("contact", ""),
     "force dot": Look("contact", ""),
+    "contact line": Look("", "contact", 5.0, ends="round"),
     "load": Look("", "load", 2.6),
     "load tip": Look("load", ""),
     "load dot": Look("load", ""),
@@ -51,7 +56,8 @@ def rules() -> str:
     """Return rules of CSS, one for each role, a line each; colours are variables, which differ on a dark page."""
     return "".join(
         f".drawing .{role.replace(' ', '.')} {{ fill: {_variable(look.fill)}; fill-opacity: {look.opacity}; "
-        f"stroke: {_variable(look.edge)}; stroke-width: {look.width}px; }}\n"
+        f"stroke: {_variable(look.edge)}; stroke-width: {look.width}px;"
+        f"{f' stroke-linecap: {look.ends};' if look.ends else ''} }}\n"
         for role, look in LOOKS.items()
     )
 
@@ -73,4 +79,6 @@ def literal(role: str, px: float) -> str:
     text = f'fill="{fill}" stroke="{edge}"'
     if look.edge:
         text += f' stroke-width="{look.width * px:.4g}"'
+    if look.ends:
+        text += f' stroke-linecap="{look.ends}"'
     return text if look.opacity == 1.0 or not look.fill else f'{text} fill-opacity="{look.opacity}"'
