@@ -21,7 +21,12 @@ import urllib.request
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+if TYPE_CHECKING:
+    from camgeo.api.shown import Shown
+    from camgeo.recipe.recipe import Order
 
 ROOT = Path(__file__).resolve().parents[1]
 WEB = ROOT / "web"
@@ -166,8 +171,17 @@ for name in sys.argv[2:]:
         live.answer(call, json.dumps({"name": name, "text": starter(name)}))
 print(*sys.modules)
 """
-    command = [sys.executable, "-c", program, str(WEB), *DESIGNED]
+    command = [sys.executable, "-c", program, str(WEB), *DESIGNED, *of_kinds()]
     return set(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split())
+
+
+def of_kinds() -> list[str]:
+    """Starters of kinds of cams with recipes of their own that the page shows."""
+    from camgeo.api.root import root_by_key
+    from camgeo.recipe.starter import STARTERS
+    from camgeo.registry.root import kinds
+
+    return [name for name, entry in STARTERS.items() if entry.root in kinds() and root_by_key(entry.root).shown]
 
 
 def packed() -> tuple[bytes, bytes]:
@@ -278,30 +292,53 @@ def entry_of(name: str) -> ZipInfo:
 
 
 def starters() -> list[dict[str, object]]:
-    """Starters and shipped recipes of single cams: name, task, title, text, tables that it names, and the picture."""
-    import camgeo
-    from camgeo.api.notebook import drawing
+    """Starters and shipped recipes of cams: name, task, title, text, tables that it names, and the picture."""
     from camgeo.recipe.starter import STARTERS, starter
     from camgeo.registry.root import CAM
 
     entries: list[dict[str, object]] = []
+    of_kind = of_kinds()
     for name, entry in STARTERS.items():
-        if entry.root == CAM and entry.kind:
+        if (entry.root == CAM and entry.kind) or name in of_kind:
             text = starter(name)
-            design = camgeo.design(camgeo.load(text))
-            picture = drawing(design.recipe, design.exact)
             words = {"title": entry.title, "task": entry.task or name, "also": entry.also}
-            entries.append({"name": name, **words, "text": text, "tables": {}, "picture": picture})
-    recipes = [(path, camgeo.load(path)) for path in sorted((ROOT / "recipes").glob("*.yaml"))]
-    recipes.sort(key=lambda pair: re.match(PAPER, pair[1].about or "") is not None)  # figures of papers come last
-    for path, recipe in recipes:
+            entries.append({"name": name, **words, "text": text, "tables": {}, "picture": drawing(text)})
+    for path, recipe in shipped():
         text = path.read_text("utf-8")
         named = {name: (path.parent / name).read_text("utf-8") for name in re.findall(r"[\w.-]+\.csv\b", text)}
         picture = (ROOT / "docs" / "gallery" / f"{path.stem}.svg").read_text("utf-8")
         words = {"title": recipe.about, "task": path.stem, "also": ""}
-        shipped = {"name": path.stem, **words, "text": text, "tables": named, "picture": picture}
-        entries.append({**shipped, "shipped": True})
+        one = {"name": path.stem, **words, "text": text, "tables": named, "picture": picture}
+        entries.append({**one, "shipped": True})
     return entries
+
+
+def shipped() -> list[tuple[Path, Order]]:
+    """Shipped recipes of cams that the page shows, each with its file; figures of papers come last."""
+    from camgeo.api.root import root_of
+    from camgeo.recipe.loading import load_order
+
+    pictured = {path.stem for path in (ROOT / "docs" / "gallery").glob("*.svg")}
+    paths = (path for path in sorted((ROOT / "recipes").glob("**/*.yaml")) if path.stem in pictured)
+    found = [(path, recipe) for path in paths if root_of(recipe := load_order(path)).shown is not None]
+    return sorted(found, key=lambda pair: re.match(PAPER, pair[1].about or "") is not None)
+
+
+def drawing(text: str) -> str:
+    """The cam of a recipe at the begin of its motion, as a picture by itself."""
+    return shown_of(text).still()
+
+
+def shown_of(text: str) -> Shown:
+    """The cam of a recipe as the page shows it."""
+    from camgeo.api.root import root_of
+    from camgeo.recipe.loading import load_order_text
+
+    recipe = load_order_text(text, "recipe.yaml")
+    shown = root_of(recipe).shown
+    if shown is None:
+        raise AssertionError(recipe)
+    return shown(recipe)
 
 
 def kinds(*contents: str) -> list[str]:
@@ -323,14 +360,16 @@ def scripts_of(names: list[str]) -> list[str]:
     return [*SCRIPTS, *(f"{name}.js" for name in names), LAST]
 
 
-def first_page(text: str) -> str:
+def judged_page(text: str) -> str:
     """The whole page of a recipe as `camgeo report` makes it."""
     import camgeo
+    from camgeo.schema.change import set_value
+    from camgeo.schema.yaml_source import Source
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{FIRST}.yaml"
-        path.write_text(text, "utf-8")
-        report = camgeo.export(path, Path(folder) / "out", only=("dxf", "html"))
+        path.write_text(set_value(Source.of(text, FIRST), "export.files", ["html"]), "utf-8")
+        report = camgeo.export(path, Path(folder) / "out")
         if report.path is None:
             raise AssertionError(report)
         return (report.path / f"{FIRST}.html").read_text("utf-8")
@@ -339,7 +378,8 @@ def first_page(text: str) -> str:
 def build(target: Path, pyodide: Path, wheel: Path) -> str:
     """Make the folder anew, and say how large it is."""
     import camgeo
-    from camgeo.report.page import looks, page
+    from camgeo.report.page import looks as looks_of_drawings
+    from camgeo.report.page import page
     from camgeo.report.page.asset import asset
 
     if target.exists() and not (target / "worker.js").is_file():
@@ -360,17 +400,19 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         )
     first = next(entry for entry in shown if entry["name"] == FIRST)
     text = str(first["text"])
-    judged = first_page(text)
+    cams = [text, *(str(entry["text"]) for entry in shown if entry["name"] in of_kinds())]
+    looks = dict.fromkeys(shown_of(cam).looks() for cam in cams)
     scene = dict(camgeo.design(camgeo.load(text)).scene())
     scene["name"] = FIRST
     here = with_parts()
-    style = asset("drawing.css") + looks.rules() + asset("page.css") + (WEB / "tab.css").read_text("utf-8")
+    rules = asset("drawing.css") + looks_of_drawings.rules() + asset("page.css") + "".join(own for own, _ in looks)
+    style = rules + (WEB / "tab.css").read_text("utf-8")
     files = {
         "camgeo.zip": code,
         "numpy.zip": numpy,
         "later.zip": joined([others(), late, rare, rare_of_numpy]),
         "tab.css": style.encode(),
-        "page.js": asset("page.js").encode(),
+        "page.js": "".join([asset("page.js"), *(code for _, code in looks)]).encode(),
         "licences.txt": licences().encode(),
         "starters.json": json.dumps(shown, ensure_ascii=False).encode(),
         **{name: (WEB / name).read_bytes() for name in ("worker.js", *scripts_of(here))},
@@ -379,7 +421,7 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         (target / name).write_bytes(data)
     frame = asset("page.html")
     parts = {
-        "policy": policy(judged),
+        "policy": policy([judged_page(cam) for cam in cams]),
         "stage": between(frame, '<div class="left">', '<section class="checks"'),
         "parts": "".join((WEB / f"{name}.html").read_text("utf-8") for name in here),
         "scripts": "".join(f'<script src="{name}?{{{{stamp:{name}}}}}" defer></script>\n' for name in scripts_of(here)),
@@ -397,19 +439,21 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     return f"{target}: {size / 1e6:.1f} MB"
 
 
-def policy(page: str) -> str:
-    """What the page may load, for its content security policy: its own files, and the judged page's style and script.
+def policy(pages: list[str]) -> str:
+    """What the page may load, for its content security policy: its own files, and style and script of judged pages.
 
-    That page stands in a frame, which takes the policy over, and its style and script are the same for every recipe.
+    Such a page stands in a frame, which takes the policy over, and its style and script are the same for every recipe
+    of its kind. `pages` has one of each kind.
     """
-    scripts = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
-    styles = re.findall(r"<style>(.*?)</style>", page, re.DOTALL)
-    (script,), (style,) = scripts, styles
+    allowed = dict[str, list[str]]()
+    for name in ("script", "style"):
+        found = [re.findall(rf"<{name}>(.*?)</{name}>", page, re.DOTALL) for page in pages]
+        allowed[name] = list(dict.fromkeys(hashed(text) for (text,) in found))
     return "; ".join(
         [
             "default-src 'none'",
-            f"script-src 'self' 'wasm-unsafe-eval' {hashed(script)}",
-            f"style-src 'self' {hashed(style)}",
+            f"script-src 'self' 'wasm-unsafe-eval' {' '.join(allowed['script'])}",
+            f"style-src 'self' {' '.join(allowed['style'])}",
             "img-src 'self' data: blob:",
             "connect-src 'self'",
             "worker-src 'self'",

@@ -105,6 +105,12 @@ class ShownKind(Shown):
         """Data of the mechanism."""
         return self.kind.picture(self._design)
 
+    def still(self) -> str:
+        """The kind's bodies, drawn once."""
+        from camgeo.report.page.svg import still
+
+        return still(self.kind.seen(self._design), 0, self.recipe.name)
+
     def scene(self) -> dict[str, Any]:
         """Data of the whole page."""
         return self.kind.scene(self._design)

@@ -60,6 +60,11 @@ class Root(Generic[R]):
 
 def root_of(recipe: R) -> Root[R]:
     """Functions of a recipe's kind."""
-    module = _OF_A_CAM if recipe.root == CAM else f"{registry.PACKAGE}.{folders()[recipe.root]}.root"
-    functions: Root[R] = import_module(module).ROOT
+    return root_by_key(recipe.root)
+
+
+def root_by_key(key: str) -> Root[Any]:
+    """Functions of a kind of recipe, by its key; raises KeyError for a key that no kind of recipe has."""
+    module = _OF_A_CAM if key == CAM else f"{registry.PACKAGE}.{folders()[key]}.root"
+    functions: Root[Any] = import_module(module).ROOT
     return functions

@@ -7,8 +7,6 @@ from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-
 from camgeo.common.errors import CallError
 
 if TYPE_CHECKING:
@@ -34,6 +32,10 @@ class Shown(ABC):
     @abstractmethod
     def picture(self) -> dict[str, Any]:
         """Data of a page that show and move the mechanism, before checks; empty where only `scene` has them."""
+
+    @abstractmethod
+    def still(self) -> str:
+        """The mechanism at the begin of its motion, as SVG by itself."""
 
     @abstractmethod
     def scene(self) -> dict[str, Any]:
@@ -85,6 +87,12 @@ class ShownCam(Shown):
             return {}
         drawn, _, relative = mechanism(self.recipe, sketched(self.recipe))
         return page.picture(self.recipe, drawn, relative, -1 if self.recipe.rotation == "cw" else 1)
+
+    def still(self) -> str:
+        """As a notebook shows it."""
+        from camgeo.api.notebook import drawing
+
+        return drawing(self.recipe, self._design.exact)
 
     @cached_property
     def _design(self) -> Design:
@@ -155,8 +163,3 @@ class ShownCam(Shown):
         with job.refusals(request):
             foresee(job, request)
         return [disc.standing for disc in cam_meshes(job, request)]
-
-
-def corners(meshes: Sequence[Mesh]) -> Array:
-    """Corners (n, 3, 3), mm, of the triangles of meshes."""
-    return np.concatenate([np.take(mesh.points, mesh.triangles, axis=0) for mesh in meshes])

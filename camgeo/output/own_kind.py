@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from camgeo.measures.rule_remark import RuleRemark
     from camgeo.motions.stated import StatedMotion
     from camgeo.recipe.recipe import Order
+    from camgeo.report.page.scene import Scene
     from kin.law.sources.motion import Kept
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
@@ -143,6 +144,7 @@ class OwnKind(Generic[D, V]):
     maker     function that makes and judges a file of a design: (request, path)
     judged    kin's verdict on a file
     pieces    number of pieces of a file by its verdict
+    seen      bodies to be drawn, over the kind's input
     picture   data of its script that show and move the mechanism: entries of `camgeo.report.page.page.picture`
     script    all data of its script, of a page without files too: (design, files)
     panels    HTML of its own panels: (design, report)
@@ -163,6 +165,7 @@ class OwnKind(Generic[D, V]):
     maker: Callable[[D, Clock], Callable[[FileRequest, Path], Made[V]]]
     judged: Judging[D, V]
     pieces: Callable[[V], int]
+    seen: Callable[[D], Scene]
     picture: Callable[[D], dict[str, Any]]
     script: Callable[[D, Sequence[Made[V]]], dict[str, Any]]
     panels: Callable[[D, dict[str, Any]], str]

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
     from camgeo.output.own_kind import Made
+    from camgeo.report.page.scene import Scene
     from kin.cylindrical.verdict import DrumVerdict
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
@@ -60,6 +61,12 @@ def _maker(design: DrumDesign, clock: Clock) -> Callable[[FileRequest, Path], Ma
 
 def _pieces(verdict: DrumVerdict) -> int:
     return sum(flank.triangles or 0 for flank in verdict.flanks)
+
+
+def _seen(design: DrumDesign) -> Scene:
+    from camgeo.capabilities.cylindrical.turning import scene
+
+    return scene(design)
 
 
 def _picture(design: DrumDesign) -> dict[str, Any]:
@@ -113,6 +120,7 @@ DRUMS = OwnKind(
     maker=_maker,
     judged=judged_file,
     pieces=_pieces,
+    seen=_seen,
     picture=_picture,
     script=_script,
     panels=_panels,

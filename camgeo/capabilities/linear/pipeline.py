@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
     from camgeo.output.own_kind import Made
+    from camgeo.report.page.scene import Scene
     from kin.linear.verdict import PlateVerdict
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
@@ -59,6 +60,12 @@ def _maker(design: LinearDesign, clock: Clock) -> Callable[[FileRequest, Path], 
 
 def _pieces(verdict: PlateVerdict) -> int:
     return sum(flank.pieces or 0 for flank in verdict.flanks)
+
+
+def _seen(design: LinearDesign) -> Scene:
+    from camgeo.capabilities.linear.plate_page import scene
+
+    return scene(design)
 
 
 def _picture(design: LinearDesign) -> dict[str, Any]:
@@ -104,6 +111,7 @@ PLATES = OwnKind(
     maker=_maker,
     judged=judged_file,
     pieces=_pieces,
+    seen=_seen,
     picture=_picture,
     script=_script,
     panels=_panels,
