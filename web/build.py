@@ -18,11 +18,14 @@ import subprocess
 import sys
 import tempfile
 import urllib.request
+import zlib
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+from examples import EXAMPLES
 
 if TYPE_CHECKING:
     from camgeo.api.shown import Shown
@@ -305,12 +308,16 @@ def starters() -> list[dict[str, object]]:
             entries.append({"name": name, **words, "text": text, "tables": {}, "picture": drawing(text)})
     for path, recipe in shipped():
         text = path.read_text("utf-8")
-        named = {name: (path.parent / name).read_text("utf-8") for name in re.findall(r"[\w.-]+\.csv\b", text)}
         picture = (ROOT / "docs" / "gallery" / f"{path.stem}.svg").read_text("utf-8")
         words = {"title": recipe.about, "task": path.stem, "also": ""}
-        one = {"name": path.stem, **words, "text": text, "tables": named, "picture": picture}
+        one = {"name": path.stem, **words, "text": text, "tables": tables_of(text), "picture": picture}
         entries.append({**one, "shipped": True})
     return entries
+
+
+def tables_of(text: str) -> dict[str, str]:
+    """Tables that a shipped recipe names, by their names."""
+    return {name: (ROOT / "recipes" / name).read_text("utf-8") for name in re.findall(r"[\w.-]+\.csv\b", text)}
 
 
 def shipped() -> list[tuple[Path, Order]]:
@@ -334,11 +341,69 @@ def shown_of(text: str) -> Shown:
     from camgeo.api.root import root_of
     from camgeo.recipe.loading import load_order_text
 
-    recipe = load_order_text(text, "recipe.yaml")
+    recipe = load_order_text(text, str(ROOT / "recipes" / "recipe.yaml"))
     shown = root_of(recipe).shown
     if shown is None:
         raise AssertionError(recipe)
     return shown(recipe)
+
+
+class Card(NamedTuple):
+    """A design that opens in the page: its link, its picture's address, title and words."""
+
+    link: str
+    picture: str
+    title: str
+    words: str
+
+
+def examples(pictures: Path) -> list[Card]:
+    """The examples for a lecture, without those whose recipes are not shipped; their pictures are put into a folder."""
+    from camgeo.measures.units import UNIT_NAMES
+    from camgeo.schema.change import set_value
+    from camgeo.schema.yaml_source import Source
+
+    cards = []
+    for example in EXAMPLES:
+        path = ROOT / "recipes" / f"{example.recipe}.yaml"
+        if not path.is_file():
+            continue
+        text = other = path.read_text("utf-8")
+        for place, value in example.kept.items():
+            other = set_value(Source.of(other, example.called), place, value)
+        cams = [shown_of(one) for one in (text, other)]
+        now, kept = (cam.figures[example.figure] for cam in cams)
+        unit = UNIT_NAMES.get(now.unit, now.unit).replace("deg", "°").replace("^2", "²")
+        apart = "" if unit == "°" else " "
+        name = example.figure.replace("-", " ")
+        told = f"{example.see} Its {name} is {now.value:.3g}{apart}{unit}, not {kept.value:.3g}."
+        picture = f"{path.stem}-example.svg"
+        (pictures / picture).write_text(cams[0].still(example.at), "utf-8")
+        link = link_to(path.stem, text, (example.called, other), example.at)
+        cards.append(Card(link, f"pictures/{picture}", example.title, told))
+    return cards
+
+
+def link_to(name: str, text: str, kept: tuple[str, str] | None = None, at: float | None = None) -> str:
+    """Address, from its own folder, at which the page shows a recipe, beside a kept one, by name and text, at a place.
+
+    `web/state.js` reads and writes such addresses.
+    """
+    held: list[object] = [name, text, tables_of(text)]
+    if kept is not None or at is not None:
+        held.append(None if kept is None else [*kept, tables_of(kept[1])])
+    if at is not None:
+        held.append(at)
+    packer = zlib.compressobj(9, zlib.DEFLATED, -15)
+    packed = packer.compress(json.dumps(held, ensure_ascii=False, separators=(",", ":")).encode()) + packer.flush()
+    letters = base64.urlsafe_b64encode(packed).decode().rstrip("=")
+    return f"index.html#r={zlib.crc32(letters.encode()):08x}{letters}"
+
+
+def card(of: Card) -> str:
+    """HTML of a card."""
+    picture = f'<img alt="" loading="lazy" src="{of.picture}">'
+    return f'<li><a href="{of.link}">{picture}<b>{escaped(of.title)}</b> {escaped(of.words)}</a></li>'
 
 
 def kinds(*contents: str) -> list[str]:
@@ -394,13 +459,17 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     numpy, rare_of_numpy = repacked(wheel, RARE_OF_NUMPY)
     code, late = packed()
     shown = starters()
+    gallery = []
     for entry in shown:
-        (target / "pictures" / f"{entry['name']}{'-shipped' if 'shipped' in entry else ''}.svg").write_text(
-            str(entry.pop("picture")), "utf-8"
-        )
-    first = next(entry for entry in shown if entry["name"] == FIRST)
+        picture = f"pictures/{entry['name']}{'-shipped' if 'shipped' in entry else ''}.svg"
+        (target / picture).write_text(str(entry.pop("picture")), "utf-8")
+        if "shipped" in entry:
+            name, about = str(entry["name"]), str(entry["title"])
+            gallery.append(Card(link_to(name, str(entry["text"])), picture, name, about))
+    first = next(entry for entry in shown if entry["name"] == FIRST and "shipped" not in entry)
     text = str(first["text"])
-    cams = [text, *(str(entry["text"]) for entry in shown if entry["name"] in of_kinds())]
+    of_kind = of_kinds()
+    cams = [text, *(str(entry["text"]) for entry in shown if entry["name"] in of_kind)]
     looks = dict.fromkeys(shown_of(cam).looks() for cam in cams)
     scene = dict(camgeo.design(camgeo.load(text)).scene())
     scene["name"] = FIRST
@@ -435,6 +504,9 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         **{f"stamp:{name}": hashlib.sha256(data).hexdigest()[:10] for name, data in files.items()},
     }
     (target / "index.html").write_text(filled((WEB / "index.html").read_text("utf-8"), parts), "utf-8")
+    parts |= {"examples": "\n".join(map(card, examples(target / "pictures")))}
+    parts |= {"gallery": "\n".join(map(card, gallery))}
+    (target / "examples.html").write_text(filled((WEB / "examples.html").read_text("utf-8"), parts), "utf-8")
     size = sum(path.stat().st_size for path in target.rglob("*") if path.is_file())
     return f"{target}: {size / 1e6:.1f} MB"
 

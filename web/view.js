@@ -84,9 +84,10 @@ function play(scene) {
   tab.classList.remove("empty");
   showPanels(scene.panels || "");
   const root = document.documentElement;
-  const begin = endPlayer
+  const begin = place !== null && scene !== firstScene ? { at: place, playing: false } : endPlayer
     ? { at: Number(root.dataset.at), playing: root.dataset.playing === "true" }
     : { at: 0, playing: !window.matchMedia("(prefers-reduced-motion: reduce)").matches };
+  if (scene !== firstScene) place = null;
   if (endPlayer) endPlayer();
   endPlayer = playScene(scene, begin);
   tab.dispatchEvent(new Event("played"));

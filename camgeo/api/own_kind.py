@@ -105,11 +105,12 @@ class ShownKind(Shown):
         """Data of the mechanism."""
         return self.kind.picture(self._design)
 
-    def still(self) -> str:
+    def still(self, at: float = 0.0) -> str:
         """The kind's bodies, drawn once."""
         from camgeo.report.page.svg import still
 
-        return still(self.kind.seen(self._design), 0, self.recipe.name)
+        step = self.kind.seen(self._design, 0).step_at(at)
+        return still(self.kind.seen(self._design, step), step, self.recipe.name)
 
     def scene(self) -> dict[str, Any]:
         """Data of the whole page."""

@@ -34,8 +34,8 @@ class Shown(ABC):
         """Data of a page that show and move the mechanism, before checks; empty where only `scene` has them."""
 
     @abstractmethod
-    def still(self) -> str:
-        """The mechanism at the begin of its motion, as SVG by itself."""
+    def still(self, at: float = 0.0) -> str:
+        """The mechanism as SVG by itself, at a place of its input, in the unit of a page: degrees, or the recipe's."""
 
     @abstractmethod
     def scene(self) -> dict[str, Any]:
@@ -88,11 +88,13 @@ class ShownCam(Shown):
         drawn, _, relative = mechanism(self.recipe, sketched(self.recipe))
         return page.picture(self.recipe, drawn, relative, -1 if self.recipe.rotation == "cw" else 1)
 
-    def still(self) -> str:
-        """As a notebook shows it."""
-        from camgeo.api.notebook import drawing
+    def still(self, at: float = 0.0) -> str:
+        """The exact cam with its follower."""
+        from camgeo.report.page.content import content
+        from camgeo.report.page.svg import still
 
-        return drawing(self.recipe, self._design.exact)
+        scene = content(self.recipe, self._design.exact, ()).scene
+        return still(scene, scene.step_at(at), self.recipe.name)
 
     @cached_property
     def _design(self) -> Design:

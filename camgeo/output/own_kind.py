@@ -144,7 +144,7 @@ class OwnKind(Generic[D, V]):
     maker     function that makes and judges a file of a design: (request, path)
     judged    kin's verdict on a file
     pieces    number of pieces of a file by its verdict
-    seen      bodies to be drawn, over the kind's input
+    seen      bodies to be drawn, over the kind's input, and of what is drawn anew the shape at a step
     picture   data of its script that show and move the mechanism: entries of `camgeo.report.page.page.picture`
     script    all data of its script, of a page without files too: (design, files)
     panels    HTML of its own panels: (design, report)
@@ -165,7 +165,7 @@ class OwnKind(Generic[D, V]):
     maker: Callable[[D, Clock], Callable[[FileRequest, Path], Made[V]]]
     judged: Judging[D, V]
     pieces: Callable[[V], int]
-    seen: Callable[[D], Scene]
+    seen: Callable[[D, int], Scene]
     picture: Callable[[D], dict[str, Any]]
     script: Callable[[D, Sequence[Made[V]]], dict[str, Any]]
     panels: Callable[[D, dict[str, Any]], str]

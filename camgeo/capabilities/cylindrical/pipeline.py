@@ -63,10 +63,10 @@ def _pieces(verdict: DrumVerdict) -> int:
     return sum(flank.triangles or 0 for flank in verdict.flanks)
 
 
-def _seen(design: DrumDesign) -> Scene:
+def _seen(design: DrumDesign, step: int) -> Scene:
     from camgeo.capabilities.cylindrical.turning import scene
 
-    return scene(design)
+    return scene(design, step)
 
 
 def _picture(design: DrumDesign) -> dict[str, Any]:

@@ -62,7 +62,7 @@ def _pieces(verdict: PlateVerdict) -> int:
     return sum(flank.pieces or 0 for flank in verdict.flanks)
 
 
-def _seen(design: LinearDesign) -> Scene:
+def _seen(design: LinearDesign, _: int) -> Scene:
     from camgeo.capabilities.linear.plate_page import scene
 
     return scene(design)
