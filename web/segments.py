@@ -264,7 +264,7 @@ def _add(text: _Text, _: int, at: float) -> tuple[str, int]:
     motion = text.motion
     angle = at % motion.total if motion.closed else at
     if not motion.closed and at > motion.total:
-        raise camgeo.CallError(f"the motion is given up to {motion.total:g} degrees; what follows comes of it")
+        raise camgeo.CallError(f"the motion is given up to {motion.total:g} {motion.unit}; what follows comes of it")
     for index, segment in enumerate(motion.segments):
         if angle < segment.over or index == len(motion.segments) - 1:
             return _split(text, index, min(angle / segment.over, 1.0))
@@ -351,7 +351,8 @@ def _repeat(text: _Text, index: int, times: float) -> tuple[str, int]:
     """The segments so many times a turn, each over as much less."""
     motion, count = text.motion, round(times)
     if not motion.closed:
-        raise camgeo.CallError("only a motion that goes on as it began repeats")
+        half = "this cam's motion fills half a turn, and the other half follows from it"
+        raise camgeo.CallError(half if motion.behind == "opposite" else "a travel from end to end does not repeat")
     if not 1 <= count <= 100:
         raise camgeo.CallError("give a whole number from 1 to 100")
     if any(segment.free for segment in motion.segments):
