@@ -68,6 +68,7 @@ PLACES = 720  # of a motion at which it is compared
 LENGTHS = ("roller", "shoe", "width", "offset", "pivot", "arm", "x", "y", "reading", "gap")  # of a follower
 WRITTEN = {Kind.TEXT, Kind.NAME, Kind.FORMULA, Kind.RATIO}  # fields that hold a text
 NUMBERS = {Kind.LENGTH, Kind.ANGLE, Kind.NUMBER, Kind.INTEGER, Kind.STROKE}  # whose boxes stay where they hold none
+_LAST: list[Any] = []  # the recipe that was shown last, and its cam
 _WORDS: dict[OwnForm[Any], list[str]] = {}  # of forms of their own, whose schemas are large
 
 
@@ -230,10 +231,13 @@ def _recipe(name: str, text: str | Source) -> Order:
 
 
 def _shown(recipe: Order) -> Shown:
-    """The cam of a recipe as the page shows it."""
+    """The cam of a recipe as the page shows it: its picture, its checks and its files are of one design."""
+    if _LAST and _LAST[0] == recipe:
+        return _LAST[1]
     shown = root_of(recipe).shown
     assert shown is not None  # of a recipe that `_recipe` has let pass
-    return shown(recipe)
+    _LAST[:] = recipe, shown(recipe)
+    return _LAST[1]
 
 
 def _explained(check: dict[str, Any], report: dict[str, Any], recipe: Order) -> dict[str, Any]:

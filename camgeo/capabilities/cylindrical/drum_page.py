@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
@@ -35,8 +36,9 @@ def panels(design: DrumDesign, report: dict[str, Any]) -> str:
     return f'<div class="charts-and-figures">{_charts(design)}{_figures(report)}</div>'
 
 
+@lru_cache(maxsize=1)
 def drawn(design: DrumDesign) -> dict[str, Any]:
-    """Data of the page's script that show the drum and its follower, and turn them."""
+    """Data of the page's script that show the drum and its follower, and turn them; of the last design they are kept."""
     of = shells(design)
     seen = scene(design, of=of)
     turn = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
