@@ -376,7 +376,8 @@ def examples(pictures: Path) -> list[Card]:
         unit = UNIT_NAMES.get(now.unit, now.unit).replace("deg", "°").replace("^2", "²")
         apart = "" if unit == "°" else " "
         name = example.figure.replace("-", " ")
-        told = f"{example.see} Its {name} is {now.value:.3g}{apart}{unit}, not {kept.value:.3g}."
+        both = [f"{value:.3g}{apart}{unit}" for value in (now.value, kept.value)]
+        told = f"{example.see} {name.capitalize()}: {both[0]}, dashed {both[1]}."
         picture = f"{path.stem}-example.svg"
         (pictures / picture).write_text(cams[0].still(example.at), "utf-8")
         link = link_to(path.stem, text, (example.called, other), example.at)

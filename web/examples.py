@@ -60,7 +60,7 @@ EXAMPLES = (
     Example(
         "w-figure-9",
         "One disc for two rollers on one arm",
-        "Wunderlich 1984, Figure 9: a right-angled follower, its ratio 4/3. A disc for a smaller swing has rounder bends.",
+        "Wunderlich 1984, Figure 9: a right-angled follower, its ratio 4/3. A smaller swing has rounder bends.",
         45,
         "radius-of-curvature",
         {"cam.delta.cos.1": 400},
@@ -87,7 +87,7 @@ EXAMPLES = (
     Example(
         "disc-packaging",
         "A pusher that keeps pace with a belt",
-        "A packaging machine: 18 mm at constant velocity, joined without a jump. A plain rise is never in step, and steeper.",
+        "A packaging machine: 18 mm at constant velocity, joined smoothly. A plain rise is never in step, and steeper.",
         70,
         "pressure-angle-rise",
         {
@@ -103,7 +103,7 @@ EXAMPLES = (
     Example(
         "disc-knife-edge",
         "The heart cam of a winder",
-        "Thread is laid at constant velocity and turned round within 20 degrees. A modified sine is gentler, and piles it up.",
+        "Thread is laid at constant velocity, turned round within 20 degrees. A modified sine is gentler and piles it.",
         180,
         "peak-acceleration",
         {

@@ -215,7 +215,7 @@ def _verdict(report: dict[str, Any]) -> str:
 
 
 def _recipe(name: str, text: str | Source) -> Order:
-    """The recipe of a cam, whose tables are in the folder; raises RecipeErrors, also for what the page does not show."""
+    """The recipe of a cam, whose tables are in the folder; raises RecipeErrors, and for what is not shown here."""
     path = Path(FOLDER) / f"{name}.yaml"
     source = text if isinstance(text, Source) else Source.of(text, str(path))
     kind = reading(key := root_key(source))

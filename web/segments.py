@@ -131,8 +131,8 @@ def _brief(value: float) -> float:
 def changed(source: Source, stated: StatedMotion | str, change: str, index: int, at: float) -> tuple[str, int]:
     """The text of a recipe with its segments changed, and the index of the segment that is chosen then.
 
-    `change` is a word of `CHANGES`; `at` is the input of a new joint, as in the plot, or how often the motion repeats. Raises
-    CallError where that cannot be, and RecipeErrors for texts that cannot be changed without harm.
+    `change` is a word of `CHANGES`; `at` is the input of a new joint, as in the plot, or how often the motion repeats.
+    Raises CallError where that cannot be, and RecipeErrors for texts that cannot be changed without harm.
     """
     motion = _motion(source, stated)
     if isinstance(motion, str):

@@ -145,7 +145,12 @@ def test_a_plate_is_made_and_its_judged_page_is_let_in(desk: tab.Tab) -> None:
     desk.click("solid")
     desk.wait("byId('hand-told').textContent")
     assert "manifold3d" in desk.text_of("hand-told")  # cuts the groove
-    desk.load("rack", shipped("linear/plate-endless").replace("  holes: [{at: [12.5, 6], diameter: 4.3}, {at: [62.5, 6], diameter: 4.3}]\n", ""))
+    desk.load(
+        "rack",
+        shipped("linear/plate-endless").replace(
+            "  holes: [{at: [12.5, 6], diameter: 4.3}, {at: [62.5, 6], diameter: 4.3}]\n", ""
+        ),
+    )
     desk.judged("make")
     desk.click("solid")
     desk.wait("!byId('solid-figure').hidden")

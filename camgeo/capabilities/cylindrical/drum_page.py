@@ -38,7 +38,7 @@ def panels(design: DrumDesign, report: dict[str, Any]) -> str:
 
 @lru_cache(maxsize=1)
 def drawn(design: DrumDesign) -> dict[str, Any]:
-    """Data of the page's script that show the drum and its follower, and turn them; of the last design they are kept."""
+    """Data of the page's script that show the drum and its follower, and turn them; the last are kept."""
     of = shells(design)
     seen = scene(design, of=of)
     turn = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)

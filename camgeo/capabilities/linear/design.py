@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from camgeo.capabilities.linear.keys import LinearRecipe
     from camgeo.capabilities.linear.path import Guide
     from camgeo.common.clock import Clock
-    from camgeo.motions.stated import StatedMotion
     from camgeo.curve.curve import Curve, Frame
+    from camgeo.motions.stated import StatedMotion
     from camgeo.schema.errors import RecipeErrors
     from kin.law.sources.motion import Motion
     from kin.numeric.arrays import Array, Indices
