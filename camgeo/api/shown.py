@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from camgeo.common.errors import CallError
+from camgeo.common.errors import CallError, with_packages
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -98,9 +98,12 @@ class ShownCam(Shown):
 
     @cached_property
     def _design(self) -> Design:
-        from camgeo.api.designing import design
+        from camgeo.api.design import Design
+        from camgeo.common.clock import Clock
+        from camgeo.synthesis.design import designed
 
-        return design(self.recipe)
+        with with_packages():
+            return Design(self.recipe, designed(self.recipe, Clock()))
 
     def scene(self) -> dict[str, Any]:
         """`Design.scene`."""
