@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
-from examples import EXAMPLES
+from lecture import EXAMPLES
 
 if TYPE_CHECKING:
     from camgeo.api.shown import Shown

@@ -515,8 +515,8 @@ def _brief(value: float) -> str:
 
 def _alike(first: Order, second: Order) -> bool:
     """Whether two recipes make the same cam, to a millionth of its size: by its motion and its figures."""
-    values = [_measured(recipe) for recipe in (first, second)]
-    return len(values[0]) == len(values[1]) and bool(np.allclose(*values, rtol=ALIKE, atol=ALIKE))
+    values, others = _measured(first), _measured(second)
+    return len(values) == len(others) and bool(np.allclose(values, others, rtol=ALIKE, atol=ALIKE))
 
 
 def _measured(recipe: Order) -> Array:
