@@ -115,7 +115,7 @@ class AxisDesign:
         return Slave(title, self.rows, self.turn, self.motion.breaks.tolist(), 0.0, unit, scale)
 
     def driven(self, most: float, rates: tuple[float | None, float | None] = (None, None)) -> Driven:
-        """Motion that a drive is held to, in time; `most` is the permitted error, mm or rad, `rates` those of rates, shares."""
+        """Motion that a drive is held to, in time: errors up to `most`, mm or rad, rates to shares of their peaks."""
         return Driven(self.motion, self.unit, 0.0, most / self.own, rates, math.degrees(self.speed))
 
     # --- figures ------------------------------------------------------------------------------------------------------

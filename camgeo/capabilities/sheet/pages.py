@@ -31,7 +31,7 @@ BAR = 100.0  # mm: length of the bar by which a print at 1 : 1 is checked
 
 
 class Zone(NamedTuple):
-    """Permitted error, mm, of a spline through the rows of a table; `stated` where it is a share of the profile's zone."""
+    """Permitted error, mm, of a spline through a table; `stated` where it is a share of the profile's zone."""
 
     permitted: float
     stated: bool
