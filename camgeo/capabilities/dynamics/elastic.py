@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from kin.dynamics.excitation import Faces
     from kin.dynamics.impacts import Course
     from kin.dynamics.train import Running, Steady, Train
-    from kin.follower.drive import Excitation
     from kin.numeric.arrays import Array
 
 TURNS = 20  # turns that are followed from rest, fewer where one repeats the turn before it
