@@ -389,6 +389,7 @@ def scale(pattern: str, *, small: bool, docs: bool) -> list[str]:
 def one_size(name: str, size: int) -> None:
     """Print the processor seconds of one size, after a small one that imports, and the greatest memory, MB."""
     make, sizes = SCALES[name]
+    gc.set_threshold(COLLECT_AFTER)  # as the command has
     with tempfile.TemporaryDirectory() as folder:
         make(max(sizes[0] // 10, 100), Path(folder))()
         work = make(size, Path(folder))
