@@ -21,13 +21,29 @@ if TYPE_CHECKING:
 NEAR = 1e-6  # mm: cells of the law are cubics within this
 
 
+@dataclass(frozen=True)
+class Arm:
+    """An arm that leads the roller: its length, and the place of its pivot, mm.
+
+    The pivot's axis is parallel to the roller's, at (offset, pivot) along e_t and z; `side` is 1 of an arm that trails,
+    -1 of one that leads. Its angle at lift 0 follows from the height of the roller's axis there.
+    """
+
+    length: float
+    offset: float
+    pivot: float
+    side: int
+
+
 @dataclass(frozen=True, eq=False)
 class DrumFollower:
-    """A cylindrical roller of `radius`, mm, on a follower that travels along the cam's axis.
+    """A roller of `radius`, mm, on a follower that travels along the cam's axis, or on an arm.
 
     inner, outer  where the roller begins and ends along its axis, mm from the cam's axis
     level         height of the roller's axis at lift 0, mm; with a rib of the middle between both rollers
-    law           intended lift, mm, over the shaft angle, rad, with the period 2 pi
+    law           intended lift, mm, of an arm rad, over the shaft angle, rad, with the period 2 pi
+    offset        distance of the roller's axis from a radius, along e_t, mm; 0 on an arm
+    taper         half angle of a conical roller, rad, thicker outwards; its radius is that at the distance `at`, mm
     """
 
     radius: float
@@ -35,6 +51,10 @@ class DrumFollower:
     outer: float
     level: float
     law: Piecewise
+    offset: float = 0.0
+    taper: float = 0.0
+    at: float | None = None
+    arm: Arm | None = None
 
     @cached_property
     def cells(self) -> Array:

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from kin.cylindrical.verdict import DrumVerdict
     from kin.numeric.check import Check
 
-FOLLOWER = "roller on a carriage along the axis"
-
 
 def _examined(design: DrumDesign, _: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
     figures = tuple(figures_of(design))
@@ -35,8 +33,8 @@ def _examined(design: DrumDesign, _: Clock) -> tuple[list[Check], tuple[Figure, 
 
 
 def _told(design: DrumDesign, figures: Sequence[Figure]) -> Told:
-    unit = report_unit(design.recipe, "mm")
-    return Told(FOLLOWER, remarks_on(design, figures), design.motion.kept, unit)
+    unit = report_unit(design.recipe, design.recipe.guide.unit)
+    return Told(design.recipe.follower_name, remarks_on(design, figures), design.motion.kept, unit)
 
 
 def _section(design: DrumDesign, figures: Sequence[Figure]) -> dict[str, Any]:
