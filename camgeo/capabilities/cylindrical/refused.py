@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.guide import Arm
 from camgeo.capabilities.cylindrical.keys import End
 from camgeo.capabilities.cylindrical.undercut import CutError, tips
 from camgeo.common.rounding import downward, upward
@@ -122,7 +123,7 @@ def _demand_near(design: DrumDesign) -> None:
         if not off < room:
             problem = f"the roller's axis stands {off / mm:.6g} {units} off a radius of the drum, past the floor's edge"
             field, remedy = "cam.follower.offset", f"give less than {downward(room / mm, 5)} {units}"
-            if recipe.swings:
+            if isinstance(flank.guide, Arm):
                 y = flank.guide.middle(low, high)
                 field, remedy = "cam.follower.arm.offset", f"give {y / mm:.6g} {units}, or a longer arm"
             raise design.error(field, f"{problem}, near {math.degrees(at):.6g} degrees", remedy)
