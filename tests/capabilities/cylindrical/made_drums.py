@@ -71,11 +71,11 @@ LEADING = changed(ARM, ("offset: 78, pivot: 40", "offset: -78, pivot: 40, side: 
 CONE_ON_ARM = changed(ARM, ("radius: 10,", "radius: 10, taper: 6, at: 44,"))
 RIB_ON_ARM = changed(
     ARM,
-    ("groove: {depth: 12.5}", "rib: {distance: 50, depth: 12}"),
+    ("groove: {depth: 12.5}", "rib: {distance: 36, depth: 12}"),
     (", from: 38", ""),
-    ("pivot: 40", "pivot: 70"),
-    ("pitch_height: ", "pitch_height: 30 # "),
-    ("length: 80, bore", "length: 140, bore"),
+    ("pivot: 40", "pivot: 60"),
+    ("pitch_height: ", f"pitch_height: {60.0 - 80.0 * math.sin(math.radians(15.0))!r} # "),
+    ("length: 80, bore", "length: 120, bore"),
 )
 """Drums whose roller is a cone, beside a radius or on an arm, and a rib between two rollers on one arm."""
 LAWS = ("cycloidal", "polynomial-345", "polynomial-4567")

@@ -30,7 +30,7 @@ from capabilities.cylindrical.made_drums import (
     changed,
     design_of,
 )
-from capabilities.cylindrical.positions import law_at
+from capabilities.cylindrical.positions import Lift, envelope, law_at
 from support.heavy import optimize
 
 from camgeo.capabilities.cylindrical.bends import bends
@@ -418,6 +418,54 @@ def test_forces_of_an_end_cam() -> None:
     close(figure(text, "torque"), 7.63943726841)
     slope = 40 * 2 / math.radians(120)
     close(figure(text, "side-thrust"), 200 * slope / 44)
+
+
+def test_forces_of_a_cone() -> None:
+    """Its share along the axis is sin d, and the load is what both leave along the way."""
+    text = changed(CONE, ("pitch_height: 20", "pitch_height: 20\n  drive: {load: 200}"), ("from: 38", "from: 44"))
+    force, thrust = figure(text, "contact-force"), figure(text, "axial-thrust")
+    close(thrust / force, 0.221621103589)
+    angle = math.radians(39.5389734592)
+    close(figure(text, "pressure-angle"), 39.5389734592)
+    close(force * math.cos(math.atan(10 / 44)) * math.cos(angle), 200.0)
+    close(figure(text, "side-thrust"), 200.0 * math.tan(angle))
+
+
+def test_figures_of_an_arm() -> None:
+    """The contact ends at 50 mm, where the case has its angle; the load turns the drum by virtual work."""
+    text = changed(
+        ARM,
+        ("radius: 50", "radius: 60"),
+        ("depth: 12.5", "depth: 22.5, clearance: 0.05"),
+        ("from: 38", "from: 38, to: 50"),
+        ("  motion", "  drive: {rpm: 60, load: 200}\n  motion"),
+    )
+    values = {each.name: (each.value, each.unit) for each in figures_of(design_of(text))}
+    outer, inner = STEEP_ARM
+    rate = math.radians(30) * 2 / math.radians(120)
+    for name, wanted, unit in (
+        ("pressure-angle", inner, "deg"),
+        ("pressure-angle-outer", outer, "deg"),
+        ("off-radius", 2.0, "mm"),
+        ("play", math.degrees(0.05 / 80 / math.cos(math.radians(outer))), "deg"),
+        ("velocity", math.degrees(rate) * 2 * math.pi, "deg/s"),
+        ("contact-force", 200 / math.cos(math.radians(inner)), "N"),
+        ("side-thrust", 200 * math.tan(math.radians(inner)), "N"),
+        ("torque", 200 * 80 * rate * 1e-3, "N m"),
+    ):
+        close(values[name][0], wanted)
+        assert values[name][1] == unit
+    assert {"off-radius", "axial-thrust"}.isdisjoint(each.name for each in figures_of(design_of(GROOVE)))
+
+
+def test_a_rib_on_an_arm() -> None:
+    """Its thinnest place, by both envelopes of rollers on one body."""
+    rows = [("rise", 30, 120, "cycloidal"), ("dwell", 0, 60, ""), ("return", 30, 120, "polynomial-345")]
+    lift = Lift(rows, arm=(80.0, 78.0, 80.0 * math.sin(math.radians(15.0)), 1))
+    phi = np.linspace(0.0, 2.0 * math.pi, 2001)
+    r = np.full_like(phi, 38.0)
+    upper, lower = (envelope(lift.second(18.0 * k), -k, 10.0, r, phi)[0] for k in (1, -1))
+    assert figure(RIB_ON_ARM, "rib-thickness") == pytest.approx((upper - lower).min(), abs=1e-4)
 
 
 def test_curvature_across_the_line() -> None:
