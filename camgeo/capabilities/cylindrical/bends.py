@@ -268,8 +268,9 @@ def _implicit(flank: Flank, rows: Ball, r: Ball) -> Bends:
     rho22 = (1.0 - k22 * rho2 * rho2) * over
 
     # second derivatives over (theta, rho) along e_r, e_t and z, then over (theta, r)
-    p2 = (1.0, q2, h2)
-    p11, p12, p22 = (q1 * -2.0 - rho, q11 - q, h11), (q2 * -1.0, q12 + 1.0, h12), (0.0, q22, h22)
+    one = Ball.exact(np.ones_like(r.mid))
+    p2 = (one, q2, h2)
+    p11, p12, p22 = (q1 * -2.0 - rho, q11 - q, h11), (q2 * -1.0, q12 + 1.0, h12), (one * 0.0, q22, h22)
     second = (
         [a + b * rho1 * 2.0 + d * rho1 * rho1 + rho11 * e for a, b, d, e in zip(p11, p12, p22, p2, strict=True)],
         [(b + d * rho1) * rho2 + rho12 * e for b, d, e in zip(p12, p22, p2, strict=True)],

@@ -116,7 +116,7 @@ def steepest_contacts(design: DrumDesign) -> dict[str, tuple[float, float]]:
     def at(rho: float | None) -> tuple[float, float]:
         def angle(theta: Array, name: str) -> Array:
             ends = outer_end(design, name, theta) if rho is None else np.full_like(theta, rho)
-            return np.abs(design.flanks[name].pressure(theta, ends))
+            return np.asarray(np.abs(design.flanks[name].pressure(theta, ends)))
 
         return max(greatest_of(partial(angle, name=name), TURN) for name in design.flanks)
 
@@ -139,7 +139,7 @@ def _off_radius(design: DrumDesign) -> Figure:
     """Greatest distance of a roller's axis on an arm from a radius of the drum."""
 
     def off(theta: Array) -> Array:
-        return np.max([np.abs(flank.pose(theta).y) for flank in design.flanks.values()], axis=0)
+        return np.asarray(np.max([np.abs(flank.pose(theta).y) for flank in design.flanks.values()], axis=0))
 
     value, at = greatest_of(off, TURN)
     return Figure("off-radius", value, "mm", math.degrees(at))

@@ -129,7 +129,7 @@ class Flank:
     def led(self, rows: Array) -> Pose:
         """Where the roller's axis is at values (3, n) of S, S' and S''."""
         y, z = self.guide.place(rows)
-        return Pose(*y, *z, self.guide.lean(rows[0]))
+        return Pose(y[0], y[1], y[2], z[0], z[1], z[2], self.guide.lean(rows[0]))
 
     def _touch(self, pose: Pose, rho: Array) -> _Touch:
         radius = self.size(rho)

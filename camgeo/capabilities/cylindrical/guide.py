@@ -51,9 +51,8 @@ class Carriage:
 
     def place(self, rows: Rows) -> tuple[list[Rows], list[Rows]]:
         """Y and z, mm, and derivatives by the shaft angle, from as many rows of S, mm."""
-        nothing = [row * 0.0 for row in _each(rows)]
         lift, *rates = _each(rows)
-        return [nothing[0] + self.offset, *nothing[1:]], [lift + self.level, *rates]
+        return [lift * 0.0 + self.offset, *(rate * 0.0 for rate in rates)], [lift + self.level, *rates]
 
     def lean(self, lift: Array) -> Array:
         """Angle of the roller's way against the cam's axis, towards -e_t, rad (n,)."""

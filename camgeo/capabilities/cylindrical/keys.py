@@ -229,7 +229,7 @@ ROLLER = mapping(
         Field(
             "side",
             Kind.CHOICE,
-            "whether the drum's surface runs from the pivot to the roller or from the roller to the pivot",
+            "trailing: the drum's surface runs from the pivot to the contact; leading: the other way",
             default="trailing",
             choices=("trailing", "leading"),
         ),

@@ -88,7 +88,7 @@ def _arm(design: DrumDesign, guide: Arm, theta: Array, size: float) -> list[Movi
     half = 0.5 * track.distance if isinstance(track, Rib) else 0.0
     places = [(guide.length, way * side * half) for side in (-1.0, 1.0)] if half else [(guide.length, 0.0)]
     shape = [bar((0.0, 0.0), (guide.length, 0.0), 1.4 * size)]
-    shape += [bar(*places, 1.4 * size)] if half else []
+    shape += [bar(places[0], places[-1], 1.4 * size)] if half else []
     return [
         MovingBody("rollers", "follower", tuple(_roller(design, *place) for place in places), pose),
         MovingBody("arm", "follower", tuple(FilledShape("follower", (each,), "arm") for each in shape), pose),

@@ -32,7 +32,7 @@ ZOOMS = 8
 ALONG = 400  # places on either branch of a row near its crossing
 NEWTON = 12
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
-CELLS, PARTS, ROUNDS = 360, 4, 8  # of the proof that a flank is regular
+CELLS, PARTS, ROUNDS = 360, 4, 11  # of the proof that a flank is regular
 
 
 class Tip(NamedTuple):

@@ -35,12 +35,12 @@ def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
     else:
         own = intent.Rib(track.depth, track.distance)
     roller = recipe.roller
-    cone = {"taper": roller.taper, "at": roller.at} if roller.taper else {}
+    own: dict[str, Any] = recipe.guide.intended()
+    if roller.taper:
+        own |= {"taper": roller.taper, "at": roller.at}
     bore = None if design.bore is None else holes_of(Body(recipe.height, (design.bore,)))[0]
     return intent.DrumIntent(
-        DrumFollower(
-            roller.radius, roller.inner, roller.outer, recipe.level, design.law, **cone, **recipe.guide.intended()
-        ),
+        DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law, **own),
         own,
         recipe.radius,
         recipe.height,
@@ -90,8 +90,8 @@ def file_rows(recipe: DrumRecipe, verdict: DrumVerdict) -> dict[str, Any]:
         entry["surfaces"] = [{"name": flank.name, **_flank(recipe, flank)} for flank in verdict.flanks]
     if verdict.play is not None:
         play = verdict.play
-        unit = recipe.guide.unit
-        (least, unit), (most, _) = in_units(recipe, play.least, unit), in_units(recipe, play.most, unit)
+        given = recipe.guide.unit
+        (least, unit), (most, _) = in_units(recipe, play.least, given), in_units(recipe, play.most, given)
         places = {"min_at": play.least_at, "max_at": play.most_at}
         entry["play"] = [{"between": ["lower", "upper"], "min": least, "max": most, "unit": unit, **places}]
     return entry

@@ -125,21 +125,33 @@ def test_a_fault_names_its_remedy(text: str, change: tuple[str, str], wanted: st
     assert re.match(r"drum\.yaml:\d+:\d+: ", str(error.value))
 
 
+ON_ARM = ("radius: 12", "radius: 12, arm: {length: 50, offset: 49.5, pivot: 32}")
+
+
 @pytest.mark.slow
-def test_remedies_of_an_undercut_hold() -> None:
+@pytest.mark.parametrize(
+    ("follower", "sharp"),
+    [
+        (("radius: 12", "radius: 12"), ["radius", "depth"]),
+        (ON_ARM, ["radius", "depth"]),
+        # a shallower groove has a cone nearer the blank, and thinner
+        (("radius: 12", "radius: 12, taper: axis"), ["radius"]),
+    ],
+    ids=["cylinder", "arm", "cone"],
+)
+def test_remedies_of_an_undercut_hold(follower: tuple[str, str], sharp: list[str]) -> None:
     """A smaller roller, a shallower groove and a shortened contact each give a drum; a bit less of either does not."""
+    text = changed(REFUSE, follower)
     with pytest.raises(RecipeErrors) as error:
-        design_of(REFUSE)
-    radius, depth = re.findall(r"at most ([\d.]+) mm", str(error.value))
+        design_of(text)
+    found = dict(zip(("radius", "depth"), re.findall(r"at most ([\d.]+) mm", str(error.value)), strict=True))
     assert "or let contact begin farther out: undercut: shorten" in str(error.value)
-    for old, new, beyond in (
-        ("radius: 12", f"radius: {radius}", f"radius: {1.003 * float(radius)}"),
-        ("depth: 20", f"depth: {depth}", f"depth: {1.003 * float(depth)}"),
-    ):
-        design_of(changed(REFUSE, (old, new)))
-        with pytest.raises(RecipeErrors):
-            design_of(changed(REFUSE, (old, beyond)))
-    design_of(UNDERCUT)
+    for key, old in (("radius", "radius: 12"), ("depth", "depth: 20")):
+        design_of(changed(text, (old, f"{key}: {found[key]}")))
+        if key in sharp:
+            with pytest.raises(RecipeErrors):
+                design_of(changed(text, (old, f"{key}: {1.003 * float(found[key])}")))
+    design_of(changed(text, ("refuse", "shorten")))
 
 
 @pytest.mark.parametrize("word", ["barrel", "drum"])
@@ -149,7 +161,7 @@ def test_other_words_for_the_kind(word: str, tmp_path: Path) -> None:
     with pytest.raises(RecipeErrors) as error:
         camgeo.load(path)
     assert str(error.value).endswith(f"cam.kind: not one of the choices, given '{word}'; give cylindrical")
-    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-rib and cylindrical-end"):
+    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-arm, cylindrical-end and cylindrical-rib"):
         starter(word)
 
 
