@@ -35,12 +35,12 @@ def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
     else:
         own = intent.Rib(track.depth, track.distance)
     roller = recipe.roller
-    own: dict[str, Any] = recipe.guide.intended()
+    led: dict[str, Any] = recipe.guide.intended()
     if roller.taper:
-        own |= {"taper": roller.taper, "at": roller.at}
+        led |= {"taper": roller.taper, "at": roller.at}
     bore = None if design.bore is None else holes_of(Body(recipe.height, (design.bore,)))[0]
     return intent.DrumIntent(
-        DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law, **own),
+        DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law, **led),
         own,
         recipe.radius,
         recipe.height,

@@ -60,7 +60,7 @@ REFUSED = [
     (ARM, ("pivot: 40", "pivot: 98.5"), "cam.motion: the arm swings to 81.9"),
     (ARM, ("offset: 78", "offset: 38"), "past the floor's edge, near 60 degrees; give 78.637 mm, or a longer arm"),
     (ARM, ("offset: 78", "offset: 78.637"), None),
-    (RIB_ON_ARM, ("distance: 50", "distance: 20"), "give more than 20 mm, and the rib's thickness"),
+    (RIB_ON_ARM, ("distance: 36", "distance: 20"), "give more than 20 mm, and the rib's thickness"),
     (CONE, ("{groove: {depth: 12.5}}", "{rib: {depth: 12.5, distance: 22}}"), "give more than 22.7272727 mm, and"),
     (
         ARM,
@@ -161,7 +161,7 @@ def test_other_words_for_the_kind(word: str, tmp_path: Path) -> None:
     with pytest.raises(RecipeErrors) as error:
         camgeo.load(path)
     assert str(error.value).endswith(f"cam.kind: not one of the choices, given '{word}'; give cylindrical")
-    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-arm, cylindrical-end and cylindrical-rib"):
+    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-rib, cylindrical-end and cylindrical-arm"):
         starter(word)
 
 
