@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.cylindrical.frame import along_roller, rates, regularity_jet
+from kin.cylindrical.frame import On, on_cylinder, place_jets, pressure_jet, rates, regularity_jet
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove, Rib
 from kin.numeric.angles import TURN
@@ -98,24 +98,29 @@ def slopes(follower: DrumFollower) -> tuple[At, At]:
     return _extremes(follower, lambda theta, side: rates(follower, theta, 2, side).slope)
 
 
-def pressure_angles(follower: DrumFollower, rho: float) -> Angles:
+def pressure_angles(follower: DrumFollower, rho: float, side: Side = -1) -> Angles:
     """Greatest and least pressure angle at the place rho, mm, along the roller, over all shaft angles."""
-    least, greatest = (At(math.atan2(slope.value, rho), slope.at) for slope in slopes(follower))
-    return Angles(greatest, least)
+    on = On(side)
+    found = _extremes(follower, lambda theta, own: pressure_jet(follower, rates(follower, theta, 2, own), rho, on))
+    return Angles(found[1], found[0])
 
 
-def outer_contact(follower: DrumFollower, radius: float, clearance: float = 0.0) -> At:
+def outer_contact(follower: DrumFollower, radius: float, clearance: float = 0.0, side: Side = -1) -> At:
     """Least place along the roller, mm, at which a blank of `radius`, mm, ends the contact, over all shaft angles."""
-    steepest = max(slopes(follower), key=lambda slope: abs(slope.value))
-    return At(float(along_roller(steepest.value, radius, follower.radius + clearance)), steepest.at)
+    on = On(side, clearance)
+    return _extremes(follower, lambda theta, own: place_jets(follower, rates(follower, theta, 2, own), radius, on)[0])[
+        0
+    ]
 
 
-def least_regularity(follower: DrumFollower, rho: float, side: Side = -1, clearance: float = 0.0) -> At:
+def least_regularity(
+    follower: DrumFollower, rho: float, side: Side = -1, clearance: float = 0.0, beside: float = 0.0
+) -> At:
     """Least regularity D of a flank, mm, at a place along the roller, over all shaft angles."""
-    radius = follower.radius + clearance
+    on = On(side, clearance, beside)
 
     def figure(theta: Array, knot_side: int) -> Jet:
-        return regularity_jet(rates(follower, theta, 2, knot_side), rho, radius, side)
+        return regularity_jet(follower, rates(follower, theta, 2, knot_side), rho, on)
 
     return _extremes(follower, figure)[0]
 
@@ -124,22 +129,20 @@ def undercut(drum: DrumIntent, side: Side = -1) -> Undercut:
     """Where a drum's flank is undercut, from its floor outwards, and the length of contact that is left."""
     follower = drum.follower
     clearance = drum.track.clearance if isinstance(drum.track, Groove) and side > 0 else 0.0
+    beside = -0.5 * side * drum.track.distance if isinstance(drum.track, Rib) else 0.0
 
     def least(rho: float) -> At:
-        return least_regularity(follower, rho, side, clearance)
-
-    def ends(slope: float) -> float:
-        roller = follower.radius + clearance
-        return min(follower.outer, float(along_roller(slope, drum.radius, roller)))
+        return least_regularity(follower, rho, side, clearance, beside)
 
     low, high = max(drum.floor, 0.1 * drum.radius), drum.radius
     inner = least(low)
     if inner.value > 0.0:
-        length = ends(max(abs(slope.value) for slope in slopes(follower))) - follower.inner
-        return Undercut(0.0, math.nan, length, 1.0)
+        end = outer_contact(follower, drum.radius, clearance, side).value
+        return Undercut(0.0, math.nan, min(follower.outer, end) - follower.inner, 1.0)
     below = _rising_zero(lambda rho: least(rho).value, low, high)
     at = least(below).at
-    whole = ends(float(rates(follower, np.array([at])).slope.c[0, 0])) - follower.inner
+    end = float(on_cylinder(follower, np.array([at]), drum.radius, side, clearance)[0][0])
+    whole = min(follower.outer, end) - follower.inner
     left = max(whole - max(below - follower.inner, 0.0), 0.0)
     return Undercut(below, at, left, left / whole)
 

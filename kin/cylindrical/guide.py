@@ -1,0 +1,138 @@
+"""What leads a roller's axis: a slide along the cam's axis, or an arm. Where the axis is, and where a roller touches.
+
+Both are seen along the roller's axis, y across and z up. The follower's position q is mm on a slide, rad on an arm; the
+roller's centre moves by `lever` mm along its path for one of it, in the direction T, and the path bends by `bend` 1/mm.
+
+A roller of radius R that touches a point on its `side` has its centre at C(q), the point at C + R n. From the square of
+that distance follows, for a point that moves by (dy, dz) while the radius there grows by dR, with p = (dy, dz) and
+cos a = side n.T,
+
+    lever q' = side (p.n - dR)/cos a = u
+    -side lever q'' = -((p - u T)^2 - dR^2 + R bend (n.e) u^2)/(R cos a) + (p'.n - d2R)/cos a
+
+where e is T turned back by a right angle on a trailing arm, which points from the pivot to the roller.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+
+from kin.numeric.elementary import Jet, cos, sin
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+    from kin.law.contacts import Side
+    from kin.numeric.arrays import Array
+
+    Number = Array | Jet
+
+Unit: TypeAlias = Literal["mm", "deg"]
+
+
+class Axis(NamedTuple):
+    """A roller's axis across and up, mm, with two derivatives by the shaft angle, (n,) each, or jets."""
+
+    y: Number
+    z: Number
+    y1: Number
+    z1: Number
+    y2: Number
+    z2: Number
+
+
+class Touch(NamedTuple):
+    """A roller that touches points (n,): how far it is kept from its place, mm along its path; n and T.
+
+    It is nan where it touches at no position.
+    """
+
+    gives: Array
+    ny: Array
+    nz: Array
+    ty: Array
+    tz: Array
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A slide along z: the roller's axis is at y = `offset` and z = `level` + lift, mm."""
+
+    offset: float
+    level: float
+    lever: ClassVar[float] = 1.0
+    bend: ClassVar[float] = 0.0
+    sense: ClassVar[float] = 0.0
+
+    def axis(self, lift: Number, slope: Number, bend: Number) -> Axis:
+        """The roller's axis at lifts with their derivatives."""
+        still = 0.0 * lift
+        return Axis(still + self.offset, lift + self.level, still, slope, still, bend)
+
+    def touching(self, place: tuple[Array, Array], lift: Array, radius: Array, side: Side) -> Touch:
+        """Rollers of radii (n,) on points at places y and z (n,), by intended lifts (n,)."""
+        y, z = place
+        ny = (y - self.offset) / radius
+        with np.errstate(invalid="ignore"):
+            nz = side * np.sqrt(1.0 - ny * ny)
+        gives = side * (self.level + lift - z) + radius * np.abs(nz)
+        return Touch(gives, ny, nz, np.zeros_like(y), np.ones_like(y))
+
+
+@dataclass(frozen=True)
+class Swing:
+    """An arm: the roller's axis at y = offset - sense length cos psi, z = pivot + length sin psi, psi = angle + lift.
+
+    Lifts are rad. `sense` is 1 trailing, -1 leading.
+    """
+
+    length: float
+    offset: float
+    pivot: float
+    sense: float
+    angle: float
+
+    @property
+    def lever(self) -> float:
+        """The arm's length, mm per rad."""
+        return self.length
+
+    @property
+    def bend(self) -> float:
+        """Curvature of the roller's path, 1/mm."""
+        return 1.0 / self.length
+
+    def axis(self, lift: Number, slope: Number, bend: Number) -> Axis:
+        """The roller's axis at lifts with their derivatives."""
+        psi = lift + self.angle
+        along, up = cos(psi) * self.length, sin(psi) * self.length
+        square = slope * slope
+        return Axis(
+            self.offset - along * self.sense,
+            up + self.pivot,
+            up * slope * self.sense,
+            along * slope,
+            (along * square + up * bend) * self.sense,
+            along * bend - up * square,
+        )
+
+    def touching(self, place: tuple[Array, Array], lift: Array, radius: Array, side: Side) -> Touch:
+        """Rollers of radii (n,) on points at places y and z (n,), by intended lifts (n,)."""
+        x, z = self.sense * (self.offset - place[0]), place[1] - self.pivot
+        square, length = x * x + z * z, self.length
+        # the triangle of pivot, point and the roller's centre, whose angle at the pivot is what lies between them
+        along = (length**2 + square - radius * radius) / (2.0 * length)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            off = np.sqrt(square - along * along)
+            cosine, sine = (x * along + side * z * off) / square, (z * along - side * x * off) / square
+        ny, nz = self.sense * (length * cosine - x) / radius, (z - length * sine) / radius
+        psi = self.angle + lift
+        c, s = np.cos(psi), np.sin(psi)
+        gives = side * length * np.arctan2(s * cosine - c * sine, c * cosine + s * sine)
+        return Touch(gives, ny, nz, self.sense * sine, cosine)
+
+
+Guide: TypeAlias = Slide | Swing
