@@ -87,6 +87,15 @@ class DrumFollower:
         """Unit of positions as they are reported."""
         return "mm" if self.arm is None else "deg"
 
+    @property
+    def start(self) -> float:
+        """Position at lift 0: height of the roller's axis, mm, or the arm's angle, rad."""
+        return self.level if self.arm is None else math.asin((self.level - self.arm.pivot) / self.arm.length)
+
+    def told(self, position: float) -> float:
+        """A position, mm or rad, in the unit in which it is reported."""
+        return position if self.arm is None else math.degrees(position)
+
     def guide(self, beside: float = 0.0) -> Guide:
         """What leads the roller's axis; of two about a rib that which is `beside` the middle, mm, upwards.
 
@@ -97,5 +106,5 @@ class DrumFollower:
         arm, rise = self.arm, (self.level - self.arm.pivot) / self.arm.length
         if not abs(rise) < 1.0:
             raise ValueError(f"an arm of {arm.length:.6g} mm at {arm.pivot:.6g} mm does not reach {self.level:.6g} mm")
-        angle = math.asin(rise) + math.atan2(beside, arm.length)
+        angle = self.start + math.atan2(beside, arm.length)
         return Swing(math.hypot(arm.length, beside), arm.offset, arm.pivot, arm.side, angle)

@@ -15,6 +15,7 @@ where e is T turned back by a right angle on a trailing arm, which points from t
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
     Number = Array | Jet
+    Bounds = tuple[Array, Array]
+
+QUARTER = 0.5 * math.pi
 
 Unit: TypeAlias = Literal["mm", "deg"]
 
@@ -71,6 +75,11 @@ class Slide:
         """The roller's axis at lifts with their derivatives."""
         still = 0.0 * lift
         return Axis(still + self.offset, lift + self.level, still, slope, still, bend)
+
+    def enclosed(self, low: Array, high: Array) -> tuple[Bounds, Bounds, Bounds]:  # noqa: ARG002 - nothing depends on them
+        """Bounds of the axis's y, mm, and of T across and up, over lifts from low to high (m,)."""
+        still = np.zeros_like(low)
+        return (still + self.offset,) * 2, (still, still), (still + 1.0,) * 2
 
     def touching(self, place: tuple[Array, Array], lift: Array, radius: Array, side: Side) -> Touch:
         """Rollers of radii (n,) on points at places y and z (n,), by intended lifts (n,)."""
@@ -119,6 +128,19 @@ class Swing:
             along * bend - up * square,
         )
 
+    def enclosed(self, low: Array, high: Array) -> tuple[Bounds, Bounds, Bounds]:
+        """Bounds of the axis's y, mm, and of T across and up, over lifts from low to high (m,).
+
+        T's bound up is below 0 where the arm may be square to the slide it stands for.
+        """
+        first, last = self.angle + low, self.angle + high
+        level = (first <= 0.0) & (last >= 0.0)
+        up = np.where(level, 1.0, np.maximum(np.cos(first), np.cos(last)))
+        least = np.where((first > -QUARTER) & (last < QUARTER), np.minimum(np.cos(first), np.cos(last)), -1.0)
+        across = self.sense * np.sin(first), self.sense * np.sin(last)
+        aside = self.offset - self.sense * self.length * least, self.offset - self.sense * self.length * up
+        return _sorted(*aside), _sorted(*across), (least, up)
+
     def touching(self, place: tuple[Array, Array], lift: Array, radius: Array, side: Side) -> Touch:
         """Rollers of radii (n,) on points at places y and z (n,), by intended lifts (n,)."""
         x, z = self.sense * (self.offset - place[0]), place[1] - self.pivot
@@ -133,6 +155,10 @@ class Swing:
         c, s = np.cos(psi), np.sin(psi)
         gives = side * length * np.arctan2(s * cosine - c * sine, c * cosine + s * sine)
         return Touch(gives, ny, nz, self.sense * sine, cosine)
+
+
+def _sorted(one: Array, other: Array) -> Bounds:
+    return np.minimum(one, other), np.maximum(one, other)
 
 
 Guide: TypeAlias = Slide | Swing
