@@ -35,6 +35,7 @@ OFF = 0.1  # of the roller's radius: bounds hold for points that are no farther 
 UPRIGHT = 1.5  # rad: no bound is had where normals may lean more against the roller's path
 GUESSES = 5
 STEPS, SETTLED = 16, 1e-10  # of Newton's method, and the step, rad, after which the next would be rounding
+LEVEL = 1e-9  # mm: steps of a height below this end them
 FLOOR = 0.1  # of a radius: X at contact is looked at no nearer to the axis
 
 
@@ -179,9 +180,11 @@ class LedGauge(Gauge):
         sine, cosine = math.sin(min(self._lean, UPRIGHT)), self._least_cosine
         along = np.sqrt(np.maximum(r * r - self.widest**2, 0.0))
         t = np.maximum(along * float(self._over.tz[0].min()) - self.widest * self.growth * sine, 0.0)
-        u = (r * self._across + self.widest * self.growth) / cosine
-        lost = (self.guide.bend * sine * u**2 + self.widest * self._across) / cosine
-        bends: Array = t**2 / self.size(r) + along * self.growth - lost - self._bends[place]
+        u = r * self._across + self.widest * self.growth
+        fall = t**2 / self.size(r) - self.guide.bend * sine * u**2
+        # F bends by that over the cube of the cosine of the lean, which is 1 at most
+        fall = np.where(fall > 0.0, fall, fall / cosine**3) - self.widest * self._across / cosine
+        bends: Array = fall + along * self.growth - self._bends[place]
         return bends
 
     @cached_property
@@ -223,15 +226,16 @@ class LedGauge(Gauge):
     def surface(self, phi: Array, r: Array) -> Array:
         """Height (n,), mm, of the exact flank at polar angles and radii (n,)."""
         x, y = r * np.cos(phi), r * np.sin(phi)
-        z = self.axis(phi) + self.side * self.radius
+        theta, z = self._guessed(phi, r), np.full(len(r), np.nan)
+        # the rollers that touch near the flank touch it near there: each step squares what the height is off
         for _ in range(2 * GUESSES):
-            theta = self.worst(np.stack([x, y, z], axis=-1)).theta
             axis = self._axis(theta)
             along, across = x * np.cos(theta) + y * np.sin(theta), y * np.cos(theta) - x * np.sin(theta) - axis.y
             size = self.size(along)
             before, z = z, axis.z + self.side * np.sqrt(np.maximum(size * size - across * across, 0.0))
-            if float(np.abs(z - before).max(initial=0.0)) <= 1e-12 * self.rim:
+            if float(np.abs(z - before).max(initial=0.0)) <= LEVEL:
                 break
+            theta = self.worst(np.stack([x, y, z], axis=-1)).theta
         return z
 
     def _touch(self, points: Sequence[Array], lift: Array, sine: Array, cosine: Array) -> tuple[Array, Array, Touch]:
@@ -363,7 +367,7 @@ class LedGauge(Gauge):
         across, up, along = sizes[0], np.abs(sizes[1]), sizes[2]
         way = ends[:, 1] - ends[:, 0]
         length = np.hypot(across, up)
-        turned = np.abs(theta[:, 1] - theta[:, 0])
+        turned = np.abs(np.remainder(theta[:, 1] - theta[:, 0] + 0.5 * TURN, TURN) - 0.5 * TURN)
         worst = np.zeros(len(ends))
         for k in (0, 1):
             sine, cosine = np.sin(theta[:, k]), np.cos(theta[:, k])
