@@ -182,8 +182,10 @@ class LedGauge(Gauge):
         t = np.maximum(along * float(self._over.tz[0].min()) - self.widest * self.growth * sine, 0.0)
         u = r * self._across + self.widest * self.growth
         fall = t**2 / self.size(r) - self.guide.bend * sine * u**2
-        # F bends by that over the cube of the cosine of the lean, which is 1 at most
-        fall = np.where(fall > 0.0, fall, fall / cosine**3) - self.widest * self._across / cosine
+        # F bends by fall/cos^3 - lost/cos of the lean, which is least without any where fall is not small
+        lost = self.widest * self._across
+        least = np.where(fall > 0.0, fall, fall / cosine**3) - lost / cosine
+        fall = np.where(3.0 * fall > lost, fall - lost, least)
         bends: Array = fall + along * self.growth - self._bends[place]
         return bends
 
