@@ -131,6 +131,9 @@ class Gauge:
         bend = max(float(self.lifts.bends(side).max()) for side in (-1, 1))
         return self.outer**2 * self.radius**2 / (self.radius**2 - self.widest**2) ** 1.5 + bend
 
+    def demand_bounded(self) -> None:
+        """Raise UnsettledError for a roller of which nothing is bounded: a straight one always is."""
+
     def by_error(self, error: float) -> float:
         """Travel, mm, by which a flank that is off by an error, mm, moves the roller at most: at its inner end."""
         return error * math.hypot(1.0, self.lifts.steepest / self.inner)

@@ -136,6 +136,8 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
     gauges = gauges_of(drum)
     verdicts, seen, play = [], [], None
     try:
+        for gauge in gauges:
+            gauge.demand_bounded()
         faces = faces_of(body, drum, gauges, limits.tolerance + slack)
         job = _Judged(body, faces, drum, limits, slack)
         checks += _plain_checks(job)

@@ -22,6 +22,7 @@ import numpy as np
 
 from kin.cylindrical.gauge import BESIDE, BINS, WITHIN, Gauge, Held, Near, Stand
 from kin.numeric.angles import TURN
+from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -59,6 +60,15 @@ class LedGauge(Gauge):
     growth: float
     at: float
     rim: float
+
+    def demand_bounded(self) -> None:
+        """Raise UnsettledError for a roller that goes so far aside, or leans so much, that nothing of it is bounded."""
+        if self.reach >= self.floor:
+            raise UnsettledError(
+                f"the roller reaches {self.reach:.6g} mm aside, and the flank {self.floor:.6g} mm inwards"
+            )
+        if self._lean >= UPRIGHT:
+            raise UnsettledError("somewhere the flank's normal may be square to the roller's path")
 
     def size(self, along: Array | float) -> Array | float:
         """Radius of the roller, mm, at places along it, mm."""
