@@ -55,7 +55,7 @@ class On(NamedTuple):
 class Contact(NamedTuple):
     """A roller on a flank: its axis, its radius, mm, sine and cosine of the contact angle, and h, mm, as jets."""
 
-    axis: Axis
+    axis: Axis[Jet]
     radius: Jet
     sine: Jet
     cosine: Jet
@@ -79,7 +79,7 @@ def rates(follower: DrumFollower, theta: Array, order: int = 0, knot_side: KnotS
 
 def contact(follower: DrumFollower, rows: Rates, rho: Array | float | Jet, on: On) -> Contact:
     """Contact of a follower's roller at places rho, mm, along it."""
-    growth, axis = follower.growth, follower.guide(on.beside).axis(*rows)
+    growth, axis = follower.growth, follower.guide(on.beside).jets(*rows)
     radius = 0.0 * rows.lift + follower.radius_at(rho, on.clearance)
     along = axis.y1 + radius * growth + rho
     square = along * along + axis.z1 * axis.z1
@@ -91,7 +91,7 @@ def contact(follower: DrumFollower, rows: Rates, rho: Array | float | Jet, on: O
 def pressure_jet(follower: DrumFollower, rows: Rates, rho: float, on: On) -> Jet:
     """Pressure angle, rad: of the normal, seen along the roller, against its path; above 0 where a rise is driven."""
     found, still = contact(follower, rows, rho, on), 0.0 * rows.lift
-    way = follower.guide(on.beside).axis(rows.lift, still + 1.0, still)
+    way = follower.guide(on.beside).jets(rows.lift, still + 1.0, still)
     return atan2(found.sine * way.z1 + found.cosine * way.y1, found.cosine * way.z1 - found.sine * way.y1)
 
 

@@ -16,10 +16,11 @@ where e is T turned back by a right angle on a trailing arm, which points from t
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Generic, Literal, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
+from kin.numeric.arrays import Array
 from kin.numeric.elementary import Jet, cos, sin
 from kin.numeric.records import dataclass
 
@@ -27,17 +28,16 @@ if TYPE_CHECKING:
     from typing import ClassVar
 
     from kin.law.contacts import Side
-    from kin.numeric.arrays import Array
 
-    Number = Array | Jet
     Bounds = tuple[Array, Array]
 
+Number = TypeVar("Number", Array, Jet)
 QUARTER = 0.5 * math.pi
 
 Unit: TypeAlias = Literal["mm", "deg"]
 
 
-class Axis(NamedTuple):
+class Axis(NamedTuple, Generic[Number]):
     """A roller's axis across and up, mm, with two derivatives by the shaft angle, (n,) each, or jets."""
 
     y: Number
@@ -71,8 +71,12 @@ class Slide:
     bend: ClassVar[float] = 0.0
     sense: ClassVar[float] = 0.0
 
-    def axis(self, lift: Number, slope: Number, bend: Number) -> Axis:
-        """The roller's axis at lifts with their derivatives."""
+    def axis(self, lift: Array, slope: Array, bend: Array) -> Axis[Array]:
+        """The roller's axis at lifts with their derivatives, (n,) each."""
+        return self.jets(lift, slope, bend)
+
+    def jets(self, lift: Number, slope: Number, bend: Number) -> Axis[Number]:
+        """The roller's axis at lifts with their derivatives, as jets."""
         still = 0.0 * lift
         return Axis(still + self.offset, lift + self.level, still, slope, still, bend)
 
@@ -114,10 +118,18 @@ class Swing:
         """Curvature of the roller's path, 1/mm."""
         return 1.0 / self.length
 
-    def axis(self, lift: Number, slope: Number, bend: Number) -> Axis:
-        """The roller's axis at lifts with their derivatives."""
+    def axis(self, lift: Array, slope: Array, bend: Array) -> Axis[Array]:
+        """The roller's axis at lifts with their derivatives, (n,) each."""
         psi = lift + self.angle
-        along, up = cos(psi) * self.length, sin(psi) * self.length
+        return self._turned(np.cos(psi), np.sin(psi), slope, bend)
+
+    def jets(self, lift: Jet, slope: Jet, bend: Jet) -> Axis[Jet]:
+        """The roller's axis at lifts with their derivatives, as jets."""
+        psi = lift + self.angle
+        return self._turned(cos(psi), sin(psi), slope, bend)
+
+    def _turned(self, cosine: Number, sine: Number, slope: Number, bend: Number) -> Axis[Number]:
+        along, up = cosine * self.length, sine * self.length
         square = slope * slope
         return Axis(
             self.offset - along * self.sense,

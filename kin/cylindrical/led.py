@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.cylindrical.gauge import BESIDE, BINS, WITHIN, Gauge, Held, Near, Stand
+from kin.cylindrical.gauge import BESIDE, BINS, WITHIN, Gauge, Held, Near, Place, Stand
 from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
@@ -28,13 +28,12 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.gauge import Place
     from kin.cylindrical.guide import Axis, Guide, Touch
     from kin.numeric.arrays import Array, Mask
 
 OFF = 0.1  # of the roller's radius: bounds hold for points that are no farther from the flank
 UPRIGHT = 1.5  # rad: no bound is had where normals may lean more against the roller's path
-GUESSES = 5
+GUESSES = 4
 STEPS, SETTLED = 16, 1e-10  # of Newton's method, and the step, rad, after which the next would be rounding
 LEVEL = 1e-9  # mm: steps of a height below this end them
 FLOOR = 0.1  # of a radius: X at contact is looked at no nearer to the axis
@@ -218,7 +217,7 @@ class LedGauge(Gauge):
         rooms: Array = self.side * up + self.largest
         return rooms
 
-    def _axis(self, theta: Array) -> Axis:
+    def _axis(self, theta: Array) -> Axis[Array]:
         return self.guide.axis(*self.lifts.at(theta))
 
     def axis(self, theta: Array) -> Array:
@@ -240,14 +239,17 @@ class LedGauge(Gauge):
         x, y = r * np.cos(phi), r * np.sin(phi)
         theta, z = self._guessed(phi, r), np.full(len(r), np.nan)
         # the rollers that touch near the flank touch it near there: each step squares what the height is off
-        for _ in range(2 * GUESSES):
+        for step in range(3 * GUESSES):
             axis = self._axis(theta)
             along, across = x * np.cos(theta) + y * np.sin(theta), y * np.cos(theta) - x * np.sin(theta) - axis.y
             size = self.size(along)
             before, z = z, axis.z + self.side * np.sqrt(np.maximum(size * size - across * across, 0.0))
             if float(np.abs(z - before).max(initial=0.0)) <= LEVEL:
                 break
-            theta = self.worst(np.stack([x, y, z], axis=-1)).theta
+            if step == 0:
+                theta = self.worst(np.stack([x, y, z], axis=-1)).theta
+            else:
+                theta = self._climbed(theta, Place(phi, r, z))
         return z
 
     def _touch(self, points: Sequence[Array], lift: Array, sine: Array, cosine: Array) -> tuple[Array, Array, Touch]:
@@ -267,7 +269,7 @@ class LedGauge(Gauge):
         rate = self._rate(y, along, touch, rows[1])[0]
         return Near(touch.gives, rate, self._least_away(y, along, points[2], self.guide.axis(*rows)), along)
 
-    def _least_away(self, y: Array, along: Array, z: Array, axis: Axis) -> Array:
+    def _least_away(self, y: Array, along: Array, z: Array, axis: Axis[Array]) -> Array:
         """Distance (n,), mm, of points from the flank, close to their worst angles, by a step of Newton's method."""
         across, up = y - axis.y, z - axis.z
         moved, risen = -along - axis.y1, -axis.z1
