@@ -121,6 +121,11 @@ class Gauge:
         return self.radius
 
     @property
+    def largest(self) -> float:
+        """Greatest radius of the roller, mm, up to the blank's."""
+        return self.radius
+
+    @property
     def smallest(self) -> float:
         """Least radius of the roller, mm, from the floor outwards."""
         return self.radius
@@ -137,6 +142,22 @@ class Gauge:
     def by_error(self, error: float) -> float:
         """Travel, mm, by which a flank that is off by an error, mm, moves the roller at most: at its inner end."""
         return error * math.hypot(1.0, self.lifts.steepest / self.inner)
+
+    def by_line(self, error: float, radius: float) -> float:
+        """The same, mm, of a line that is off by an error on the cylinder of a radius, mm, and is all that holds it."""
+        return error * math.hypot(1.0, self.lifts.steepest / radius)
+
+    def line_bend(self, radius: float, climb: float) -> float:  # noqa: ARG002 - how a line climbs changes nothing here
+        """How fast F may bend along a line on a cylinder, mm per rad^2 of its polar angle; it climbs `climb` mm per rad."""
+        nearest = math.sqrt(max(radius**2 - self.radius**2, (0.1 * radius) ** 2))
+        widest = self.radius * math.sin(math.atan2(self.lifts.steepest, nearest))
+        return radius**2 * self.radius**2 / (self.radius**2 - widest**2) ** 1.5
+
+    def off_line(self, worst: Worst, points: Array, radius: float) -> Array:  # noqa: ARG002 - the height says it
+        """Distance (n,) of points (n, 3), mm, at their worst angles, from the flank's line unrolled at a radius, mm."""
+        # on the cylinder the exact flank rises by the lift's own slope
+        off: Array = np.abs(worst.height) / np.hypot(1.0, self.lifts.at(worst.theta)[1] / radius)
+        return off
 
     @cached_property
     def widest(self) -> float:
@@ -179,6 +200,10 @@ class Gauge:
         points = np.stack([r * np.cos(phi), r * np.sin(phi), np.zeros_like(r)], axis=-1)
         height: Array = self.side * self.worst(points).height
         return height
+
+    def aside(self, theta: Array) -> Array:
+        """y (n,) of the roller's axis at angles (n,), rad."""
+        return np.zeros_like(theta)
 
     def axis(self, theta: Array) -> Array:
         """Height (n,) of the roller's axis at angles (n,), rad."""

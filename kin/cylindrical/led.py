@@ -28,6 +28,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kin.cylindrical.gauge import Worst
     from kin.cylindrical.guide import Axis, Guide, Touch
     from kin.numeric.arrays import Array, Mask
 
@@ -114,7 +115,7 @@ class LedGauge(Gauge):
     @cached_property
     def shortest(self) -> float:
         """Lower bound of X at contact, mm."""
-        return math.sqrt(max(self.floor**2 - self.reach**2, (FLOOR * self.floor) ** 2))
+        return self._nearest(self.floor)
 
     def _leaning(self, along: float) -> tuple[float, float]:
         """Upper bounds, rad, of how much normals of contact lean against the path, and against z, from X on, mm."""
@@ -178,6 +179,31 @@ class LedGauge(Gauge):
         """Travel, mm, by which a flank that is off by an error, mm, moves the roller at most: at its inner end."""
         return error / (self._upright * max(math.cos(min(self._leaning(self.inner)[0], UPRIGHT)), 1e-9))
 
+    def by_line(self, error: float, radius: float) -> float:
+        """The same, mm, of a line that is off by an error on the cylinder of a radius, mm, and is all that holds it."""
+        return error / (self._upright * max(math.cos(min(self._leaning(self._nearest(radius))[0], UPRIGHT)), 1e-9))
+
+    def _nearest(self, radius: float) -> float:
+        """Lower bound of X, mm, at which a cylinder is touched."""
+        return math.sqrt(max(radius**2 - self.reach**2, (FLOOR * radius) ** 2))
+
+    def line_bend(self, radius: float, climb: float) -> float:
+        """How fast F may bend along a line on a cylinder, mm per rad^2 of its polar angle; it climbs `climb` mm per rad."""
+        lean, across = self._leaning(self._nearest(radius))
+        sine, cosine = math.sin(min(lean, UPRIGHT)), max(math.cos(min(lean, UPRIGHT)), 1e-9)
+        t = u = math.hypot(radius, climb) + self.growth * radius
+        bend = (t**2 / self.smallest + self.guide.bend * sine * u**2) / cosine**3
+        return bend + (self.reach * math.sin(min(across, 0.5 * math.pi)) + radius * self.growth) / cosine
+
+    def off_line(self, worst: Worst, points: Array, radius: float) -> Array:
+        """Distance (n,) of points (n, 3), mm, at their worst angles, from the flank's line unrolled at a radius, mm."""
+        lift = self.lifts.at(worst.theta)[0]
+        y, along, touch = self._touch(list(points.T), lift, np.sin(worst.theta), np.cos(worst.theta))
+        # the part of the flank's normal that lies in the cylinder
+        round_ = (self.growth * y + touch.ny * along) / radius
+        off: Array = np.abs(worst.distance) / (self._upright * np.hypot(round_, touch.nz))
+        return off
+
     @cached_property
     def _bends(self) -> Array:
         reach = math.asin(min(1.0, self.widest / self.floor))
@@ -219,6 +245,10 @@ class LedGauge(Gauge):
 
     def _axis(self, theta: Array) -> Axis[Array]:
         return self.guide.axis(*self.lifts.at(theta))
+
+    def aside(self, theta: Array) -> Array:
+        """y (n,) of the roller's axis at angles (n,), rad."""
+        return self._axis(theta).y
 
     def axis(self, theta: Array) -> Array:
         """Height (n,) of the roller's axis at angles (n,), rad."""
