@@ -175,7 +175,7 @@ def _measured_pitch(parts: list[Array], drum: DrumIntent, radius: float, toleran
     axis, way = guide.axis(lift, slope, curve), guide.axis(lift, np.ones_like(lift), np.zeros_like(lift))
     along = np.sqrt(radius**2 - axis.y**2)
     climb = axis.z1 / (1.0 + axis.y1 / along)
-    error = line.z - axis.z
+    error = guide.above(line.z, lift)
     off = np.abs(error) / np.hypot(1.0, climb / radius)
     rate = way.z1 - climb * way.y1 / along
     error = error / rate

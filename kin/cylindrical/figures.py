@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.cylindrical.frame import On, on_cylinder, place_jets, pressure_jet, rates, regularity_jet
+from kin.cylindrical.frame import On, place_jets, pressure_jet, rates, regularity_jet
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove, Rib
 from kin.numeric.angles import TURN
@@ -107,9 +107,11 @@ def pressure_angles(follower: DrumFollower, rho: float, side: Side = -1) -> Angl
     return Angles(found[1], found[0])
 
 
-def outer_contact(follower: DrumFollower, radius: float, clearance: float = 0.0, side: Side = -1) -> At:
+def outer_contact(
+    follower: DrumFollower, radius: float, clearance: float = 0.0, side: Side = -1, beside: float = 0.0
+) -> At:
     """Least place along the roller, mm, at which a blank of `radius`, mm, ends the contact, over all shaft angles."""
-    on = On(side, clearance)
+    on = On(side, clearance, beside)
     return _extremes(follower, lambda theta, own: place_jets(follower, rates(follower, theta, 2, own), radius, on)[0])[
         0
     ]
@@ -139,11 +141,12 @@ def undercut(drum: DrumIntent, side: Side = -1) -> Undercut:
     low, high = max(drum.floor, 0.1 * drum.radius), drum.radius
     inner = least(low)
     if inner.value > 0.0:
-        end = outer_contact(follower, drum.radius, clearance, side).value
+        end = outer_contact(follower, drum.radius, clearance, side, beside).value
         return Undercut(0.0, math.nan, min(follower.outer, end) - follower.inner, 1.0)
     below = _rising_zero(lambda rho: least(rho).value, low, high)
     at = least(below).at
-    end = float(on_cylinder(follower, np.array([at]), drum.radius, side, clearance)[0][0])
+    rows, on = rates(follower, np.array([at])), On(side, clearance, beside)
+    end = float(place_jets(follower, rows, drum.radius, on)[0].c[0, 0])
     whole = min(follower.outer, end) - follower.inner
     left = max(whole - max(below - follower.inner, 0.0), 0.0)
     return Undercut(below, at, left, left / whole)

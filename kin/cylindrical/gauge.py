@@ -270,6 +270,18 @@ class Gauge:
         """The same of parts whose ends (n, 2, 3) and their worst angles (n, 2) are known, with `sizes` as above."""
         return self.bounds(*sizes, least)
 
+    def greatest(self, ends: tuple[Array, Array], shares: tuple[Array, Array], at: tuple[Array, Array, Array]) -> Array:
+        """Greatest F (n,) on lines between places (n, 3), between two shares, at lifts, sines and cosines (n,) each.
+
+        It is -inf where the roller reaches nothing of a line.
+        """
+        share, there = self.best_within(ends, shares, *at)
+        points = ends[0] + share[:, None] * (ends[1] - ends[0])
+        gives = self.held(list(points.T), *at).gives
+        # at the end of its reach the roller's flank is upright, and rounding decides
+        v = self._across(list(points.T), *at)[2]
+        return np.where(there, np.where(np.isfinite(gives), gives, v), -np.inf)
+
     def best_within(
         self, ends: tuple[Array, Array], shares: tuple[Array, Array], lift: Array, sine: Array, cosine: Array
     ) -> tuple[Array, Mask]:
@@ -278,7 +290,7 @@ class Gauge:
         return best_share(self.radius, (y, y1), (v, v1), shares)
 
     def worst(self, points: Array) -> Worst:
-        """Points (n, 3) at their worst angles; of points within the roller's radius of the cam's axis nothing is known.
+        """Points (n, 3) at their worst angles; of points within the roller's reach of the cam's axis nothing is known.
 
         The distance is good where it is small beside the radius.
         """
@@ -286,7 +298,7 @@ class Gauge:
         place = Place(phi, r, points[:, 2])
         bend = self.least_bend(phi, r)
         theta = self._climbed(self._guessed(phi, r), place)
-        many = np.flatnonzero((bend <= 0.0) & (r > self.radius))
+        many = np.flatnonzero((bend <= 0.0) & (r > self.reach))
         if len(many):
             theta[many] = self._sought(place.take(many))
         stand = self.stand(points, theta)

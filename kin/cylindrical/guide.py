@@ -80,6 +80,10 @@ class Slide:
         still = 0.0 * lift
         return Axis(still + self.offset, lift + self.level, still, slope, still, bend)
 
+    def above(self, z: Array, lift: Array) -> Array:
+        """Heights (n,), mm, of places at z over the roller's axis at lifts (n,)."""
+        return z - self.level - lift
+
     def enclosed(self, low: Array, high: Array) -> tuple[Bounds, Bounds, Bounds]:  # noqa: ARG002 - nothing depends on them
         """Bounds of the axis's y, mm, and of T across and up, over lifts from low to high (m,)."""
         still = np.zeros_like(low)
@@ -122,6 +126,11 @@ class Swing:
         """The roller's axis at lifts with their derivatives, (n,) each."""
         psi = lift + self.angle
         return self._turned(np.cos(psi), np.sin(psi), slope, bend)
+
+    def above(self, z: Array, lift: Array) -> Array:
+        """Heights (n,), mm, of places at z over the roller's axis at lifts (n,)."""
+        above: Array = z - self.pivot - self.length * np.sin(self.angle + lift)
+        return above
 
     def jets(self, lift: Jet, slope: Jet, bend: Jet) -> Axis[Jet]:
         """The roller's axis at lifts with their derivatives, as jets."""

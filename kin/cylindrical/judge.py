@@ -287,7 +287,7 @@ def _own_gives(body: Body, stands: Stands, drum: DrumIntent, theta: Array) -> Ar
     """How far the drum's own roller is kept from its place at angles (n,), rad, mm, above 0 away from the metal."""
     gauge = replace(stands.gauge, radius=drum.follower.radius)
     corners = body.corners[stands.touched]
-    reach = math.asin(min(1.0, gauge.radius / gauge.inner))
+    reach = math.asin(min(1.0, gauge.reach / gauge.inner))
     return set_down(gauge, body.points[corners], spans_of(body.phi, corners, reach), theta)
 
 

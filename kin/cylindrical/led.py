@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 OFF = 0.1  # of the roller's radius: bounds hold for points that are no farther from the flank
 UPRIGHT = 1.5  # rad: no bound is had where normals may lean more against the roller's path
 GUESSES = 4
+ROOM, LOOKS = 1.5, 17  # of a radius to both sides of the axis, and points of a line there, where a line may be touched
 STEPS, SETTLED = 16, 1e-10  # of Newton's method, and the step, rad, after which the next would be rounding
 LEVEL = 1e-9  # mm: steps of a height below this end them
 FLOOR = 0.1  # of a radius: X at contact is looked at no nearer to the axis
@@ -441,6 +442,47 @@ class LedGauge(Gauge):
         slope = self.lever * self.lifts.steepest
         along = self.shortest * self._least_cosine
         return (self._bent + slope**2 * self.guide.bend + self.growth * slope) / along
+
+    def greatest(self, ends: tuple[Array, Array], shares: tuple[Array, Array], at: tuple[Array, Array, Array]) -> Array:
+        """Greatest F (n,) on lines between places (n, 3), between two shares, at lifts, sines and cosines (n,) each.
+
+        It is -inf where the roller reaches nothing of a line. Along a line F is all but a parabola, whose peak Newton's
+        method finds from the best of some points.
+        """
+        (lift, sine, cosine), way = at, ends[1] - ends[0]
+        still = np.zeros_like(lift)
+        axis = self.guide.axis(lift, still, still)
+        start = ends[0][:, 1] * cosine - ends[0][:, 0] * sine - axis.y
+        dy, dx, dz = way[:, 1] * cosine - way[:, 0] * sine, way[:, 0] * cosine + way[:, 1] * sine, way[:, 2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            reach = [(sense * ROOM * self.largest - start) / dy for sense in (-1.0, 1.0)]
+        level = dy == 0.0
+        low = np.where(level, shares[0], np.maximum(shares[0], np.minimum(*reach)))
+        high = np.where(level, shares[1], np.minimum(shares[1], np.maximum(*reach)))
+
+        def looked(share: Array) -> tuple[Array, Array]:
+            """F at shares of the lines, and the step to where it is level."""
+            points = ends[0] + share[:, None] * way
+            _, place, touch = self._touch(list(points.T), lift, sine, cosine)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                upright = self.side * (touch.ny * touch.ty + touch.nz * touch.tz)
+                slope = -(dy * touch.ny + dz * touch.nz - self.growth * dx) / upright
+                u, size = -self.side * slope, self.size(place)
+                t = (dy - u * touch.ty) ** 2 + (dz - u * touch.tz) ** 2 - (self.growth * dx) ** 2
+                lean = self.guide.sense * (touch.nz * touch.ty - touch.ny * touch.tz)
+                step = slope * size * upright / (t + size * self.guide.bend * lean * u * u)
+            return np.where(np.isfinite(touch.gives), touch.gives, -np.inf), step
+
+        best, share = np.full(len(lift), -np.inf), low
+        for part in np.linspace(0.0, 1.0, LOOKS):
+            own = low + part * (high - low)
+            gives = looked(own)[0]
+            share = np.where(gives > best, own, share)
+            best = np.maximum(best, gives)
+        for _ in range(GUESSES):
+            step = looked(share)[1]
+            share = np.clip(share + np.where(np.isfinite(step), step, 0.0), low, np.maximum(low, high))
+        return np.where(low <= high, np.maximum(best, looked(share)[0]), -np.inf)
 
     def best_within(
         self, ends: tuple[Array, Array], shares: tuple[Array, Array], lift: Array, sine: Array, cosine: Array
