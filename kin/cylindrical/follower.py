@@ -3,7 +3,7 @@
 Axes: z is the cam's axis, mm and radians. The cam stands still and the follower runs round it, counter-clockwise seen
 from +z, by the shaft angle theta. At theta = 0 the roller's axis points along +x. That axis is always parallel to a
 radius, at y across it and z along the cam's axis; rho is the coordinate along it. On a slide y is the offset and z the
-level + S(theta), S growing along +z. `rotation: ccw` is the mirror image (y -> -y), which is undone when a file is read.
+level + S(theta), S growing along +z. `rotation: ccw` is the mirror image (y -> -y), undone when a file is read.
 """
 
 from __future__ import annotations

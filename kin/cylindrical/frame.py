@@ -1,6 +1,6 @@
 """The exact flank of a drum in closed form: where a roller touches it, how it bends, where it is undercut.
 
-A point at rho along the roller's axis, which is at (y, z), moves seen from the cam by V = -y e_r + (rho + y') e_t + z' k
+A point at rho on the roller's axis, which is at (y, z), moves seen from the cam by V = -y e_r + (rho + y') e_t + z' k
 per radian. There the roller has the radius R, which grows by g = tan delta along it. A normal of contact is square to V
 and to the cone (equation of meshing; Litvin, Gear Geometry): with A = rho + y' + R g, w = hypot(A, z') and
 n = -sin a e_t + cos a k,
@@ -45,7 +45,7 @@ class Rates(NamedTuple):
 
 
 class On(NamedTuple):
-    """A flank by the side of its roller, -1 below it and 1 above, by how much that is larger, and how far beside, mm."""
+    """A flank by the side of its roller, -1 below and 1 above it, by how much that is larger, and how far beside, mm."""
 
     side: Side = -1
     clearance: float = 0.0

@@ -148,7 +148,7 @@ class Gauge:
         return error * math.hypot(1.0, self.lifts.steepest / radius)
 
     def line_bend(self, radius: float, climb: float) -> float:  # noqa: ARG002 - how a line climbs changes nothing here
-        """How fast F may bend along a line on a cylinder, mm per rad^2 of its polar angle; it climbs `climb` mm per rad."""
+        """How fast F may bend along a line on a cylinder, mm per rad^2 of its polar angle; it climbs `climb` per rad."""
         nearest = math.sqrt(max(radius**2 - self.radius**2, (0.1 * radius) ** 2))
         widest = self.radius * math.sin(math.atan2(self.lifts.steepest, nearest))
         return radius**2 * self.radius**2 / (self.radius**2 - widest**2) ** 1.5
@@ -202,7 +202,7 @@ class Gauge:
         return height
 
     def aside(self, theta: Array) -> Array:
-        """y (n,) of the roller's axis at angles (n,), rad."""
+        """Place across, y (n,), mm, of the roller's axis at angles (n,), rad."""
         return np.zeros_like(theta)
 
     def axis(self, theta: Array) -> Array:
@@ -265,8 +265,12 @@ class Gauge:
         return bend, (across**2 + up**2) / nearest
 
     def close_bounds(
-        self, ends: Array, theta: Array, sizes: tuple[Array, Array, Array], least: Array
-    ) -> tuple[Array, Array]:  # noqa: ARG002 - these are close
+        self,
+        ends: Array,  # noqa: ARG002 - those above are close
+        theta: Array,  # noqa: ARG002
+        sizes: tuple[Array, Array, Array],
+        least: Array,
+    ) -> tuple[Array, Array]:
         """The same of parts whose ends (n, 2, 3) and their worst angles (n, 2) are known, with `sizes` as above."""
         return self.bounds(*sizes, least)
 
@@ -285,7 +289,7 @@ class Gauge:
     def best_within(
         self, ends: tuple[Array, Array], shares: tuple[Array, Array], lift: Array, sine: Array, cosine: Array
     ) -> tuple[Array, Mask]:
-        """Share (n,) of lines between places (n, 3) at which F is greatest, between two shares, and if it is anywhere."""
+        """Share (n,) of lines between places (n, 3) at which F is greatest, between two shares, and if there is one."""
         (y, _, v), (y1, _, v1) = (self._across(list(own.T), lift, sine, cosine) for own in ends)
         return best_share(self.radius, (y, y1), (v, v1), shares)
 

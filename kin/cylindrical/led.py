@@ -7,7 +7,7 @@ the shaft turns by d theta the point moves by (-X d theta, 0) across, so that wi
     F' = side lever S' + (X n_y + y g)/cos a
     F'' = side lever S'' - ((t^2 + R bend (n.e) u^2)/R - y n_y + X g)/cos a,    t = (X T_z + y g (n x T))/cos a
 
-where the roller's radius grows by g along it. Along a straight edge, seen at one angle, what is moved by p across and up
+where the roller's radius grows by g along it. Along a straight edge, seen at one angle, what moves by p across and up
 and by x along has F'' = -(t^2 + R bend (n.e) u^2)/(R cos a), t = (p x T - g x (n x T))/cos a. The distance from the
 flank is the least of (hypot(y - y_0, z - z_0) - R) cos delta over theta.
 """
@@ -189,7 +189,7 @@ class LedGauge(Gauge):
         return math.sqrt(max(radius**2 - self.reach**2, (FLOOR * radius) ** 2))
 
     def line_bend(self, radius: float, climb: float) -> float:
-        """How fast F may bend along a line on a cylinder, mm per rad^2 of its polar angle; it climbs `climb` mm per rad."""
+        """How fast F may bend along a line on a cylinder, mm per rad^2 of its polar angle; it climbs `climb` per rad."""
         lean, across = self._leaning(self._nearest(radius))
         sine, cosine = math.sin(min(lean, UPRIGHT)), max(math.cos(min(lean, UPRIGHT)), 1e-9)
         t = u = math.hypot(radius, climb) + self.growth * radius
@@ -248,7 +248,7 @@ class LedGauge(Gauge):
         return self.guide.axis(*self.lifts.at(theta))
 
     def aside(self, theta: Array) -> Array:
-        """y (n,) of the roller's axis at angles (n,), rad."""
+        """Place across, y (n,), mm, of the roller's axis at angles (n,), rad."""
         return self._axis(theta).y
 
     def axis(self, theta: Array) -> Array:

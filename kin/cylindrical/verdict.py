@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MotionError:
-    """Error of the position, measured less intended, over all shaft angles, in its `unit`: mm along z, or deg of an arm.
+    """Error of the position, measured less intended, over all shaft angles, in its `unit`: mm, or deg of an arm.
 
     An error above 0 pushes the roller away from the metal of its flank.
 

@@ -178,6 +178,14 @@ class Drum:
             for side, roller in sides
         )
 
+    def envelops(self, flank):
+        """Whether a flank is nowhere undercut at its inner edge: what is touched there stands in no roller's way."""
+        theta = np.linspace(0.0, TURN, 181)
+        phi, z = self.touched(theta, np.array([self.floor]), *flank[1:])
+        points = polar(phi, self.floor, z)[:, 0]
+        whole = replace(self, mirrored=False)
+        return np.abs(distances(whole, points, flank)[0]).max() < 1e-7
+
     def touched(self, theta, r, side, roller, level):
         """Polar angle and height (n, m) of the flank on cylinders r (m,), touched at angles theta (n,)."""
         if not self.plain:
@@ -457,6 +465,36 @@ def random_drum(chance, kind):
     return drum, size
 
 
+LED = ("offset", "cone", "arm", "cone on an arm", "rib on an arm", "cone beside the axis")
+
+
+def random_led(chance, kind):
+    """A drum by chance whose roller is a cone, on an arm or beside the axis, with its size: `random_drum` otherwise."""
+    tracks = {"offset": "hub", "cone": "rib", "arm": "groove", "cone on an arm": "bottom", "rib on an arm": "rib"}
+    drum, size = random_drum(chance, tracks.get(kind, "groove"))
+    sense = int(chance.choice([-1, 1]))
+    more = {}
+    if "cone" in kind:
+        middle = 0.5 * (drum.inner + drum.outer)
+        apex = math.atan(drum.roller / middle)
+        more |= {"at": middle, "taper": apex if chance.integers(2) else chance.uniform(0.3, 1.2) * apex}
+    if kind in {"offset", "cone beside the axis"}:
+        more["offset"] = sense * chance.uniform(0.05, 0.15) * drum.radius
+    if "arm" in kind:
+        stroke = drum.motion.parts[0][0]
+        reach = drum.radius * chance.uniform(1.5, 2.5)
+        swing = 2.0 * math.asin(0.5 * stroke / reach)
+        parts = tuple((lift / stroke * swing, over, name) for lift, over, name in drum.motion.parts)
+        pivot = drum.level + chance.uniform(0.35, 0.65) * stroke
+        aside = sense * reach * 0.5 * (1.0 + math.cos(0.5 * swing)) + chance.uniform(-0.03, 0.03) * drum.radius
+        more |= {"motion": Motion(parts), "arm": Arm(reach, aside, pivot, sense)}
+    drum = replace(drum, **more)
+    while not all(drum.envelops(flank) for flank in drum.flanks):
+        parts = tuple((0.85 * lift, over, name) for lift, over, name in drum.motion.parts)
+        drum = replace(drum, motion=Motion(parts))
+    return drum, size
+
+
 def on_triangles(made, name, chance, count):
     """Places (n, 3) on the triangles of a part of a drum: points of all edges, and so many within by chance."""
     names = np.array(made.names * len(made.theta))
@@ -471,6 +509,7 @@ def on_triangles(made, name, chance, count):
 
 __all__ = [
     "KINDS",
+    "LED",
     "Arm",
     "Drum",
     "End",
@@ -485,6 +524,7 @@ __all__ = [
     "fitting",
     "on_triangles",
     "random_drum",
+    "random_led",
     "replace",
     "resting",
 ]
