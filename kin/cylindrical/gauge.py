@@ -390,13 +390,18 @@ class Gauge:
             with np.errstate(invalid="ignore"):
                 bound = value + np.abs(slope) * half + 0.5 * self._curving(theta, half) * half**2
             bound += np.where(cornered, self.lever * self.lifts.jump * half, 0.0)
-            open_ = ~(bound <= best[own]) & (half > np.where(cornered, NOTHING, SMALL))
+            single = (half <= SMALL) | self._single(theta, half, place.take(own))
+            open_ = ~(bound <= best[own]) & np.where(cornered, half > NOTHING, ~single)
             small = np.flatnonzero(~(bound <= best[own]) & ~open_)
             reached(own[small], self._climbed(theta[small], place.take(own[small])))
             own, theta, half = own[open_], theta[open_], half[open_]
             theta = np.concatenate([theta - 0.5 * half, theta + 0.5 * half])
             own, half = np.tile(own, 2), np.tile(0.5 * half, 2)
         return at
+
+    def _single(self, theta: Array, half: Array, place: Place) -> Mask:  # noqa: ARG002 - small cells alone do here
+        """Whether F of points has one peak at most in cells (n,) about angles, beside corners of the lift."""
+        return np.zeros(len(theta), dtype=np.bool_)
 
     def _curving(self, theta: Array, half: Array) -> Array:
         """Upper bound (n,) of the second derivative of F over cells about angles, beside corners of the lift."""

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.cylindrical.gauge import BESIDE, BINS, WITHIN, Gauge, Held, Near, Place, Stand
+from kin.cylindrical.lifts import widened
 from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
@@ -212,7 +213,11 @@ class LedGauge(Gauge):
 
     def least_bend(self, phi: Array, r: Array) -> Array:
         """Lower bound (n,) of how fast F of points falls on both sides of its peak, mm per rad^2; below 0: unknown."""
-        place = np.floor(phi * (BINS / TURN)).astype(np.intp) % BINS
+        bends: Array = self._falling(r) - self._bends[np.floor(phi * (BINS / TURN)).astype(np.intp) % BINS]
+        return bends
+
+    def _falling(self, r: Array) -> Array:
+        """Lower bound (n,) of how fast F of points falls about its peak, mm per rad^2, without the lift's own bend."""
         sine, cosine = math.sin(min(self._lean, UPRIGHT)), self._least_cosine
         along = np.sqrt(np.maximum(r * r - self.widest**2, 0.0))
         t = np.maximum(along * float(self._over.tz[0].min()) - self.widest * self.growth * sine, 0.0)
@@ -222,8 +227,14 @@ class LedGauge(Gauge):
         lost = self.widest * self._across
         least = np.where(fall > 0.0, fall, fall / cosine**3) - lost / cosine
         fall = np.where(3.0 * fall > lost, fall - lost, least)
-        bends: Array = fall + along * self.growth - self._bends[place]
-        return bends
+        falling: Array = fall + along * self.growth
+        return falling
+
+    def _single(self, theta: Array, half: Array, place: Place) -> Mask:
+        """Whether F of points has one peak at most in cells (n,) about angles, beside corners of the lift."""
+        bends = widened(self._own_bends, float(half.max(initial=0.0)))
+        single: Mask = self._falling(place.r) > bends[np.floor(theta * (BINS / TURN)).astype(np.intp) % BINS]
+        return single
 
     @cached_property
     def _hollow(self) -> float:
