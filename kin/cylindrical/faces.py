@@ -18,7 +18,7 @@ from kin.contour.arcs import Arcs
 from kin.contour.holes import farthest
 from kin.contour.nearest import nearest
 from kin.cylindrical.edges import Edges
-from kin.cylindrical.gauge import BESIDE, Worst
+from kin.cylindrical.gauge import BESIDE, Place, Worst
 from kin.cylindrical.intent import End
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import paired
@@ -184,14 +184,14 @@ def _least_radius(start: Array, last: Array) -> Array:
 
 def _off_flank(gauge: Gauge, worst: Worst) -> Array:
     """Distance (n,) of points from a flank, mm; infinite on the other side of the roller's axis, where it has none."""
-    off: Array = np.where(worst.height < gauge.radius, np.abs(worst.distance), np.inf)
+    off: Array = np.where(worst.height < gauge.smallest, np.abs(worst.distance), np.inf)
     return off
 
 
 def _stands(body: Body, gauge: Gauge, rest: Indices) -> Stands:
     """How a body stands to a gauge; `rest` are the triangles whose corners are asked for at any rate."""
     z = body.points[:, 2]
-    above = gauge.beyond(body.phi, z) > 0.0
+    above = gauge.beyond(Place(body.phi, body.r, z)) > 0.0
     signs = body.each(above)
     within = np.maximum.reduce(body.each(body.r)) >= gauge.inner
     metal = ~np.logical_or.reduce(signs)

@@ -21,12 +21,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.cylindrical.contact import best_share
 from kin.cylindrical.intent import Groove, Rib
 from kin.cylindrical.lifts import BINS, Lifts, widened
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kin.cylindrical.intent import DrumIntent
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
@@ -47,6 +50,35 @@ class Stand(NamedTuple):
     y: Array
     along: Array
     v: Array
+
+
+class Near(NamedTuple):
+    """Points near their worst angles: F, mm, its slope, per rad, the distance from the flank, and X, mm; nan: no F."""
+
+    height: Array
+    rate: Array
+    distance: Array
+    along: Array
+
+
+class Held(NamedTuple):
+    """How points stand to a roller: F, mm, nan where it does not reach them, their distance from it, and X, mm."""
+
+    gives: Array
+    away: Array
+    along: Array
+
+
+class Place(NamedTuple):
+    """Points by polar angle, rad, radius and height, mm."""
+
+    phi: Array
+    r: Array
+    z: Array
+
+    def take(self, which: Indices) -> Place:
+        """Some of the points."""
+        return Place(*(row[which] for row in self))
 
 
 class Worst(NamedTuple):
@@ -77,6 +109,55 @@ class Gauge:
     outer: float
     lifts: Lifts
     floor: float
+
+    @property
+    def lever(self) -> float:
+        """Travel of the roller's axis, mm, for one of the motion."""
+        return 1.0
+
+    @property
+    def reach(self) -> float:
+        """Upper bound of |y| at which the roller touches anything, mm."""
+        return self.radius
+
+    @property
+    def largest(self) -> float:
+        """Greatest radius of the roller, mm, up to the blank's."""
+        return self.radius
+
+    @property
+    def smallest(self) -> float:
+        """Least radius of the roller, mm, from the floor outwards."""
+        return self.radius
+
+    @cached_property
+    def fastest(self) -> float:
+        """How fast F of a point may bend at its worst angle, mm per rad^2."""
+        bend = max(float(self.lifts.bends(side).max()) for side in (-1, 1))
+        return self.outer**2 * self.radius**2 / (self.radius**2 - self.widest**2) ** 1.5 + bend
+
+    def demand_bounded(self) -> None:
+        """Raise UnsettledError for a roller of which nothing is bounded: a straight one always is."""
+
+    def by_error(self, error: float) -> float:
+        """Travel, mm, by which a flank that is off by an error, mm, moves the roller at most: at its inner end."""
+        return error * math.hypot(1.0, self.lifts.steepest / self.inner)
+
+    def by_line(self, error: float, radius: float) -> float:
+        """The same, mm, of a line that is off by an error on the cylinder of a radius, mm, and is all that holds it."""
+        return error * math.hypot(1.0, self.lifts.steepest / radius)
+
+    def line_bend(self, radius: float, climb: float) -> float:  # noqa: ARG002 - how a line climbs changes nothing here
+        """How fast F may bend along a line on a cylinder, mm per rad^2 of its polar angle; it climbs `climb` per rad."""
+        nearest = math.sqrt(max(radius**2 - self.radius**2, (0.1 * radius) ** 2))
+        widest = self.radius * math.sin(math.atan2(self.lifts.steepest, nearest))
+        return radius**2 * self.radius**2 / (self.radius**2 - widest**2) ** 1.5
+
+    def off_line(self, worst: Worst, points: Array, radius: float) -> Array:  # noqa: ARG002 - the height says it
+        """Distance (n,) of points (n, 3), mm, at their worst angles, from the flank's line unrolled at a radius, mm."""
+        # on the cylinder the exact flank rises by the lift's own slope
+        off: Array = np.abs(worst.height) / np.hypot(1.0, self.lifts.at(worst.theta)[1] / radius)
+        return off
 
     @cached_property
     def widest(self) -> float:
@@ -109,10 +190,20 @@ class Gauge:
         most: Array = self._rooms[np.floor(phi * (BINS / TURN)).astype(np.intp) % BINS] - self.side * z
         return most
 
-    def beyond(self, phi: Array, z: Array) -> Array:
+    def beyond(self, place: Place) -> Array:
         """Height (n,), mm, of points over the roller's axis as it passes over them, away from the metal."""
-        beyond: Array = self.side * (self.axis(phi) - z)
+        beyond: Array = self.side * (self.axis(place.phi) - place.z)
         return beyond
+
+    def surface(self, phi: Array, r: Array) -> Array:
+        """Height (n,), mm, of the exact flank at polar angles and radii (n,)."""
+        points = np.stack([r * np.cos(phi), r * np.sin(phi), np.zeros_like(r)], axis=-1)
+        height: Array = self.side * self.worst(points).height
+        return height
+
+    def aside(self, theta: Array) -> Array:
+        """Place across, y (n,), mm, of the roller's axis at angles (n,), rad."""
+        return np.zeros_like(theta)
 
     def axis(self, theta: Array) -> Array:
         """Height (n,) of the roller's axis at angles (n,), rad."""
@@ -129,17 +220,91 @@ class Gauge:
             depth = np.sqrt(self.radius**2 - y * y)
             return Stand(v + depth, y * along / depth + self.side * slope, y, along, v)
 
+    def _across(self, points: Sequence[Array], lift: Array, sine: Array, cosine: Array) -> tuple[Array, Array, Array]:
+        """y, X and v (n,) of points, three columns (n,), at angles of known sine and cosine."""
+        px, py, pz = points
+        v = self.side * (self.level + lift - pz)
+        return py * cosine - px * sine, px * cosine + py * sine, v
+
+    def near(self, points: Sequence[Array], rows: tuple[Array, Array, Array], sine: Array, cosine: Array) -> Near:
+        """Points, three columns (n,), at angles near their worst, with lift, slope and bend there."""
+        lift, slope, bend = rows
+        y, along, v = self._across(points, lift, sine, cosine)
+        slope = self.side * slope
+        with np.errstate(invalid="ignore", divide="ignore"):
+            depth = np.sqrt(self.radius**2 - y * y)
+            rate = y * along / depth + slope
+        curve = along**2 - y**2 + slope**2 + v * self.side * bend
+        square = y * y + v * v - (v * slope - y * along) ** 2 / np.where(curve > 0.0, curve, np.inf)
+        return Near(v + depth, rate, np.sqrt(np.maximum(square, 0.0)) - self.radius, along)
+
+    def held(self, points: Sequence[Array], lift: Array, sine: Array, cosine: Array) -> Held:
+        """Points, three columns (n,), at angles with a lift."""
+        y, along, v = self._across(points, lift, sine, cosine)
+        square = y * y
+        with np.errstate(invalid="ignore"):
+            gives = v + np.sqrt(self.radius**2 - square)
+        return Held(gives, np.sqrt(square + v * v) - self.radius, along)
+
+    def away(self, points: Array, theta: Array) -> Array:
+        """Distance (n,), mm, of points (n, 3) from the roller at angles (n,), rad."""
+        return self.held(list(points.T), self.lifts.at(theta)[0], np.sin(theta), np.cos(theta)).away
+
+    def bounds(self, across: Array, up: Array, along: Array, least: Array) -> tuple[Array, Array]:  # noqa: ARG002 - a cylinder is the same all along
+        """How fast F and the distance may bend over parts of edges (n,), times the squares of their lengths, mm.
+
+        At any of the worst angles between a part's ends these are so far `across`, `up` and `along` from each other;
+        `least` is the lesser of their distances from the flank.
+        """
+        radius = self.radius
+        most = self.widest + across
+        with np.errstate(invalid="ignore", divide="ignore"):
+            bend = across**2 * radius**2 / np.maximum(radius**2 - most**2, 0.0) ** 1.5
+        bend = np.where(most < radius, bend, np.inf)
+        nearest = np.maximum(radius + least - 0.125 * (across + np.abs(up)), 0.5 * radius)
+        return bend, (across**2 + up**2) / nearest
+
+    def close_bounds(
+        self,
+        ends: Array,  # noqa: ARG002 - those above are close
+        theta: Array,  # noqa: ARG002
+        sizes: tuple[Array, Array, Array],
+        least: Array,
+    ) -> tuple[Array, Array]:
+        """The same of parts whose ends (n, 2, 3) and their worst angles (n, 2) are known, with `sizes` as above."""
+        return self.bounds(*sizes, least)
+
+    def greatest(self, ends: tuple[Array, Array], shares: tuple[Array, Array], at: tuple[Array, Array, Array]) -> Array:
+        """Greatest F (n,) on lines between places (n, 3), between two shares, at lifts, sines and cosines (n,) each.
+
+        It is -inf where the roller reaches nothing of a line.
+        """
+        share, there = self.best_within(ends, shares, *at)
+        points = ends[0] + share[:, None] * (ends[1] - ends[0])
+        gives = self.held(list(points.T), *at).gives
+        # at the end of its reach the roller's flank is upright, and rounding decides
+        v = self._across(list(points.T), *at)[2]
+        return np.where(there, np.where(np.isfinite(gives), gives, v), -np.inf)
+
+    def best_within(
+        self, ends: tuple[Array, Array], shares: tuple[Array, Array], lift: Array, sine: Array, cosine: Array
+    ) -> tuple[Array, Mask]:
+        """Share (n,) of lines between places (n, 3) at which F is greatest, between two shares, and if there is one."""
+        (y, _, v), (y1, _, v1) = (self._across(list(own.T), lift, sine, cosine) for own in ends)
+        return best_share(self.radius, (y, y1), (v, v1), shares)
+
     def worst(self, points: Array) -> Worst:
-        """Points (n, 3) at their worst angles; of points within the roller's radius of the cam's axis nothing is known.
+        """Points (n, 3) at their worst angles; of points within the roller's reach of the cam's axis nothing is known.
 
         The distance is good where it is small beside the radius.
         """
         phi, r = np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1])
+        place = Place(phi, r, points[:, 2])
         bend = self.least_bend(phi, r)
-        theta = self._climbed(self._guessed(phi, r), phi, r)
-        many = np.flatnonzero((bend <= 0.0) & (r > self.radius))
+        theta = self._climbed(self._guessed(phi, r), place)
+        many = np.flatnonzero((bend <= 0.0) & (r > self.reach))
         if len(many):
-            theta[many] = self._sought(phi[many], r[many])
+            theta[many] = self._sought(place.take(many))
         stand = self.stand(points, theta)
         return Worst(theta, stand.gives, self._distance(theta, stand), np.maximum(bend, 0.0))
 
@@ -166,9 +331,9 @@ class Gauge:
             theta = phi + np.arcsin(np.clip(share, -WITHIN, WITHIN))
         return theta
 
-    def _climbed(self, start: Array, phi: Array, r: Array) -> Array:
+    def _climbed(self, start: Array, place: Place) -> Array:
         """Angle (n,) of the peak of F near `start`, rad; it does not depend on the height of a point."""
-        side, radius = self.side, self.radius
+        (phi, r, _), side, radius = place, self.side, self.radius
         theta, open_ = start.copy(), np.arange(len(phi))
         for _ in range(STEPS):
             own, lead = r[open_], phi[open_]
@@ -191,28 +356,29 @@ class Gauge:
                 break
         return theta
 
-    def _risen(self, theta: Array, phi: Array, r: Array) -> tuple[Array, Array]:
+    def _risen(self, theta: Array, place: Place) -> tuple[Array, Array]:
         """F of points at z = 0, and its slope, (n,) each, at angles (n,), rad; -inf out of the roller's reach."""
-        lift, slope, _ = self.lifts.at(theta)
+        (phi, r, _), (lift, slope, _) = place, self.lifts.at(theta)
         y, along = r * np.sin(phi - theta), r * np.cos(phi - theta)
         with np.errstate(invalid="ignore", divide="ignore"):
             depth = np.sqrt(self.radius**2 - y * y)
             gives = self.side * (self.level + lift) + depth
             return np.where(np.isfinite(gives), gives, -np.inf), y * along / depth + self.side * slope
 
-    def _sought(self, phi: Array, r: Array) -> Array:
+    def _sought(self, place: Place) -> Array:
         """Angle (n,) of the highest peak of F among several, by cells that may still hold it.
 
         Small cells that may are climbed from, and those about a jump of the velocity are parted on.
         """
-        reach = np.arcsin(np.minimum(min(1.02 * self.widest, WITHIN * self.radius) / r, 1.0))
+        phi, r, _ = place
+        reach = np.arcsin(np.minimum(min(1.02 * self.widest, WITHIN * self.reach) / r, 1.0))
         shares = (np.arange(CELLS) + 0.5) / (0.5 * CELLS) - 1.0
         own, half = np.repeat(np.arange(len(phi)), CELLS), np.repeat(reach / CELLS, CELLS)
         theta = (phi[:, None] + reach[:, None] * shares).ravel()
         best, at = np.full(len(phi), -np.inf), phi.copy()
 
         def reached(own: Indices, theta: Array) -> tuple[Array, Array]:
-            value, slope = self._risen(theta, phi[own], r[own])
+            value, slope = self._risen(theta, place.take(own))
             np.maximum.at(best, own, value)
             won = np.flatnonzero(value == best[own])
             at[own[won]] = theta[won]
@@ -223,14 +389,19 @@ class Gauge:
             cornered = self._cornered(theta, half)
             with np.errstate(invalid="ignore"):
                 bound = value + np.abs(slope) * half + 0.5 * self._curving(theta, half) * half**2
-            bound += np.where(cornered, self.lifts.jump * half, 0.0)
-            open_ = ~(bound <= best[own]) & (half > np.where(cornered, NOTHING, SMALL))
+            bound += np.where(cornered, self.lever * self.lifts.jump * half, 0.0)
+            single = (half <= SMALL) | self._single(theta, half, place.take(own))
+            open_ = ~(bound <= best[own]) & np.where(cornered, half > NOTHING, ~single)
             small = np.flatnonzero(~(bound <= best[own]) & ~open_)
-            reached(own[small], self._climbed(theta[small], phi[own[small]], r[own[small]]))
+            reached(own[small], self._climbed(theta[small], place.take(own[small])))
             own, theta, half = own[open_], theta[open_], half[open_]
             theta = np.concatenate([theta - 0.5 * half, theta + 0.5 * half])
             own, half = np.tile(own, 2), np.tile(0.5 * half, 2)
         return at
+
+    def _single(self, theta: Array, half: Array, place: Place) -> Mask:  # noqa: ARG002 - small cells alone do here
+        """Whether F of points has one peak at most in cells (n,) about angles, beside corners of the lift."""
+        return np.zeros(len(theta), dtype=np.bool_)
 
     def _curving(self, theta: Array, half: Array) -> Array:
         """Upper bound (n,) of the second derivative of F over cells about angles, beside corners of the lift."""
@@ -240,7 +411,7 @@ class Gauge:
 
     @cached_property
     def _own_bends(self) -> Array:
-        return self.lifts.bends(self.side)
+        return self.lever * self.lifts.bends(self.side)
 
     @cached_property
     def _hollow(self) -> float:
@@ -258,17 +429,22 @@ class Gauge:
 
 def gauges_of(drum: DrumIntent) -> tuple[Gauge, ...]:
     """The gauges of a drum's flanks, the lower one first."""
+    from kin.cylindrical.led import LedGauge
+
     own, track = drum.follower, drum.track
     lifts = Lifts(own.law)
     floor = drum.floor
 
-    def gauge(side: Side, level: float, radius: float = own.radius) -> Gauge:
+    def gauge(side: Side, beside: float = 0.0, clearance: float = 0.0) -> Gauge:
         name = "lower" if side < 0 else "upper"
-        return Gauge(name, side, radius, level, own.inner, own.outer, lifts, floor)
+        common = (name, side, own.radius + clearance, own.level + beside, own.inner, own.outer, lifts, floor)
+        if own.arm is None and not own.offset and not own.taper:
+            return Gauge(*common)
+        return LedGauge(*common, own.guide(beside), own.growth, own.at or 0.0, drum.radius)
 
     if isinstance(track, Groove):
-        return gauge(-1, own.level), gauge(1, own.level, own.radius + track.clearance)
+        return gauge(-1), gauge(1, clearance=track.clearance)
     if isinstance(track, Rib):
         half = 0.5 * track.distance
-        return gauge(-1, own.level + half), gauge(1, own.level - half)
-    return (gauge(-1 if track.facing == "top" else 1, own.level),)
+        return gauge(-1, half), gauge(1, -half)
+    return (gauge(-1 if track.facing == "top" else 1),)
