@@ -59,20 +59,16 @@ def reader_of(source: Source) -> tuple[Reader, Values]:
     reader = reader_of_kind(source, "cylindrical")
     read_units(reader)
     root = source.root
-<<<<<<< HEAD
+    cam = entries(root).get("cam") if isinstance(root, Mapping) else None
+    follower = entries(cam).get("follower") if isinstance(cam, Mapping) else None
+    if isinstance(follower, Mapping) and "arm" in entries(follower):
+        reader.angular |= {Kind.STROKE, Kind.ERROR, Kind.MOTION}
     return reader, reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
 
 
 def read_cylindrical(source: Source, path: Path) -> DrumRecipe:
     """Read the recipe of a cylindrical cam; raises RecipeErrors with all its faults."""
     reader, values = reader_of(source)
-=======
-    cam = entries(root).get("cam") if isinstance(root, Mapping) else None
-    follower = entries(cam).get("follower") if isinstance(cam, Mapping) else None
-    if isinstance(follower, Mapping) and "arm" in entries(follower):
-        reader.angular |= {Kind.STROKE, Kind.ERROR, Kind.MOTION}
-    values = reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
->>>>>>> arm-maker
     name_by_stem(values, reader, path)
     reader.errors = [_not_yet(error) for error in reader.errors]
     if not reader.errors:

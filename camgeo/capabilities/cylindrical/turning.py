@@ -39,24 +39,13 @@ def scene(design: DrumDesign, step: int = 0, of: list[Shell] | None = None) -> S
     recipe = design.recipe
     theta = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
     size = JOINT * (2.0 * recipe.radius + recipe.height)
-<<<<<<< HEAD
     shapes = drum_shapes(design, of or shells(design), sense(design) * float(theta[step]))
-    bodies = [MovingBody("drum", DRUM, tuple(shapes), still()), *_follower(design, lift, size)]
-    bodies += [
-        MovingBody(
-            f"contact {name}", CONTACTS, (FilledShape("contact line", (_arc(design, name, step),)),), poses(0, lift, 0)
-        )
-        for name in design.flanks
-    ]
-=======
-    shapes = drum_shapes(design, shells(design), sense(design) * float(theta[step]))
     guide = recipe.guide
     follower = _arm(design, guide, theta, size) if isinstance(guide, Arm) else _carriage(design, theta, size)
     bodies = [MovingBody("drum", DRUM, tuple(shapes), still()), *follower]
     for name, flank in design.flanks.items():
         arc = FilledShape("contact line", (_arc(design, name, step),))
         bodies.append(MovingBody(f"contact {name}", CONTACTS, (arc,), poses(*seen_axis(design, flank, theta), 0.0)))
->>>>>>> arm-maker
     way = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"
     note = f"seen along the roller's axis; the drum turns {way}, seen from above"
     return Scene(tuple(bodies), note).scaled(1.0 / recipe.mm)
