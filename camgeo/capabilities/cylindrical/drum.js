@@ -34,8 +34,9 @@ function playDrum(data, kept = null) {
     radius: shell.radius,
     bands: shell.bands.map((band) => band.map((row) => along(row, data.places))),
   }));
-  const lines = data.lines.map((line) => ({ ...line, low: along(line.low, data.parts), high: along(line.high, data.parts) }));
-  const lift = along(data.lift, data.parts);
+  const over = (rows) => Object.fromEntries(Object.entries(rows).map(([name, row]) => [name, along(row, data.parts)]));
+  const lines = data.lines.map(over);
+  const rollers = data.rollers.map(over);
 
   // outlines of the bands of a shell between two angles to the right of the viewer
   function seen(shell, turn, low, high, chords) {
@@ -82,15 +83,19 @@ function playDrum(data, kept = null) {
     });
     paths[2 * n].setAttribute("d", closed(rims(turn)));
     lines.forEach((line, i) => {
-      const [low, high] = [line.low(share), line.high(share)];
-      const angles = Array.from({ length: 13 }, (_, k) => low + ((high - low) * k) / 12);
-      const place = (a) => [-data.sense * line.reach * Math.sin(a), line.level + line.reach * Math.cos(a)];
-      arcs[i].setAttribute("d", Number.isFinite(low) ? path(angles.map(place)) : "");
+      const [low, high, near, far] = [line.low(share), line.high(share), line.near(share), line.far(share)];
+      const place = (_, k) => {
+        const [a, reach] = [low + ((high - low) * k) / 12, near + ((far - near) * k) / 12];
+        return [-data.sense * reach * Math.sin(a), reach * Math.cos(a)];
+      };
+      arcs[i].setAttribute("d", Number.isFinite(low) ? path(Array.from({ length: 13 }, place)) : "");
     });
     const [scale, width, height, left, top] = data.flat;
     const at = data.sense > 0 ? share : 1 - share;
-    developed.forEach((roller, k) => {
-      roller.setAttribute("transform", `translate(${(left + width * (at + k - 1)).toFixed(2)} ${(top + height - scale * lift(share)).toFixed(2)})`);
+    developed.forEach((group, i) => {
+      const roller = rollers[Math.floor(i / 3)];
+      const x = left + width * (at + data.sense * roller.beside(share) + (i % 3) - 1);
+      group.setAttribute("transform", `translate(${x.toFixed(2)} ${(top + height - scale * roller.z(share)).toFixed(2)})`);
     });
     cursor?.setAttribute("transform", `translate(${(data.map[0] + data.map[1] * share).toFixed(2)} 0)`);
   }

@@ -9,10 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.charts import FIELD, LEFT, TOP, development, flat_scale, keys, limits, pressure_map
+from camgeo.capabilities.cylindrical.charts import (
+    FIELD,
+    LEFT,
+    TOP,
+    development,
+    flat_axis,
+    flat_scale,
+    keys,
+    limits,
+    pressure_map,
+)
 from camgeo.capabilities.cylindrical.figures import contact_length
 from camgeo.capabilities.cylindrical.shells import FACE, PLACES, RIM, shells
-from camgeo.capabilities.cylindrical.turning import LINES, contact_angles, scene, sense
+from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, sense, touched
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
 from camgeo.report.page.page import pack_numbers, picture, plotted
@@ -100,13 +110,17 @@ def _played(design: DrumDesign, of: Sequence[Shell], digits: int) -> dict[str, A
         ],
         "lines": [
             {
-                "level": flank.level / mm,
-                "reach": flank.side * flank.radius / mm,
-                **dict(zip(("low", "high"), map(pack_numbers, contact_angles(design, name)), strict=True)),
+                "low": pack_numbers(ends.low),
+                "high": pack_numbers(ends.high),
+                "near": pack_numbers(ends.near / mm),
+                "far": pack_numbers(ends.far / mm),
             }
-            for name, flank in design.flanks.items()
+            for ends in (touched(design, name) for name in design.flanks)
         ],
-        "lift": pack_numbers(design.law.derivatives(theta, 0)[0] / mm),
+        "rollers": [
+            {"beside": pack_numbers(beside), "z": pack_numbers(z / mm)}
+            for beside, z in (flat_axis(design, flank, theta) for flank in rollers(design))
+        ],
         "flat": [flat_scale(design) * mm, FIELD, flat_scale(design) * recipe.height, LEFT, TOP],
         "map": [LEFT, FIELD],
     }
@@ -127,14 +141,19 @@ def _plots(design: DrumDesign) -> list[Plot]:
     recipe = design.recipe
     theta = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
     unit = UNIT_NAMES[recipe.units]
-    rows = design.law.derivatives(theta, 2) / recipe.mm
-    names = (("lift", ""), ("velocity", "/rad"), ("acceleration", "/rad²"))
+    rows = design.law.derivatives(theta, 2)
+    rows = np.degrees(rows) if recipe.swings else rows / recipe.mm
+    shown = "°" if recipe.swings else unit
+    names = ("swing" if recipe.swings else "lift", ""), ("velocity", "/rad"), ("acceleration", "/rad²")
     plots = [
-        Plot(name.capitalize(), f"{unit}{per}", (Series(name, rows[k]),), dwells=True)
+        Plot(name.capitalize(), f"{shown}{per}", (Series(name, rows[k]),), dwells=True)
         for k, (name, per) in enumerate(names)
     ]
-    ends = {"inner end": recipe.roller.inner / recipe.mm, "outer end": recipe.roller.outer / recipe.mm}
-    angles = tuple(Series(name, np.degrees(np.arctan2(rows[1], rho))) for name, rho in ends.items())
+    flank, *_ = design.flanks.values()
+    ends = {"inner end": recipe.roller.inner, "outer end": recipe.roller.outer}
+    angles = tuple(
+        Series(name, np.degrees(flank.pressure(theta, np.full_like(theta, rho)))) for name, rho in ends.items()
+    )
     lines = tuple((sign * value, "limit" if sign > 0 else "") for value in limits(design) for sign in (1.0, -1.0))
     note = "at both ends of the roller; above 0 where the drum drives a rise"
     plots.append(Plot("Pressure angle", "°", angles, limits=lines, dwells=True, note=note))

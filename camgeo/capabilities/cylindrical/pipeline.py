@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
 
-FOLLOWER = "roller on a carriage along the axis"
-
 
 def _examined(design: DrumDesign, _: Clock) -> tuple[list[Check], tuple[Figure, ...]]:
     figures = tuple(figures_of(design))
@@ -43,8 +41,8 @@ def _examined(design: DrumDesign, _: Clock) -> tuple[list[Check], tuple[Figure, 
 
 
 def _told(design: DrumDesign, figures: Sequence[Figure]) -> Told:
-    unit = report_unit(design.recipe, "mm")
-    return Told(FOLLOWER, remarks_on(design, figures), design.motion.kept, unit)
+    unit = report_unit(design.recipe, design.recipe.guide.unit)
+    return Told(design.recipe.follower_name, remarks_on(design, figures), design.motion.kept, unit)
 
 
 def _section(design: DrumDesign, figures: Sequence[Figure]) -> dict[str, Any]:
