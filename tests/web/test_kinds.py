@@ -116,7 +116,7 @@ def test_the_solid_of_a_kind_is_closed(name: str) -> None:
     assert all(count == edges[end, start] for (start, end), count in edges.items())
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     deep = {"plate-endless": 8.0, "plate-feed": 12.0, "plate-groove": 16, "drum-end": 60, "drum-groove": 80}
-    deep |= {"drum-rib": 4.2 * 25.4}
+    deep |= {"drum-rib": 4.2 * 25.4, "drum-arm": 90, "drum-cone": 80}
     assert high[2] - low[2] == pytest.approx(deep[name], rel=0.2 if name == "drum-end" else 1e-6)
 
 
@@ -190,6 +190,7 @@ def test_a_travel_runs_backwards_is_split_and_may_end_higher() -> None:
     assert [over for _, over, _ in waves] == pytest.approx([16.5, 2.25, 16.5, 2.25])
 
 
+@pytest.mark.costly("figures of a drum in two units, and of a wrong one")
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("name", [name for name in TEXTS if name != "plate-groove"])  # its crank holds to 1e-9
 def test_a_kind_in_another_unit_stays_the_same_cam(name: str) -> None:
@@ -202,11 +203,20 @@ def test_a_kind_in_another_unit_stays_the_same_cam(name: str) -> None:
         recipe = live._recipe(name, one)
         plain = {path: node.text for path, node in scalars(recipe.source().root)}
         stroke = next(value for path, value in plain.items() if re.fullmatch(r"cam\.motion.*\.rise", path))
-        sizes.append(float(stroke) * UNITS[recipe.units])
+        sizes.append(float(stroke) * (1.0 if name == "drum-arm" else UNITS[recipe.units]))  # which swings
     assert sizes[1] == pytest.approx(sizes[0], rel=1e-6)
     radius = next(value for path, value in plain.items() if path.endswith("follower.radius"))
     wrong = re.sub(rf"\bradius: {re.escape(radius)}\b", f"radius: {0.99 * float(radius)}", new)
     assert not live._alike(live._recipe(name, text), live._recipe(name, wrong))
+
+
+# needs: cylindrical
+@pytest.mark.costly("a drum under an arm, with its charts")
+def test_a_swing_over_a_drum_is_drawn_in_degrees() -> None:
+    answer = live.design("arm", TEXTS["drum-arm"])
+    assert answer["scene"]["plots"][0]["unit"] == "°"
+    (rise, *_) = (one["change"] for one in answer["motion"]["segments"] if one["kind"] == "rise")
+    assert rise == pytest.approx(20.0, abs=1e-6)
 
 
 # needs: axis

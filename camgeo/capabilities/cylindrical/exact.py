@@ -44,4 +44,5 @@ def stated_motion(design: DrumDesign) -> StatedMotion:
         flat = np.asarray(theta, dtype=np.float64).ravel()
         return np.asarray(design.law.derivatives(flat, 0)[0].reshape(np.shape(theta)))
 
-    return StatedMotion(recipe.motion, TURN, recipe.motion.repeats, "same", lift, math.degrees(1.0), 1.0 / recipe.mm)
+    shown = math.degrees(1.0) if recipe.swings else 1.0 / recipe.mm
+    return StatedMotion(recipe.motion, TURN, recipe.motion.repeats, "same", lift, math.degrees(1.0), shown)
