@@ -394,7 +394,7 @@ class Piecewise:
         group_of, kind, rows = owner[index], type(t), _rows(t)
         used = np.flatnonzero(np.bincount(group_of))
         if len(used) == 1:
-            return groups[used[0]](t, index)
+            return groups[int(used[0])](t, index)
         out = [np.empty_like(row) for row in rows]
         for number in used:
             members = np.flatnonzero(group_of == number)

@@ -16,6 +16,7 @@ from __future__ import annotations
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from math import comb
+from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -362,11 +363,11 @@ class _Parts(NamedTuple):
     row: Indices
 
     def chosen(self, which: Mask | Indices) -> _Parts:
-        return _Parts(*(column[which] for column in self))
+        return _Parts(*map(itemgetter(which), self))
 
     @staticmethod
     def joined(parts: Iterable[_Parts]) -> _Parts:
-        return _Parts(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+        return _Parts(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def _single(parts: _Parts, least: float) -> _Parts:
