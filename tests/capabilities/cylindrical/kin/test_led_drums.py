@@ -203,6 +203,15 @@ def test_metal_for_another_roller(made, fault):
         assert wanted <= refused(verdict), own
 
 
+@pytest.mark.slow  # a whole verdict
+def test_a_floor_that_stands_in_the_roller_s_way():
+    shallow = replace(ARM, track=Groove(11.9, 0.03))
+    verdict = judge_mesh(read(Made(shallow, Steps(200, 3, 14, 8, 1))), ARM.intent(), Limits(0.05))
+    assert {"floor", "motion", "volume"} <= {name for name, _ in refused(verdict)}
+    blocked = [check for check in verdict.checks if check.name == "motion"]
+    assert all("metal stands in the roller's way" in check.detail and check.unit == "deg" for check in blocked)
+
+
 @pytest.mark.costly("whole verdicts of drums, as small as they can be judged")
 @named
 def test_a_sound_drum_is_accepted_and_a_limit_is_kept(drum):
