@@ -78,7 +78,7 @@ def test_points_at_their_worst_angles(drum):
 
 
 @pytest.mark.slow  # a whole verdict and points by brute force
-@pytest.mark.parametrize("number", range(12))
+@pytest.mark.parametrize("number", range(len(LED)))
 def test_random_led_drums(number):
     chance = np.random.default_rng([SEED, number])
     drum, size = random_led(chance, LED[number % len(LED)])
@@ -112,15 +112,8 @@ CUT = Drum(sharp(15.2), 12.0, 26.0, 40.0, 27.0, Groove(16.0, 0.05), 40.0, 70.0, 
 
 
 @pytest.mark.slow  # flanks by brute force, and peaks that are sought by cells
-@pytest.mark.parametrize(
-    "drum",
-    [
-        replace(CUT, taper=math.radians(5.0), at=33.0),
-        replace(CUT, motion=sharp(15.2 / 70.0), arm=Arm(70.0, 69.7, 34.6, 1)),
-    ],
-    ids=["cone", "arm"],
-)
-def test_an_undercut_that_is_cut_off(drum):
+def test_an_undercut_that_is_cut_off():
+    drum = replace(CUT, motion=sharp(15.2 / 70.0), arm=Arm(70.0, 69.7, 34.6, 1))
     found = undercut(drum.intent())
     assert drum.floor < found.below < drum.inner + 2.0
     # by positions: nearer to the axis what is touched stands in the way of other rollers
@@ -171,7 +164,7 @@ PLANTED = {
 
 
 @pytest.mark.slow  # a whole verdict each
-@pytest.mark.parametrize("name", ["arm", "cone on an arm", "cone beside the axis"])
+@pytest.mark.parametrize("name", ["arm", "cone beside the axis"])
 @pytest.mark.parametrize("fault", PLANTED)
 def test_faults_in_the_metal(made, name, fault):
     plant, wanted = PLANTED[fault]
