@@ -124,7 +124,7 @@ def test_an_undercut_that_is_cut_off():
         stands.append(-distances(drum, points, drum.flanks[0])[0].min())
     assert stands[0] < 1e-9
     assert stands[1] > 1e-6
-    made = Made(drum, Steps(360, 8, 10, 8, 4), enveloped(drum))
+    made = Made(drum, Steps(240, 6, 10, 8, 4), enveloped(drum))
     verdict = judge_mesh(read(made), drum.intent(), Limits(0.5))
     assert verdict.ok, refused(verdict)
     # the outer part of the line carries the roller all round
