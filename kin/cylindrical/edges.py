@@ -224,7 +224,7 @@ class _Look:
         if len(hard):
             places = np.stack([column[hard] for column in points], axis=1)
             solved = gauge.worst(places)
-            tears = flank[own[hard]] & ~(solved.height - height[hard] <= self.tear)
+            tears = flank[own[hard]] & ~(solved.height <= height[hard] + self.tear)
             self.torn[rows.start + own[hard[tears]]] = True
             height[hard], distance[hard], more[hard] = solved.height, solved.distance, 0.0
             theta[hard], along[hard] = solved.theta, self._along(places, solved.theta)

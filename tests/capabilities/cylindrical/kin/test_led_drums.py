@@ -77,6 +77,14 @@ def test_points_at_their_worst_angles(drum):
         assert (near.bend > 0.0).all()
 
 
+def test_points_that_an_arm_is_too_short_for_hold_nothing():
+    phi = np.linspace(0.0, 2.0 * np.pi, 73)
+    points = np.stack([50.0 * np.cos(phi), 50.0 * np.sin(phi), np.zeros_like(phi)], axis=-1)
+    height = gauges_of(ARM.intent())[0].worst(points).height
+    assert (height < -5.0).all()
+    assert np.isneginf(height).any()
+
+
 @pytest.mark.slow  # a whole verdict and points by brute force
 @pytest.mark.parametrize("number", range(len(LED)))
 def test_random_led_drums(number):
