@@ -6,7 +6,8 @@ depth of a point within the roller are greatest values over the angle of functio
 
     (dy/ds)^2 R^2/(R^2 - y^2)^(3/2)   and   ((dy/ds)^2 + (dz/ds)^2)/R,
 
-so that between two points of an edge they exceed the straight line by an eighth of that. What is missing, at any one
+so that between two points of an edge they exceed the straight line by an eighth of that (`kin.cylindrical.roller`; of a
+roller on an arm, of a cone and beside the axis what `kin.cylindrical.led` says). What is missing, at any one
 angle, is greatest at corners of a polygon, for the distance from a straight axis is convex: triangles are cut into
 strips, each with an angle of its own, by straight lines whose ends lie on the edges.
 
@@ -223,7 +224,7 @@ class _Look:
         if len(hard):
             places = np.stack([column[hard] for column in points], axis=1)
             solved = gauge.worst(places)
-            tears = flank[own[hard]] & ~(solved.height - height[hard] <= self.tear)
+            tears = flank[own[hard]] & ~(solved.height <= height[hard] + self.tear)
             self.torn[rows.start + own[hard[tears]]] = True
             height[hard], distance[hard], more[hard] = solved.height, solved.distance, 0.0
             theta[hard], along[hard] = solved.theta, self._along(places, solved.theta)

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 class Groove:
     """A groove of a `depth`, mm, between two flanks, for one roller.
 
-    The lower flank is that of the roller, the upper flank that of a roller larger by `clearance`, mm, on the same axis.
+    The lower flank is that of the roller, the upper flank that of a roller larger by `clearance`, mm, on the same axis,
+    of a cone in its radius at all places along it.
     """
 
     depth: float
@@ -33,7 +34,7 @@ class Groove:
 
 @dataclass(frozen=True)
 class Rib:
-    """A rib of a `depth`, mm, between two rollers whose axes are a `distance`, mm, apart along z.
+    """A rib of a `depth`, mm, between two rollers whose axes are a `distance`, mm, apart along z, or square to an arm.
 
     Its upper face is the lower flank of the roller at distance/2 above the level, its lower face the upper flank of
     that at distance/2 below. Beside the rib the drum is turned down by the depth, over its whole length.
@@ -62,7 +63,7 @@ Track: TypeAlias = Groove | Rib | End
 class DrumIntent:
     """Intended cylindrical cam in a file.
 
-    follower   the roller and its motion
+    follower   the roller and its motion; its unit, mm or deg, is that of positions and play in a verdict
     track      groove, rib or end
     radius     of the blank, mm
     length     of the blank along z, mm; of an end cam that of what lies within its flank

@@ -40,6 +40,7 @@ UPRIGHT = 1.5  # rad: no bound is had where normals may lean more against the ro
 GUESSES = 4
 ROOM, LOOKS = 1.5, 17  # of a radius to both sides of the axis, and points of a line there, where a line may be touched
 STEPS, SETTLED = 16, 1e-10  # of Newton's method, and the step, rad, after which the next would be rounding
+ABOUT = 65  # angles about a point, at which rollers are looked at
 LEVEL = 1e-9  # mm: steps of a height below this end them
 FLOOR = 0.1  # of a radius: X at contact is looked at no nearer to the axis
 
@@ -341,6 +342,11 @@ class LedGauge(Gauge):
             touch.gives, self._rate(y, along, touch, slope)[0], y, along, self.side * (self.axis(theta) - points[:, 2])
         )
 
+    def worst(self, points: Array) -> Worst:
+        """Points (n, 3) at their worst angles; the height is -inf where an arm is too short to touch them."""
+        found = super().worst(points)
+        return found._replace(height=np.where(np.isnan(found.height), -np.inf, found.height))
+
     def _distance(self, theta: Array, stand: Stand) -> Array:
         axis = self._axis(theta)
         return self._least_away(stand.y, stand.along, axis.z - self.side * stand.v, axis)
@@ -447,7 +453,20 @@ class LedGauge(Gauge):
                 lean = np.minimum(leaning + margin, 1.0), upright - margin
                 bend = self._bend(t, u, lean, size)
             worst = np.maximum(worst, np.where((lean[1] > 0.05) & (size > 0.0), bend, np.inf))
+        stuck = np.flatnonzero(worst == np.inf)
+        worst[stuck[self._deep(ends[stuck, 0]) > np.hypot(length, along)[stuck]]] = 0.0
         return worst, self._round(across, up, least)
+
+    def _deep(self, points: Array) -> Array:
+        """Lower bound (n,) of the distance, mm, of points (n, 3) from all rollers: deep ones are in no roller's way."""
+        r, phi = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
+        reach = np.arcsin(np.minimum(self.reach / np.maximum(r, self.reach), 1.0))
+        deep = np.full(len(r), np.inf)
+        for share in np.linspace(-1.0, 1.0, ABOUT):
+            deep = np.minimum(deep, self.away(points, phi + share * reach))
+        fast = self.rim + self.lever * self.lifts.steepest
+        deeper: Array = deep - fast * reach / (ABOUT - 1)
+        return deeper
 
     @cached_property
     def _normals(self) -> float:
