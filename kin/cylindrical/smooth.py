@@ -129,6 +129,13 @@ def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
     return restrict(nets[own], shares[:, 0], shares[:, 1]), own, shares
 
 
+def off_flank(gauge: Gauge, surface: Smooth) -> float:
+    """Distance, mm, of half of the corners of a surface from a flank, and no less of the other half."""
+    cells = _measured(gauge, surface.nets, surface.lines)
+    off = np.where(cells.height < gauge.radius, np.abs(cells.distance), np.inf)
+    return float(np.median(np.where(np.isfinite(off), off, np.inf)))
+
+
 def _turned(nets: Array) -> Array:
     """Angle (n,), rad, by which patches go round the axis from s = 0 to 1."""
     corners = nets[:, [0, -1]][:, :, [0, -1]]

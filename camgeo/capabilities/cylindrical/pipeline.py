@@ -52,7 +52,7 @@ def _maker(design: DrumDesign, clock: Clock) -> Callable[[FileRequest, Path], Ma
 
 
 def _pieces(verdict: DrumVerdict) -> int:
-    return sum(flank.triangles or 0 for flank in verdict.flanks)
+    return sum(flank.pieces or 0 for flank in verdict.flanks)
 
 
 def _page(design: DrumDesign, made: Sequence[Made[DrumVerdict]], report: dict[str, Any]) -> str:
