@@ -46,6 +46,7 @@ FAR = 3.0  # times the tolerance: what is so far off need not be known more clos
 BINS = 2048  # parts of a turn, for each of which the roller is held
 WINDOW, ROOM, MOST_WINDOW = 0.004, 1.5, 0.1  # rad, about the worst angle, within which F falls; one with room; greatest
 LOOKS, DEPTHS, PARTINGS = 720, 8, 4  # cells of the proof that a flank is regular, and how often they are halved
+ALIKE = 1e-6  # of the roller's radius, within which heights by the gauge are those that are bounded here
 LOOSE = 1e-7  # rad, by which two faces may miss one another
 
 
@@ -149,9 +150,15 @@ def _measured(gauge: Gauge, nets: Array, lines: Array) -> _Cells:
     worst = gauge.worst(corners.reshape(-1, 3))
     theta = worst.theta.reshape(corners.shape[:3])
     theta = theta[:, :1, :1] + np.remainder(theta - theta[:, :1, :1] + math.pi, TURN) - math.pi
-    stand = gauge.stand(corners.reshape(-1, 3), theta.ravel())
-    off = np.hypot(stand.y, stand.v) - gauge.radius
-    return _Cells(nets, lines, theta, stand.gives.reshape(theta.shape), off.reshape(theta.shape))
+    x, y, z = np.moveaxis(corners, 3, 0)
+    across = y * np.cos(theta) - x * np.sin(theta)
+    v = gauge.side * (gauge.level + gauge.lifts.at(theta.ravel())[0].reshape(theta.shape) - z)
+    with np.errstate(invalid="ignore"):
+        height = v + np.sqrt(gauge.radius**2 - across**2)
+    known = np.abs(height) < gauge.radius
+    if bool((np.abs(height - worst.height.reshape(theta.shape))[known] > ALIKE * gauge.radius).any()):
+        raise UnsettledError("smooth flanks are judged for a cylindrical roller on a slide, whose axis is a radius")
+    return _Cells(nets, lines, theta, height, np.hypot(across, v) - gauge.radius)
 
 
 def look(gauge: Gauge, surfaces: Sequence[Smooth], tolerance: float, angles: int) -> SeenSmooth:
@@ -280,7 +287,7 @@ def _bounds(gauge: Gauge, cells: _Cells) -> _Bounds:
         angle = BallJet(
             np.stack([rows[0].mid, rows[1].mid, 0.0 * low]), np.stack([rows[0].rad, rows[1].rad, 0.0 * low])
         )
-        lift = gauge.lifts.law.on(angle + Ball.exact(middle))
+        lift = gauge.lifts.round.on(angle + Ball.exact(middle))
         slope = _slopes(gauge, angle, middle)
         cosine, sine = cos(angle), sin(angle)
         across, along = py * cosine - px * sine, px * cosine + py * sine
@@ -290,8 +297,7 @@ def _bounds(gauge: Gauge, cells: _Cells) -> _Bounds:
         rate = across * along / depth + slope * side
         bent.append([2.0 * part.rows[2].magnitude for part in (height, reach, rate)])
     (h1, k1, q1), (h2, k2, q2) = bent
-    stand = gauge.stand(cells.nets[:, [0, -1]][:, :, [0, -1]].reshape(-1, 3), cells.theta.ravel())
-    steep = np.abs(stand.slope).reshape(-1, 4).max(axis=1) + 0.125 * (q1 + q2)
+    steep = np.abs(_slope(gauge, cells)).max(axis=(1, 2)) + 0.125 * (q1 + q2)
     places = across.rows[0], along.rows[0], v.rows[0]
     beside, under = _gaps(gauge, cells, places, (low + middle, high + middle), steep)
     return _Bounds(
@@ -302,6 +308,16 @@ def _bounds(gauge: Gauge, cells: _Cells) -> _Bounds:
         along.rows[0].bounds(),
         np.stack([h1 + k1 + radius * q1, h2 + k2 + radius * q2]),
     )
+
+
+def _slope(gauge: Gauge, cells: _Cells) -> Array:
+    """F_theta (n, 2, 2) at the corners of cells, mm per rad."""
+    x, y, _ = np.moveaxis(cells.nets[:, [0, -1]][:, :, [0, -1]], 3, 0)
+    c, s = np.cos(cells.theta), np.sin(cells.theta)
+    across, along = y * c - x * s, x * c + y * s
+    own = gauge.lifts.at(cells.theta.ravel())[1].reshape(c.shape)
+    slope: Array = across * along / np.sqrt(gauge.radius**2 - across**2) + gauge.side * own
+    return slope
 
 
 def _jet(values: Array, axis: int) -> BallJet:
@@ -319,7 +335,7 @@ def _jet(values: Array, axis: int) -> BallJet:
 def _slopes(gauge: Gauge, angle: BallJet, middle: Array) -> BallJet:
     """Slope of the lift along jets of the angle about a middle, rad."""
     low, high = (angle.rows[0] + Ball.exact(middle)).bounds()
-    mid, rad = gauge.lifts.law.enclosure(low, high, 3)
+    mid, rad = gauge.lifts.round.enclosure(low, high, 3)
     rows = Ball(mid, rad)
     first, second = angle.rows[1], angle.rows[2]
     bent = rows[2] * second + rows[3] * first * first * 0.5
@@ -359,7 +375,7 @@ def _falls(
     """
     side, radius = float(gauge.side), gauge.radius
     y, along, v = places
-    mid, rad = gauge.lifts.law.enclosure(angles[0] - window, angles[1] + window, 2)
+    mid, rad = gauge.lifts.round.enclosure(angles[0] - window, angles[1] + window, 2)
     slope, bend = Ball(mid[1], rad[1]), Ball(mid[2], rad[2])
     farther = np.hypot(y.magnitude, along.magnitude) * window
     across = Ball(y.mid, y.rad + farther)
@@ -384,7 +400,7 @@ def demand_regular(gauge: Gauge, low: float, high: float) -> None:
     a, b = np.tile(turn[:-1], DEPTHS), np.tile(turn[1:], DEPTHS)
     c, d = np.repeat(edges[:-1], LOOKS), np.repeat(edges[1:], LOOKS)
     for _ in range(PARTINGS + 1):
-        mid, rad = gauge.lifts.law.enclosure(a, b, 2)
+        mid, rad = gauge.lifts.round.enclosure(a, b, 2)
         slope, bend, r = Ball(mid[1], rad[1]), Ball(mid[2], rad[2]), Ball.between(c, d)
         vv, rr = slope * slope, r * r
         apart = rr - vv

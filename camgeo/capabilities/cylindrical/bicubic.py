@@ -28,6 +28,7 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.grid import SAME, TURN, breaks_of
 from camgeo.common.rounding import upward
+from camgeo.files.errors import RegionError
 from camgeo.fit.nodes import ToleranceError, check_precision, rounding
 from kin.numeric.elementary import cos, sin, sqrt
 from kin.numeric.interval import Ball
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 
 HERMITE = 384.0
 LOOKS, BLOCKS = 360, 4  # parts of a turn and of the depth, over each of which derivatives are bounded
-MOST_ROWS, MOST_NODES = 24, 20_000
+MOST_ROWS, MOST_NODES = 64, 10_000
 WIDEST = 0.5  # rad between nodes
 NEAR = 1e-9  # rad: a wanted angle so near a break is meant to be it
 JUMP = 1e-9  # of S', in mm, and of S'': what is less is rounding
@@ -100,7 +101,14 @@ def bicubics(
     look = _distinct(np.concatenate([np.linspace(start, start + TURN, LOOKS + 1), knots]))
     look[[0, -1]] = start, start + TURN
     bounds = _bounds(flank, look, (low, high))
-    count, step = _rows(bounds, np.diff(look), high - low, tolerance - lost)
+    rows = _rows(bounds, np.diff(look), high - low, tolerance - lost)
+    if rows is None:
+        least = tolerance
+        while _rows(bounds, np.diff(look), high - low, least) is None:
+            least *= 1.5
+        problem = f"a flank within {tolerance:.3g} mm would take too many control points"
+        raise ToleranceError(f"{problem}; give at least {upward(least + lost, 3)} mm", least + lost)
+    count, step = rows
     theta = _columns(knots, look, step)
     r = np.linspace(low, high, count + 1)
     while True:  # between places of unlike steps nodes may be too far apart
@@ -204,8 +212,11 @@ def _size(parts: Sequence[BallJet]) -> Array:
     return np.asarray(24.0 * np.sqrt(sum(part.rows[4].magnitude ** 2 for part in parts)))
 
 
-def _rows(bounds: _Bounds, wide: Array, depth: float, tolerance: float) -> tuple[int, Array]:
-    """Number of rows that needs the fewest control points, and the greatest distance of nodes (n,), rad."""
+def _rows(bounds: _Bounds, wide: Array, depth: float, tolerance: float) -> tuple[int, Array] | None:
+    """Number of rows that needs the fewest control points, and the greatest distance of nodes (n,), rad.
+
+    None where a tolerance, mm, takes too many.
+    """
     best: tuple[float, int, Array] | None = None
     for count in range(1, MOST_ROWS + 1):
         step = bounds.step(depth / count, tolerance)
@@ -213,11 +224,7 @@ def _rows(bounds: _Bounds, wide: Array, depth: float, tolerance: float) -> tuple
             points = (count + 1) * (float(np.sum(wide / step)) + 1.0)
             if best is None or points < best[0]:
                 best = points, count, step
-    if best is None or best[0] > MOST_NODES:
-        least = 16.0 * tolerance
-        problem = f"a flank within {tolerance:.3g} mm would take too many control points"
-        raise ToleranceError(f"{problem}; give at least {upward(least, 3)} mm", least)
-    return best[1], best[2]
+    return None if best is None or best[0] > MOST_NODES else best[1:]
 
 
 def _columns(knots: Array, look: Array, step: Array) -> Array:
@@ -242,7 +249,10 @@ def _over(look: Array, bounds: _Bounds, theta: Array) -> _Bounds:
 
 
 def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
-    """Spline through nodes theta (n + 1,), rad, between which S'' is continuous, and r (m + 1,), mm."""
+    """Spline through nodes theta (n + 1,), rad, between which S'' is continuous, and r (m + 1,), mm.
+
+    Raises RegionError for a flank that is not where the closed form here has it.
+    """
     rows = flank.law.derivatives(theta, 2, 1)
     rows[:, -1] = flank.law.derivatives(theta[-1:], 2, -1)[:, 0]
     lift, slope, bend = (np.repeat(row, len(r)) for row in rows)
@@ -253,6 +263,9 @@ def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
     (p, by_r), (by_theta, by_both) = ([_turned(parts, turn, k) for k in (0, 1)] for parts in both)
     shape = len(theta), len(r), 3
     nodes = [part.reshape(shape) for part in (p, by_r, by_theta, by_both)]
+    contact = flank.on(turn, np.tile(r, len(theta)))
+    if bool((np.abs(p[:, 2] - contact.z) + np.abs(np.hypot(p[:, 0], p[:, 1]) - contact.r) > NEAR * flank.radius).any()):
+        raise RegionError("surfaces are made for a cylindrical roller on a carriage, whose axis is a radius of the drum")
     a, b = _beside(theta)[:, None, None], _beside(r)[None, :, None]
     own, own_r, own_theta, own_both = (np.repeat(np.repeat(node, 2, axis=0), 2, axis=1) for node in nodes)
     return Bicubic(theta, r, own + a * own_theta + b * own_r + a * b * own_both)

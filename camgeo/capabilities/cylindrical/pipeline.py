@@ -73,5 +73,5 @@ DRUMS = OwnKind(
     judged=judged_file,
     pieces=_pieces,
     page=_page,
-    formats=("stl", "ply", "3mf", "dxf"),
+    formats=("stl", "ply", "3mf", "step", "dxf"),
 )

@@ -87,8 +87,14 @@ class Shell:
         Edges lie within the tolerance, mm, of the surfaces on both sides.
         """
         faults = edge_faults(self.faces)
-        inward = [face.number for face in self.faces if not _lies_left(face, tolerance)]
+        inward = [face.number for face in self.faces if not _lies_left(face)]
         faults += [f"face #{number} lies on the wrong side of its bounds" for number in inward]
+        ends = {face.number: _gap(face) for face in self.faces}
+        faults += [
+            f"face #{number} ends {gap:.3g} mm from a corner of its surface"
+            for number, gap in ends.items()
+            if not gap <= tolerance
+        ]
         off = {number: edge.misfit for number, edge in self.edges.items()}
         off |= {face.number: face.misfit for face in self.faces}
         wide = {number: value for number, value in off.items() if not value <= tolerance}
@@ -167,17 +173,23 @@ def _rounds(face: Face) -> list[int]:
     return [nearest.index(place) for place in sorted(nearest)]
 
 
-def _lies_left(face: Face, tolerance: float) -> bool:
-    """Whether a face lies on the left of its bounds, as seen from outside; corners of a B-spline surface are there."""
+def _gap(face: Face) -> float:
+    """Greatest distance, mm, of a corner of a B-spline surface from the ends of its face's edges; 0 of any other."""
+    if not isinstance(face.surface, Patch):
+        return 0.0
+    ends = np.array([edge.start if forward else edge.end for edge, forward in face.uses])
+    return max(float(np.linalg.norm(ends - corner, axis=1).min()) for corner in face.surface.corners)
+
+
+def _lies_left(face: Face) -> bool:
+    """Whether a face lies on the left of its bounds, as seen from outside."""
     sense = 1.0 if face.outward else -1.0
     match face.surface:
         case Patch():
             order = _rounds(face)
             first = order.index(0)
             turned = [*order[first:], *order[:first]]
-            ends = np.array([edge.start if forward else edge.end for edge, forward in face.uses])
-            gaps = [float(np.linalg.norm(ends - corner, axis=1).min()) for corner in face.surface.corners]
-            return turned == ([0, 1, 2, 3] if face.outward else [0, 3, 2, 1]) and max(gaps) <= tolerance
+            return turned == ([0, 1, 2, 3] if face.outward else [0, 3, 2, 1])
         case Plane():
             normal = sense * face.surface.normal
             total = np.zeros(3)
