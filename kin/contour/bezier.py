@@ -329,7 +329,7 @@ def spans_of(degree: int, knots: Array, control: Array) -> Array:
     spans = np.flatnonzero(knots[degree:n] < knots[degree + 1 : n + 1]) + degree
     a, b = knots[spans], knots[spans + 1]
     local = control[spans[:, None] + np.arange(-degree, 1)]  # (spans, d+1, k)
-    out = np.empty_like(local)
+    out: Array = np.empty_like(local)
     for j in range(degree + 1):
         d = local.copy()
         for level in range(1, degree + 1):

@@ -25,18 +25,18 @@ from kin.cylindrical.judge import (
     Judged,
     contour_check,
     motion_check,
+    plain_checks,
     play_check,
     volume_check,
-    plain_checks,
 )
 from kin.cylindrical.smooth import Smooth, look, off_flank
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.check import ROUNDING, Check, failed
 from kin.numeric.errors import UnsettledError
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 from kin.read.checks import count_check
-from kin.read.step.faces import Plane, RoundFace
+from kin.read.step.faces import RoundFace
 from kin.read.step.patch import Patch
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from kin.read.step.faces import Face
     from kin.read.step.shell import Shell
 
-ANGLES = 1440  # at which play and the mean error are told
+ANGLES = 720  # at which play and the mean error are told
 MIRROR = np.array([1.0, -1.0, 1.0])
 
 
@@ -68,11 +68,9 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
     verdicts, seen, play = [], [], None
     slack = ROUNDING * max(drum.radius, drum.length)
     try:
-        if drum.shortened:
-            raise UnsettledError("a flank that an undercut shortens is judged on triangles alone: give an STL")
         found = _sorted(shell, drum, gauges, limits.tolerance)
-        nothing = Worst(*(np.empty(0) for _ in range(4)))
-        stands = tuple(Stands(gauge, *(np.empty(0, dtype=np.bool_) for _ in range(2)), nothing) for gauge in gauges)
+        none, nothing = np.empty(0, dtype=np.bool_), Worst(*(np.empty(0) for _ in range(4)))
+        stands = tuple(Stands(gauge, none, none, nothing) for gauge in gauges)
         kinds = Faces((), np.empty(0, dtype=np.intp), found.off, stands)
         job = Judged(Body(np.empty((0, 3)), np.empty((0, 3), dtype=np.intp)), kinds, drum, limits, slack)
         checks += plain_checks(job)
@@ -80,7 +78,7 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
             flank, own_seen, own = _flank(job, gauge, found.flanks[gauge.name])
             verdicts.append(flank)
             seen.append(own_seen)
-            checks += [Check(**{**vars(check), "surface": flank.name}) for check in own]
+            checks += [replace(check, surface=flank.name) for check in own]
         both = [each for each, flank in zip(seen, verdicts, strict=True) if each is not None and flank.motion]
         if len(both) > 1:
             pinched = both[0].holds + both[1].holds
@@ -94,13 +92,15 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
 
 def _own_play(drum: DrumIntent, angles: int) -> Array:
     """Play (n,), mm, of the follower between exact flanks at equal steps."""
-    theta = np.arange(angles) * (TURN / angles)
+    theta = np.asarray(np.arange(angles) * (TURN / angles), dtype=np.float64)
     if not (isinstance(drum.track, Groove) and drum.track.clearance):
         return np.zeros(angles)
     return exact_play(drum, theta)
 
 
-def _flank(job: Judged, gauge: Gauge, surfaces: Sequence[Smooth]) -> tuple[FlankVerdict, SeenSmooth | None, list[Check]]:
+def _flank(
+    job: Judged, gauge: Gauge, surfaces: Sequence[Smooth]
+) -> tuple[FlankVerdict, SeenSmooth | None, list[Check]]:
     """Verdict on one flank, what was seen of it, and its checks."""
     tolerance = job.limits.tolerance
     count = sum(len(surface.nets) for surface in surfaces)
@@ -130,7 +130,9 @@ def _motion_error(seen: SeenSmooth) -> MotionError:
 
 
 def _sorted(shell: Shell, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance: float) -> _Sorted:
-    """Sort the faces of a solid by those of a drum."""
+    """Sort the faces of a solid by those of a drum; raises UnsettledError for a drum with shortened flanks."""
+    if drum.shortened:
+        raise UnsettledError("a flank that an undercut shortens is judged on triangles alone: give an STL")
     names = [BLANK, BOTTOM, TOP, *([FLOOR] if drum.track.depth is not None else []), *([BORE] if drum.bore else [])]
     off = dict.fromkeys(names, math.nan)
     flanks: dict[str, list[Smooth]] = {gauge.name: [] for gauge in gauges}
@@ -186,7 +188,14 @@ def _section(shell: Shell, face: Face, *, mirrored: bool) -> Arcs:
         for x, y, radius, first, sweep in piece.arcs:
             sense = math.copysign(1.0, sweep)
             out = np.array([math.cos(first), math.sin(first)])
-            rows.append((np.array([x, y]) + radius * out, sense * np.array([-out[1], out[0]]), sense / radius, abs(sweep) * radius))
+            rows.append(
+                (
+                    np.array([x, y]) + radius * out,
+                    sense * np.array([-out[1], out[0]]),
+                    sense / radius,
+                    abs(sweep) * radius,
+                )
+            )
     flip = np.array([1.0, -1.0 if mirrored else 1.0])
     start, tangent = (np.array([row[k] for row in rows]).reshape(-1, 2) * flip for k in (0, 1))
     curvature, length = (np.array([row[k] for row in rows], dtype=np.float64) for k in (2, 3))

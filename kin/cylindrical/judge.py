@@ -319,6 +319,4 @@ def volume_check(drum: DrumIntent, gauges: tuple[Gauge, ...], measured: tuple[fl
     """Check of a solid's volume, mm^3, by that of its surface within a tolerance, mm; `measured` is with its area."""
     expected, (volume, area) = exact_volume(drum, gauges), measured
     detail = f"{length_words(volume, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
-    return at_most(
-        VOLUME, abs(volume - expected), tolerance * area, "mm^3", detail=detail, slack=ROUNDING * expected
-    )
+    return at_most(VOLUME, abs(volume - expected), tolerance * area, "mm^3", detail=detail, slack=ROUNDING * expected)

@@ -6,8 +6,8 @@ is laid bilinearly between those of the corners. There
     H = v + sqrt(R^2 - y^2)   and   K = hypot(y, v) - R
 
 of `kin.cylindrical.gauge` are smooth functions of (s, t), which bend by no more than balls of their second derivatives
-over the cell say: between the corners they are off what is bilinear by at most (|f_ss| + |f_tt|)/8. No place of the cell
-stands out by less than H, nor is farther within the metal than K.
+over the cell say: between the corners they are off what is bilinear by at most (|f_ss| + |f_tt|)/8. No place stands out
+by less than H, nor is farther within the metal than K.
 
 How much more it stands out is a matter of the slope by the angle, F_theta, which is bounded likewise: where F falls as
 c theta^2/2 at least, its greatest value is no more than F_theta^2/(2 c) above H. F has one peak, as the exact flank is
@@ -210,7 +210,8 @@ class _Look:
             out = np.where(reached, top + bounds.height + bounds.gap, -np.inf)
             # what stands out by no more than that is no farther out of the metal
             proud = np.minimum(
-                -deep.min(axis=(1, 2)) + bounds.distance + bounds.under, np.maximum(top + bounds.height + bounds.gap, 0.0)
+                -deep.min(axis=(1, 2)) + bounds.distance + bounds.under,
+                np.maximum(top + bounds.height + bounds.gap, 0.0),
             )
             bare = deep.max(axis=(1, 2)) + bounds.distance
             low = cells.height.min(axis=(1, 2)) - bounds.height
@@ -468,7 +469,8 @@ def _holds(gauge: Gauge, cells: Sequence[_Cells], angles: int) -> Array:
                 at.append(each.theta[:, j, k] % TURN)
                 height.append(each.height[:, j, k])
                 along.append(reach[:, j, k])
-    lines, places, heights, reaches = (np.concatenate(part) for part in (line, at, height, along))
+    lines = np.concatenate(line)
+    places, heights, reaches = (np.asarray(np.concatenate(part), dtype=np.float64) for part in (at, height, along))
     for number in np.unique(lines):
         own = np.flatnonzero(lines == number)
         order = own[np.argsort(places[own])]

@@ -22,6 +22,7 @@ p_theta does, and one spline ends and another begins.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -118,13 +119,13 @@ def bicubics(
             break
         theta = np.sort(np.concatenate([theta, 0.5 * (theta[:-1] + theta[1:])[wide]]))
     first = np.searchsorted(theta, joints - SAME)
-    parts = [_spline(flank, theta[a : b + 1], r) for a, b in zip(first[:-1], first[1:], strict=True)]
+    parts = [_spline(flank, theta[a : b + 1], r) for a, b in pairwise(first)]
     return parts, float(off.max())
 
 
 def _distinct(angles: Array) -> Array:
     rising = np.sort(angles)
-    return rising[np.append(True, np.diff(rising) > SAME)]
+    return np.asarray(rising[np.append(True, np.diff(rising) > SAME)])
 
 
 def _snapped(angle: float, breaks: Array) -> float:
@@ -230,7 +231,7 @@ def _rows(bounds: _Bounds, wide: Array, depth: float, tolerance: float) -> tuple
 def _columns(knots: Array, look: Array, step: Array) -> Array:
     """Shaft angles, rad, from knot to knot, no farther apart than `step` (n,) anywhere between them."""
     found = []
-    for low, high in zip(knots[:-1], knots[1:], strict=True):
+    for low, high in pairwise(knots):
         inside = np.flatnonzero((look[1:] > low + SAME) & (look[:-1] < high - SAME))
         places = np.concatenate([[low], look[inside[1:]], [high]])
         along = np.concatenate([[0.0], np.cumsum(np.diff(places) / step[inside])])
@@ -243,9 +244,7 @@ def _over(look: Array, bounds: _Bounds, theta: Array) -> _Bounds:
     """Bounds between neighbours of theta (m + 1,), from those between neighbours of `look`."""
     first = np.searchsorted(look, theta[:-1] + SAME, side="right") - 1
     last = np.searchsorted(look, theta[1:] - SAME, side="left")
-    return _Bounds(
-        *(np.array([part[a:b].max() for a, b in zip(first, last, strict=True)]) for part in bounds)
-    )
+    return _Bounds(*(np.array([part[a:b].max() for a, b in zip(first, last, strict=True)]) for part in bounds))
 
 
 def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
@@ -265,14 +264,16 @@ def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
     nodes = [part.reshape(shape) for part in (p, by_r, by_theta, by_both)]
     contact = flank.on(turn, np.tile(r, len(theta)))
     if bool((np.abs(p[:, 2] - contact.z) + np.abs(np.hypot(p[:, 0], p[:, 1]) - contact.r) > NEAR * flank.radius).any()):
-        raise RegionError("surfaces are made for a cylindrical roller on a carriage, whose axis is a radius of the drum")
+        raise RegionError(
+            "surfaces are made for a cylindrical roller on a carriage, whose axis is a radius of the drum"
+        )
     a, b = _beside(theta)[:, None, None], _beside(r)[None, :, None]
     own, own_r, own_theta, own_both = (np.repeat(np.repeat(node, 2, axis=0), 2, axis=1) for node in nodes)
     return Bicubic(theta, r, own + a * own_theta + b * own_r + a * b * own_both)
 
 
 def _beside(nodes: Array) -> Array:
-    """How far control points (2 n,) lie before and behind their nodes (n,): a third of the way to the next, or on it."""
+    """How far control points (2 n,) lie beside their nodes (n,): by a third of the way to the next, or on it."""
     third = np.diff(nodes) / 3.0
     return np.stack([-np.append(0.0, third), np.append(third, 0.0)], axis=1).ravel()
 

@@ -8,7 +8,6 @@ faces share their edges. A row of a flank lies on its cylinder within the bound 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -87,7 +86,8 @@ class _Drum:
         nets = [part.control * [1.0, self.sign, 1.0] for part in parts]
         feet, heads = ([_vertex(net[0, row]) for net in nets] for row in (0, -1))
         ribs = [
-            _spline_edge(net[0], part.r, (foot, head)) for net, part, foot, head in zip(nets, parts, feet, heads, strict=True)
+            _spline_edge(net[0], part.r, (foot, head))
+            for net, part, foot, head in zip(nets, parts, feet, heads, strict=True)
         ]
         rows: list[list[Shape]] = [[], []]
         for k, (net, part) in enumerate(zip(nets, parts, strict=True)):
@@ -96,12 +96,19 @@ class _Drum:
                 edges.append(_spline_edge(net[:, row], part.theta, (ends[k], ends[after])))
             surface = _surface(net, part)
             u, v = part.theta[[0, -1]].tolist(), part.r[[0, -1]].tolist()
-            lay = (rows[0][k], (0.0, v[0])), (ribs[after], (u[1], 0.0)), (rows[1][k], (0.0, v[1])), (ribs[k], (u[0], 0.0))
+            lay = (
+                (rows[0][k], (0.0, v[0])),
+                (ribs[after], (u[1], 0.0)),
+                (rows[1][k], (0.0, v[1])),
+                (ribs[k], (u[0], 0.0)),
+            )
             for n, (edge, at) in enumerate(lay):
                 _lay(edge, surface, at, along_u=n % 2 == 0)
             self.stack.face(surface, [edge for edge, _ in lay])
-        at = [int(np.argmin([abs(math.remainder(part.theta[0] - angle, TURN)) for part in parts])) for angle in parted]
-        foot, head = (_Line(edges, ends, at) for edges, ends in zip(rows, (feet, heads), strict=True))
+        places = [
+            int(np.argmin([abs(math.remainder(part.theta[0] - angle, TURN)) for part in parts])) for angle in parted
+        ]
+        foot, head = (_Line(edges, ends, places) for edges, ends in zip(rows, (feet, heads), strict=True))
         return head, foot
 
     def cylinder(self, radius: float, first: _Line, second: _Line) -> None:

@@ -65,7 +65,9 @@ def _not_yet(error: RecipeError) -> RecipeError:
         return replace(error, problem="not made yet", remedy=f"leave it out: {NOT_YET[error.path]}")
     for word in FORMATS_NOT_YET:
         if error.problem.endswith(f" takes no {word}"):
-            return replace(error, problem=f"{word} is not made yet of a cylindrical cam", remedy="give stl, 3mf, ply or step")
+            return replace(
+                error, problem=f"{word} is not made yet of a cylindrical cam", remedy="give stl, 3mf, ply or step"
+            )
     return error
 
 

@@ -229,6 +229,8 @@ class Face:
                     on_side = [crossing for crossing in crossings if side * float((crossing[0] - point) @ across) > 0.0]
                     pieces += self._chords(space, on_side, along[:2] * (-side if self.outward else side))
                 return pieces
+            case Patch():
+                raise space.file.error(self.number, "is no surface of which a section is known")
         self._demand_ends(space, crossings)
         return [shape(beziers=self.surface.spans, heights=0.0)]
 

@@ -143,9 +143,7 @@ def patch_of(space: StepFile, number: int) -> Patch:
 def _control(space: StepFile, number: int, listed: Value) -> Array:
     """Control points (n, m, 3), mm."""
     file = space.file
-    rows = [
-        [space.point(item, number) for item in file.several(row, number)] for row in file.several(listed, number)
-    ]
+    rows = [[space.point(item, number) for item in file.several(row, number)] for row in file.several(listed, number)]
     if len({len(row) for row in rows}) != 1 or not rows[0]:  # none, or unlike rows
         raise file.error(number, "its rows of control points are not of one length", "syntax")
     return np.array(rows)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -224,7 +223,7 @@ def _wall_area(face: Face) -> float:
     return float(np.linalg.norm(total))
 
 
-def _points(edge: StepEdge, forward: bool) -> Array:  # noqa: FBT001 - as a pair, from a face's uses
+def _points(edge: StepEdge, forward: bool) -> Array:
     """Points (k, 3) along an edge, in the sense of a bound."""
     match edge.curve:
         case Straight():
@@ -236,7 +235,7 @@ def _points(edge: StepEdge, forward: bool) -> Array:  # noqa: FBT001 - as a pair
     return points if forward else points[::-1]
 
 
-def _swept(edge: StepEdge, forward: bool) -> float:  # noqa: FBT001
+def _swept(edge: StepEdge, forward: bool) -> float:
     """Integral of (x dy - y dx)/2 along an edge in the sense of a bound, mm^2."""
     node, weight = gauss(NODES)
     share, weight = 0.5 * (node + 1.0), 0.5 * weight

@@ -23,11 +23,13 @@ def bump(text, *, weights=False, split=True, wide=1.0):
     It goes on beyond the box where it is wider.
     """
     # s (1 - s) has the Bernstein coefficients 0, 1/2, 0; with a double knot at 1/2 it has 0, 1/4, 1/4, 1/4, 0
-    s = [(0.0, 0.0), (0.25, 0.25), (0.5, 0.25), (0.75, 0.25), (1.0, 0.0)] if split else [(0.0, 0.0), (0.5, 0.5), (1.0, 0.0)]
-    t = [(0.0, 0.0), (1.0 / 3.0, 1.0 / 3.0), (2.0 / 3.0, 1.0 / 3.0), (1.0, 0.0)]
-    rows = ",".join(
-        "(" + ",".join(text.point(wide * A * x, B * y, H + BUMP * p * q) for y, q in t) + ")" for x, p in s
+    s = (
+        [(0.0, 0.0), (0.25, 0.25), (0.5, 0.25), (0.75, 0.25), (1.0, 0.0)]
+        if split
+        else [(0.0, 0.0), (0.5, 0.5), (1.0, 0.0)]
     )
+    t = [(0.0, 0.0), (1.0 / 3.0, 1.0 / 3.0), (2.0 / 3.0, 1.0 / 3.0), (1.0, 0.0)]
+    rows = ",".join("(" + ",".join(text.point(wide * A * x, B * y, H + BUMP * p * q) for y, q in t) + ")" for x, p in s)
     knots = "(3,2,3),(4,4),(0.,0.5,1.),(0.,1.)" if split else "(3,3),(4,4),(0.,1.),(0.,1.)"
     if not weights:
         return text.add(f"B_SPLINE_SURFACE_WITH_KNOTS('',2,3,({rows}),.UNSPECIFIED.,.F.,.F.,.F.,{knots},.UNSPECIFIED.)")
@@ -82,7 +84,9 @@ def refused(folder, text):
 
 
 @pytest.mark.parametrize("unit", ["mm", "inch"])
-@pytest.mark.parametrize("more", [{}, {"split": False}, {"weights": 1.0}], ids=["split", "whole", "weights of one size"])
+@pytest.mark.parametrize(
+    "more", [{}, {"split": False}, {"weights": 1.0}], ids=["split", "whole", "weights of one size"]
+)
 def test_a_bulging_box(tmp_path, unit, more):
     shell = read_shell(put(tmp_path, box(unit, **more)))
     assert shell.faults(1e-9) == []

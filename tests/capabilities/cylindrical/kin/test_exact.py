@@ -4,12 +4,13 @@ Holds: kin.cylindrical.exact, kin.cylindrical.smooth.
 """
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from capabilities.cylindrical.kin.drums import Drum, End, Groove, Motion, Rib, distances, replace, resting
 
-from kin.cylindrical.gauge import gauges_of
+from kin.cylindrical.gauge import Gauge, gauges_of
 from kin.cylindrical.smooth import Smooth, demand_regular, look
 from kin.numeric.errors import UnsettledError
 
@@ -27,7 +28,7 @@ def fitted(drum, flank, columns=60, rows=3):
     knots = np.append(knots[np.append(np.diff(knots) > 1e-6, True)], TURN)
     r = np.linspace(drum.floor, drum.radius, rows + 1)
     nets, lines = [], []
-    for low, high in zip(knots[:-1], knots[1:], strict=True):
+    for low, high in pairwise(knots):
         theta = low + (high - low) * THIRDS
         for k in range(rows):
             radii = r[k] + (r[k + 1] - r[k]) * THIRDS
@@ -111,7 +112,7 @@ def test_a_surface_with_a_gap_holds_no_roller_all_the_way(sound):
 @pytest.mark.parametrize(("lift", "off"), [(0.01, 0.01), (-0.01, 0.01), (0.3, 0.3)])
 def test_a_surface_that_is_shifted_along_the_axis(sound, lift, off):
     gauge, surface = sound
-    seen = look(gauge, [Smooth(surface.nets + [0.0, 0.0, lift], surface.lines)], 0.001, 360)
+    seen = look(gauge, [Smooth(surface.nets + np.array([0.0, 0.0, lift]), surface.lines)], 0.001, 360)
     stands, lacks = (seen.proud, seen.bare) if lift > 0.0 else (seen.bare, seen.proud)
     # in dwells the flank is level
     assert stands.value == pytest.approx(off, abs=2e-3)
@@ -132,7 +133,7 @@ def test_a_flank_is_proved_regular_as_far_as_it_is():
 def test_another_gauge_than_that_of_a_slide_is_not_taken(sound):
     gauge, surface = sound
 
-    class Led(type(gauge)):
+    class Led(Gauge):
         def worst(self, points):
             found = super().worst(points)
             return found._replace(height=found.height + 0.1)
