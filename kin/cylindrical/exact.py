@@ -32,15 +32,18 @@ from kin.cylindrical.judge import (
 from kin.cylindrical.smooth import Smooth, look, off_flank
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.angles import TURN, degrees
-from kin.numeric.check import ROUNDING, Check, failed
+from kin.numeric.check import ROUNDING, Check, about, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass, replace
-from kin.read.checks import count_check
+from kin.read.checks import count_check, unread_check
+from kin.read.errors import ReadError
+from kin.read.formats import format_of
 from kin.read.step.faces import RoundFace
 from kin.read.step.patch import Patch
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.intent import DrumIntent, Limits
@@ -59,6 +62,23 @@ class _Sorted:
 
     off: dict[str, float]
     flanks: dict[str, list[Smooth]]
+
+
+def verify_surfaces(path: Path, drum: DrumIntent, limits: Limits) -> DrumVerdict:
+    """Judge a solid of exact surfaces by the suffix of its file, over all shaft angles.
+
+    A file that is not read gets a verdict that says why. Raises OSError where the disk refuses, ValueError for a suffix
+    of files without such solids.
+    """
+    kind = format_of(path)
+    if kind.shell is None:
+        raise ValueError(f"{path.name} holds no exact surfaces")
+    try:
+        read = kind.shell(path)
+    except ReadError as error:
+        return DrumVerdict(kind.name, (about(unread_check("solid", error), path.name),))
+    verdict = judge_shell(read, drum, limits, kind.name)
+    return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
 
 
 def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") -> DrumVerdict:

@@ -50,21 +50,17 @@ SLACK = 1e-6  # of a limit that follows from the steepest slope
 
 
 def verify(path: Path, drum: DrumIntent, limits: Limits, units: float | None = None) -> DrumVerdict:
-    """Judge a solid by the suffix of its file, over all shaft angles.
+    """Judge a solid of triangles by the suffix of its file, over all shaft angles.
 
-    `units`, mm, is the unit of a file that states none; None is mm. A file from which no solid can be read gets a
-    verdict that says why. Raises OSError where the disk refuses, ValueError for a suffix of files without solids.
+    `units`, mm, is the unit of a file that states none; None is mm. A file from which no mesh can be read gets a
+    verdict that says why. Raises OSError where the disk refuses, ValueError for a suffix of files without meshes.
     """
     kind = format_of(path)
     try:
-        if kind.shell is not None:
-            from kin.cylindrical.exact import judge_shell
-
-            verdict = judge_shell(kind.shell(path), drum, limits, kind.name)
-        else:
-            verdict = judge_mesh(read_mesh(path, units), drum, limits, kind.name)
+        read = read_mesh(path, units)
     except ReadError as error:
         return DrumVerdict(kind.name, (about(unread_check("solid", error), path.name),))
+    verdict = judge_mesh(read, drum, limits, kind.name)
     return replace(verdict, checks=tuple(about(check, path.name) for check in verdict.checks))
 
 

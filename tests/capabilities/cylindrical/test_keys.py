@@ -39,7 +39,7 @@ REFUSED = [
     (GROOVE, ("radius: 10,", "radius: 10, arm: {length: 80},"), "cam.follower.arm: not made yet; leave it out"),
     (GROOVE, ("radius: 10,", "radius: 10, offset: 6,"), "cam.follower.offset: not made yet; leave it out"),
     (GROOVE, ("radius: 10,", "kind: cone, radius: 10,"), "beside the axis or with a cone is not made yet"),
-    (GROOVE, ("[stl]", "[step]"), "step is not made yet of a cylindrical cam; give stl, 3mf or ply"),
+    (GROOVE, ("[stl]", "[svg]"), "svg is not made yet of a cylindrical cam; give stl, 3mf, ply or step"),
     (GROOVE, ("export:", "manufacture: {cutter: 20}\nexport:"), "manufacture: not made yet; leave it out"),
     (GROOVE, ("bore: 24", "flat: 20, bore: 24"), "part.flat: unknown key; the keys here are"),
     (GROOVE, ("bore: 24", "hub: {diameter: 30}, bore: 24"), "part.hub: unknown key"),

@@ -23,12 +23,14 @@ from camgeo.capabilities.cylindrical.brep import drum_solid
 from camgeo.capabilities.cylindrical.exact import designed
 from camgeo.capabilities.cylindrical.figures import volume
 from camgeo.capabilities.cylindrical.making import foresee
-from camgeo.capabilities.cylindrical.verdicts import judged_file
+from camgeo.capabilities.cylindrical.verdicts import intended, judged_file
 from camgeo.common.clock import Clock
 from camgeo.files.errors import MissingExtraError, RegionError
 from camgeo.fit.nodes import ToleranceError
 from camgeo.formats.step import write_shape
 from camgeo.schema.errors import RecipeErrors
+from kin.cylindrical.exact import verify_surfaces
+from kin.cylindrical.intent import Limits
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -142,6 +144,7 @@ def test_a_flank_of_another_form_is_refused() -> None:
 # --- the recipe -------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.costly("undercut is sought")
 def test_a_shortened_flank_is_refused() -> None:
     recipe = recipe_of(changed(UNDERCUT, ("[stl]", "[step]")))
     with pytest.raises(RecipeErrors, match=r"export.files\[0\]: a flank that an undercut shortens") as caught:
@@ -356,9 +359,15 @@ def test_drums_of_another_size_are_refused(sound: tuple[str, DrumDesign, Path]) 
     assert {("contour", "lower"), ("motion", "lower")} <= mirrored
 
 
-def test_shortened_flanks_are_judged_on_triangles_alone(sound: tuple[str, DrumDesign, Path]) -> None:
-    text, _, folder = sound
+def test_what_is_not_judged_says_so(sound: tuple[str, DrumDesign, Path]) -> None:
+    text, design, folder = sound
     path = folder / "drum.step"
     path.write_text(text, encoding="latin-1")
-    shown = [check.detail for check in judged(path, design_of(UNDERCUT), 0.05).checks if check.name == "contour"]
-    assert "give an STL" in shown[0]
+    shortened = verify_surfaces(path, replace(intended(design), shortened=True), Limits(FINE))
+    assert "give an STL" in next(check.detail for check in shortened.checks if check.name == "contour")
+    path.write_text(text[:-300], encoding="latin-1")
+    (cut,) = judged(path, design, FINE).checks
+    assert not cut.ok
+    assert "cut short" in cut.detail
+    with pytest.raises(ValueError, match="no exact surfaces"):
+        verify_surfaces(folder / "drum.stl", intended(design), Limits(FINE))
