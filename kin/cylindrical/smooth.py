@@ -46,7 +46,9 @@ FAR = 3.0  # times the tolerance: what is so far off need not be known more clos
 BINS = 2048  # parts of a turn, for each of which the roller is held
 WINDOW, ROOM, MOST_WINDOW = 0.004, 1.5, 0.1  # rad, about the worst angle, within which F falls; one with room; greatest
 LOOKS, DEPTHS, PARTINGS = 720, 8, 4  # cells of the proof that a flank is regular, and how often they are halved
+JUMP = 1e-9  # of the greatest jump of S'', mm per rad^2, below which one is rounding
 ALIKE = 1e-6  # of the roller's radius, within which heights by the gauge are those that are bounded here
+NEARER = 2e-4  # of a radius, by which chords of the control points of a cell lie nearer to the axis
 LOOSE = 1e-7  # rad, by which two faces may miss one another
 
 
@@ -185,9 +187,12 @@ class _Look:
         corners = np.concatenate([np.hypot(each.nets[..., 0], each.nets[..., 1]).ravel() for each in cells])
         if len(gauge.lifts.corners):
             raise UnsettledError("where the velocity jumps no smooth surface is the flank")
-        far = max(float(np.nanmax(np.abs(each.distance))) for each in cells) > FAR * self.tolerance
+        if not all(bool(np.isfinite(each.height).all()) for each in cells):
+            raise UnsettledError("a part of the surface is nowhere near the flank")
+        far = max(float(np.abs(each.distance).max()) for each in cells) > FAR * self.tolerance
         if not far:
-            demand_regular(gauge, float(corners.min()), float(corners.max()))
+            # between control points a surface may lie a little nearer to the axis
+            demand_regular(gauge, (1.0 - NEARER) * float(corners.min()), float(corners.max()))
         holds = _holds(gauge, cells, angles)
         for each in cells:
             self._settle(each, far=far)
@@ -205,7 +210,7 @@ class _Look:
         """Take in cells and their bounds; those that are far above what is reached are halved."""
         for parting in range(ROUNDS + 1):
             bounds = _bounds(self.gauge, cells)
-            reached = self._reached(cells, bounds)
+            reached = self._reached(cells)
             top, deep = cells.height.max(axis=(1, 2)), cells.distance
             out = np.where(reached, top + bounds.height + bounds.gap, -np.inf)
             # what stands out by no more than that is no farther out of the metal
@@ -214,6 +219,11 @@ class _Look:
                 np.maximum(top + bounds.height + bounds.gap, 0.0),
             )
             bare = deep.max(axis=(1, 2)) + bounds.distance
+            if far:  # a bound that is not known says no more than what is reached
+                out, proud = (
+                    np.where(np.isfinite(bound), bound, seen)
+                    for bound, seen in ((out, np.where(reached, top, -np.inf)), (proud, -deep.min(axis=(1, 2))))
+                )
             low = cells.height.min(axis=(1, 2)) - bounds.height
             self.lowest = min(self.lowest, float(cells.height.min()))
             open_ = (
@@ -233,7 +243,7 @@ class _Look:
                 return
             cells = self._halved(cells.take(open_), bounds.skew[:, open_])
 
-    def _reached(self, cells: _Cells, bounds: _Bounds) -> Mask:
+    def _reached(self, cells: _Cells) -> Mask:
         """Cells (n,) that the roller may reach with its length; what their corners show is taken in."""
         gauge = self.gauge
         corners = cells.nets[:, [0, -1]][:, :, [0, -1]]
@@ -247,8 +257,9 @@ class _Look:
             k = int(np.argmax(values))
             if values.ravel()[k] > self.most[name]:
                 self.most[name], self.at[name] = float(values.ravel()[k]), float(cells.theta.ravel()[k])
-        low, high = bounds.along
-        reached: Mask = (high >= gauge.inner) & (low <= gauge.outer)
+        # within the roller's length is nothing that is nearer to the axis than its inner end
+        r = np.hypot(cells.nets[..., 0], cells.nets[..., 1]).reshape(len(cells.nets), -1).max(axis=1)
+        reached: Mask = r >= gauge.inner
         return reached
 
     def _inside(self, bounds: _Bounds) -> Mask:
@@ -280,7 +291,8 @@ def _bounds(gauge: Gauge, cells: _Cells) -> _Bounds:
     turned = [x * c + y * s, y * c - x * s, z]
     tau = cells.theta - middle[:, None, None]
     low, high = tau.min(axis=(1, 2)), tau.max(axis=(1, 2))
-    bent = []
+    bent, apart = [], []
+    jumps = _jumping(gauge, low + middle, high + middle)
     for axis in (1, 2):
         px, py, pz = (_jet(part, axis) for part in turned)
         ways = np.diff(tau, axis=axis).reshape(len(tau), 2)
@@ -297,8 +309,10 @@ def _bounds(gauge: Gauge, cells: _Cells) -> _Bounds:
         height, reach = v + depth, sqrt(across * across + v * v)
         rate = across * along / depth + slope * side
         bent.append([2.0 * part.rows[2].magnitude for part in (height, reach, rate)])
+        # where S'' jumps F_theta is off what is linear by a quarter of the span of its first derivative
+        apart.append(np.where(jumps, 0.5 * rate.rows[1].rad, 0.25 * rate.rows[2].magnitude))
     (h1, k1, q1), (h2, k2, q2) = bent
-    steep = np.abs(_slope(gauge, cells)).max(axis=(1, 2)) + 0.125 * (q1 + q2)
+    steep = np.abs(_slope(gauge, cells)).max(axis=(1, 2)) + apart[0] + apart[1]
     places = across.rows[0], along.rows[0], v.rows[0]
     beside, under = _gaps(gauge, cells, places, (low + middle, high + middle), steep)
     return _Bounds(
@@ -309,6 +323,18 @@ def _bounds(gauge: Gauge, cells: _Cells) -> _Bounds:
         along.rows[0].bounds(),
         np.stack([h1 + k1 + radius * q1, h2 + k2 + radius * q2]),
     )
+
+
+def _jumping(gauge: Gauge, low: Array, high: Array) -> Mask:
+    """Whether the second derivative of the lift jumps between angles (n,), rad."""
+    law = gauge.lifts.round
+    found = np.zeros(len(low), dtype=np.bool_)
+    if not len(law.breaks):
+        return found
+    at, jumps = law.jumps(2)
+    for angle in at[np.abs(jumps[2]) > JUMP * max(1.0, float(np.abs(jumps[2]).max()))].tolist():
+        found |= np.remainder(angle - low + LOOSE, TURN) <= high - low + 2.0 * LOOSE
+    return found
 
 
 def _slope(gauge: Gauge, cells: _Cells) -> Array:
