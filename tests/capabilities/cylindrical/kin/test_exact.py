@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from capabilities.cylindrical.kin.drums import Drum, End, Groove, Motion, Rib, distances, replace, resting
 
+from kin.cylindrical import smooth
 from kin.cylindrical.gauge import Gauge, gauges_of
 from kin.cylindrical.smooth import Smooth, demand_regular, look
 from kin.numeric.errors import UnsettledError
@@ -21,10 +22,10 @@ INVERSE = np.linalg.inv(BERNSTEIN)
 COARSE = Drum(track=Groove(12.5, 0.05))
 
 
-def fitted(drum, flank, columns=60, rows=3):
-    """A flank as bicubic patches through 4 by 4 exact places each, with columns at breaks; nets (n, 4, 4, 3), lines."""
-    breaks = drum.motion.breaks
-    knots = np.unique(np.concatenate([np.arange(columns) * (TURN / columns), breaks]))
+def fitted(drum, flank, columns=60, rows=3, *, breaks=True):
+    """A flank as bicubic patches through 4 by 4 exact places each, with columns at breaks unless these are left out."""
+    more = drum.motion.breaks if breaks else []
+    knots = np.unique(np.concatenate([np.arange(columns) * (TURN / columns), more]))
     knots = np.append(knots[np.append(np.diff(knots) > 1e-6, True)], TURN)
     r = np.linspace(drum.floor, drum.radius, rows + 1)
     nets, lines = [], []
@@ -81,6 +82,44 @@ def test_what_stands_out_is_missing_and_holds(kind, bend):
         # places so close to one another are lower than the surface by their distance squared over the roller's diameter
         assert seen.least.value - seen.least.remainder <= held.min() + 1e-3
         assert np.abs(held - seen.holds[::90]).max() < 1e-3
+
+
+@pytest.mark.costly("positions at all angles of places within cells")
+@pytest.mark.parametrize(("kind", "shaken"), [("groove", 0.03), ("top", 0.03), ("groove", 0.002), ("top", 0.0)])
+def test_bounds_hold_within_cells_and_are_not_idle(kind, shaken):
+    """H and K leave the bilinear by no more than is said, F rises above H and the depth above -K by no more either."""
+    drum = DRUMS[kind]
+    flank, gauge = drum.flanks[0], gauges_of(drum.intent())[0]
+    every = fitted(drum, flank, columns=90 if shaken else 91, rows=4, breaks=shaken > 0.0)
+    surface = Smooth(every.nets[::11], every.lines[::11])
+    if not shaken:  # about 100 degrees, where the acceleration jumps between two columns
+        surface = Smooth(every.nets[92:112], every.lines[92:112])
+    chance = np.random.default_rng(2)
+    nets = surface.nets + shaken * chance.uniform(-1.0, 1.0, surface.nets.shape)
+    cells = smooth._measured(gauge, nets, surface.lines)
+    bounds = smooth._bounds(gauge, cells)
+    share = np.array([0.0, 0.15, 0.4, 0.5, 0.6, 0.85, 1.0])
+    count = len(share)
+    basis = np.stack([math.comb(3, k) * share**k * (1.0 - share) ** (3 - k) for k in range(4)], axis=1)
+    places = np.einsum("ia,jb,nabx->nijx", basis, basis, nets)
+    linear = np.stack([1.0 - share, share], axis=1)
+    theta, height, distance = (
+        np.einsum("ia,jb,nab->nij", linear, linear, part) for part in (cells.theta, cells.height, cells.distance)
+    )
+    x, y, z = np.moveaxis(places, 3, 0)
+    across, v = y * np.cos(theta) - x * np.sin(theta), -(20.0 + drum.motion(theta) - z)
+    upright, away = v + np.sqrt(100.0 - across**2), np.hypot(across, v) - 10.0
+    along = x * np.cos(theta) + y * np.sin(theta)
+    for found, said, bound in ((upright, height, bounds.height), (away, distance, bounds.distance)):
+        off = np.abs(found - said).max(axis=(1, 2))
+        assert (off <= bound + 1e-9).all()
+        assert (off > 0.05 * bound).mean() > 0.5 or shaken < 0.01
+    assert (bounds.along[0] <= along.min(axis=(1, 2)) + 1e-9).all()
+    assert (along.max(axis=(1, 2)) <= bounds.along[1] + 1e-9).all()
+    nearest, most = (row.reshape(len(nets), count, count) for row in distances(drum, places.reshape(-1, 3), flank))
+    for risen, bound in ((most - upright, bounds.gap), (away - nearest, bounds.under)):
+        assert (risen.max(axis=(1, 2)) <= bound + 1e-9).all()
+        assert np.isfinite(bound).mean() > 0.3 or shaken > 0.01
 
 
 @pytest.fixture(scope="module")
