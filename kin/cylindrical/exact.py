@@ -16,7 +16,7 @@ from kin.contour.holes import farthest
 from kin.cylindrical.edges import Peak
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP, Body, Faces, Stands
 from kin.cylindrical.figures import exact_play
-from kin.cylindrical.gauge import Worst, gauges_of
+from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove
 from kin.cylindrical.judge import (
     CONTOUR,
@@ -29,6 +29,7 @@ from kin.cylindrical.judge import (
     play_check,
     volume_check,
 )
+from kin.cylindrical.roller import Worst
 from kin.cylindrical.smooth import Smooth, look, off_flank
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.angles import TURN, degrees
@@ -45,8 +46,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.guide import Unit
     from kin.cylindrical.intent import DrumIntent, Limits
+    from kin.cylindrical.roller import Gauge
     from kin.cylindrical.smooth import SeenSmooth
     from kin.numeric.arrays import Array
     from kin.read.step.faces import Face
@@ -132,18 +134,22 @@ def _flank(
     if not (math.isfinite(seen.least.remainder) and np.isfinite(seen.holds).all()):
         free = int(np.argmin(np.isfinite(seen.holds)))
         why = f"the roller touches nothing at an angle of {degrees(free * TURN / ANGLES):.6g} degrees"
-        return FlankVerdict(gauge.name, None, worst, count), seen, [check, failed(MOTION, why, unit="mm")]
-    motion = _motion_error(seen)
-    checks = [check, motion_check(motion, gauge, job.limits, job.slack)]
+        return FlankVerdict(gauge.name, None, worst, count), seen, [check, failed(MOTION, why, unit=job.unit)]
+    motion = _motion_error(seen, job.told, job.unit)
+    checks = [check, motion_check(job, motion, gauge)]
     return FlankVerdict(gauge.name, motion, worst, count), seen, checks
 
 
-def _motion_error(seen: SeenSmooth) -> MotionError:
+def _motion_error(seen: SeenSmooth, told: float, unit: Unit) -> MotionError:
+    """Error of the motion, from mm of travel to a unit by the factor `told`."""
     low, high = seen.least, seen.out
     worst = high if high.value >= -low.value else Peak(-low.value, low.at, low.remainder)
     bound = max(high.value + high.remainder, low.remainder - low.value)
     rms = float(np.sqrt(np.mean(seen.holds**2)))
-    return MotionError(worst.value, degrees(worst.at), max(bound - worst.value, 0.0), low.value, high.value, rms)
+    left = told * max(bound - worst.value, 0.0)
+    return MotionError(
+        told * worst.value, degrees(worst.at), left, told * low.value, told * high.value, told * rms, unit
+    )
 
 
 # --- which face is which ----------------------------------------------------------------------------------------------

@@ -37,7 +37,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices, Mask
 
 WIDE, DEEP = 0.0125, 1 / 12  # rad, and of the depth: cells to begin with

@@ -8,8 +8,8 @@ import re
 from typing import TYPE_CHECKING
 
 import numpy as np
-from capabilities.cylindrical.made_drums import random_drum
-from capabilities.cylindrical.positions import Lift, envelope
+from capabilities.cylindrical.made_drums import LED, random_drum
+from capabilities.cylindrical.positions import envelope
 from support.heavy import ezdxf
 
 from attacks.outcome import Attack
@@ -17,6 +17,8 @@ from attacks.outcome import Attack
 if TYPE_CHECKING:
     from pathlib import Path
     from random import Random
+
+    from capabilities.cylindrical.positions import Lift
 
     from attacks.outcome import Done
 
@@ -30,6 +32,11 @@ SLIPS = (
     ("law: cycloidal", "law: linear"),
     ("bore: ", "bore: 9"),
     ("radius: ", "radius: 0"),
+    ("pivot: ", "pivot: 1e4"),
+    ("side: ", "side: un"),
+    ("offset: ", "offset: 9"),
+    ("taper: ", "taper: 8"),
+    ("taper: axis", "taper: apex"),
 )
 
 
@@ -37,13 +44,13 @@ def turned(rng: Random, number: int) -> Attack:
     """A random drum: the development at the blank is what all rollers leave there."""
     inch, ccw = rng.random() < 0.5, rng.random() < 0.5
     track = rng.choice(["groove", "rib", "top", "bottom"])
-    text, rows = random_drum(rng, track, inch=inch, ccw=ccw, undercut=False)
+    text, lift = random_drum(rng, track, inch=inch, ccw=ccw, undercut=False, led=rng.choice(LED))
     text = text.replace("files: [stl]", "files: [{dxf: {at: [outer]}}, csv]")
 
     def judge(done: Done, folder: Path) -> list[str]:
         if done.status:
             return [] if done.status in {1, 2} else [f"verdict: {done.err[:200]}"]
-        return wrong(folder, text, rows)
+        return wrong(folder, text, lift)
 
     return Attack(f"drum {number}", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2), judge)
 
@@ -52,54 +59,48 @@ def stepped(rng: Random, number: int) -> Attack:
     """A random drum as STEP: corners of its surfaces are what all rollers leave there; left out without the kernel."""
     inch, ccw = rng.random() < 0.5, rng.random() < 0.5
     track = rng.choice(["groove", "rib", "top", "bottom"])
-    text, rows = random_drum(rng, track, inch=inch, ccw=ccw, undercut=rng.random() < 0.1)
+    text, lift = random_drum(rng, track, inch=inch, ccw=ccw, undercut=rng.random() < 0.1)
     text = text.replace("files: [stl]", "files: [step, csv]")
 
     def judge(done: Done, folder: Path) -> list[str]:
         if done.status not in {0, 3}:
             return [] if done.status in {1, 2} else [f"verdict: {done.err[:200]}"]
-        return [problem for path in folder.rglob("*.step") for problem in wrong_corners(path, text, rows)]
+        return [problem for path in folder.rglob("*.step") for problem in wrong_corners(path, text, lift)]
 
     return Attack(f"drum {number} as STEP", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2, 3), judge)
 
 
 def slipped(rng: Random, number: int) -> Attack:
     """A random drum with a slip in it: it is refused, or made, and nothing is half written."""
-    text, _ = random_drum(rng, rng.choice(["groove", "rib", "top"]), inch=False, ccw=False, undercut=False)
+    track, led = rng.choice(["groove", "rib", "top"]), rng.choice(LED)
+    text, _ = random_drum(rng, track, inch=False, ccw=False, undercut=False, led=led)
     old, new = rng.choice([slip for slip in SLIPS if slip[0] in text])
     text = text.replace("files: [stl]", "files: [csv]").replace(old, new, 1)
     return Attack(f"slipped drum {number}", ("check", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2))
 
 
-def wrong_corners(path: Path, text: str, rows: list[tuple]) -> list[str]:
+def wrong_corners(path: Path, text: str, lift: Lift) -> list[str]:
     """Corners of B-spline surfaces that are not what rollers leave of either flank, within ten tolerances."""
-    roller, low, high, tolerance = sizes(text)
-    step = path.read_text(encoding="latin-1")
-    places = dict(re.findall(r"(#\d+) = CARTESIAN_POINT\('',\(([^)]*)\)\)", step))
-    unit = 25.4 if "'INCH'" in step else 1.0
-    lift, off = Lift(rows), []
-    for net in re.findall(r"B_SPLINE_SURFACE_WITH_KNOTS\('',3,3,\((.*?)\),\.UNSPEC", step, re.DOTALL):
-        lines = [re.findall(r"#\d+", row) for row in re.findall(r"\(([^()]*)\)", net)]
-        corners = [places[line[k]] for line in (lines[0], lines[-1]) for k in (0, -1)]
-        x, y, z = np.array([[float(part) for part in corner.split(",")] for corner in corners]).T * unit
-        phi = np.arctan2(-y if "rotation: ccw" in text else y, x)
-        beside = []
-        for side, (radius, level) in ((-1, (roller[0], low)), (1, (roller[1], high))):
-            wanted, _ = envelope(lift, side, radius, np.hypot(x, y), np.mod(phi, 2.0 * math.pi))
-            beside.append(float(np.abs(z - level - wanted).max()))
-        off.append(min(beside))
-    return [f"flank: a corner is off by {worst:.4g} mm" for worst in off if worst > 10.0 * tolerance]
-
-
-def sizes(text: str) -> tuple[tuple[float, float], float, float, float]:
-    """Radii of the rollers below and above, heights of their axes at lift 0, and the tolerance, mm."""
     mm = 25.4 if "units: inch" in text else 1.0
     level, tolerance = (number_after(text, f"{key}: ") * mm for key in ("pitch_height", "tolerance"))
     _, _, touching, *_ = text.split("radius: ")
     roller = number_after(f"radius: {touching}", "radius: ") * mm
     more = number_after(text, "clearance: ") * mm if "clearance: " in text else 0.0
     half = 0.5 * number_after(text, "distance: ") * mm if "distance: " in text else 0.0
-    return (roller, roller + more), level + half, level - half, tolerance
+    step = path.read_text(encoding="latin-1")
+    places = dict(re.findall(r"(#\d+) = CARTESIAN_POINT\('',\(([^)]*)\)\)", step))
+    off = []
+    for net in re.findall(r"B_SPLINE_SURFACE_WITH_KNOTS\('',3,3,\((.*?)\),\.UNSPEC", step, re.DOTALL):
+        lines = [re.findall(r"#\d+", row) for row in re.findall(r"\(([^()]*)\)", net)]
+        corners = [places[line[k]] for line in (lines[0], lines[-1]) for k in (0, -1)]
+        x, y, z = np.array([[float(part) for part in corner.split(",")] for corner in corners]).T
+        phi = np.arctan2(-y if "rotation: ccw" in text else y, x)
+        beside = []
+        for side, radius in ((-1, roller), (1, roller + more)):
+            wanted, _ = envelope(lift.second(-side * half), side, radius, np.hypot(x, y), np.mod(phi, 2.0 * math.pi))
+            beside.append(float(np.abs(z - level - wanted).max()))
+        off.append(min(beside))
+    return [f"flank: a corner is off by {worst:.4g} mm" for worst in off if worst > 10.0 * tolerance]
 
 
 def number_after(text: str, key: str) -> float:
@@ -107,22 +108,28 @@ def number_after(text: str, key: str) -> float:
     return float(re.split(r"[\s,}\]]", text.split(key, 1)[1], maxsplit=1)[0])
 
 
-def wrong(folder: Path, text: str, rows: list[tuple]) -> list[str]:
+def wrong(folder: Path, text: str, lift: Lift) -> list[str]:
     """Lines of a development that are not what rollers leave on the blank, within ten tolerances of their own."""
     mm = 25.4 if "units: inch" in text else 1.0
-    radii, low, high, tolerance = sizes(text)
-    radius = number_after(f"radius: {text.split('radius: ')[1]}", "radius: ") * mm
-    found, lift = [], Lift(rows)
+    level_at_0, tolerance = (number_after(text, f"{key}: ") * mm for key in ("pitch_height", "tolerance"))
+    _, blank, touching, *_ = text.split("radius: ")
+    radius, roller = (number_after(f"radius: {part}", "radius: ") * mm for part in (blank, touching))
+    found = []
     for line in ezdxf.readfile(next(folder.rglob("*.dxf"))).modelspace().query("LWPOLYLINE"):
         layer = line.dxf.layer
         if not layer.endswith(("LOWER", "UPPER")):
             continue
         x, z = np.array(line.get_points("xy")).T * mm
         side = -1 if layer.endswith("LOWER") else 1
-        level, roller = (low, radii[0]) if side < 0 else (high, radii[1])
+        more = 0.0
+        if "clearance: " in text and side > 0:
+            more = number_after(text, "clearance: ") * mm
+        own = lift
+        if "distance: " in text:
+            own = lift.second(-0.5 * side * number_after(text, "distance: ") * mm)
         phi = (-x if "rotation: ccw" in text else x) / radius
-        wanted, _ = envelope(lift, side, roller, np.full_like(phi, radius), np.mod(phi, 2.0 * math.pi))
-        off = float(np.abs(z - level - wanted).max())
+        wanted, _ = envelope(own, side, roller + more, np.full_like(phi, radius), np.mod(phi, 2.0 * math.pi))
+        off = float(np.abs(z - level_at_0 - wanted).max())
         if off > 10.0 * tolerance:
             found.append(f"flank: {layer} is off by {off:.4g} mm")
     return found

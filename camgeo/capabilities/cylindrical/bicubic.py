@@ -47,6 +47,7 @@ HERMITE = 384.0
 LOOKS, BLOCKS = 360, 4  # parts of a turn and of the depth, over each of which derivatives are bounded
 MOST_ROWS, MOST_NODES = 64, 10_000
 WIDEST = 0.5  # rad between nodes
+TRIALS, ALIKE = 90, 1e-9  # angles at which a flank is tried, and the share of the radius within which it is the same
 NEAR = 1e-9  # rad: a wanted angle so near a break is meant to be it
 JUMP = 1e-9  # of S', in mm, and of S'': what is less is rounding
 
@@ -89,9 +90,13 @@ def bicubics(
     """Splines of a regular flank between radii `ends`, mm, over a turn from the first of the angles `ends_at`, rad.
 
     One ends and another begins at each of these, and where S'' jumps. Returned with them is the proved bound, mm.
-    Raises ToleranceError where the tolerance cannot be held or proved.
+    Raises ToleranceError where the tolerance cannot be held or proved, RegionError for a flank of another form.
     """
     low, high = ends
+    if not is_radial(flank, ends):
+        raise RegionError(
+            "surfaces are made for a cylindrical roller on a carriage, whose axis is a radius of the drum"
+        )
     check_precision(high + abs(flank.level), tolerance)
     lost = rounding(high + abs(flank.level))
     breaks = breaks_of(flank)
@@ -121,6 +126,19 @@ def bicubics(
     first = np.searchsorted(theta, joints - SAME)
     parts = [_spline(flank, theta[a : b + 1], r) for a, b in pairwise(first)]
     return parts, float(off.max())
+
+
+def is_radial(flank: Flank, ends: tuple[float, float]) -> bool:
+    """Whether a flank is where the closed form has it here: of a cylindrical roller whose axis is a radius."""
+    theta = np.asarray(np.arange(TRIALS) * (TURN / TRIALS), dtype=np.float64)
+    lift, slope = flank.law.derivatives(theta, 1)
+    for r in ends:
+        radius = Jet.variable(np.full(TRIALS, r), 0)
+        across, _, z = (part.c[0] for part in _place(flank, (radius.constant(lift), radius.constant(slope)), radius))
+        contact = flank.on(theta, r)
+        if not bool((np.abs(contact.rho - across) + np.abs(contact.z - z) <= ALIKE * r).all()):
+            return False
+    return True
 
 
 def _distinct(angles: Array) -> Array:
@@ -248,10 +266,7 @@ def _over(look: Array, bounds: _Bounds, theta: Array) -> _Bounds:
 
 
 def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
-    """Spline through nodes theta (n + 1,), rad, between which S'' is continuous, and r (m + 1,), mm.
-
-    Raises RegionError for a flank that is not where the closed form here has it.
-    """
+    """Spline through nodes theta (n + 1,), rad, between which S'' is continuous, and r (m + 1,), mm."""
     rows = flank.law.derivatives(theta, 2, 1)
     rows[:, -1] = flank.law.derivatives(theta[-1:], 2, -1)[:, 0]
     lift, slope, bend = (np.repeat(row, len(r)) for row in rows)
@@ -262,11 +277,6 @@ def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
     (p, by_r), (by_theta, by_both) = ([_turned(parts, turn, k) for k in (0, 1)] for parts in both)
     shape = len(theta), len(r), 3
     nodes = [part.reshape(shape) for part in (p, by_r, by_theta, by_both)]
-    contact = flank.on(turn, np.tile(r, len(theta)))
-    if bool((np.abs(p[:, 2] - contact.z) + np.abs(np.hypot(p[:, 0], p[:, 1]) - contact.r) > NEAR * flank.radius).any()):
-        raise RegionError(
-            "surfaces are made for a cylindrical roller on a carriage, whose axis is a radius of the drum"
-        )
     a, b = _beside(theta)[:, None, None], _beside(r)[None, :, None]
     own, own_r, own_theta, own_both = (np.repeat(np.repeat(node, 2, axis=0), 2, axis=1) for node in nodes)
     return Bicubic(theta, r, own + a * own_theta + b * own_r + a * b * own_both)

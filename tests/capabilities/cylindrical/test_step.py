@@ -129,16 +129,14 @@ def test_a_tolerance_that_is_too_small_names_one_that_serves() -> None:
         bicubics(flank, ends, 1e-15, (0.0, 3.0))
 
 
-def test_a_flank_of_another_form_is_refused() -> None:
-    flank = design_of(GROOVE).flanks["lower"]
-
-    class Led(type(flank)):  # type: ignore[misc]
-        def on(self, *args: object) -> object:
-            contact = super().on(*args)
-            return contact._replace(z=contact.z + 0.1)
-
+@pytest.mark.parametrize("more", ["offset: 4", "taper: 8", "taper: axis"])
+def test_a_flank_of_another_form_is_refused(more: str) -> None:
+    design = design_of(changed(STEP, ("radius: 10,", f"radius: 10, {more},")))
     with pytest.raises(RegionError, match="cylindrical roller on a carriage"):
-        bicubics(Led(**vars(replace(flank))), (37.5, 50.0), 0.1, (0.0, 3.0))
+        bicubics(design.flanks["lower"], (37.5, 50.0), 0.1, (0.0, 3.0))
+    with pytest.raises(RecipeErrors, match=r"export.files\[0\]: STEP is made for a cylindrical roller") as caught:
+        foresee(design, design.recipe.export.files[0])
+    assert "give stl, 3mf or ply" in str(caught.value)
 
 
 # --- the recipe -------------------------------------------------------------------------------------------------------

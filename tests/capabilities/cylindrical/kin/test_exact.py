@@ -11,7 +11,8 @@ import pytest
 from capabilities.cylindrical.kin.drums import Drum, End, Groove, Motion, Rib, distances, replace, resting
 
 from kin.cylindrical import smooth
-from kin.cylindrical.gauge import Gauge, gauges_of
+from kin.cylindrical.gauge import gauges_of
+from kin.cylindrical.roller import Gauge
 from kin.cylindrical.smooth import Smooth, demand_regular, look
 from kin.numeric.errors import UnsettledError
 
