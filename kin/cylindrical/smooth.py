@@ -159,7 +159,9 @@ def _measured(gauge: Gauge, nets: Array, lines: Array) -> _Cells:
         height = v + np.sqrt(gauge.radius**2 - across**2)
     known = np.abs(height) < gauge.radius
     if bool((np.abs(height - worst.height.reshape(theta.shape))[known] > ALIKE * gauge.radius).any()):
-        raise UnsettledError("smooth flanks are judged for a cylindrical roller on a slide, whose axis is a radius")
+        raise UnsettledError(
+            "smooth flanks are judged for a cylindrical roller on a slide, whose axis is a radius: give an STL"
+        )
     return _Cells(nets, lines, theta, height, np.hypot(across, v) - gauge.radius)
 
 
