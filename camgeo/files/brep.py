@@ -62,7 +62,7 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     finds it unsound; TypeError for a polygon, and for a chamfer along anything but arcs; ValueError for a periodic
     spline.
     """
-    stack = _Stack()
+    stack = Stack()
     top = solid.thickness
     outermost, *inner_outlines = (layered.outline for layered in outlines)
     contour_foot, contour_head = _contour(stack, outermost, solid)
@@ -121,7 +121,7 @@ def stack_shape(stretches: Sequence[tuple[Outline, float, float]], bore: Outline
     other. Raises RegionError where a piece is too short for the kernel, or the kernel finds the solid unsound;
     TypeError for a polygon, ValueError for a periodic spline.
     """
-    stack = _Stack()
+    stack = Stack()
     low, high = stretches[0][1], stretches[-1][2]
     hole = None if bore is None else stack.wall(bore, low, high)
     walls = [stack.wall(outline, bottom, top) for outline, bottom, top in stretches]
@@ -146,7 +146,7 @@ def raise_shape(shape: Shape, z: float) -> Shape:
     return BRepBuilderAPI_Transform(shape, up, True).Shape()
 
 
-def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Wire, Wire]:
+def _contour(stack: Stack, outline: Outline, solid: Solid) -> tuple[Wire, Wire]:
     """Add the walls on the outermost outline, chamfers included; returns its lowest and its highest loop.
 
     Raises TypeError for the chamfer of a spline.
@@ -166,7 +166,7 @@ def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Wire, Wire]
     return lowest, highest
 
 
-class _Stack:
+class Stack:
     """Faces of a solid under construction, which share their edges."""
 
     def __init__(self) -> None:
@@ -211,28 +211,41 @@ class _Stack:
 
         `inner` is (loop, parallel, height, mm) and `outer` (loop, outline, height, mm).
         """
-        from OCP.BRep import BRep_Builder
-        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
-        from OCP.ShapeFix import ShapeFix_Edge, ShapeFix_Face
-        from OCP.TopoDS import TopoDS_Face
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 
         (near, small, z), (far, large, z_far) = inner, outer
         pairs = zip(near.vertices, far.vertices, strict=True)
         ribs = [BRepBuilderAPI_MakeEdge(_cast(a, "vertex"), _cast(b, "vertex")).Edge() for a, b in pairs]
         count = len(ribs)
         for k in range(count):
-            maker = BRepBuilderAPI_MakeWire()
-            for edge in (near.edges[k], ribs[(k + 1) % count], far.edges[k], ribs[k]):
-                maker.Add(_cast(edge, "edge"))
-            face = TopoDS_Face()
-            builder = BRep_Builder()
-            builder.MakeFace(face, _chamfer_surface(k, (small, z), (large, z_far)), CONFUSION)
-            builder.Add(face, maker.Wire())
-            for edge in _parts(face, "edge"):
-                ShapeFix_Edge().FixAddPCurve(edge, face, False, CONFUSION)
-            turned = ShapeFix_Face(face)
-            turned.FixOrientation()
-            self.faces.append(turned.Face())
+            edges = near.edges[k], ribs[(k + 1) % count], far.edges[k], ribs[k]
+            self.face(_chamfer_surface(k, (small, z), (large, z_far)), edges)
+
+    def face(self, surface: Shape, edges: Sequence[Shape]) -> None:
+        """Add the face of a surface within edges, which follow one another.
+
+        An edge without a curve in the surface's parameters gets one, and is as wide as it lies beside the surface.
+        """
+        from OCP.BRep import BRep_Builder
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
+        from OCP.ShapeFix import ShapeFix_Edge, ShapeFix_Face
+        from OCP.TopoDS import TopoDS_Face
+
+        maker = BRepBuilderAPI_MakeWire()
+        for edge in edges:
+            maker.Add(_cast(edge, "edge"))
+        face = TopoDS_Face()
+        builder = BRep_Builder()
+        builder.MakeFace(face, surface, CONFUSION)
+        builder.Add(face, maker.Wire())
+        for edge in _parts(face, "edge"):
+            fix = ShapeFix_Edge()
+            fix.FixAddPCurve(edge, face, False, CONFUSION)
+            fix.FixSameParameter(edge, face)
+            fix.FixVertexTolerance(edge, face)
+        turned = ShapeFix_Face(face)
+        turned.FixOrientation()
+        self.faces.append(turned.Face())
 
     def lid(self, z: float, outer: Shape, inner: Sequence[Shape]) -> None:
         """Add a horizontal face within one wire and outside others, its holes."""

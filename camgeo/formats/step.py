@@ -107,6 +107,13 @@ def write_stack(
     return max(wall_error(outline, units) for outline, _, _ in stretches)
 
 
+def write_shape(
+    path: Path, shape: Shape, *, units: Literal["mm", "inch"] = "mm", name: str = "", about: str = ""
+) -> None:
+    """Write a solid of the kernel, mm, in a unit, under a name; raises OSError where the file cannot be written."""
+    path.write_bytes(_text([shape], [name], units, name, about))
+
+
 def wall_error(outline: Outline, units: str) -> float:
     """Greatest distance of written walls from an outline, mm: misfits of circles, and rounding in inches."""
     return misfit(outline) + (0.0 if units == "mm" else conversion_error(outline))

@@ -89,27 +89,10 @@ class Beziers:
         """Return the polynomial or rational spans of a B-spline over its domain knots[d] .. knots[-d-1].
 
         knots (n+d+1,) not falling, none of them inside the domain more than d times, where the spline would have a gap;
-        control (n, 2), weight (n,) positive. Each span's control points are the blossom's values at its two ends, found
-        by de Boor's scheme with an argument of its own at every level.
+        control (n, 2), weight (n,) positive.
         """
-        n = control.shape[0]
-        # spans of some width, and the d + 1 control points of each
-        spans = np.flatnonzero(knots[degree:n] < knots[degree + 1 : n + 1]) + degree
-        a, b = knots[spans], knots[spans + 1]
         homogeneous = np.concatenate([control * weight[:, None], weight[:, None]], axis=1)
-        local = homogeneous[spans[:, None] + np.arange(-degree, 1)]  # (spans, d+1, 3)
-        out = np.empty_like(local)
-        for j in range(degree + 1):
-            d = local.copy()
-            for level in range(1, degree + 1):
-                x = b if level > degree - j else a
-                low = knots[spans[:, None] + np.arange(level - degree, 1)]
-                high = knots[spans[:, None] + np.arange(1, degree - level + 2)]
-                s = ((x[:, None] - low) / (high - low))[:, :, None]
-                d = d[:, :-1] * (1.0 - s) + d[:, 1:] * s
-            out[:, j] = d[:, 0]
-        out[1:, 0] = out[:-1, degree]
-        return Beziers.from_homogeneous(out)
+        return Beziers.from_homogeneous(spans_of(degree, knots, homogeneous))
 
     @staticmethod
     def from_homogeneous(points: Array) -> Beziers:
@@ -333,3 +316,28 @@ def turning_numerator(velocity: Array) -> Array:
     bend = cross_product(velocity, change)
     scale = np.hypot(*np.moveaxis(velocity, 2, 0)).max(axis=1) * np.hypot(*np.moveaxis(change, 2, 0)).max(axis=1)
     return np.where(np.abs(bend) <= SIGNLESS * scale[:, None], 0.0, bend)
+
+
+def spans_of(degree: int, knots: Array, control: Array) -> Array:
+    """Bezier control points (m, d+1, k) of the spans of a B-spline with control points (n, k).
+
+    knots (n+d+1,) not falling, none of them inside the domain more than d times. Each span's control points are the
+    blossom's values at its two ends, found by de Boor's scheme with an argument of its own at every level.
+    """
+    n = control.shape[0]
+    # spans of some width, and the d + 1 control points of each
+    spans = np.flatnonzero(knots[degree:n] < knots[degree + 1 : n + 1]) + degree
+    a, b = knots[spans], knots[spans + 1]
+    local = control[spans[:, None] + np.arange(-degree, 1)]  # (spans, d+1, k)
+    out: Array = np.empty_like(local)
+    for j in range(degree + 1):
+        d = local.copy()
+        for level in range(1, degree + 1):
+            x = b if level > degree - j else a
+            low = knots[spans[:, None] + np.arange(level - degree, 1)]
+            high = knots[spans[:, None] + np.arange(1, degree - level + 2)]
+            s = ((x[:, None] - low) / (high - low))[:, :, None]
+            d = d[:, :-1] * (1.0 - s) + d[:, 1:] * s
+        out[:, j] = d[:, 0]
+    out[1:, 0] = out[:-1, degree]
+    return out

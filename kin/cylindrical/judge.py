@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.edges import Seen
+    from kin.cylindrical.edges import Peak, Seen
     from kin.cylindrical.faces import Faces, Stands
     from kin.cylindrical.follower import DrumFollower
     from kin.cylindrical.guide import Unit
@@ -54,7 +54,7 @@ SLACK = 1e-6  # of a limit that follows from the steepest slope
 
 
 def verify(path: Path, drum: DrumIntent, limits: Limits, units: float | None = None) -> DrumVerdict:
-    """Judge a solid by the suffix of its file, over all shaft angles.
+    """Judge a solid of triangles by the suffix of its file, over all shaft angles.
 
     `units`, mm, is the unit of a file that states none; None is mm. A file from which no mesh can be read gets a
     verdict that says why. Raises OSError where the disk refuses, ValueError for a suffix of files without meshes.
@@ -103,7 +103,7 @@ def verify_development(
 
 
 @dataclass(frozen=True, eq=False)
-class _Judged:
+class Judged:
     """A body being judged: its faces, the intent, the limits, and the rounding of the file's places, `slack`, mm.
 
     Positions are mm along the path of the roller's axis; `told` gives them in the follower's unit, mm or deg.
@@ -140,8 +140,8 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
         for gauge in gauges:
             gauge.demand_bounded()
         faces = faces_of(body, drum, gauges, limits.tolerance + slack)
-        job = _Judged(body, faces, drum, limits, slack)
-        checks += _plain_checks(job)
+        job = Judged(body, faces, drum, limits, slack)
+        checks += plain_checks(job)
         angles = angles_for(gauges, limits.tolerance)
         for stands in faces.stands:
             flank, found, own = _flank(job, stands, angles)
@@ -152,7 +152,8 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
         if len(both) > 1:
             play, check = _play(job, both)
             checks.append(check)
-        checks.append(_volume_check(read, drum, gauges, limits.tolerance))
+        area = 0.5 * float(np.sqrt(sum(part * part for part in read.mesh.area_vectors)).sum())
+        checks.append(volume_check(drum, gauges, (read.mesh.volume, area), limits.tolerance))
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
     return DrumVerdict(kind, tuple(checks), tuple(verdicts), play, read.units_mm or 1.0, read.mesh)
@@ -176,7 +177,7 @@ def positions(read: CheckedMesh, drum: DrumIntent, theta: Array) -> tuple[Array,
     return found["lower"], found["upper"]
 
 
-def _plain_checks(job: _Judged) -> list[Check]:
+def plain_checks(job: Judged) -> list[Check]:
     """Checks of blank, floor, ends and bore."""
     off, drum, tolerance = job.faces.off, job.drum, job.limits.tolerance
     checks = []
@@ -200,7 +201,7 @@ def _plain_checks(job: _Judged) -> list[Check]:
     return checks
 
 
-def _flank(job: _Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, Seen | None, list[Check]]:
+def _flank(job: Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, Seen | None, list[Check]]:
     """Verdict on one flank by a grid of so many angles, what was seen of it, and its checks."""
     body, faces, gauge, tolerance = job.body, job.faces, stands.gauge, job.limits.tolerance
     own = faces.of(gauge.name)
@@ -214,14 +215,8 @@ def _flank(job: _Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, See
     if len(seen.torn):
         beside = triangles_at(body, own, (edges.a[seen.torn], edges.b[seen.torn]))
         bare = missing(gauge, body.points[beside], stands.worst.theta[beside], bare, tolerance)
-    proud, worst = seen.proud, max(_sure(peak.value, peak.remainder, tolerance) for peak in (seen.proud, bare))
-    at = proud.at if proud.value >= bare.value else bare.at
-    words = " and ".join(
-        f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((proud, "proud"), (bare, "bare"))
-    )
-    sure = f"true within {length_words(max(proud.remainder, bare.remainder), '.2g')} {UNIT}"
-    check = at_most(CONTOUR, worst, tolerance, "mm", detail=f"{words} of the exact flank; {sure}", slack=job.slack)
-    checks = [_at(check, at)]
+    check, worst = contour_check(job, seen.proud, bare)
+    checks = [check]
     if stands.across.any():
         where = body.points[body.corners[stands.across][0]].mean(axis=0)
         angle = degrees(math.atan2(where[1], where[0]))
@@ -234,8 +229,20 @@ def _flank(job: _Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, See
         loose = failed(MOTION, f"the roller touches nothing at an angle of {free:.6g} degrees", unit=job.unit)
         return FlankVerdict(gauge.name, None, worst, count), seen, [*checks, loose]
     motion = _motion_error(seen, job.told, job.unit)
-    checks.append(_motion_check(job, motion, gauge))
+    checks.append(motion_check(job, motion, gauge))
     return FlankVerdict(gauge.name, motion, worst, count), seen, checks
+
+
+def contour_check(job: Judged, proud: Peak, bare: Peak) -> tuple[Check, float]:
+    """Check of the distance of a flank's surface, mm, out of the metal and into it, and the greater distance."""
+    tolerance = job.limits.tolerance
+    worst = max(sure(peak.value, peak.remainder, tolerance) for peak in (proud, bare))
+    words = " and ".join(
+        f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((proud, "proud"), (bare, "bare"))
+    )
+    told = f"true within {length_words(max(proud.remainder, bare.remainder), '.2g')} {UNIT}"
+    check = at_most(CONTOUR, worst, tolerance, "mm", detail=f"{words} of the exact flank; {told}", slack=job.slack)
+    return _at(check, proud.at if proud.value >= bare.value else bare.at), worst
 
 
 def in_unit(follower: DrumFollower, gauge: Gauge) -> float:
@@ -253,10 +260,11 @@ def _motion_error(seen: Seen, told: float, unit: Unit) -> MotionError:
     return MotionError(told * worst, degrees(at), left, told * least, told * most, told * rms, unit)
 
 
-def _motion_check(job: _Judged, motion: MotionError, gauge: Gauge) -> Check:
+def motion_check(job: Judged, motion: MotionError, gauge: Gauge) -> Check:
+    """Check of the motion on a flank, in the unit of positions."""
     told, tolerance, given = job.told, job.limits.tolerance, _given(job, job.limits.motion)
     limit, room = limit_of(lambda e: told * _implied(gauge, e), given, tolerance, job.slack)
-    worst = _sure(motion.max, motion.remainder, told * tolerance) if given is None else motion.bound
+    worst = sure(motion.max, motion.remainder, told * tolerance) if given is None else motion.bound
     detail = f"true within {amount_words(motion.remainder, job.unit, '.2g')}" if motion.remainder else ""
     check = at_most(MOTION, worst, limit, job.unit, detail=detail, slack=room)
     check = replace(check, at=motion.at)
@@ -265,12 +273,12 @@ def _motion_check(job: _Judged, motion: MotionError, gauge: Gauge) -> Check:
     return unlimited(check) if loose else check
 
 
-def _given(job: _Judged, limit: float | None) -> float | None:
+def _given(job: Judged, limit: float | None) -> float | None:
     """A limit that is given, mm or rad, in the unit of positions."""
     return None if limit is None else job.drum.follower.told(limit)
 
 
-def _sure(value: float, remainder: float, tolerance: float) -> float:
+def sure(value: float, remainder: float, tolerance: float) -> float:
     """A value found, mm, or its bound where the proof leaves more open than a share of the tolerance."""
     return value if remainder <= OPEN * tolerance else value + remainder
 
@@ -292,7 +300,7 @@ def _own_gives(body: Body, stands: Stands, drum: DrumIntent, theta: Array) -> Ar
     return set_down(gauge, body.points[corners], spans_of(body.phi, corners, reach), theta)
 
 
-def _held(job: _Judged, stands: Stands, seen: Seen) -> Array:
+def _held(job: Judged, stands: Stands, seen: Seen) -> Array:
     """How far the drum's own roller is kept from the intended place at the angles of the grid, above 0 from the metal.
 
     The roller of a groove is smaller than the gauge of its upper flank, by the clearance.
@@ -311,13 +319,20 @@ def _held(job: _Judged, stands: Stands, seen: Seen) -> Array:
     return look(gauge, edges, job.limits.tolerance, len(seen.grid)).holds
 
 
-def _play(job: _Judged, both: Sequence[Seen]) -> tuple[Play, Check]:
-    """Play of the follower between two flanks, and the check on that of the gauges, which should fit without any."""
-    stands, width = job.faces.stands, both[0].grid.width
-    pinched: Array = both[0].holds + both[1].holds
-    k = int(np.argmax(np.abs(pinched)))
+def _play(job: Judged, both: Sequence[Seen]) -> tuple[Play, Check]:
+    stands = job.faces.stands
     held = [_held(job, one, found) for one, found in zip(stands, both, strict=True)]
-    own: Array = -(held[0] + held[1]) * job.told
+    return play_check(job, both[0].holds + both[1].holds, -(held[0] + held[1]))
+
+
+def play_check(job: Judged, pinched: Array, own: Array) -> tuple[Play, Check]:
+    """Play of the follower between two flanks, and the check on that of the gauges, which should fit without any.
+
+    `pinched` is by how much the gauges do not fit, and `own` the follower's own play (n,), mm, at equal steps.
+    """
+    stands, width = job.faces.stands, TURN / len(own)
+    k = int(np.argmax(np.abs(pinched)))
+    own = own * job.told
     least, most = int(np.argmin(own)), int(np.argmax(own))
     places = degrees(least * width), degrees(most * width)
     play = Play(float(own[least]), places[0], float(own[most]), places[1], len(own), job.unit)
@@ -339,9 +354,8 @@ def _between(play: Play) -> str:
     return f"{play.least:.6g} to {play.most:.6g} {play.unit}"
 
 
-def _volume_check(read: CheckedMesh, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance: float) -> Check:
-    expected, measured = exact_volume(drum, gauges), read.mesh.volume
-    x, y, z = read.mesh.area_vectors
-    limit = tolerance * 0.5 * float(np.sqrt(x * x + y * y + z * z).sum())
-    detail = f"{length_words(measured, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
-    return at_most(VOLUME, abs(measured - expected), limit, "mm^3", detail=detail, slack=ROUNDING * expected)
+def volume_check(drum: DrumIntent, gauges: tuple[Gauge, ...], measured: tuple[float, float], tolerance: float) -> Check:
+    """Check of a solid's volume, mm^3, by that of its surface within a tolerance, mm; `measured` is with its area."""
+    expected, (volume, area) = exact_volume(drum, gauges), measured
+    detail = f"{length_words(volume, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
+    return at_most(VOLUME, abs(volume - expected), tolerance * area, "mm^3", detail=detail, slack=ROUNDING * expected)

@@ -9,7 +9,7 @@ import numpy as np
 
 from kin.law.bounds import cubic_cells
 from kin.numeric.angles import TURN
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.law.piecewise import Piecewise
@@ -25,6 +25,11 @@ class Lifts:
     """A law of period 2 pi, mm over rad, with its cubics. Raises UnsettledError, when asked, for one too rough."""
 
     law: Piecewise
+
+    @cached_property
+    def round(self) -> Piecewise:
+        """The law over any number of turns."""
+        return self.law if self.law.period is not None else replace(self.law, period=TURN)
 
     @cached_property
     def nodes(self) -> Array:

@@ -64,27 +64,27 @@ class FlankVerdict:
     name            "lower" or "upper", or the line's layer
     motion          of the roller on it; of an upper flank of a groove that of its gauge, larger by the clearance
     measured_error  greatest distance of the file's surface from the exact flank, mm
-    triangles       of the file on this flank; None of a line
+    pieces          triangles or polynomial patches of the file on this flank; None of a line
     """
 
     name: str
     motion: MotionError | None = None
     measured_error: float | None = None
-    triangles: int | None = None
+    pieces: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class DrumVerdict:
     """Results for a file.
 
-    kind    name of the file's format: stl, ply, 3mf, dxf
+    kind    name of the file's format: stl, ply, 3mf, step, dxf
     checks  of a solid: watertight, contour and motion (one for each flank), form-closure, floor, blank, ends, bore,
             volume; of a development: units, contour, motion (one for each line); or a single one that says why the
             file cannot be read. Places are shaft angles, degrees
     flanks  lower and upper, as far as the track has them; none where the file cannot be read
     play    in a groove, or of two rollers about a rib; None with one flank
     units   mm in a unit of the file as it was read
-    mesh    of a solid, mm, as if not mirrored
+    mesh    of a solid of triangles, mm, as if not mirrored
     lines   of a development: points (n, 2), mm, of each line, by its layer, as if not mirrored
     """
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from kin.read.mesh.checked import Form, Triangles
     from kin.read.mesh.prism import Corners
     from kin.read.mesh.stl import Solid
+    from kin.read.step.shell import Shell
     from kin.read.step.step import StepSolid
 
     AnySolid: TypeAlias = Solid | StepSolid
@@ -67,6 +68,7 @@ class Format:
     separate  reads the bodies of one file one by one, in the order of the file
     meshes    reads the triangles of each body, in mm, or in the file's unit where it states none
     part      reads the triangles of one part
+    shell     reads one part of any shape by its exact faces
     """
 
     name: str
@@ -80,6 +82,7 @@ class Format:
     separate: Callable[[Path], Sequence[SeparateBody]] | None = None
     meshes: Callable[[Path], Sequence[Placed]] | None = None
     part: Callable[[Path], Triangles] | None = None
+    shell: Callable[[Path], Shell] | None = None
 
 
 def mesh(
@@ -205,6 +208,12 @@ def _bodies_of_step(path: Path, sought: Sequence[Sought]) -> Sequence[AnySolid]:
     return read_step_bodies(path, sought)
 
 
+def _shell_of_step(path: Path) -> Shell:
+    from kin.read.step.shell import read_shell
+
+    return read_shell(path)
+
+
 FORMATS: dict[str, Format] = {
     record.name: record
     for record in (
@@ -231,6 +240,7 @@ FORMATS: dict[str, Format] = {
             solid=_step,
             bodies=_bodies_of_step,
             separate=_separate_of_step,
+            shell=_shell_of_step,
         ),
         Format(name="gcode", contents="program", most=32_000_000, suffixes=(".gcode", ".ngc", ".nc", ".tap")),
         Format(name="csv", contents="table", most=16_000_000, suffixes=(".csv", ".txt", ".xyz")),

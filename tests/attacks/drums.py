@@ -55,6 +55,21 @@ def turned(rng: Random, number: int) -> Attack:
     return Attack(f"drum {number}", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2), judge)
 
 
+def stepped(rng: Random, number: int) -> Attack:
+    """A random drum as STEP: corners of its surfaces are what all rollers leave there; left out without the kernel."""
+    inch, ccw = rng.random() < 0.5, rng.random() < 0.5
+    track = rng.choice(["groove", "rib", "top", "bottom"])
+    text, lift = random_drum(rng, track, inch=inch, ccw=ccw, undercut=rng.random() < 0.1)
+    text = text.replace("files: [stl]", "files: [step, csv]")
+
+    def judge(done: Done, folder: Path) -> list[str]:
+        if done.status not in {0, 3}:
+            return [] if done.status in {1, 2} else [f"verdict: {done.err[:200]}"]
+        return [problem for path in folder.rglob("*.step") for problem in wrong_corners(path, text, lift)]
+
+    return Attack(f"drum {number} as STEP", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2, 3), judge)
+
+
 def slipped(rng: Random, number: int) -> Attack:
     """A random drum with a slip in it: it is refused, or made, and nothing is half written."""
     track, led = rng.choice(["groove", "rib", "top"]), rng.choice(LED)
@@ -62,6 +77,30 @@ def slipped(rng: Random, number: int) -> Attack:
     old, new = rng.choice([slip for slip in SLIPS if slip[0] in text])
     text = text.replace("files: [stl]", "files: [csv]").replace(old, new, 1)
     return Attack(f"slipped drum {number}", ("check", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2))
+
+
+def wrong_corners(path: Path, text: str, lift: Lift) -> list[str]:
+    """Corners of B-spline surfaces that are not what rollers leave of either flank, within ten tolerances."""
+    mm = 25.4 if "units: inch" in text else 1.0
+    level, tolerance = (number_after(text, f"{key}: ") * mm for key in ("pitch_height", "tolerance"))
+    _, _, touching, *_ = text.split("radius: ")
+    roller = number_after(f"radius: {touching}", "radius: ") * mm
+    more = number_after(text, "clearance: ") * mm if "clearance: " in text else 0.0
+    half = 0.5 * number_after(text, "distance: ") * mm if "distance: " in text else 0.0
+    step = path.read_text(encoding="latin-1")
+    places = dict(re.findall(r"(#\d+) = CARTESIAN_POINT\('',\(([^)]*)\)\)", step))
+    off = []
+    for net in re.findall(r"B_SPLINE_SURFACE_WITH_KNOTS\('',3,3,\((.*?)\),\.UNSPEC", step, re.DOTALL):
+        lines = [re.findall(r"#\d+", row) for row in re.findall(r"\(([^()]*)\)", net)]
+        corners = [places[line[k]] for line in (lines[0], lines[-1]) for k in (0, -1)]
+        x, y, z = np.array([[float(part) for part in corner.split(",")] for corner in corners]).T
+        phi = np.arctan2(-y if "rotation: ccw" in text else y, x)
+        beside = []
+        for side, radius in ((-1, roller), (1, roller + more)):
+            wanted, _ = envelope(lift.second(-side * half), side, radius, np.hypot(x, y), np.mod(phi, 2.0 * math.pi))
+            beside.append(float(np.abs(z - level - wanted).max()))
+        off.append(min(beside))
+    return [f"flank: a corner is off by {worst:.4g} mm" for worst in off if worst > 10.0 * tolerance]
 
 
 def number_after(text: str, key: str) -> float:

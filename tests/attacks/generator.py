@@ -75,6 +75,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     axes.driven,  # needs: axis
     axes.misdriven,  # needs: axis
     drums.turned,  # needs: cylindrical
+    drums.stepped,  # needs: cylindrical
     drums.slipped,  # needs: cylindrical
 )
 """Ways to attack, in turn."""

@@ -411,8 +411,13 @@ def _mesh(name: str, *options: Field) -> Format:
     return replace(FORMATS[name], options=FieldTable(options), forms={"": Form(pieces="triangles")}, solid=False)
 
 
+def _surfaces(name: str, *options: Field) -> Format:
+    return replace(_mesh(name, *options), forms={"": Form(pieces="patches")}, check=NO_CHECK)
+
+
 FILES: dict[str, Format] = {
     **{name: _mesh(name, SOLID_UNITS, TOLERANCE) for name in ("stl", "ply", "3mf")},
+    "step": _surfaces("step", SOLID_UNITS, TOLERANCE),
     "glb": replace(_mesh("glb", TOLERANCE), contour=False),
     "dxf": _one_of(
         "dxf",

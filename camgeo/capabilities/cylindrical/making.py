@@ -11,6 +11,7 @@ from camgeo.capabilities.cylindrical.verdicts import judged_file
 from camgeo.common.units import UNIT_MM
 from camgeo.files.errors import demand_package
 from camgeo.files.mesh import Item
+from camgeo.fit.bound import Bound
 from camgeo.formats.glb import COLOURS, Actor, steady_turn, write_glb
 from camgeo.measures.file_result import FileResult
 from camgeo.output.extension import MAKING, numbers_of
@@ -22,15 +23,26 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.common.clock import Clock
-    from camgeo.fit.bound import Bound
     from camgeo.recipe.export import FileRequest
     from kin.cylindrical.verdict import DrumVerdict
 
 
-def foresee(_: DrumDesign, request: FileRequest) -> None:
-    """Raise MissingExtraError where a package is missing that makes a file."""
+def foresee(design: DrumDesign, request: FileRequest) -> None:
+    """Raise MissingExtraError where a package is missing that makes a file, RecipeErrors for a drum that it lacks."""
     if request.kind == "dxf":
         demand_package("ezdxf", "a DXF file needs ezdxf")
+    if request.kind == "step":
+        from camgeo.capabilities.cylindrical.bicubic import is_radial
+        from camgeo.files.brep import need_kernel
+
+        recipe, problem = design.recipe, ""
+        if any(design.tips.values()):
+            problem = "a flank that an undercut shortens ends in a sharp edge, and no STEP is made of it"
+        elif not all(is_radial(flank, (recipe.floor, recipe.radius)) for flank in design.flanks.values()):
+            problem = "STEP is made for a cylindrical roller on a carriage alone, whose axis is a radius of the drum"
+        if problem:
+            raise recipe.error(recipe.field_of(request), problem, None, "give stl, 3mf or ply")
+        need_kernel()
 
 
 def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
@@ -51,6 +63,8 @@ def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> 
             return _development(design, clock, request, path)
         if kind == "glb":
             return _view(design, clock, request, path)
+        if kind == "step":
+            return _surfaces(design, clock, request, path)
         return _mesh(design, clock, request, path)
 
 
@@ -61,7 +75,7 @@ def _tolerance(design: DrumDesign, request: FileRequest) -> float:
 def _judged(
     design: DrumDesign, clock: Clock, request: FileRequest, path: Path, fit: tuple[int | None, Bound]
 ) -> Made[DrumVerdict]:
-    """A written file with kin's verdict on it; `fit` is number of points, None for a mesh, and bound."""
+    """A written file with kin's verdict on it; `fit` is number of points or patches, None for a mesh, and bound."""
     tolerance = _tolerance(design, request)
     with clock.stage(f"judge {request.kind}"):
         verdict = judged_file(design, path, request, tolerance)
@@ -77,6 +91,18 @@ def _mesh(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) ->
     with clock.stage(f"write {request.kind}"):
         write(path, [Item("drum", mesh)], recipe.name, mm, recipe.about)
     return _judged(design, clock, request, path, (None, facts.bound))
+
+
+def _surfaces(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+    from camgeo.capabilities.cylindrical.brep import drum_solid
+    from camgeo.formats.step import write_shape
+
+    recipe, units = design.recipe, request.unit_for(design.recipe.units)
+    with clock.stage("surfaces step"):
+        solid = drum_solid(design, _tolerance(design, request))
+    with clock.stage("write step"):
+        write_shape(path, solid.shape, units=units, name=recipe.name, about=recipe.about or "cylindrical cam")
+    return _judged(design, clock, request, path, (solid.pieces, Bound(solid.off, solid.off)))
 
 
 def _view(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:

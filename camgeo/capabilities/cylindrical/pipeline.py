@@ -58,7 +58,7 @@ def _maker(design: DrumDesign, clock: Clock) -> Callable[[FileRequest, Path], Ma
 
 
 def _pieces(verdict: DrumVerdict) -> int:
-    return sum(flank.triangles or 0 for flank in verdict.flanks)
+    return sum(flank.pieces or 0 for flank in verdict.flanks)
 
 
 def _seen(design: DrumDesign, step: int) -> Scene:
@@ -126,5 +126,5 @@ DRUMS = OwnKind(
     motion=stated_motion,
     drawings=_drawings,
     mesh=_mesh,
-    formats=("stl", "ply", "3mf", "dxf"),
+    formats=("stl", "ply", "3mf", "step", "dxf"),
 )

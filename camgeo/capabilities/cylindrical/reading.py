@@ -49,7 +49,7 @@ NOT_YET = {
     "manufacture": "a machine of four axes takes the path of the roller's axis from the development",
 }
 """Keys of what is not made yet, each with what is."""
-FORMATS_NOT_YET = ("step", "gcode", "svg")
+FORMATS_NOT_YET = ("gcode", "svg")
 REFUSE = "undercut: refuse, as a cut ends in a sharp edge"
 NOTHING = 1e-9  # mm: a length below it is none
 
@@ -86,7 +86,9 @@ def _not_yet(error: RecipeError) -> RecipeError:
         return replace(error, problem="not made yet", remedy=f"leave it out: {NOT_YET[error.path]}")
     for word in FORMATS_NOT_YET:
         if error.problem.endswith(f" takes no {word}"):
-            return replace(error, problem=f"{word} is not made yet of a cylindrical cam", remedy="give stl, 3mf or ply")
+            return replace(
+                error, problem=f"{word} is not made yet of a cylindrical cam", remedy="give stl, 3mf, ply or step"
+            )
     return error
 
 

@@ -68,6 +68,10 @@ def judged_file(
     recipe = design.recipe
     limits = intent.Limits(tolerance, recipe.verify.motion_error)
     stated = format_of(path).units
+    if format_of(path).shell is not None:
+        from kin.cylindrical.exact import verify_surfaces
+
+        return verify_surfaces(path, intended(design), limits)
     if format_of(path).contents != "drawing":
         own = 1.0 if request is None or request.unit_for("mm") == "mm" else 25.4
         return verify(path, intended(design), limits, None if stated else units or own)

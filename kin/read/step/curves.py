@@ -325,13 +325,21 @@ def _knots(space: StepFile, number: int, knotted: tuple[Value, ...], degree: int
 
     Without the values of knots, as in a BEZIER_CURVE, the ends of spans are knots, `degree` times each between spans.
     """
-    file = space.file
     if len(knotted) >= 2:
-        often, places = (file.several(item, number) for item in knotted[:2])
-        times = np.array([int(file.number(item, number)) for item in often])
-        where = np.array([file.number(item, number) for item in places])
-        if len(times) != len(where) or bool((times < 1).any()) or times.sum() > count + HIGHEST_DEGREE + 1:
-            raise file.error(number, "its knots and their multiplicities do not fit together", "syntax")
-        return np.repeat(where, times)
+        return repeated(space, number, knotted[0], knotted[1], count)
     spans = (count - 1) // degree
     return np.concatenate([[0.0], np.repeat(np.arange(spans + 1.0), degree), [float(spans)]])
+
+
+def repeated(space: StepFile, number: int, often: Value, places: Value, count: int) -> Array:
+    """Knots (k,) of the entity of a number, each as often as it counts, for `count` control points.
+
+    Raises ReadError where knots and multiplicities do not fit together.
+    """
+    file = space.file
+    listed = [file.several(item, number) for item in (often, places)]
+    times = np.array([int(file.number(item, number)) for item in listed[0]])
+    where = np.array([file.number(item, number) for item in listed[1]])
+    if len(times) != len(where) or bool((times < 1).any()) or times.sum() > count + HIGHEST_DEGREE + 1:
+        raise file.error(number, "its knots and their multiplicities do not fit together", "syntax")
+    return np.repeat(where, times)

@@ -6,6 +6,7 @@ section begins, and it ends where a bound goes up, the solid on its left as seen
 
 from __future__ import annotations
 
+from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
 
@@ -18,8 +19,11 @@ from kin.numeric.places import place_text
 from kin.numeric.records import dataclass
 from kin.read.drawing.shapes import Shape, shape
 from kin.read.step.curves import Spline, edge_of, spline_of
+from kin.read.step.patch import PATCH, Patch, patch_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kin.contour.arcs import Arcs
     from kin.contour.bezier import Beziers
     from kin.numeric.arrays import Array
@@ -31,6 +35,8 @@ SURFACES = ("PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE", "SURFACE_OF_LINEA
 SAME = 1e-9  # rad, within which a bound that comes down and one that goes up are a seam
 SPLINE_ERROR = 1e-9  # mm, of the arcs by which edges are held against a swept spline
 FINE = 1e-12  # of the extent
+WOUND = 1.0  # rad, by which bounds may miss going round and back: they miss it by nothing, or by whole turns
+MOST_NAMED = 3  # edges in a message
 
 Crossing: TypeAlias = "tuple[Array, bool]"
 
@@ -123,7 +129,7 @@ class Swept:
         return nearest(self.arcs, points[:, :2])[1]
 
 
-Surface: TypeAlias = "Plane | RoundFace | Tube | Swept"
+Surface: TypeAlias = "Plane | RoundFace | Tube | Swept | Patch"
 
 
 class Use(NamedTuple):
@@ -223,6 +229,8 @@ class Face:
                     on_side = [crossing for crossing in crossings if side * float((crossing[0] - point) @ across) > 0.0]
                     pieces += self._chords(space, on_side, along[:2] * (-side if self.outward else side))
                 return pieces
+            case Patch():
+                raise space.file.error(self.number, "is no surface of which a section is known")
         self._demand_ends(space, crossings)
         return [shape(beziers=self.surface.spans, heights=0.0)]
 
@@ -277,8 +285,8 @@ def _arc(centre: Array, radius: float, first: float, sweep: float) -> Shape:
     return shape(arcs=rows, heights=0.0)
 
 
-def face_of(space: StepFile, number: int, edges: dict[int, StepEdge]) -> Face:
-    """Read the ADVANCED_FACE of a number, and the edges of its bounds into `edges`.
+def face_of(space: StepFile, number: int, edges: dict[int, StepEdge], *, smooth: bool = False) -> Face:
+    """Read the ADVANCED_FACE of a number, and the edges of its bounds into `edges`; `smooth` takes B-spline surfaces.
 
     Raises ReadError for a surface or an edge that is not read, and a loop whose edges do not follow one another.
     """
@@ -300,7 +308,7 @@ def face_of(space: StepFile, number: int, edges: dict[int, StepEdge]) -> Face:
         loops.append(tuple(uses) if forward else tuple(Use(use.edge, not use.forward) for use in reversed(uses)))
     if not loops:
         raise file.error(number, "it has no bounds")
-    geometry = _surface(space, file.reference(surface, number), number)
+    geometry = _surface(space, file.reference(surface, number), number, SURFACES + (PATCH,) * smooth)
     return Face(number, geometry, tuple(loops), file.flag(sense, number), edges)
 
 
@@ -330,9 +338,11 @@ def _check_loop(space: StepFile, number: int, uses: list[Use], edges: dict[int, 
             raise space.file.error(number, message, "open")
 
 
-def _surface(space: StepFile, number: int, by: int) -> Surface:
+def _surface(space: StepFile, number: int, by: int, kinds: tuple[str, ...]) -> Surface:
     file = space.file
-    kind = file.kind(number, SURFACES, by)
+    kind = file.kind(number, kinds, by)
+    if kind == PATCH:
+        return patch_of(space, number)
     if kind == "SURFACE_OF_LINEAR_EXTRUSION":
         return _swept(space, number)
     _, axes, *sizes = file.values(number, kind, {"PLANE": 2, "CYLINDRICAL_SURFACE": 3, "CONICAL_SURFACE": 4}[kind])
@@ -367,3 +377,23 @@ def _swept(space: StepFile, number: int) -> Surface:
     path = file.reference(curve, number)
     file.kind(path, ("B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE"), number)
     return Swept(spline_of(space, path).plan)
+
+
+def edge_faults(faces: Sequence[Face]) -> list[str]:
+    """Faults in words: edges that do not belong to exactly two faces which run along them opposite ways, arcs too."""
+    faults = []
+    count = Counter(use for face in faces for loop in face.loops for use in loop)
+    number = Counter(use.edge for use in count.elements())
+    for problem, wrong in (
+        ("belongs to one face only", [edge for edge, times in number.items() if times == 1]),
+        ("belongs to more than two faces", [edge for edge, times in number.items() if times > 2]),
+        (
+            "is run along the same way by both its faces",
+            [use.edge for use, times in count.items() if times == 2 and number[use.edge] == 2],
+        ),
+    ):
+        named = ", ".join(f"#{edge}" for edge in sorted(wrong)[:MOST_NAMED])
+        if wrong:
+            faults.append(f"{len(wrong)} edges ({named}): each {problem}")
+    wound = [face.number for face in faces if abs(face.winding) > WOUND]
+    return faults + [f"face #{number}: an arc of its bounds goes the wrong way round" for number in wound]

@@ -22,9 +22,9 @@ from kin.read.bodies import MOST_BODIES, ReadSolid, Section, SeparateBody, Sough
 from kin.read.drawing.drawing import CutEntities, drawing_of
 from kin.read.errors import ReadError
 from kin.read.formats import DrawingOptions, contents
-from kin.read.step.faces import Plane, Tube, face_of
+from kin.read.step.faces import Plane, Tube, edge_faults
 from kin.read.step.part21 import exchange
-from kin.read.step.space import space_of
+from kin.read.step.shell import faces_of_solid, solid_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
 SAME = 1e-9  # mm: heights this close are one
 GAUSS = 12  # nodes over the height of a level hole
 AREA_NODES, AREA_WEIGHTS = gauss(3)  # exact where a section is a cubic in the height
-WOUND = 1.0  # rad, by which bounds may miss going round and back: they miss it by nothing, or by whole turns
-MOST_NAMED = 3  # edges in a message
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -96,7 +94,7 @@ def separate_bodies(path: Path) -> list[SeparateBody]:
     Raises OSError where the file cannot be read; ReadError for a file that is too large or damaged, or holds no solid.
     """
     file = exchange(contents(path, "step"), path)
-    solids = _Body.numbers(file)
+    solids = solid_numbers(file)
     read = partial(_separate, file, alone=len(solids) == 1)
     return [SeparateBody(_Body.name(file, k), _Body.reach(file, k), partial(read, k)) for k in solids]
 
@@ -141,14 +139,6 @@ class _Body:
     deepest: int = 1
 
     @staticmethod
-    def numbers(file: Exchange) -> list[int]:
-        """Numbers of the solids of a file; raises ReadError where there is none."""
-        solids = [*file.of("MANIFOLD_SOLID_BREP"), *file.of("BREP_WITH_VOIDS"), *file.of("FACETED_BREP")]
-        if not solids:
-            raise ReadError("empty", "it holds no solid", file.path)
-        return solids
-
-    @staticmethod
     def name(file: Exchange, solid: int) -> str:
         """Name of a solid, or its number where it has none."""
         given = next((values[0] for values in file.instances[solid].values() if values), "")
@@ -157,7 +147,7 @@ class _Body:
     @staticmethod
     def every(file: Exchange, count: int) -> list[_Body]:
         """Read all solids of a file; raises ReadError where they are not `count`, or one is not read."""
-        solids = _Body.numbers(file)
+        solids = solid_numbers(file)
         if len(solids) < count:
             raise missing(len(solids), count, file.path)
         if len(solids) > count:
@@ -174,15 +164,7 @@ class _Body:
 
     @staticmethod
     def one(file: Exchange, solid: int, *, alone: bool = True) -> _Body:
-        kind = file.kind(solid, ("MANIFOLD_SOLID_BREP",), solid)
-        shell = file.reference(file.values(solid, kind, 2)[1], solid)
-        file.kind(shell, ("CLOSED_SHELL",), solid)
-        space = space_of(file, solid, alone=alone)
-        edges: dict[int, StepEdge] = {}
-        listed = file.several(file.values(shell, "CLOSED_SHELL", 2)[1], shell)
-        faces = [face_of(space, file.reference(listed_face, shell), edges) for listed_face in listed]
-        if not edges:
-            raise file.error(shell, "it has no edges", "empty")
+        space, faces, edges = faces_of_solid(file, solid, alone=alone)
         z = [float(place[2]) for edge in edges.values() for place in (edge.start, edge.end)]
         for face in faces:
             if isinstance(face.surface, Tube):
@@ -270,22 +252,7 @@ class _Body:
     @property
     def faults(self) -> list[str]:
         """Faults in words, with their numbers: a closed solid whose faces look outward has none."""
-        faults = []
-        count = Counter(use for face in self.faces for loop in face.loops for use in loop)
-        number = Counter(use.edge for use in count.elements())
-        for problem, wrong in (
-            ("belongs to one face only", [edge for edge, times in number.items() if times == 1]),
-            ("belongs to more than two faces", [edge for edge, times in number.items() if times > 2]),
-            (
-                "is run along the same way by both its faces",
-                [use.edge for use, times in count.items() if times == 2 and number[use.edge] == 2],
-            ),
-        ):
-            named = ", ".join(f"#{edge}" for edge in sorted(wrong)[:MOST_NAMED])
-            if wrong:
-                faults.append(f"{len(wrong)} edges ({named}): each {problem}")
-        wound = [face.number for face in self.faces if abs(face.winding) > WOUND]
-        faults += [f"face #{number}: an arc of its bounds goes the wrong way round" for number in wound]
+        faults = edge_faults(self.faces)
         for lid in self.lids:
             z = lid.heights[0]
             normal = lid.surface.normal[2] if isinstance(lid.surface, Plane) else 0.0

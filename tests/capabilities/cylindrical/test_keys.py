@@ -70,7 +70,7 @@ REFUSED = [
     (ARM, ("export:", "limits: {velocity: {at_most: 9}}\nexport:"), "velocity needs cam.drive.rpm; give that"),
     (GROOVE, ("export:", "limits: {off-radius: {at_most: 9}}\nexport:"), "off-radius needs an arm; give that"),
     (GROOVE, ("export:", "limits: {axial-thrust: {at_most: 9}}\nexport:"), "needs cam.drive.load and a taper"),
-    (GROOVE, ("[stl]", "[step]"), "step is not made yet of a cylindrical cam; give stl, 3mf or ply"),
+    (GROOVE, ("[stl]", "[svg]"), "svg is not made yet of a cylindrical cam; give stl, 3mf, ply or step"),
     (GROOVE, ("export:", "manufacture: {cutter: 20}\nexport:"), "manufacture: not made yet; leave it out"),
     (GROOVE, ("bore: 24", "flat: 20, bore: 24"), "part.flat: unknown key; the keys here are"),
     (GROOVE, ("bore: 24", "hub: {diameter: 30}, bore: 24"), "part.hub: unknown key"),

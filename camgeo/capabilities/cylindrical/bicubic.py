@@ -1,0 +1,295 @@
+"""A flank as bicubic splines over (theta, r) that are once continuously differentiable, with a proved bound.
+
+At the nodes of a grid the spline has the flank's place p, both first derivatives and the mixed one. With h1 rad and
+h2 mm between nodes, I1 and I2 the interpolation in each parameter and I the identity,
+
+    I - I1 I2 = (I - I1) + I1 (I - I2),    |I1 g| <= max |g| + h1/4 max |g_theta|,
+
+so that nothing of the spline is farther from the flank at the same (theta, r) than
+
+    h1^4/384 |p_1111| + h2^4/384 (|p_2222| + h1/4 |p_12222|)
+
+(the error of cubic Hermite interpolation; P. J. Davis, Interpolation and Approximation, 1963, 3.5). In the frame of
+e_r(theta), with the angles of `camgeo.capabilities.cylindrical.flank`,
+
+    p = (r cos f, r sin f, level + S + side R c),    p_theta = phi_theta (-r sin f, r cos f, S'),
+    phi_theta = 1 - side R c S''/(w^2 - R^2 sin^2 a),
+
+which need S and five derivatives. All are balls over cells. Breaks of any derivative are nodes; where S'' jumps,
+p_theta does, and one spline ends and another begins.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.cylindrical.grid import SAME, TURN, breaks_of
+from camgeo.common.rounding import upward
+from camgeo.files.errors import RegionError
+from camgeo.fit.nodes import ToleranceError, check_precision, rounding
+from kin.numeric.elementary import cos, sin, sqrt
+from kin.numeric.interval import Ball
+from kin.numeric.jet import BallJet, Jet
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.cylindrical.flank import Flank
+    from kin.numeric.arrays import Array
+    from kin.numeric.jet import Series
+
+HERMITE = 384.0
+LOOKS, BLOCKS = 360, 4  # parts of a turn and of the depth, over each of which derivatives are bounded
+MOST_ROWS, MOST_NODES = 64, 10_000
+WIDEST = 0.5  # rad between nodes
+TRIALS, ALIKE = 90, 1e-9  # angles at which a flank is tried, and the share of the radius within which it is the same
+NEAR = 1e-9  # rad: a wanted angle so near a break is meant to be it
+JUMP = 1e-9  # of S', in mm, and of S'': what is less is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Bicubic:
+    """A spline of degree 3 by 3 with knots theta (n + 1,), rad, and r (m + 1,), mm, twofold within.
+
+    `control` (2 n + 2, 2 m + 2, 3) are its control points, mm.
+    """
+
+    theta: Array
+    r: Array
+    control: Array
+
+
+class _Bounds(NamedTuple):
+    """Bounds over parts of the turn (n,): |p_1111|, mm per rad^4, |p_2222|, per mm^3, |p_12222|, per rad and mm^3."""
+
+    along: Array
+    across: Array
+    mixed: Array
+
+    def off(self, h1: Array, h2: float) -> Array:
+        """Bound of the distance, mm (n,), between nodes h1 rad (n,) and h2 mm apart."""
+        off: Array = (h1**4 * self.along + h2**4 * (self.across + 0.25 * h1 * self.mixed)) / HERMITE
+        return off
+
+    def step(self, h2: float, tolerance: float) -> Array:
+        """Distances of nodes, rad (n,), within which the tolerance, mm, is held; 0 where it is not."""
+        left = tolerance - self.off(np.full_like(self.along, WIDEST), h2) + WIDEST**4 * self.along / HERMITE
+        with np.errstate(divide="ignore"):
+            step = (HERMITE * np.maximum(left, 0.0) / self.along) ** 0.25
+        return np.asarray(np.minimum(step, WIDEST))
+
+
+def bicubics(
+    flank: Flank, ends: tuple[float, float], tolerance: float, ends_at: Sequence[float]
+) -> tuple[list[Bicubic], float]:
+    """Splines of a regular flank between radii `ends`, mm, over a turn from the first of the angles `ends_at`, rad.
+
+    One ends and another begins at each of these, and where S'' jumps. Returned with them is the proved bound, mm.
+    Raises ToleranceError where the tolerance cannot be held or proved, RegionError for a flank of another form.
+    """
+    low, high = ends
+    if not is_radial(flank, ends):
+        raise RegionError(
+            "surfaces are made for a cylindrical roller on a carriage, whose axis is a radius of the drum"
+        )
+    check_precision(high + abs(flank.level), tolerance)
+    lost = rounding(high + abs(flank.level))
+    breaks = breaks_of(flank)
+    wanted = np.array([_snapped(angle, breaks) for angle in ends_at])
+    start = float(wanted[0])
+    joints = np.append(_behind(start, np.concatenate([wanted, _jumps(flank)])), start + TURN)
+    knots = np.append(_behind(start, np.concatenate([joints, breaks])), start + TURN)
+    look = _distinct(np.concatenate([np.linspace(start, start + TURN, LOOKS + 1), knots]))
+    look[[0, -1]] = start, start + TURN
+    bounds = _bounds(flank, look, (low, high))
+    rows = _rows(bounds, np.diff(look), high - low, tolerance - lost)
+    if rows is None:
+        least = tolerance
+        while _rows(bounds, np.diff(look), high - low, least) is None:
+            least *= 1.5
+        problem = f"a flank within {tolerance:.3g} mm would take too many control points"
+        raise ToleranceError(f"{problem}; give at least {upward(least + lost, 3)} mm", least + lost)
+    count, step = rows
+    theta = _columns(knots, look, step)
+    r = np.linspace(low, high, count + 1)
+    while True:  # between places of unlike steps nodes may be too far apart
+        off = _over(look, bounds, theta).off(np.diff(theta), (high - low) / count) + lost
+        wide = off > tolerance
+        if not wide.any():
+            break
+        theta = np.sort(np.concatenate([theta, 0.5 * (theta[:-1] + theta[1:])[wide]]))
+    first = np.searchsorted(theta, joints - SAME)
+    parts = [_spline(flank, theta[a : b + 1], r) for a, b in pairwise(first)]
+    return parts, float(off.max())
+
+
+def is_radial(flank: Flank, ends: tuple[float, float]) -> bool:
+    """Whether a flank is where the closed form has it here: of a cylindrical roller whose axis is a radius."""
+    theta = np.asarray(np.arange(TRIALS) * (TURN / TRIALS), dtype=np.float64)
+    lift, slope = flank.law.derivatives(theta, 1)
+    for r in ends:
+        radius = Jet.variable(np.full(TRIALS, r), 0)
+        across, _, z = (part.c[0] for part in _place(flank, (radius.constant(lift), radius.constant(slope)), radius))
+        contact = flank.on(theta, r)
+        if not bool((np.abs(contact.rho - across) + np.abs(contact.z - z) <= ALIKE * r).all()):
+            return False
+    return True
+
+
+def _distinct(angles: Array) -> Array:
+    rising = np.sort(angles)
+    return np.asarray(rising[np.append(True, np.diff(rising) > SAME)])
+
+
+def _snapped(angle: float, breaks: Array) -> float:
+    """The break that an angle is all but equal to, or the angle."""
+    off = np.remainder(breaks - angle + math.pi, TURN) - math.pi
+    nearest = int(np.argmin(np.abs(off)))
+    return float(breaks[nearest]) if abs(off[nearest]) < NEAR else angle
+
+
+def _behind(start: float, angles: Array) -> Array:
+    """Angles, rad, each once and rising over a turn from the first of them, `start`."""
+    offset = np.mod(angles - start, TURN)
+    return start + _distinct(np.append(0.0, offset[TURN - offset > SAME]))
+
+
+def _jumps(flank: Flank) -> Array:
+    """Shaft angles (k,), rad, at which S'' jumps; raises ToleranceError where S' does."""
+    if not len(flank.law.breaks):
+        return np.zeros(0)
+    at, jumps = flank.law.jumps(2)
+    size = max(1.0, float(np.abs(flank.law.derivatives(at, 2)).max()))
+    if bool((np.abs(jumps[1]) > JUMP * size).any()):
+        where = math.degrees(float(at[int(np.argmax(np.abs(jumps[1])))])) % 360.0
+        raise ToleranceError(f"the velocity jumps at {where:.6g} degrees, where no smooth flank goes on", math.inf)
+    return np.asarray(at[np.abs(jumps[2]) > JUMP * size])
+
+
+def _frame(flank: Flank, v: Series, r: Series) -> tuple[Series, Series, Series, Series]:
+    """R sin a, R cos a, R sin a/r, and w^2 - R^2 sin^2 a of contacts on cylinders r, from v = S'."""
+    vv, rr, radius = v * v, r * r, flank.radius
+    apart = rr - vv
+    square = (rr + vv + sqrt(apart * apart + vv * (rr - radius**2) * 4.0)) * 0.5
+    sine = v / sqrt(square)
+    height = sqrt(1.0 - sine * sine) * radius
+    across = sine * radius
+    return across, height, across / r, square - across * across
+
+
+def _place(flank: Flank, rows: tuple[Series, Series], r: Series) -> list[Series]:
+    """Place in the frame of e_r(theta), from S and S'."""
+    lift, v = rows
+    _, height, h, _ = _frame(flank, v, r)
+    side = float(flank.side)
+    return [r * sqrt(1.0 - h * h), r * h * -side, lift + height * side + flank.level]
+
+
+def _rate(flank: Flank, rows: tuple[Series, Series], r: Series) -> list[Series]:
+    """Derivative by theta in the frame of e_r(theta), from S' and S''."""
+    v, bend = rows
+    _, height, h, rest = _frame(flank, v, r)
+    side = float(flank.side)
+    turn = 1.0 - height * bend / rest * side
+    return [turn * r * h * side, turn * r * sqrt(1.0 - h * h), turn * v]
+
+
+def _bounds(flank: Flank, look: Array, ends: tuple[float, float]) -> _Bounds:
+    """Bounds between neighbours of angles (n + 1,), rad, and radii `ends`, mm."""
+    n, edges = len(look) - 1, np.linspace(*ends, BLOCKS + 1)
+    low, high = np.tile(look[:-1], BLOCKS), np.tile(look[1:], BLOCKS)
+    inner, outer = np.repeat(edges[:-1], n), np.repeat(edges[1:], n)
+    lift = flank.law.on(BallJet.variable(low, high, 5))
+    slope = lift.derivative()
+    rows = slope.derivative()
+
+    # by theta: the frame itself turns
+    tau = BallJet.variable(low, high, 4) - 0.5 * (low + high)
+    x, y, z = _place(flank, (lift.lower(), slope), tau.constant(Ball.between(inner, outer)))
+    c, s = cos(tau), sin(tau)
+    along = _size([x * c - y * s, x * s + y * c, z])
+
+    r = BallJet.variable(inner, outer, 4)
+    first, second, third = (r.constant(part.rows[0]) for part in (lift, slope, rows))
+    found = [along, _size(_place(flank, (first, second), r)), _size(_rate(flank, (second, third), r))]
+    folded = [part.reshape(BLOCKS, n).max(axis=0) for part in found]
+    for part in folded:
+        if not bool(np.isfinite(part).all()):
+            where = math.degrees(float(look[int(np.argmax(~np.isfinite(part)))])) % 360.0
+            message = f"the motion's higher derivatives have no bound near {where:.6g} degrees: no surface is proved"
+            raise ToleranceError(message, math.inf)
+    return _Bounds(*folded)
+
+
+def _size(parts: Sequence[BallJet]) -> Array:
+    """Bound of the fourth derivative's length (n,)."""
+    return np.asarray(24.0 * np.sqrt(sum(part.rows[4].magnitude ** 2 for part in parts)))
+
+
+def _rows(bounds: _Bounds, wide: Array, depth: float, tolerance: float) -> tuple[int, Array] | None:
+    """Number of rows that needs the fewest control points, and the greatest distance of nodes (n,), rad.
+
+    None where a tolerance, mm, takes too many.
+    """
+    best: tuple[float, int, Array] | None = None
+    for count in range(1, MOST_ROWS + 1):
+        step = bounds.step(depth / count, tolerance)
+        if step.min() > 0.0:
+            points = (count + 1) * (float(np.sum(wide / step)) + 1.0)
+            if best is None or points < best[0]:
+                best = points, count, step
+    return None if best is None or best[0] > MOST_NODES else best[1:]
+
+
+def _columns(knots: Array, look: Array, step: Array) -> Array:
+    """Shaft angles, rad, from knot to knot, no farther apart than `step` (n,) anywhere between them."""
+    found = []
+    for low, high in pairwise(knots):
+        inside = np.flatnonzero((look[1:] > low + SAME) & (look[:-1] < high - SAME))
+        places = np.concatenate([[low], look[inside[1:]], [high]])
+        along = np.concatenate([[0.0], np.cumsum(np.diff(places) / step[inside])])
+        count = max(1, math.ceil(along[-1]))
+        found.append(np.append(low, np.interp(np.linspace(0.0, along[-1], count + 1)[1:-1], along, places)))
+    return np.append(np.concatenate(found), knots[-1])
+
+
+def _over(look: Array, bounds: _Bounds, theta: Array) -> _Bounds:
+    """Bounds between neighbours of theta (m + 1,), from those between neighbours of `look`."""
+    first = np.searchsorted(look, theta[:-1] + SAME, side="right") - 1
+    last = np.searchsorted(look, theta[1:] - SAME, side="left")
+    return _Bounds(*(np.array([part[a:b].max() for a, b in zip(first, last, strict=True)]) for part in bounds))
+
+
+def _spline(flank: Flank, theta: Array, r: Array) -> Bicubic:
+    """Spline through nodes theta (n + 1,), rad, between which S'' is continuous, and r (m + 1,), mm."""
+    rows = flank.law.derivatives(theta, 2, 1)
+    rows[:, -1] = flank.law.derivatives(theta[-1:], 2, -1)[:, 0]
+    lift, slope, bend = (np.repeat(row, len(r)) for row in rows)
+    radius = Jet.variable(np.tile(r, len(theta)), 1)
+    first, second, third = (radius.constant(row) for row in (lift, slope, bend))
+    turn = np.repeat(theta, len(r))
+    both = _place(flank, (first, second), radius), _rate(flank, (second, third), radius)
+    (p, by_r), (by_theta, by_both) = ([_turned(parts, turn, k) for k in (0, 1)] for parts in both)
+    shape = len(theta), len(r), 3
+    nodes = [part.reshape(shape) for part in (p, by_r, by_theta, by_both)]
+    a, b = _beside(theta)[:, None, None], _beside(r)[None, :, None]
+    own, own_r, own_theta, own_both = (np.repeat(np.repeat(node, 2, axis=0), 2, axis=1) for node in nodes)
+    return Bicubic(theta, r, own + a * own_theta + b * own_r + a * b * own_both)
+
+
+def _beside(nodes: Array) -> Array:
+    """How far control points (2 n,) lie beside their nodes (n,): by a third of the way to the next, or on it."""
+    third = np.diff(nodes) / 3.0
+    return np.stack([-np.append(0.0, third), np.append(third, 0.0)], axis=1).ravel()
+
+
+def _turned(parts: Sequence[Jet], theta: Array, row: int) -> Array:
+    """Coefficients (n, 3) of a row in the frame of the drum."""
+    x, y, z = (part.c[row] for part in parts)
+    c, s = np.cos(theta), np.sin(theta)
+    return np.column_stack([x * c - y * s, x * s + y * c, z])

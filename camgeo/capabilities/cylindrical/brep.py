@@ -1,0 +1,263 @@
+"""The drum as a solid of exact surfaces, by Open CASCADE: flanks are splines, all else planes and cylinders.
+
+As in `camgeo.capabilities.cylindrical.solid` a section through the axis runs round the metal, and every corner of it is
+a closed line about the axis. Lines are parted at two angles at least, so that no face meets itself, and neighbouring
+faces share their edges. A row of a flank lies on its cylinder within the bound of the flank.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.capabilities.cylindrical.bicubic import bicubics
+from camgeo.capabilities.cylindrical.figures import at_angle
+from camgeo.capabilities.cylindrical.grid import TURN
+from camgeo.capabilities.cylindrical.keys import End, Groove
+from camgeo.files.brep import Shape, Stack
+from camgeo.files.curves import CONFUSION
+from camgeo.files.errors import RegionError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.cylindrical.bicubic import Bicubic
+    from camgeo.capabilities.cylindrical.design import DrumDesign
+    from kin.numeric.arrays import Array
+
+HALVES = 2  # faces of a cylinder
+
+
+class Solid(NamedTuple):
+    """The kernel's solid, the proved bound of its flanks, mm, and the number of their polynomials."""
+
+    shape: Shape
+    off: float
+    pieces: int
+
+
+class _Line(NamedTuple):
+    """A closed line about the axis: edges, the vertex at the start of each, and which of these part its cylinders."""
+
+    edges: list[Shape]
+    vertices: list[Shape]
+    parted: list[int]
+
+    def half(self, k: int) -> tuple[Shape, list[Shape], Shape]:
+        """Start, edges and end of one of its parts."""
+        count = len(self.edges)
+        first, last = self.parted[k], self.parted[(k + 1) % HALVES]
+        numbers = [n % count for n in range(first, last if last > first else last + count)]
+        return self.vertices[first], [self.edges[n] for n in numbers], self.vertices[last]
+
+
+class _Drum:
+    """Faces of a drum under construction."""
+
+    def __init__(self, design: DrumDesign, tolerance: float) -> None:
+        self.design, self.stack = design, Stack()
+        self.sign = -1.0 if design.recipe.rotation == "ccw" else 1.0
+        self.off, self.pieces = 0.0, 0
+        self.tolerance = tolerance
+
+    def circle(self, radius: float, z: float, angles: Sequence[float]) -> _Line:
+        """A circle parted at two polar angles, rad, the second less than a turn beyond the first."""
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+        from OCP.gp import gp_Ax2, gp_Circ, gp_Dir
+
+        first, last = angles
+        vertices = [_vertex([radius * math.cos(a), self.sign * radius * math.sin(a), z]) for a in angles]
+        way = gp_Dir(0.0, 0.0, self.sign)
+        edges = []
+        for k, angle in enumerate((first, last)):
+            # a circle of the kernel begins at its x axis
+            axes = gp_Ax2(_point([0.0, 0.0, z]), way, gp_Dir(math.cos(angle), self.sign * math.sin(angle), 0.0))
+            edges.append(BRepBuilderAPI_MakeEdge(gp_Circ(axes, radius), vertices[k], vertices[1 - k]).Edge())
+        return _Line(edges, vertices, [0, 1])
+
+    def flank(self, name: str, parted: Sequence[float]) -> tuple[_Line, _Line]:
+        """Add the faces of a flank, parted at two shaft angles, rad; its lines on the blank and on the floor."""
+        recipe = self.design.recipe
+        parts, off = bicubics(self.design.flanks[name], (recipe.floor, recipe.radius), self.tolerance, parted)
+        self.off = max(self.off, off)
+        self.pieces += sum((len(part.theta) - 1) * (len(part.r) - 1) for part in parts)
+        nets = [part.control * [1.0, self.sign, 1.0] for part in parts]
+        feet, heads = ([_vertex(net[0, row]) for net in nets] for row in (0, -1))
+        ribs = [
+            _spline_edge(net[0], part.r, (foot, head))
+            for net, part, foot, head in zip(nets, parts, feet, heads, strict=True)
+        ]
+        rows: list[list[Shape]] = [[], []]
+        for k, (net, part) in enumerate(zip(nets, parts, strict=True)):
+            after = (k + 1) % len(nets)
+            for edges, row, ends in zip(rows, (0, -1), (feet, heads), strict=True):
+                edges.append(_spline_edge(net[:, row], part.theta, (ends[k], ends[after])))
+            surface = _surface(net, part)
+            u, v = part.theta[[0, -1]].tolist(), part.r[[0, -1]].tolist()
+            lay = (
+                (rows[0][k], (0.0, v[0])),
+                (ribs[after], (u[1], 0.0)),
+                (rows[1][k], (0.0, v[1])),
+                (ribs[k], (u[0], 0.0)),
+            )
+            for n, (edge, at) in enumerate(lay):
+                _lay(edge, surface, at, along_u=n % 2 == 0)
+            self.stack.face(surface, [edge for edge, _ in lay])
+        places = [
+            int(np.argmin([abs(math.remainder(part.theta[0] - angle, TURN)) for part in parts])) for angle in parted
+        ]
+        foot, head = (_Line(edges, ends, places) for edges, ends in zip(rows, (feet, heads), strict=True))
+        return head, foot
+
+    def cylinder(self, radius: float, first: _Line, second: _Line) -> None:
+        """Add the faces between two lines on a cylinder about the axis, which are parted at the same polar angles."""
+        from OCP.BRep import BRep_Tool
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+        from OCP.Geom import Geom_CylindricalSurface
+        from OCP.gp import gp_Ax3, gp_Dir
+
+        ribs = [
+            BRepBuilderAPI_MakeEdge(first.vertices[a], second.vertices[b]).Edge()
+            for a, b in zip(first.parted, second.parted, strict=True)
+        ]
+        for k in range(HALVES):
+            start, edges, end = first.half(k)
+            x, y = ([getattr(BRep_Tool.Pnt_s(vertex), axis)() for vertex in (start, end)] for axis in "XY")
+            angle = math.atan2(y[0], x[0])
+            sweep = (self.sign * (math.atan2(y[1], x[1]) - angle)) % TURN
+            # the surface's seam lies opposite the middle of the face
+            seam = angle + self.sign * 0.5 * sweep + math.pi
+            axes = gp_Ax3(_point([0.0, 0.0, 0.0]), gp_Dir(0.0, 0.0, 1.0), gp_Dir(math.cos(seam), math.sin(seam), 0.0))
+            round_ = [*edges, ribs[(k + 1) % HALVES], *second.half(k)[1][::-1], ribs[k]]
+            self.stack.face(Geom_CylindricalSurface(axes, radius), round_)
+
+    def lid(self, z: float, line: _Line, bore: Shape | None) -> None:
+        """Add an end face within a line, outside the bore."""
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeWire
+
+        maker = BRepBuilderAPI_MakeWire()
+        for edge in line.edges:
+            maker.Add(edge)
+        self.stack.lid(z, maker.Wire(), [] if bore is None else [bore])
+
+
+def drum_solid(design: DrumDesign, tolerance: float) -> Solid:
+    """The kernel's solid of a drum whose flanks are whole, within a tolerance, mm.
+
+    Raises ToleranceError where the tolerance cannot be held, RegionError where the kernel finds the solid unsound.
+    """
+    recipe, track = design.recipe, design.recipe.track
+    drum = _Drum(design, tolerance)
+    core, blank, top = recipe.floor, recipe.radius, recipe.height
+    bore = [None, None]
+    if design.bore is not None:
+        outline = design.bore.outline if drum.sign > 0.0 else design.bore.outline.mirrored()
+        foot, head = drum.stack.wall(outline, 0.0, top)
+        bore = [foot.wire, head.wire]
+    shared = core if isinstance(track, Groove) else blank
+    parted = _parted(design, shared)
+    lines = {name: drum.flank(name, parted[name]) for name in design.flanks}
+
+    def angles(name: str, radius: float) -> list[float]:
+        return [float(phi) for phi in design.flanks[name].on(np.array(parted[name]), radius).phi]
+
+    if isinstance(track, Groove):
+        low = drum.circle(blank, 0.0, angles("lower", blank))
+        high = drum.circle(blank, top, angles("upper", blank))
+        drum.cylinder(blank, low, lines["lower"][0])
+        drum.cylinder(core, lines["lower"][1], lines["upper"][1])
+        drum.cylinder(blank, lines["upper"][0], high)
+    elif isinstance(track, End):
+        ((name, (edge, foot_line)),) = lines.items()
+        radii = (blank, core) if track.facing == "top" else (core, blank)
+        rows = (edge, foot_line) if track.facing == "top" else (foot_line, edge)
+        low, high = (drum.circle(radius, z, angles(name, radius)) for radius, z in zip(radii, (0.0, top), strict=True))
+        drum.cylinder(radii[0], low, rows[0])
+        drum.cylinder(radii[1], rows[1], high)
+    else:
+        low = drum.circle(core, 0.0, angles("upper", core))
+        high = drum.circle(core, top, angles("lower", core))
+        drum.cylinder(core, low, lines["upper"][1])
+        drum.cylinder(blank, lines["upper"][0], lines["lower"][0])
+        drum.cylinder(core, lines["lower"][1], high)
+    drum.lid(0.0, low, bore[0])
+    drum.lid(top, high, bore[1])
+    return Solid(drum.stack.solid(), drum.off, drum.pieces)
+
+
+def _parted(design: DrumDesign, radius: float) -> dict[str, list[float]]:
+    """Two shaft angles of each flank, rad, which it has at the same polar angles on a cylinder, mm, as the others."""
+    names = list(design.flanks)
+    first = design.flanks[names[0]]
+    start = float(first.law.breaks[0]) if len(first.law.breaks) else 0.0
+    phi = float(first.on(np.array([start]), radius).phi[0]) + np.array([0.0, 0.5 * TURN])
+    found = {name: at_angle(design.flanks[name], phi, radius, phi).tolist() for name in names}
+    return {**found, names[0]: [start, found[names[0]][1]]}
+
+
+# --- the kernel's curves ----------------------------------------------------------------------------------------------
+
+
+def _point(place: Sequence[float] | Array) -> Shape:
+    from OCP.gp import gp_Pnt
+
+    return gp_Pnt(*(float(each) for each in place))
+
+
+def _vertex(place: Sequence[float] | Array) -> Shape:
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
+
+    return BRepBuilderAPI_MakeVertex(_point(place)).Vertex()
+
+
+def _knots(knots: Array) -> tuple[Shape, Shape]:
+    """Knots of the kernel, and how often each counts."""
+    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+
+    places, often = TColStd_Array1OfReal(1, len(knots)), TColStd_Array1OfInteger(1, len(knots))
+    for i, knot in enumerate(knots.tolist(), 1):
+        places.SetValue(i, knot)
+        often.SetValue(i, 4 if i in {1, len(knots)} else 2)
+    return places, often
+
+
+def _spline_edge(control: Array, knots: Array, ends: tuple[Shape, Shape]) -> Shape:
+    """Edge of a cubic spline, mm, between two vertices; raises RegionError where the kernel makes none."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+    from OCP.Geom import Geom_BSplineCurve
+    from OCP.TColgp import TColgp_Array1OfPnt
+
+    poles = TColgp_Array1OfPnt(1, len(control))
+    for i, place in enumerate(control, 1):
+        poles.SetValue(i, _point(place))
+    curve = Geom_BSplineCurve(poles, *_knots(knots), 3)
+    maker = BRepBuilderAPI_MakeEdge(curve, *ends, curve.FirstParameter(), curve.LastParameter())
+    if not maker.IsDone():
+        raise RegionError(f"Open CASCADE makes no edge of a flank: {maker.Error().name}")
+    return maker.Edge()
+
+
+def _surface(control: Array, part: Bicubic) -> Shape:
+    from OCP.Geom import Geom_BSplineSurface
+    from OCP.TColgp import TColgp_Array2OfPnt
+
+    rows, columns = control.shape[:2]
+    poles = TColgp_Array2OfPnt(1, rows, 1, columns)
+    for i in range(rows):
+        for j in range(columns):
+            poles.SetValue(i + 1, j + 1, _point(control[i, j]))
+    (u, often_u), (v, often_v) = _knots(part.theta), _knots(part.r)
+    return Geom_BSplineSurface(poles, u, v, often_u, often_v, 3, 3)
+
+
+def _lay(edge: Shape, surface: Shape, at: tuple[float, float], *, along_u: bool) -> None:
+    """Give an edge its line in the parameters of a surface, whose border it is."""
+    from OCP.BRep import BRep_Builder
+    from OCP.Geom2d import Geom2d_Line
+    from OCP.gp import gp_Dir2d, gp_Pnt2d
+    from OCP.TopLoc import TopLoc_Location
+
+    line = Geom2d_Line(gp_Pnt2d(*at), gp_Dir2d(1.0, 0.0) if along_u else gp_Dir2d(0.0, 1.0))
+    BRep_Builder().UpdateEdge(edge, line, surface, TopLoc_Location(), CONFUSION)

@@ -1,0 +1,508 @@
+"""A roller on a smooth surface, over all shaft angles: proved bounds of what stands out, is missing, and holds.
+
+The surface comes as Bezier patches. On a cell of one, with parameters (s, t) from 0 to 1, the angle of the worst place
+is laid bilinearly between those of the corners. There
+
+    H = v + sqrt(R^2 - y^2)   and   K = hypot(y, v) - R
+
+of `kin.cylindrical.gauge` are smooth functions of (s, t), which bend by no more than balls of their second derivatives
+over the cell say: between the corners they are off what is bilinear by at most (|f_ss| + |f_tt|)/8. No place stands out
+by less than H, nor is farther within the metal than K.
+
+How much more it stands out is a matter of the slope by the angle, F_theta, which is bounded likewise: where F falls as
+c theta^2/2 at least, its greatest value is no more than F_theta^2/(2 c) above H. F has one peak, as the exact flank is
+regular: on a cylinder each polar angle is touched at one shaft angle alone, and that is proved first. The same serves
+hypot(y, v)^2/2, which is least near by.
+
+At every shaft angle some place of a line t = const holds the roller, if the line goes round: as high as H at least.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.cylindrical.edges import Peak
+from kin.cylindrical.grid import FINE
+from kin.numeric.angles import TURN
+from kin.numeric.bernstein import halves, restrict
+from kin.numeric.elementary import cos, sin, sqrt
+from kin.numeric.errors import UnsettledError
+from kin.numeric.interval import Ball
+from kin.numeric.jet import BallJet
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.cylindrical.roller import Gauge
+    from kin.numeric.arrays import Array, Indices, Mask
+
+WIDE, DEEP = 0.0125, 1 / 12  # rad, and of the depth: cells to begin with
+ROUNDS, MOST = 12, 400_000  # of halving cells, and cells at a time
+FAR = 3.0  # times the tolerance: what is so far off need not be known more closely
+BINS = 2048  # parts of a turn, for each of which the roller is held
+WINDOW, ROOM, MOST_WINDOW = 0.004, 1.5, 0.1  # rad, about the worst angle, within which F falls; one with room; greatest
+LOOKS, DEPTHS, PARTINGS = 720, 8, 4  # cells of the proof that a flank is regular, and how often they are halved
+JUMP = 1e-9  # of the greatest jump of S'', mm per rad^2, below which one is rounding
+ALIKE = 1e-6  # of the roller's radius, within which heights by the gauge are those that are bounded here
+NEARER = 2e-4  # of a radius, by which chords of the control points of a cell lie nearer to the axis
+LOOSE = 1e-7  # rad, by which two faces may miss one another
+
+
+@dataclass(frozen=True, eq=False)
+class Smooth:
+    """Patches of a surface, of which all s run along the turn and all t across it.
+
+    nets   (n, p + 1, q + 1, 3) control points, mm
+    lines  (n, 2) where t begins and ends, as shares of the surface's own depth
+    """
+
+    nets: Array
+    lines: Array
+
+
+class SeenSmooth(NamedTuple):
+    """What a surface shows to a roller, with proved bounds.
+
+    out    greatest height of the metal over the exact flank along z, mm, of what the roller reaches
+    holds  (k,) at k equal steps of the turn: the roller stands so high over its intended place, mm, to a share of the
+           tolerance; nan where nothing holds it
+    least  least height at which it is held, over all angles, mm, with its angle, rad; its bound is below by `remainder`
+    proud  greatest distance, mm, of the surface out of the metal
+    bare   greatest distance, mm, of the surface into the metal
+    """
+
+    out: Peak
+    holds: Array
+    least: Peak
+    proud: Peak
+    bare: Peak
+
+
+class _Cells(NamedTuple):
+    """Cells (n,): control points (n, p + 1, q + 1, 3), where t begins and ends (n, 2), corners' worst angles, F and K.
+
+    Of a corner, (n, 2, 2) each, the first index is that of s.
+    """
+
+    nets: Array
+    lines: Array
+    theta: Array
+    height: Array
+    distance: Array
+
+    def take(self, which: Mask | Indices) -> _Cells:
+        return _Cells(*(rows[which] for rows in self))
+
+
+class _Bounds(NamedTuple):
+    """Bounds over cells (n,), mm: of H and K beside what is bilinear, of F over H, of the depth under -K; rad: X.
+
+    `skew` (2, n) are the shares of s and t in the first two. `gap` is infinite where nothing is known.
+    """
+
+    height: Array
+    distance: Array
+    gap: Array
+    under: Array
+    along: tuple[Array, Array]
+    skew: Array
+
+
+def cells_of(gauge: Gauge, surface: Smooth) -> _Cells:
+    """Cells of a surface, about WIDE by DEEP."""
+    depth = surface.lines[:, 1] - surface.lines[:, 0]
+    along = np.maximum(np.ceil(_turned(surface.nets) / WIDE), 1.0).astype(np.intp)
+    across = np.maximum(np.ceil(depth / DEEP - 1e-9), 1.0).astype(np.intp)
+    nets, own, _ = _parted(surface.nets, along)
+    turned, back, shares = _parted(np.swapaxes(nets, 1, 2), across[own])
+    own = own[back]
+    lines = surface.lines[own, :1] + shares * depth[own, None]
+    return _measured(gauge, np.ascontiguousarray(np.swapaxes(turned, 1, 2)), lines)
+
+
+def _parted(nets: Array, count: Indices) -> tuple[Array, Indices, Array]:
+    """Patches parted along their first parameter, each into a number of parts; their own patch, and shares (k, 2)."""
+    own = np.repeat(np.arange(len(nets)), count)
+    step = np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)
+    shares = np.stack([step, step + 1], axis=1) / count[own][:, None]
+    return restrict(nets[own], shares[:, 0], shares[:, 1]), own, shares
+
+
+def off_flank(gauge: Gauge, surface: Smooth) -> float:
+    """Distance, mm, of half of the corners of a surface from a flank, and no less of the other half."""
+    cells = _measured(gauge, surface.nets, surface.lines)
+    off = np.where(cells.height < gauge.radius, np.abs(cells.distance), np.inf)
+    return float(np.median(np.where(np.isfinite(off), off, np.inf)))
+
+
+def _turned(nets: Array) -> Array:
+    """Angle (n,), rad, by which patches go round the axis from s = 0 to 1."""
+    corners = nets[:, [0, -1]][:, :, [0, -1]]
+    phi = np.arctan2(corners[..., 1], corners[..., 0])
+    turned: Array = np.abs(np.remainder(phi[:, 1] - phi[:, 0] + math.pi, TURN) - math.pi).max(axis=1)
+    return turned
+
+
+def _measured(gauge: Gauge, nets: Array, lines: Array) -> _Cells:
+    corners = nets[:, [0, -1]][:, :, [0, -1]]
+    worst = gauge.worst(corners.reshape(-1, 3))
+    theta = worst.theta.reshape(corners.shape[:3])
+    theta = theta[:, :1, :1] + np.remainder(theta - theta[:, :1, :1] + math.pi, TURN) - math.pi
+    x, y, z = np.moveaxis(corners, 3, 0)
+    across = y * np.cos(theta) - x * np.sin(theta)
+    v = gauge.side * (gauge.level + gauge.lifts.at(theta.ravel())[0].reshape(theta.shape) - z)
+    with np.errstate(invalid="ignore"):
+        height = v + np.sqrt(gauge.radius**2 - across**2)
+    known = np.abs(height) < gauge.radius
+    if bool((np.abs(height - worst.height.reshape(theta.shape))[known] > ALIKE * gauge.radius).any()):
+        raise UnsettledError(
+            "smooth flanks are judged for a cylindrical roller on a slide, whose axis is a radius: give an STL"
+        )
+    return _Cells(nets, lines, theta, height, np.hypot(across, v) - gauge.radius)
+
+
+def look(gauge: Gauge, surfaces: Sequence[Smooth], tolerance: float, angles: int) -> SeenSmooth:
+    """Look at a surface from a roller; bounds are sharp to a share of the tolerance, mm, unless it is far off.
+
+    Raises UnsettledError where the flank is not proved regular, or bounds do not come close to what is reached.
+    """
+    return _Look(gauge, tolerance).seen([cells_of(gauge, surface) for surface in surfaces], angles)
+
+
+class _Look:
+    """A look at cells, which are halved until their bounds are close to what is reached."""
+
+    def __init__(self, gauge: Gauge, tolerance: float) -> None:
+        self.gauge, self.tolerance, self.near = gauge, tolerance, FINE * tolerance
+        self.most = {"out": -math.inf, "proud": -math.inf, "bare": -math.inf}  # reached
+        self.at = dict.fromkeys(self.most, math.nan)
+        self.bound = dict(self.most)
+        self.lowest, self.edges = math.inf, _Held()
+
+    def seen(self, cells: Sequence[_Cells], angles: int) -> SeenSmooth:
+        """All that the cells show."""
+        gauge = self.gauge
+        corners = np.concatenate([np.hypot(each.nets[..., 0], each.nets[..., 1]).ravel() for each in cells])
+        if len(gauge.lifts.corners):
+            raise UnsettledError("where the velocity jumps no smooth surface is the flank")
+        if not all(bool(np.isfinite(each.height).all()) for each in cells):
+            raise UnsettledError("a part of the surface is nowhere near the flank")
+        far = max(float(np.abs(each.distance).max()) for each in cells) > FAR * self.tolerance
+        if not far:
+            # between control points a surface may lie a little nearer to the axis
+            demand_regular(gauge, (1.0 - NEARER) * float(corners.min()), float(corners.max()))
+        holds = _holds(gauge, cells, angles)
+        for each in cells:
+            self._settle(each, far=far)
+        at = int(np.nanargmin(holds)) if np.isfinite(holds).any() else 0
+        least = float(holds[at])
+        peaks = [
+            Peak(self.most[name], self.at[name] % TURN, max(self.bound[name] - self.most[name], 0.0))
+            for name in ("out", "proud", "bare")
+        ]
+        bound = self.edges.least()
+        held = Peak(least, at * TURN / angles, max(least - bound, 0.0) if math.isfinite(least) else math.inf)
+        return SeenSmooth(peaks[0], holds, held, peaks[1], peaks[2])
+
+    def _settle(self, cells: _Cells, *, far: bool) -> None:
+        """Take in cells and their bounds; those that are far above what is reached are halved."""
+        for parting in range(ROUNDS + 1):
+            bounds = _bounds(self.gauge, cells)
+            reached = self._reached(cells)
+            top, deep = cells.height.max(axis=(1, 2)), cells.distance
+            out = np.where(reached, top + bounds.height + bounds.gap, -np.inf)
+            # what stands out by no more than that is no farther out of the metal
+            proud = np.minimum(
+                -deep.min(axis=(1, 2)) + bounds.distance + bounds.under,
+                np.maximum(top + bounds.height + bounds.gap, 0.0),
+            )
+            bare = deep.max(axis=(1, 2)) + bounds.distance
+            if far:  # a bound that is not known says no more than what is reached
+                out, proud = (
+                    np.where(np.isfinite(bound), bound, seen)
+                    for bound, seen in ((out, np.where(reached, top, -np.inf)), (proud, -deep.min(axis=(1, 2))))
+                )
+            low = cells.height.min(axis=(1, 2)) - bounds.height
+            self.lowest = min(self.lowest, float(cells.height.min()))
+            open_ = (
+                (out > self.most["out"] + self.near)
+                | (proud > max(self.most["proud"], 0.0) + self.near)
+                | (bare > max(self.most["bare"], 0.0) + self.near)
+                | (low < self.lowest - self.near)
+            )
+            last = far or parting == ROUNDS or np.count_nonzero(open_) > MOST
+            done = np.ones_like(open_) if last else ~open_
+            for name, values in (("out", out), ("proud", proud), ("bare", bare)):
+                self.bound[name] = max(self.bound[name], float(values[done].max(initial=-math.inf)))
+            self.edges.add(cells.take(done), bounds.height[done], self._inside(bounds)[done])
+            if last and open_.any() and not far:
+                raise UnsettledError("bounds of the flank's surface do not come close to what is reached")
+            if done.all():
+                return
+            cells = self._halved(cells.take(open_), bounds.skew[:, open_])
+
+    def _reached(self, cells: _Cells) -> Mask:
+        """Cells (n,) that the roller may reach with its length; what their corners show is taken in."""
+        gauge = self.gauge
+        corners = cells.nets[:, [0, -1]][:, :, [0, -1]]
+        along = corners[..., 0] * np.cos(cells.theta) + corners[..., 1] * np.sin(cells.theta)
+        within = (along >= gauge.inner) & (along <= gauge.outer)
+        for name, values in (
+            ("out", np.where(within, cells.height, -np.inf)),
+            ("proud", -cells.distance),
+            ("bare", cells.distance),
+        ):
+            k = int(np.argmax(values))
+            if values.ravel()[k] > self.most[name]:
+                self.most[name], self.at[name] = float(values.ravel()[k]), float(cells.theta.ravel()[k])
+        # within the roller's length is nothing that is nearer to the axis than its inner end
+        r = np.hypot(cells.nets[..., 0], cells.nets[..., 1]).reshape(len(cells.nets), -1).max(axis=1)
+        reached: Mask = r >= gauge.inner
+        return reached
+
+    def _inside(self, bounds: _Bounds) -> Mask:
+        inside: Mask = (bounds.along[0] >= self.gauge.inner) & (bounds.along[1] <= self.gauge.outer)
+        return inside
+
+    def _halved(self, cells: _Cells, skew: Array) -> _Cells:
+        along = skew[0] >= skew[1]
+        parts, lines = [], []
+        first = halves(cells.nets[along])
+        second = [np.swapaxes(part, 1, 2) for part in halves(np.swapaxes(cells.nets[~along], 1, 2))]
+        own, other = cells.lines[along], cells.lines[~along]
+        middle = other.mean(axis=1)
+        for k in (0, 1):
+            parts += [first[k], second[k]]
+            lines += [own, np.stack([other[:, 0], middle] if k == 0 else [middle, other[:, 1]], axis=1)]
+        return _measured(self.gauge, np.ascontiguousarray(np.concatenate(parts)), np.concatenate(lines))
+
+
+# --- bounds over cells ------------------------------------------------------------------------------------------------
+
+
+def _bounds(gauge: Gauge, cells: _Cells) -> _Bounds:
+    """Bounds over cells."""
+    side, radius = float(gauge.side), gauge.radius
+    middle = cells.theta.mean(axis=(1, 2))
+    c, s = np.cos(middle)[:, None, None], np.sin(middle)[:, None, None]
+    x, y, z = np.moveaxis(cells.nets, 3, 0)
+    turned = [x * c + y * s, y * c - x * s, z]
+    tau = cells.theta - middle[:, None, None]
+    low, high = tau.min(axis=(1, 2)), tau.max(axis=(1, 2))
+    bent, apart = [], []
+    jumps = _jumping(gauge, low + middle, high + middle)
+    for axis in (1, 2):
+        px, py, pz = (_jet(part, axis) for part in turned)
+        ways = np.diff(tau, axis=axis).reshape(len(tau), 2)
+        rows = [Ball.between(low, high), Ball.between(ways.min(axis=1), ways.max(axis=1))]
+        angle = BallJet(
+            np.stack([rows[0].mid, rows[1].mid, 0.0 * low]), np.stack([rows[0].rad, rows[1].rad, 0.0 * low])
+        )
+        lift = gauge.lifts.round.on(angle + Ball.exact(middle))
+        slope = _slopes(gauge, angle, middle)
+        cosine, sine = cos(angle), sin(angle)
+        across, along = py * cosine - px * sine, px * cosine + py * sine
+        v = (lift + gauge.level - pz) * side
+        depth = sqrt(radius**2 - across * across)
+        height, reach = v + depth, sqrt(across * across + v * v)
+        rate = across * along / depth + slope * side
+        bent.append([2.0 * part.rows[2].magnitude for part in (height, reach, rate)])
+        # where S'' jumps F_theta is off what is linear by a quarter of the span of its first derivative
+        apart.append(np.where(jumps, 0.5 * rate.rows[1].rad, 0.25 * rate.rows[2].magnitude))
+    (h1, k1, q1), (h2, k2, q2) = bent
+    steep = np.abs(_slope(gauge, cells)).max(axis=(1, 2)) + apart[0] + apart[1]
+    places = across.rows[0], along.rows[0], v.rows[0]
+    beside, under = _gaps(gauge, cells, places, (low + middle, high + middle), steep)
+    return _Bounds(
+        0.125 * (h1 + h2),
+        0.125 * (k1 + k2),
+        beside,
+        under,
+        along.rows[0].bounds(),
+        np.stack([h1 + k1 + radius * q1, h2 + k2 + radius * q2]),
+    )
+
+
+def _jumping(gauge: Gauge, low: Array, high: Array) -> Mask:
+    """Whether the second derivative of the lift jumps between angles (n,), rad."""
+    law = gauge.lifts.round
+    found = np.zeros(len(low), dtype=np.bool_)
+    if not len(law.breaks):
+        return found
+    at, jumps = law.jumps(2)
+    for angle in at[np.abs(jumps[2]) > JUMP * max(1.0, float(np.abs(jumps[2]).max()))].tolist():
+        found |= np.remainder(angle - low + LOOSE, TURN) <= high - low + 2.0 * LOOSE
+    return found
+
+
+def _slope(gauge: Gauge, cells: _Cells) -> Array:
+    """F_theta (n, 2, 2) at the corners of cells, mm per rad."""
+    x, y, _ = np.moveaxis(cells.nets[:, [0, -1]][:, :, [0, -1]], 3, 0)
+    c, s = np.cos(cells.theta), np.sin(cells.theta)
+    across, along = y * c - x * s, x * c + y * s
+    own = gauge.lifts.at(cells.theta.ravel())[1].reshape(c.shape)
+    slope: Array = across * along / np.sqrt(gauge.radius**2 - across**2) + gauge.side * own
+    return slope
+
+
+def _jet(values: Array, axis: int) -> BallJet:
+    """Coordinate of patches (n, p + 1, q + 1) as jets to the second order along an axis."""
+    degree = values.shape[axis] - 1
+    first = degree * np.diff(values, axis=axis)
+    second = 0.5 * (degree - 1) * np.diff(first, axis=axis) if degree > 1 else np.zeros((len(values), 1, 1))
+    balls = [
+        Ball.between(part.reshape(len(part), -1).min(axis=1), part.reshape(len(part), -1).max(axis=1))
+        for part in (values, first, second)
+    ]
+    return BallJet(np.stack([ball.mid for ball in balls]), np.stack([ball.rad for ball in balls]))
+
+
+def _slopes(gauge: Gauge, angle: BallJet, middle: Array) -> BallJet:
+    """Slope of the lift along jets of the angle about a middle, rad."""
+    low, high = (angle.rows[0] + Ball.exact(middle)).bounds()
+    mid, rad = gauge.lifts.round.enclosure(low, high, 3)
+    rows = Ball(mid, rad)
+    first, second = angle.rows[1], angle.rows[2]
+    bent = rows[2] * second + rows[3] * first * first * 0.5
+    parts = [rows[1], rows[2] * first, bent]
+    return BallJet(np.stack([part.mid for part in parts]), np.stack([part.rad for part in parts]))
+
+
+def _gaps(
+    gauge: Gauge, cells: _Cells, places: tuple[Ball, Ball, Ball], angles: tuple[Array, Array], steep: Array
+) -> tuple[Array, Array]:
+    """How far F rises above H (n,), and the depth above -K (n,), mm; infinite where F is not known to fall.
+
+    `places` are y, X and v; `steep` bounds |F_theta|, mm per rad.
+    """
+    top = np.maximum(cells.height.max(axis=(1, 2)), 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        fall, _, _ = _falls(gauge, places, angles, np.full_like(top, WINDOW))
+        beside = np.where((fall > 0.0) & (steep <= fall * WINDOW), steep**2 / (2.0 * fall), np.inf)
+        # where F is above 0 the roller may stand nearer: within a window at whose ends F is below 0
+        top = np.where(np.isfinite(beside), top + beside, 0.0)
+        window = np.where(fall > 0.0, 2.0 * WINDOW + ROOM * np.sqrt(2.0 * top / np.maximum(fall, 1e-6)), WINDOW)
+        window = np.minimum(window, MOST_WINDOW)
+        fall, nearing, slope = _falls(gauge, places, angles, window)
+        within = np.isfinite(beside) & (fall > 0.0) & (top < 0.5 * fall * (window - WINDOW) ** 2) & (nearing > 0.0)
+        rate = gauge.radius * steep + top * slope
+        # hypot^2/2 is less by no more than rate^2/(2 nearing), and hypot is above 9/10 of the radius
+        under = np.where(within & (top < 0.05 * gauge.radius), rate**2 / (1.8 * nearing * gauge.radius), np.inf)
+    return beside, under
+
+
+def _falls(
+    gauge: Gauge, places: tuple[Ball, Ball, Ball], angles: tuple[Array, Array], window: Array
+) -> tuple[Array, Array, Array]:
+    """Lower bounds (n,) of -F'' and of (hypot(y, v)^2/2)'' over angles wider by a window (n,), rad, and of |S'| upper.
+
+    `places` are y, X and v over cells whose worst angles lie between `angles`.
+    """
+    side, radius = float(gauge.side), gauge.radius
+    y, along, v = places
+    mid, rad = gauge.lifts.round.enclosure(angles[0] - window, angles[1] + window, 2)
+    slope, bend = Ball(mid[1], rad[1]), Ball(mid[2], rad[2])
+    farther = np.hypot(y.magnitude, along.magnitude) * window
+    across = Ball(y.mid, y.rad + farther)
+    along = Ball(along.mid, along.rad + across.magnitude * window)
+    square = across * across
+    depth = (radius**2 - square) ** 0.5
+    fall = (along * along * radius**2 - square * depth * depth) * depth**-3 - bend * side
+    v = Ball(v.mid, v.rad + slope.magnitude * window)
+    nearing = along * along - square + slope * slope + v * bend * side
+    return fall.bounds()[0], nearing.bounds()[0], slope.magnitude
+
+
+def demand_regular(gauge: Gauge, low: float, high: float) -> None:
+    """Raise UnsettledError unless on every cylinder from `low` to `high`, mm, each polar angle is touched once alone.
+
+    Where F is level it falls to both sides: with y = -side R sin a and X = rho of the contact on a cylinder,
+    rho^2 - R^2 sin^2 a cos^2 a > side R cos^3 a S''.
+    """
+    radius, side = gauge.radius, float(gauge.side)
+    edges = np.linspace(low, high, DEPTHS + 1)
+    turn = np.linspace(0.0, TURN, LOOKS + 1)
+    a, b = np.tile(turn[:-1], DEPTHS), np.tile(turn[1:], DEPTHS)
+    c, d = np.repeat(edges[:-1], LOOKS), np.repeat(edges[1:], LOOKS)
+    for _ in range(PARTINGS + 1):
+        mid, rad = gauge.lifts.round.enclosure(a, b, 2)
+        slope, bend, r = Ball(mid[1], rad[1]), Ball(mid[2], rad[2]), Ball.between(c, d)
+        vv, rr = slope * slope, r * r
+        apart = rr - vv
+        square = (apart + (apart * apart + vv * (rr - radius**2) * 4.0) ** 0.5) * 0.5
+        share = square * (square + vv) ** -1  # cos^2 a
+        level = square - share * (1.0 - share) * radius**2 - share**1.5 * bend * (radius * side)
+        open_ = ~(level.bounds()[0] > 0.0)
+        if not open_.any():
+            return
+        a, b, c, d = a[open_], b[open_], c[open_], d[open_]
+        m, n = 0.5 * (a + b), 0.5 * (c + d)
+        a, b = np.concatenate([a, m, a, m]), np.concatenate([m, b, m, b])
+        c, d = np.concatenate([c, c, n, n]), np.concatenate([n, n, d, d])
+    raise UnsettledError("the exact flank is not proved regular: it may be undercut")
+
+
+# --- what holds the roller --------------------------------------------------------------------------------------------
+
+
+class _Held:
+    """How high lines t = const hold the roller over the turn, from the edges of cells."""
+
+    def __init__(self) -> None:
+        self.parts: list[tuple[Indices, Array, Array, Array]] = []
+
+    def add(self, cells: _Cells, beside: Array, inside: Mask) -> None:
+        """Take in both edges along s of cells (n,), whose H is off what is linear by `beside` (n,), mm."""
+        for k in (0, 1):
+            line = 2 * np.round(cells.lines[:, k] * 2**40).astype(np.int64) + k
+            least = np.where(inside, cells.height[:, :, k].min(axis=1) - beside, -np.inf)
+            self.parts.append((line, cells.theta[:, 0, k], cells.theta[:, 1, k], least))
+
+    def least(self) -> float:
+        """Height, mm, at which some line holds the roller at least, over all angles; -inf where none goes round."""
+        line, first, last, least = (np.concatenate(part) for part in zip(*self.parts, strict=True))
+        numbers, row = np.unique(line, return_inverse=True)
+        width = TURN / BINS
+        low, high = np.minimum(first, last), np.maximum(first, last)
+        sense = np.where(last >= first, 1.0, -1.0)
+        begin = np.floor(low / width).astype(np.intp)
+        count = np.floor(high / width).astype(np.intp) - begin + 1
+        own = np.repeat(np.arange(len(row)), count)
+        bins = begin[own] + np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count)
+        over = np.minimum(high[own], (bins + 1) * width) - np.maximum(low[own], bins * width)
+        places = row[own] * BINS + bins % BINS
+        held, covered = np.full(len(numbers) * BINS, np.inf), np.zeros(len(numbers) * BINS)
+        np.minimum.at(held, places, least[own])
+        np.add.at(covered, places, sense[own] * over)
+        whole = np.abs(covered) >= width - LOOSE
+        return float(np.where(whole, held, -np.inf).reshape(-1, BINS).max(axis=0).min())
+
+
+def _holds(gauge: Gauge, cells: Sequence[_Cells], angles: int) -> Array:
+    """Height (angles,), mm, at which the surface holds the roller at equal steps, laid straight between corners."""
+    theta = np.arange(angles) * (TURN / angles)
+    best = np.full(angles, np.nan)
+    line, at, height, along = [], [], [], []
+    for each in cells:
+        corners = each.nets[:, [0, -1]][:, :, [0, -1]]
+        reach = corners[..., 0] * np.cos(each.theta) + corners[..., 1] * np.sin(each.theta)
+        for k in (0, 1):
+            own = np.round(each.lines[:, k] * 2**40).astype(np.int64)
+            for j in (0, 1):
+                line.append(own)
+                at.append(each.theta[:, j, k] % TURN)
+                height.append(each.height[:, j, k])
+                along.append(reach[:, j, k])
+    lines = np.concatenate(line)
+    places, heights, reaches = (np.asarray(np.concatenate(part), dtype=np.float64) for part in (at, height, along))
+    for number in np.unique(lines):
+        own = np.flatnonzero(lines == number)
+        order = own[np.argsort(places[own])]
+        within = (reaches[order] >= gauge.inner) & (reaches[order] <= gauge.outer)
+        values = np.where(within, heights[order], np.nan)
+        best = np.fmax(best, np.interp(theta, places[order], values, period=TURN))
+    return best
