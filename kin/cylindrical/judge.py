@@ -194,14 +194,14 @@ def _flank(job: _Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, See
     if len(seen.torn):
         beside = triangles_at(body, own, (edges.a[seen.torn], edges.b[seen.torn]))
         bare = missing(gauge, body.points[beside], stands.worst.theta[beside], bare, tolerance)
-    proud, worst = seen.proud, max(_sure(peak.value, peak.remainder, tolerance) for peak in (seen.proud, bare))
+    proud, worst = seen.proud, max(sure(peak.value, peak.remainder, tolerance) for peak in (seen.proud, bare))
     at = proud.at if proud.value >= bare.value else bare.at
     words = " and ".join(
         f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((proud, "proud"), (bare, "bare"))
     )
     sure = f"true within {length_words(max(proud.remainder, bare.remainder), '.2g')} {UNIT}"
     check = at_most(CONTOUR, worst, tolerance, "mm", detail=f"{words} of the exact flank; {sure}", slack=job.slack)
-    checks = [_at(check, at)]
+    checks = [placed(check, at)]
     if stands.across.any():
         where = body.points[body.corners[stands.across][0]].mean(axis=0)
         angle = degrees(math.atan2(where[1], where[0]))
@@ -212,7 +212,7 @@ def _flank(job: _Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, See
         loose = failed(MOTION, f"the roller touches nothing at an angle of {free:.6g} degrees", unit="mm")
         return FlankVerdict(gauge.name, None, worst, count), seen, [*checks, loose]
     motion = _motion_error(seen)
-    checks.append(_motion_check(motion, gauge, job.limits, job.slack))
+    checks.append(motion_check(motion, gauge, job.limits, job.slack))
     return FlankVerdict(gauge.name, motion, worst, count), seen, checks
 
 
@@ -225,9 +225,10 @@ def _motion_error(seen: Seen) -> MotionError:
     return MotionError(worst, degrees(at), max(bound - worst, 0.0), least, most, rms)
 
 
-def _motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: float) -> Check:
+def motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: float) -> Check:
+    """Check of an error of the position against the recipe's limit, or what flanks within the tolerance can cause."""
     limit, room = limit_of(lambda e: _implied(gauge, e), limits.motion, limits.tolerance, slack)
-    worst = _sure(motion.max, motion.remainder, limits.tolerance) if limits.motion is None else motion.bound
+    worst = sure(motion.max, motion.remainder, limits.tolerance) if limits.motion is None else motion.bound
     detail = f"true within {length_words(motion.remainder, '.2g')} {UNIT}" if motion.remainder else ""
     check = at_most(MOTION, worst, limit, "mm", detail=detail, slack=room)
     check = replace(check, at=motion.at)
@@ -235,7 +236,7 @@ def _motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: floa
     return unlimited(check) if loose else check
 
 
-def _sure(value: float, remainder: float, tolerance: float) -> float:
+def sure(value: float, remainder: float, tolerance: float) -> float:
     """A value found, mm, or its bound where the proof leaves more open than a share of the tolerance."""
     return value if remainder <= OPEN * tolerance else value + remainder
 
@@ -245,7 +246,8 @@ def _implied(gauge: Gauge, tolerance: float) -> float:
     return tolerance * math.hypot(1.0, gauge.lifts.steepest / gauge.inner) * (1.0 + SLACK)
 
 
-def _at(check: Check, theta: float) -> Check:
+def placed(check: Check, theta: float) -> Check:
+    """The check with its shaft angle, rad."""
     return replace(check, at=degrees(theta) if math.isfinite(theta) else None)
 
 
@@ -294,7 +296,7 @@ def _play(job: _Judged, both: Sequence[Seen]) -> tuple[Play, Check]:
     if play.least < 0.0:
         told += f": it is pinched by up to {length_words(-play.least, '.3g')} {UNIT}"
     check = at_most(PLAY, float(abs(pinched[k])), limit, "mm", detail=told, slack=room)
-    return play, _at(check, k * width)
+    return play, placed(check, k * width)
 
 
 def _volume_check(read: CheckedMesh, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance: float) -> Check:

@@ -5,7 +5,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.capabilities.cylindrical.keys import FILES, FLOOR_GAP, RECIPE, Drive, DrumRecipe, End, Groove, Rib, Roller
+from camgeo.capabilities.cylindrical.keys import (
+    FILES,
+    FLOOR_GAP,
+    NEEDED,
+    RECIPE,
+    Drive,
+    DrumRecipe,
+    End,
+    Groove,
+    Rib,
+    Roller,
+)
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
@@ -16,6 +27,7 @@ from camgeo.recipe.figure_bounds import build_bounds, check_bounds
 from camgeo.recipe.keys import read_units
 from camgeo.recipe.recipe import Verify, name_by_stem, reader_of_kind
 from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.fields import either
 from camgeo.schema.yaml_source import Mapping
 from kin.numeric.records import replace
 
@@ -34,10 +46,11 @@ NOT_YET = {
     **dict.fromkeys((f"cam.follower.{key}" for key in ("arm", "offset", "taper", "cone", "half_angle")), _FOLLOWER),
     "cam.turns": "a track closes after one turn",
     "cam.sizing": "give the radius of the blank",
-    "manufacture": "a machine of four axes takes the path of the roller's axis from the development",
+    "manufacture": "a program has its cutter and feeds beside its axes, {gcode: {axes: [X, A], cutter: 20}}",
 }
 """Keys of what is not made yet, each with what is."""
-FORMATS_NOT_YET = ("step", "gcode", "svg")
+FORMATS_NOT_YET = ("step", "svg")
+EXAMPLE = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, safe_height: 5"
 REFUSE = "undercut: refuse, as a cut ends in a sharp edge"
 NOTHING = 1e-9  # mm: a length below it is none
 
@@ -80,6 +93,7 @@ def _check(values: Values, reader: Reader) -> None:
     if reader.errors:
         return
     _check_radii(values, reader)
+    _check_programs(values, reader)
     _check_limits(values, reader)
 
 
@@ -156,6 +170,38 @@ def _check_radii(values: Values, reader: Reader) -> None:
                 remedy = f"give one from {_shown(low, reader)} to {_shown(high, reader)}"
                 where = f"{file['path']}.{file['kind']}.at[{i}]"
                 reader.fault_at(where, "no flank there", _shown(radius, reader), remedy)
+
+
+def _check_programs(values: Values, reader: Reader) -> None:
+    """Note what a program lacks, and a cutter that does not leave the flanks, or what lies between them."""
+    cam = values["cam"]
+    (kind, track), roller = next(iter(cam["track"].items())), cam["follower"]["radius"]
+    clearance = track.get("clearance", 0.0) if kind == "groove" else 0.0
+    for file in values.get("export", {}).get("files", []):
+        path = f"{file['path']}.{file['kind']}"
+        if not FILES[file["kind"]].program:
+            continue
+        missing = [name for name in NEEDED if name not in file]
+        if missing:
+            remedy = f"give {either(tuple(missing), 'and')}, such as {{{EXAMPLE}}}"
+            reader.fault_at(file["path"], f"a program needs {missing[0]}", None, remedy)
+            continue
+        widest, told = 2.0 * roller, _shown(file["cutter"], reader)
+        narrowest = roller + 0.5 * clearance if kind == "groove" else 0.0
+        allowance = file.get("allowance", 0.0)
+        if kind == "groove":
+            widest -= 2.0 * allowance
+        if file["cutter"] > widest + NOTHING:
+            if widest <= narrowest:
+                remedy = f"give an allowance below {_shown(0.5 * (2.0 * roller - narrowest), reader)}"
+                reader.fault_at(f"{path}.allowance", "leaves no room for a cutter", _shown(allowance, reader), remedy)
+                continue
+            what = "the roller" if widest == 2.0 * roller else "the roller less the allowance on both flanks"
+            remedy = f"give at most {_shown(widest, reader)}"
+            reader.fault_at(f"{path}.cutter", f"a cutter wider than {what} cuts the flanks away", told, remedy)
+        elif file["cutter"] < narrowest - NOTHING:
+            remedy = f"give at least {_shown(narrowest, reader)}"
+            reader.fault_at(f"{path}.cutter", "does not clear the groove along both flanks", told, remedy)
 
 
 def _check_limits(values: Values, reader: Reader) -> None:

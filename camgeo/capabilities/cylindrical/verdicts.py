@@ -10,6 +10,7 @@ from camgeo.measures.units import in_units
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
 from camgeo.recipe.export import requests
+from camgeo.capabilities.cylindrical.program import cutting_of
 from kin.cylindrical import intent
 from kin.cylindrical.follower import DrumFollower
 from kin.cylindrical.judge import verify, verify_development
@@ -64,6 +65,8 @@ def judged_file(
     """
     recipe = design.recipe
     limits = intent.Limits(tolerance, recipe.verify.motion_error)
+    if format_of(path).contents == "program":
+        return _judged_program(design, path, request, limits)
     stated = format_of(path).units
     if format_of(path).contents != "drawing":
         own = 1.0 if request is None or request.unit_for("mm") == "mm" else 25.4
@@ -73,6 +76,18 @@ def judged_file(
     mm = 25.4 if asked[0].unit_for(recipe.units) == "inch" else 1.0
     lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
     return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
+
+
+def _judged_program(design: DrumDesign, path: Path, request: FileRequest | None, limits: intent.Limits) -> DrumVerdict:
+    """Kin's verdict on a program; one that the recipe does not ask for is judged by the cutter of one that it does."""
+    from kin.cylindrical.program import verify_program
+
+    recipe = design.recipe
+    asked = request or next((each for each in recipe.export.files if each.format.program), None)
+    if asked is None:
+        remedy = "give export: {files: [{gcode: {axes: [X, A], cutter: 20, ...}}]}: a program is judged by its cutter"
+        raise recipe.error("export.files", "no program is asked for", None, remedy)
+    return verify_program(path, intended(design), cutting_of(design, asked), limits)
 
 
 # --- in a report ------------------------------------------------------------------------------------------------------
