@@ -5,13 +5,13 @@ axis, is from a point at the polar angle phi, the radius r and the height z at t
 
     H = hypot(r sin(phi - A) - y, z - x) - C,        if r cos(phi - A) is no less than that of its end.
 
-Between points of a pass A, x and y move evenly. The least H over all positions is D: below 0 the point is cut away by so
-much, above 0 so much metal stands on it, as a cutter larger by d leaves a surface d away. D is taken at points
+Between points of a pass A, x and y move evenly. The least H over all positions is D: below 0 the point is cut away by
+so much, above 0 so much metal stands on it, as a cutter larger by d leaves a surface d away. D is taken at points
 p(theta, rho) of the exact flank, over all angles and the roller's length.
 
 Over a cell of h1 rad by h2 mm D is less than at the least of its corners by no more than (h1^2 M11 + h2^2 M22)/8, with
-bounds M of the second derivatives of H: the least of functions bends upwards no faster than they do. Nor is it more than
-at the greatest corner by more than that and what the slopes of H at the corners differ by. The nearest position is
+bounds M of the second derivatives of H: the least of functions bends upwards no faster than they do. Nor is it more
+than at the greatest corner by more than that and what the slopes of H at the corners differ by. The nearest position is
 sought from the point's own angle on, over neighbouring blocks.
 """
 
@@ -94,7 +94,7 @@ def left_on(gauge: Gauge, passes: Sequence[Pass], cutter: float, tolerance: floa
         theta, rho = _grid(gauge, cutter, tilt, tolerance)
         if len(theta) * len(rho) > MOST_POINTS:
             return None
-        left, widest = _left(gauge, ways, cutter, theta, rho, tolerance)
+        left, widest = _left(gauge, ways, cutter, (theta, rho), tolerance)
         if widest <= tilt:
             return left
         tilt = 1.5 * widest
@@ -117,9 +117,10 @@ def _forwards(one: Pass) -> Pass:
 
 
 def _left(
-    gauge: Gauge, ways: Sequence[Pass], cutter: float, theta: Array, rho: Array, tolerance: float
+    gauge: Gauge, ways: Sequence[Pass], cutter: float, grid: tuple[Array, Array], tolerance: float
 ) -> tuple[Left, float]:
     """What is left at points of a flank, and by how much the angle of a cutter differs from theirs at most, rad."""
+    theta, rho = grid
     points = _points(gauge, theta, rho)
     off = np.full(points.phi.shape, np.inf)
     above, below = (np.full((len(rho) - 1, len(theta) - 1), np.inf) for _ in range(2))
@@ -259,7 +260,7 @@ def _nearest(points: _Points, one: Pass, turn: float, roller: float, cutter: flo
 
 
 def _least(one: Pass, block: Indices, phi: Array, r: Array, z: Array) -> tuple[Array, Array]:
-    """Least square of the distance (n,) of points from the cutter's axis over a block each, and its share of the block."""
+    """Least square of the distance (n,) of points from the cutter's axis over a block each, and its share of it."""
     a, x, y = one.a[block], one.x[block], one.y[block]
     da, dx, dy = (row[block + 1] - row[block] for row in (one.a, one.x, one.y))
     share = np.full(len(phi), 0.5)

@@ -1,22 +1,23 @@
 """The verdict on a program of a machine with a rotary axis: what its cutter leaves of a drum, and how it goes there.
 
-The cutter's path is what the control makes of the blocks: all axes move evenly between them. The metal is what no position
-of the cutter takes away, held against the exact flanks over all shaft angles and the roller's whole length
-(`kin.cylindrical.cutters`). A flank that is shortened by undercut, or has corners, is judged by the path alone: a cutter
-as large as the roller leaves what the rollers leave, but for the error of its own path.
+The cutter's path is what the control makes of the blocks: all axes move evenly between them. The metal is what no
+position of the cutter takes away, held against the exact flanks over all shaft angles, from the roller's inner end to
+the blank (`kin.cylindrical.cutters`). A flank that is shortened by undercut, or has corners, is judged by the path
+alone: a cutter as large as the roller leaves what the rollers leave, but for the error of its own path.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from kin.cylindrical.cutters import END, left_on
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Groove
+from kin.cylindrical.intent import Groove, Rib
 from kin.cylindrical.judge import CONTOUR, motion_check, placed, sure
 from kin.cylindrical.turned import passes_of, read_turned
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 SAME = 1e-9  # mm: sizes that differ by less are one
+LEAN = 1e-2  # by which the slope of a flank may be more between two angles
 FEED = 0.01  # of a feed, by which it may differ
 COARSE, FAR = 20.0, 3.0  # times the tolerance: what a first look is good for, and what is refused at it
 LEAST = 1e-6  # of the cutter's diameter, by which what a program names may differ
@@ -63,7 +65,7 @@ class Cutting:
 
 
 class _Path(NamedTuple):
-    """How far a pass is off the path of a roller's axis along the drum: the least and the greatest, mm, and where, rad."""
+    """How far a pass is off the path of a roller's axis along the drum: least and greatest, mm, and where, rad."""
 
     least: float
     least_at: float
@@ -89,10 +91,15 @@ def judged_passes(
     program: TurnedProgram, passes: list[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits
 ) -> tuple[list[Check], list[FlankVerdict]]:
     """Checks of a program, not mirrored, and verdicts on the flanks that its passes leave."""
-    checks = [_cutter(program, cutting), _rapid(program, drum), _ways(program, passes, drum), _feed(program, drum, cutting)]
+    checks = [
+        _cutter(program, cutting),
+        _rapid(program, drum),
+        _ways(program, passes, drum),
+        _feed(program, drum, cutting),
+    ]
     if not passes:
         return [*checks, failed(CONTOUR, "the program cuts nothing", unit="mm", limit=limits.tolerance)], []
-    checks.append(_depth(passes, drum, cutting, limits))
+    checks.append(_depth(program, passes, drum, cutting, limits))
     if not all(check.ok for check in checks[1:3]):
         unseen = failed(CONTOUR, "what is left is not looked at on such ways", unit="mm", limit=limits.tolerance)
         return [*checks, unseen], []
@@ -126,9 +133,10 @@ def _flank(
             why = "of a flank with a cut or a corner, what a cutter smaller than the roller leaves is not known"
             return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
         return _by_path(gauge, passes, limits, slack)
-    left = left_on(gauge, passes, cutter, COARSE * tolerance)
+    whole = replace(gauge, outer=drum.radius)
+    left = left_on(whole, passes, cutter, COARSE * tolerance)
     if left is None or _extremes(left)[0] <= FAR * tolerance:
-        left = left_on(gauge, passes, cutter, tolerance)
+        left = left_on(whole, passes, cutter, tolerance)
     if left is None:
         why = "it would take too many points to tell"
         return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
@@ -159,11 +167,13 @@ def _extremes(left: Left) -> tuple[float, float, float]:
 def _motion(gauge: Gauge, left: Left) -> MotionError:
     """Error of the roller on what is left: it stands where that holds it highest along its length."""
     slope = gauge.lifts.at(left.theta)[1]
-    lean = np.hypot(1.0, slope / left.rho[:, None])
-    held = (left.off * lean).max(axis=0)
-    steep = np.maximum(lean[:-1, 1:], lean[:-1, :-1]) * (1.0 + 1e-3)
-    most = float(np.where(left.above > 0.0, left.above * steep, left.above).max())
-    least = float(np.where(left.below < 0.0, left.below * steep, left.below).max(axis=0).min())
+    rows = max(int(np.searchsorted(left.rho, gauge.outer, side="right")), 2)
+    lean = np.hypot(1.0, slope / left.rho[:rows, None])
+    held = (left.off[:rows] * lean).max(axis=0)
+    steep = np.maximum(lean[:-1, 1:], lean[:-1, :-1]) * (1.0 + LEAN)
+    above, below = left.above[: rows - 1], left.below[: rows - 1]
+    most = float(np.where(above > 0.0, above * steep, above).max())
+    least = float(np.where(below < 0.0, below * steep, below).max(axis=0).min())
     k = int(np.argmax(np.abs(held)))
     worst = float(abs(held[k]))
     share = 0.5 * (np.append(np.diff(left.theta), 0.0) + np.append(0.0, np.diff(left.theta))) / TURN
@@ -177,9 +187,7 @@ def _motion(gauge: Gauge, left: Left) -> MotionError:
     )
 
 
-def _by_path(
-    gauge: Gauge, passes: list[Pass], limits: Limits, slack: float
-) -> tuple[FlankVerdict, list[Check]]:
+def _by_path(gauge: Gauge, passes: list[Pass], limits: Limits, slack: float) -> tuple[FlankVerdict, list[Check]]:
     """A flank by the paths of cutters as large as its roller: what they cut is off by no more than they are."""
     tolerance = limits.tolerance
     own = [one for one in passes if _is_about(one, gauge)]
@@ -259,15 +267,23 @@ def _rapid(program: TurnedProgram, drum: DrumIntent) -> Check:
 
 
 def _ways(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent) -> Check:
-    """Check that the cutter goes down at rest, and that the drum turns one way within a pass."""
-    bad = []
-    for move in program.moves:
-        rest = move.start._replace(z=0.0) == move.end._replace(z=0.0)
-        if not move.rapid and move.start.z != move.end.z and not rest and min(move.start.z, move.end.z) < drum.radius:
-            bad.append(f"line {move.line} goes down while another axis moves")
-    for one in passes:
-        if (np.diff(one.a) < 0.0).any() and (np.diff(one.a) > 0.0).any():
-            bad.append(f"the drum turns to and fro in the pass from line {one.line}")
+    """Check that the cutter stays out of the metal, goes down at rest, and that a pass turns the drum one way."""
+    low = [move for move in program.moves if min(move.start.z, move.end.z) < drum.radius]
+    bad = [
+        f"line {move.line} goes down while another axis moves"
+        for move in low
+        if not move.rapid and move.start.z != move.end.z and move.start._replace(z=0.0) != move.end._replace(z=0.0)
+    ]
+    bad += [
+        f"the drum turns to and fro in the pass from line {one.line}"
+        for one in passes
+        if (np.diff(one.a) < 0.0).any() and (np.diff(one.a) > 0.0).any()
+    ]
+    ends = np.array([(*move.start, *move.end) for move in low]).reshape(-1, 4)
+    within = [gauge.radius - gauge.side * (ends[:, 0] - gauge.axis(ends[:, 3])) > 0.0 for gauge in gauges_of(drum)]
+    free = np.any(within, axis=0) if isinstance(drum.track, Rib) else np.all(within, axis=0)
+    if not free.all():
+        bad.append(f"line {low[int(np.argmin(free)) // 2].line} stands in the metal")
     return count_check("ways", bad)
 
 
@@ -289,14 +305,14 @@ def _feed(program: TurnedProgram, drum: DrumIntent, cutting: Cutting) -> Check:
     return at_most("feed", worst, FEED, "", detail=detail)
 
 
-def _depth(passes: Sequence[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits) -> Check:
+def _depth(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits) -> Check:
     """Check that the deepest passes reach the floor, and that none goes too far below those before it."""
-    deepest = min(passes, key=lambda one: one.z)
-    if not abs(deepest.z - drum.floor) <= limits.tolerance:
-        ends = f"the pass from line {deepest.line} ends at a radius of {length_words(deepest.z)} {UNIT}"
+    deepest = min(program.moves, key=lambda move: move.end.z)
+    if not abs(deepest.end.z - drum.floor) <= limits.tolerance:
+        ends = f"from line {deepest.line} on the cutter ends at a radius of {length_words(deepest.end.z)} {UNIT}"
         why = f"{ends}, the floor has {length_words(drum.floor)} {UNIT}"
         return failed("depth", why, unit="mm", limit=cutting.depth_of_cut)
-    worst, line = 0.0, deepest.line
+    worst, line = 0.0, passes[0].line
     for k, one in enumerate(passes):
         before = min([drum.radius, *(other.z for other in passes[:k] if _beside(one, other) <= cutting.radius)])
         if before - one.z > worst:
@@ -309,8 +325,9 @@ def _cleared(passes: Sequence[Pass], drum: DrumIntent, cutter: float) -> Check:
     """Check that passes at the floor lie so near to one another that nothing stands between."""
     low = min(one.z for one in passes)
     ways = [one for one in passes if one.z <= low + END]
-    ways.sort(key=lambda one: float(np.mean(one.x - drum.follower.law.derivatives(one.a, 0)[0])))
-    worst = max((_beside(one, other) for one, other in zip(ways, ways[1:], strict=False)), default=0.0)
+    gauge = gauges_of(drum)[0]
+    ways.sort(key=lambda one: float(np.mean(one.x - gauge.axis(one.a))))
+    worst = max((_beside(one, other) for one, other in pairwise(ways)), default=0.0)
     detail = "between the centres of neighbouring passes, against the cutter's diameter"
     return at_most("cleared", worst, 2.0 * cutter, "mm", detail=detail)
 
@@ -327,5 +344,7 @@ def _beside(one: Pass, other: Pass) -> float:
     angles = angles[(angles >= low) & (angles <= high)]
     if not len(angles):
         return math.inf
-    apart = np.hypot(at(one, one.x, angles) - at(other, other.x, angles), at(one, one.y, angles) - at(other, other.y, angles))
+    apart = np.hypot(
+        at(one, one.x, angles) - at(other, other.x, angles), at(one, one.y, angles) - at(other, other.y, angles)
+    )
     return float(apart.max())

@@ -1,13 +1,13 @@
 """Programs for a machine with a rotary axis: moves of X along the drum, A about it, Z square to it, and Y beside both.
 
-Words are those of `kin.read.gcode` without arcs, with A in degrees, and with G93: a feed that is the inverse of a block's
-time in minutes, which every block states anew. A machine without Y stands over the axis.
+Words are those of `kin.read.gcode` without arcs, with A in degrees, and with G93: a feed that is the inverse of a
+block's time in minutes, which every block states anew. A machine without Y stands over the axis.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from kin.numeric.arrays import Array, Mask
+    from kin.numeric.arrays import Array
 
 
 class Position(NamedTuple):
@@ -74,7 +74,7 @@ class _Turning(Machine):
     """State of a machine whose work turns."""
 
     letters = "XYZA"
-    groups = {  # noqa: RUF012 - as those of its base
+    groups: ClassVar = {
         **{name: codes for name, codes in GROUPS.items() if name != "arc centres"},
         "motion": ("0", "1"),
         "distance": ("90",),
@@ -132,11 +132,6 @@ class Pass:
     a: Array
     x: Array
     y: Array
-
-    @property
-    def turning(self) -> Mask:
-        """Whether the drum turns on each of the blocks (n - 1,)."""
-        return np.diff(self.a) != 0.0
 
     def same_way(self, other: Pass) -> bool:
         """Whether another pass follows the same way, perhaps deeper."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -131,8 +131,8 @@ class Machine:
     `letters` are those of words with lengths and angles, `groups` the codes of the G words that exclude one another.
     """
 
-    letters = "XYZIJ"
-    groups = GROUPS
+    letters: ClassVar[str] = "XYZIJ"
+    groups: ClassVar[dict[str, tuple[str, ...]]] = GROUPS
 
     def __init__(self, path: Path) -> None:
         self.path = path

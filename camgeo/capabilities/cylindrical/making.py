@@ -104,5 +104,7 @@ def _program(design: DrumDesign, clock: Clock, request: FileRequest, path: Path)
     from camgeo.capabilities.cylindrical.program import write_program
 
     with clock.stage(f"write {request.kind}"):
-        fit = write_program(design, request, path, _tolerance(design, request), UNIT_MM[request.unit_for(design.recipe.units)])
+        fit = write_program(
+            design, request, path, _tolerance(design, request), UNIT_MM[request.unit_for(design.recipe.units)]
+        )
     return _judged(design, clock, request, path, fit)

@@ -1,12 +1,13 @@
 """Programs of a machine that turns the drum under its cutter: X along the drum, A about it, Z towards it, Y beside it.
 
-Each flank has its way, or one way serves both (`camgeo.capabilities.cylindrical.ways`). Between blocks all axes move evenly; how
-far that is off is bounded by the second derivative of the way.
+Each flank has its way, or one way serves both (`camgeo.capabilities.cylindrical.ways`). Between blocks all axes move
+evenly; how far that is off is bounded by the second derivative of the way.
 """
 
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -50,7 +51,7 @@ class Step(NamedTuple):
 
 
 class _Plan(NamedTuple):
-    """Steps in their order, and the greatest metal, mm, that they leave and that they cut too deep, between blocks too."""
+    """Steps in their order, and the greatest metal, mm, that their ways leave and that they cut too deep."""
 
     steps: list[Step]
     off: Bound
@@ -69,7 +70,7 @@ def write_program(
 ) -> tuple[int, Bound]:
     """Write a program; its number of blocks, and the bound of what it leaves and cuts too deep.
 
-    Raises RecipeErrors for a cutter that does not leave the flanks within the tolerance, for too many passes and too few
+    Raises RecipeErrors for a cutter that does not leave the flanks within the tolerance, too many passes and too few
     decimals; OSError where it cannot be written.
     """
     own = request.own
@@ -117,7 +118,7 @@ def _planned(design: DrumDesign, request: FileRequest, within: float) -> _Plan:
             finish.append((name, way, floor))
         left, deep = max(left, off.left), max(deep, off.deep)
         if max(off.left, off.deep) > SETTING * within:
-            raise _refused(design, field, flank, cutter, max(off.left, off.deep) / (SETTING * within), beside)
+            raise _refused(design, field, flank, way, max(off.left, off.deep) / (SETTING * within))
     steps = _rough(design, own, flanks, cutter, beside) if "allowance" in own else []
     if steps:
         steps += [Step(way, z, f"{name}, last") for name, way, z in finish]
@@ -153,21 +154,21 @@ def _demand_known(design: DrumDesign, flanks: list[tuple[str, Flank]], cutter: f
     raise design.error(field, f"with {why}, only a cutter as large as the roller leaves the flank", size)
 
 
-def _refused(
-    design: DrumDesign, field: str, flank: Flank, cutter: float, over: float, beside: bool
-) -> RecipeErrors:
+def _refused(design: DrumDesign, field: str, flank: Flank, way: Way, over: float) -> RecipeErrors:
     """Error of a cutter so much smaller than the roller that it is off by `over` times what it may."""
     recipe = design.recipe
-    least = flank.radius - 0.95 * (flank.radius - cutter) / over
-    remedies = []
-    if not beside:
-        remedies.append("let the machine move across the drum: axes: [X, Y, A]")
+    least = flank.radius - 0.95 * (flank.radius - way.cutter) / over
+    remedies = [] if way.beside else ["let the machine move across the drum: axes: [X, Y, A]"]
     if least <= recipe.roller.radius:
         remedies.append(f"give a cutter of at least {upward(2.0 * least / recipe.mm, 5)} {recipe.units}")
     remedies.append("give a greater tolerance")
-    small = "with its axis through the drum's it is right at one radius alone, and cuts too deep above that"
-    problem = "in so many depths it still leaves more than the tolerance" if beside else small
-    return recipe.error(f"{field}.cutter", problem, f"{2.0 * cutter / recipe.mm:.9g} {recipe.units}", ", or ".join(remedies))
+    problem = (
+        "in as many depths as are made it still leaves more than the tolerance"
+        if way.beside
+        else "with its axis through the drum's it is right at one radius alone, and cuts too deep above that"
+    )
+    value = f"{2.0 * way.cutter / recipe.mm:.9g} {recipe.units}"
+    return recipe.error(f"{field}.cutter", problem, value, ", or ".join(remedies))
 
 
 def _rough(
@@ -256,7 +257,7 @@ def _places(design: DrumDesign, request: FileRequest, tolerance: float, mm: floa
 
 def _head(design: DrumDesign, request: FileRequest, tolerance: float, mm: float) -> Iterator[str]:
     recipe, own = design.recipe, request.own
-    blank = plain(recipe.radius / mm)
+    blank, feed = plain(recipe.radius / mm), plain(own["feed"] / mm)
     sense = "counter-clockwise" if recipe.rotation == "cw" else "clockwise"
     texts = [
         recipe.name,
@@ -264,17 +265,17 @@ def _head(design: DrumDesign, request: FileRequest, tolerance: float, mm: float)
         f"units: {'inch' if mm != 1.0 else 'mm'}, A in degrees",
         f"cutter: diameter {plain(own['cutter'] / mm)}, its axis square to the drum's",
         f"tolerance: {plain(tolerance / mm)}",
-        "X along the drum's axis, zero: the lower face; X grows towards the upper face",
-        "A grows as the cutter goes round the drum counter-clockwise, seen from the upper face: the drum turns clockwise",
-        f"A zero: the roller's place at shaft angle 0, from which the keyway's angle counts; the shaft angle grows {sense}",
+        "X zero: the lower face; X grows along the drum's axis, towards the upper face",
+        "A zero: the roller's place at shaft angle 0, from which the keyway's angle counts",
+        "A grows as the cutter goes round the drum counter-clockwise, seen from the upper face",
+        f"the follower goes round it {sense}",
         f"Z zero: the drum's axis; blank {blank}, floor {plain(recipe.floor / mm)}",
         "Y zero: over the drum's axis; seen from the cutter Y grows as A does" if "Y" in own["axes"] else "",
         "climb milling along each flank, spindle clockwise",
+        f"feed: G93, the inverse of the minutes of a block, {feed} a minute at a radius of {blank}"
+        if own.get("feed_mode", INVERSE) == INVERSE
+        else f"feed: G94, along the path at a radius of {blank}: the control has to count A at that radius",
     ]
-    if own.get("feed_mode", INVERSE) == INVERSE:
-        texts.append(f"feed: G93, the inverse of the minutes of a block, {plain(own['feed'] / mm)} a minute at a radius of {blank}")
-    else:
-        texts.append(f"feed: G94, along the path at a radius of {blank}: the control has to count A at that radius")
     if not isinstance(recipe.track, Groove):
         beside = "within the flank" if isinstance(recipe.track, End) else "beside the rib"
         texts.append(f"not milled: the drum {beside} farther off the flank than the cutter is wide")
@@ -296,7 +297,13 @@ class _Written:
         """Units and modes, the cutter drawn out and the spindle on."""
         feed = "G93" if self.inverse else "G94"
         unit = "G20" if self.mm != 1.0 else "G21"
-        return [unit, f"G17 G90 {feed}", "G40 G49 G80", f"G0 Z{self._text(self.safe / self.mm)}", f"S{plain(self.own['spindle'])} M3"]
+        return [
+            unit,
+            f"G17 G90 {feed}",
+            "G40 G49 G80",
+            f"G0 Z{self._text(self.safe / self.mm)}",
+            f"S{plain(self.own['spindle'])} M3",
+        ]
 
     def cut(self, step: Step, points: Array) -> Iterator[str]:
         """A pass through points (n, 3) of A, rad, X and Y, mm."""
@@ -306,7 +313,7 @@ class _Written:
         yield f"G0 {self._place(rows[0])}"
         low, high = self._text(step.z / self.mm), self._text(self.safe / self.mm)
         yield f"G1 Z{low} F{self._feed(self.own['plunge'], (float(high) - float(low)) * self.mm)}"
-        for k, (before, after) in enumerate(zip(rows, rows[1:], strict=False)):
+        for k, (before, after) in enumerate(pairwise(rows)):
             if before == after:
                 continue
             turn, along, beside = (b - a for a, b in zip(before, after, strict=True))

@@ -52,6 +52,7 @@ NOT_YET = {
 FORMATS_NOT_YET = ("step", "svg")
 EXAMPLE = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, safe_height: 5"
 REFUSE = "undercut: refuse, as a cut ends in a sharp edge"
+RIDGE = 0.02  # mm by which what two cuts along a groove clear is wider than the groove
 NOTHING = 1e-9  # mm: a length below it is none
 
 
@@ -187,7 +188,7 @@ def _check_programs(values: Values, reader: Reader) -> None:
             reader.fault_at(file["path"], f"a program needs {missing[0]}", None, remedy)
             continue
         widest, told = 2.0 * roller, _shown(file["cutter"], reader)
-        narrowest = roller + 0.5 * clearance if kind == "groove" else 0.0
+        narrowest = roller + 0.5 * clearance + RIDGE if kind == "groove" else 0.0
         allowance = file.get("allowance", 0.0)
         if kind == "groove":
             widest -= 2.0 * allowance

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.cylindrical.development import developed
 from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, FILES, End, Groove
+from camgeo.capabilities.cylindrical.program import cutting_of
 from camgeo.measures.units import in_units
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
 from camgeo.recipe.export import requests
-from camgeo.capabilities.cylindrical.program import cutting_of
 from kin.cylindrical import intent
 from kin.cylindrical.follower import DrumFollower
 from kin.cylindrical.judge import verify, verify_development

@@ -1,20 +1,21 @@
 """Ways of a cutter along a flank: where its axis stands at a shaft angle, on a machine that turns the drum.
 
-A cutter as large as the roller takes the roller's own place, and leaves the flank at every radius. One that is smaller by
-e touches the flank as the roller does at one radius:
+A cutter as large as the roller takes the roller's own place, and leaves the flank at every radius. One that is smaller
+by e touches the flank as the roller does at one radius:
 
-- With its axis through that of the drum it follows the path whose flank on the cylinder r is the same curve. That rises by
-  v = S' there, and a flank of any roller is level + S + g(v, r) at the angle theta + f(v, r), so that
+- With its axis through that of the drum it follows the path whose flank on the cylinder r is the same curve. That rises
+  by v = S' there, and a flank of any roller is level + S + g(v, r) at the angle theta + f(v, r), so that
 
       A = theta + f_R(v, r) - f_C(v, r),    x = level + S + g_R(v, r) - g_C(v, r).
 
-  Farther out it cuts too deep, by about e sin^2 a (rho - r)/r, farther in it leaves metal.
+  Farther out it cuts too deep, by about e sin^2 a (rho - r)/r, farther in it leaves metal. More depths do not help: a
+  cutter that goes deeper cuts at every radius above its end.
 - With its axis beside that of the drum it lies within the roller and touches it at rho:
 
       A = theta,    y = -side e sin a,    x = level + S + side e cos a,    tan a = v/rho.
 
-  Elsewhere it leaves at most sqrt((R - e)^2 + 2 R e (1 - cos d)) - (R - e), d the difference of the contact angles: so far
-  is the point that the roller touches from the cutter, which stays within the roller and cuts nothing else.
+  Elsewhere it leaves at most sqrt((R - e)^2 + 2 R e (1 - cos d)) - (R - e), d the difference of the contact angles: so
+  far is the point that the roller touches from the cutter, which stays within the roller and cuts nothing else.
 """
 
 from __future__ import annotations
@@ -130,9 +131,9 @@ def radially_off(flank: Flank, cutter: float, steep: float, at: float, ends: tup
 def set_beside(
     flank: Flank, cutter: float, steep: float, ends: tuple[float, float], most: float
 ) -> tuple[list[tuple[Way, float]], Off]:
-    """Ways with their axes beside the drum's, the outermost first, each with the distance rho, mm, down to which it cuts.
+    """Ways with their axes beside the drum's, the outermost first, each with the distance, mm, down to which it goes.
 
-    As few as leave no more than `most`, mm, between two distances, up to MOST_DEPTHS; and what they leave, which is proved.
+    As few as leave no more than `most`, mm, between two distances, up to MOST_DEPTHS; and what they leave, proved.
     """
     inner, outer = ends
     for count in range(1, MOST_DEPTHS + 1):
