@@ -194,7 +194,7 @@ def _flank(job: _Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, See
     if len(seen.torn):
         beside = triangles_at(body, own, (edges.a[seen.torn], edges.b[seen.torn]))
         bare = missing(gauge, body.points[beside], stands.worst.theta[beside], bare, tolerance)
-    proud, worst = seen.proud, max(sure(peak.value, peak.remainder, tolerance) for peak in (seen.proud, bare))
+    proud, worst = seen.proud, max(assured(peak.value, peak.remainder, tolerance) for peak in (seen.proud, bare))
     at = proud.at if proud.value >= bare.value else bare.at
     words = " and ".join(
         f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((proud, "proud"), (bare, "bare"))
@@ -228,7 +228,7 @@ def _motion_error(seen: Seen) -> MotionError:
 def motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: float) -> Check:
     """Check of an error of the position against the recipe's limit, or what flanks within the tolerance can cause."""
     limit, room = limit_of(lambda e: _implied(gauge, e), limits.motion, limits.tolerance, slack)
-    worst = sure(motion.max, motion.remainder, limits.tolerance) if limits.motion is None else motion.bound
+    worst = assured(motion.max, motion.remainder, limits.tolerance) if limits.motion is None else motion.bound
     detail = f"true within {length_words(motion.remainder, '.2g')} {UNIT}" if motion.remainder else ""
     check = at_most(MOTION, worst, limit, "mm", detail=detail, slack=room)
     check = replace(check, at=motion.at)
@@ -236,7 +236,7 @@ def motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: float
     return unlimited(check) if loose else check
 
 
-def sure(value: float, remainder: float, tolerance: float) -> float:
+def assured(value: float, remainder: float, tolerance: float) -> float:
     """A value found, mm, or its bound where the proof leaves more open than a share of the tolerance."""
     return value if remainder <= OPEN * tolerance else value + remainder
 

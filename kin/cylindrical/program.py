@@ -18,7 +18,7 @@ import numpy as np
 from kin.cylindrical.cutters import END, left_on
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove, Rib
-from kin.cylindrical.judge import CONTOUR, motion_check, placed, sure
+from kin.cylindrical.judge import CONTOUR, assured, motion_check, placed
 from kin.cylindrical.turned import passes_of, read_turned
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.angles import TURN, degrees
@@ -148,7 +148,7 @@ def _flank(
     most, least = max(float(left.off.max()), 0.0), max(-float(left.off.min()), 0.0)
     words = f"{length_words(most, '.3g')} {UNIT} left and {length_words(least, '.3g')} {UNIT} too deep"
     detail = f"{words}; true within {length_words(remainder, '.2g')} {UNIT}"
-    value = sure(worst, remainder, tolerance)
+    value = assured(worst, remainder, tolerance)
     checks = [placed(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=slack), at)]
     motion = _motion(gauge, left)
     checks.append(motion_check(motion, gauge, limits, slack))

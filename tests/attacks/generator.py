@@ -76,6 +76,7 @@ WAYS: tuple[Callable[[Random, int], Attack], ...] = (
     axes.misdriven,  # needs: axis
     drums.turned,  # needs: cylindrical
     drums.slipped,  # needs: cylindrical
+    drums.milled,  # needs: cylindrical, milling
 )
 """Ways to attack, in turn."""
 

@@ -329,13 +329,19 @@ _AXES: OwnForm[Reader] = OwnForm("a list of axes", "a list of axes such as [X, A
 INVERSE, BY_MINUTE = "inverse-time", "per-minute"
 LEAST_PLACES, MOST_PLACES = 2, 9
 PROGRAM = (
-    Field("axes", Kind.OWN, "axes that move beside Z: X along the drum, A about it, Y across it", form=_AXES),
-    length("cutter", "diameter of the cutter, at most that of the roller"),
-    length("feed", "feed along the path on the blank's radius, a minute"),
-    length("plunge", "feed towards the drum's axis, a minute"),
-    replace(MANUFACTURE.field("spindle"), about="speed of the spindle, turns a minute"),
+    Field(
+        "axes",
+        Kind.OWN,
+        "axes that move beside Z: X along the drum, A about it, Y across it",
+        required=True,
+        form=_AXES,
+    ),
+    length("cutter", "diameter of the cutter, at most that of the roller", required=True),
+    length("feed", "feed along the path on the blank's radius, a minute", required=True),
+    length("plunge", "feed towards the drum's axis, a minute", required=True),
+    replace(MANUFACTURE.field("spindle"), about="speed of the spindle, turns a minute", required=True),
     length("depth_of_cut", "greatest depth of one pass", default="the depth of the track"),
-    length("safe_height", "height above the blank at which the cutter moves fast"),
+    length("safe_height", "height above the blank at which the cutter moves fast", required=True),
     length("allowance", "metal that a last pass takes off each flank", default="no such pass"),
     Field(
         "feed_mode",

@@ -16,11 +16,12 @@ from camgeo.capabilities.cylindrical.angles import TURN, parted
 from camgeo.capabilities.cylindrical.figures import steepest
 from camgeo.capabilities.cylindrical.keys import INVERSE, MOST_PLACES, End, Groove
 from camgeo.capabilities.cylindrical.ways import Way, set_beside, set_radially
-from camgeo.common.rounding import upward
+from camgeo.common.rounding import downward, upward
 from camgeo.files.gcode import SHARE, comment, feed_text, plain
 from camgeo.fit.bound import Bound
 from kin.cylindrical.program import Cutting
 from kin.numeric.records import replace
+from kin.read.gcode import LARGEST
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,6 +39,7 @@ OVERLAP = math.radians(5.0)  # by which a pass goes on beyond a turn
 ROUNDED = 0.5  # of the tolerance, that words of few decimals may take
 LEAST_PLACES = 3
 BELOW = 0.02  # mm that a depth goes below where the next begins
+LEAST_ROOM = 0.01  # mm off a flank, below which the cutter goes down on it
 BESIDE = 0.5  # of the cutter's radius, off a flank, where it goes down
 MOST_PASSES = 2000
 
@@ -84,6 +86,11 @@ def write_program(
     for k, (step, points, _) in enumerate(passes, start=1):
         lines.append(f"({comment(f'{step.name}, pass {k} of {len(passes)}')})")
         lines += written.cut(step, points)
+    if written.fastest > LARGEST:
+        most = downward(own["feed"] * LARGEST / written.fastest / design.recipe.mm, 4)
+        field = f"{design.recipe.field_of(request)}.{request.kind}.feed"
+        why = "makes the inverse time of the shortest block larger than is read"
+        raise design.recipe.error(field, why, None, f"give at most {most}, or feed_mode: per-minute")
     lines += ["G94", "M5", "M30", ""]
     path.write_bytes("\n".join(lines).encode("ascii"))
     worst = max(off for _, _, off in passes)
@@ -225,7 +232,7 @@ def _points(design: DrumDesign, way: Way, chords: float) -> tuple[Array, float]:
     groove = isinstance(design.recipe.track, Groove)
     less = way.flank.radius - way.cutter if groove else BESIDE * way.cutter
     away = -way.flank.side * less
-    if less:
+    if less > LEAST_ROOM:
         a, y = (np.concatenate([row[:1], row, row[-1:]]) for row in (a, y))
         x = np.concatenate([[x[0] + away], x, [x[-1] + away]])
     points = np.column_stack([a, x, y])
@@ -288,6 +295,7 @@ class _Written:
 
     def __init__(self, design: DrumDesign, own: dict[str, Any], count: int, mm: float) -> None:
         self.own, self.count, self.mm, self.blocks = own, count, mm, 0
+        self.fastest = 0.0
         self.blank = design.recipe.radius
         self.safe = design.recipe.radius + own["safe_height"]
         self.inverse = own.get("feed_mode", INVERSE) == INVERSE
@@ -328,7 +336,9 @@ class _Written:
         return f"X{x} Y{y} A{a}" if self.beside else f"X{x} A{a}"
 
     def _feed(self, feed: float, far: float) -> str:
-        return feed_text(feed / far if self.inverse else feed / self.mm)
+        stated = feed / far if self.inverse else feed / self.mm
+        self.fastest = max(self.fastest, stated)
+        return feed_text(stated)
 
     def _text(self, value: float) -> str:
         text = f"{value:.{self.count}f}"

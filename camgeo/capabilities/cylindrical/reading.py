@@ -52,6 +52,8 @@ NOT_YET = {
 FORMATS_NOT_YET = ("step", "svg")
 EXAMPLE = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, safe_height: 5"
 REFUSE = "undercut: refuse, as a cut ends in a sharp edge"
+LEAST_TOLD = {"feed": 1e-3, "plunge": 1e-3, "safe_height": 1e-3, "allowance": 1e-4, "depth_of_cut": 1e-4}
+"""Least figures of a program, in the recipe's unit: bounds against slips, far below what any machine keeps to."""
 RIDGE = 0.02  # mm by which what two cuts along a groove clear is wider than the groove
 NOTHING = 1e-9  # mm: a length below it is none
 
@@ -182,11 +184,14 @@ def _check_programs(values: Values, reader: Reader) -> None:
         path = f"{file['path']}.{file['kind']}"
         if not FILES[file["kind"]].program:
             continue
-        missing = [name for name in NEEDED if name not in file]
-        if missing:
-            remedy = f"give {either(tuple(missing), 'and')}, such as {{{EXAMPLE}}}"
-            reader.fault_at(file["path"], f"a program needs {missing[0]}", None, remedy)
+        if "axes" not in file:  # the format's word alone
+            remedy = f"give {either(NEEDED, 'and')}: {{gcode: {{{EXAMPLE}}}}}"
+            reader.fault_at(file["path"], "a program needs its machine and cutter", None, remedy)
             continue
+        for key, least in LEAST_TOLD.items():
+            if key in file and file[key] < least * reader.mm:
+                remedy = f"give at least {least:g} {reader.units}"
+                reader.fault_at(f"{path}.{key}", "too little for a program", _shown(file[key], reader), remedy)
         widest, told = 2.0 * roller, _shown(file["cutter"], reader)
         narrowest = roller + 0.5 * clearance + RIDGE if kind == "groove" else 0.0
         allowance = file.get("allowance", 0.0)

@@ -1,3 +1,4 @@
+# needs: milling
 """Programs of drums: written, read by a few lines of their own, held against brute force, judged, refused.
 
 Holds: camgeo.capabilities.cylindrical.program, camgeo.capabilities.cylindrical.ways,
@@ -203,7 +204,12 @@ def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None
             "give at least 3",
             ("decimals: 2", "decimals: 3"),
         ),
-        ([("cutter: 20, ", "")], "a program needs cutter; give cutter, such as", ("[X, A],", "[X, A], cutter: 20,")),
+        ([("cutter: 20, ", "")], "gcode.cutter: missing", ("[X, A],", "[X, A], cutter: 20,")),
+        (
+            [(f"{{gcode: {{{OPTIONS}}}}}", "gcode")],
+            "a program needs its machine and cutter; give axes, cutter, feed",
+            ("[gcode]", f"[{{gcode: {{{OPTIONS}}}}}]"),
+        ),
         ([("[X, A]", "[X, B]")], "not the axes of such a machine", ("[X, B]", "[X, Z, A]")),
         (
             [("cutter: 20", "cutter: 20, allowance: 0.2"), ("[X, A]", "[X, Y, A]")],
