@@ -148,7 +148,7 @@ def _flank(
     most, least = max(float(left.off.max()), 0.0), max(-float(left.off.min()), 0.0)
     words = f"{length_words(most, '.3g')} {UNIT} left and {length_words(least, '.3g')} {UNIT} too deep"
     detail = f"{words}; true within {length_words(remainder, '.2g')} {UNIT}"
-    value = assured(worst, remainder, tolerance)
+    value = worst if worst > tolerance else assured(worst, remainder, tolerance)
     checks = [placed(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=slack), at)]
     motion = _motion(gauge, left)
     checks.append(motion_check(motion, gauge, limits, slack))

@@ -117,6 +117,17 @@ def test_a_cutter_smaller_than_the_roller_leaves_metal(tmp_path):
         assert flank.measured_error == pytest.approx(0.025, abs=1e-3)
 
 
+def test_what_stands_between_two_ways_is_found(tmp_path):
+    """Of cutters of 9 the two ways of a groove of 20 clear all but a ridge of 2."""
+    a, x = way(level=0.0, step=2.0)
+    ways = "".join(text_of(a, x + level).split("M5")[0] for level in (14.5, 25.5))
+    text = ways.replace("(cutter: diameter 20)", "") + "M5\nM30\n"
+    verdict = judged(tmp_path, text, cutting=replace(CUTTING, radius=4.5), tolerance=1.0)
+    (check,) = [each for each in verdict.checks if each.name == "cleared"]
+    assert not check.ok
+    assert check.value == pytest.approx(11.0)
+
+
 def test_a_cut_flank_is_judged_by_the_path(tmp_path):
     """With a corner of the motion, or an undercut: the greatest distance of the path from the chords."""
     a, x = way()
