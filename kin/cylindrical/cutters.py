@@ -35,6 +35,7 @@ ACROSS, ALONG = 0.05, 0.05  # of the tolerance, by which D may differ between an
 NEARLY = 0.9  # of the cutter's radius: a point that is nearer to its axis is cut away by more than any tolerance
 END = 1e-4  # mm that a cutter's end counts deeper, so that points at its very end are met
 NEAR = 10.0  # times the tolerance: a pass that leaves so much more than another decides nothing
+LONGEST = 0.02  # rad of a block: Newton's method is at home within
 STEPS, HOPS = 2, 60  # of Newton's method in a block, and blocks on the way to the nearest
 MOST_POINTS = 4_000_000
 ROOM = 0.01  # rad
@@ -110,10 +111,15 @@ def _deepest(passes: Sequence[Pass]) -> list[Pass]:
 
 
 def _forwards(one: Pass) -> Pass:
-    """A pass with rising angles."""
-    if one.a[-1] >= one.a[0]:
-        return one
-    return type(one)(one.line, one.z, one.a[::-1], one.x[::-1], one.y[::-1])
+    """A pass with rising angles, its blocks parted so that each is nearly straight as a point sees it."""
+    order = slice(None) if one.a[-1] >= one.a[0] else slice(None, None, -1)
+    rows = [row[order] for row in (one.a, one.x, one.y)]
+    count = np.maximum(np.ceil(np.diff(rows[0]) / LONGEST), 1.0)
+    at = np.arange(len(count) + 1, dtype=np.float64)
+    own = np.repeat(at[:-1], count.astype(np.intp))
+    step = np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count.astype(np.intp))
+    share = np.append(own + step / np.repeat(count, count.astype(np.intp)), at[-1])
+    return type(one)(one.line, one.z, *(np.interp(share, at, row) for row in rows))
 
 
 def _left(
@@ -157,7 +163,7 @@ def _is_clear(points: _Points, one: Pass, roller: float, cutter: float) -> bool:
         far = min(far, float(_nearest(points.part(slice(None), columns), one, turn, roller, cutter).off.min()))
     places = np.stack([points.r * np.cos(points.phi), points.r * np.sin(points.phi), points.z])
     apart = [np.sqrt((np.diff(places, axis=axis) ** 2).sum(axis=0)).max(initial=0.0) for axis in (1, 2)]
-    return far > sum(apart)
+    return bool(far > sum(apart))
 
 
 def _turns(one: Pass, theta: Array, reach: float) -> list[tuple[float, slice]]:

@@ -117,6 +117,18 @@ def test_a_cutter_smaller_than_the_roller_leaves_metal(tmp_path):
         assert flank.measured_error == pytest.approx(0.025, abs=1e-3)
 
 
+def test_a_rest_in_one_long_block(tmp_path):
+    """In dwells the drum turns by 58 degrees at a time; what is left is as before."""
+    a, x = way(step=1.0)
+    rest = np.isin(np.mod(np.degrees(a).round(), 360.0), np.r_[122:179, 302:359])
+    found = [judged(tmp_path, text_of(*each), tolerance=0.005) for each in ((a, x), (a[~rest], x[~rest]))]
+    for verdict in found:
+        assert verdict.ok, verdict.checks
+    for first, second in zip(*(verdict.flanks for verdict in found), strict=True):
+        assert second.motion.max == pytest.approx(first.motion.max, abs=1e-6)
+        assert second.motion.rms == pytest.approx(first.motion.rms, abs=1e-5)
+
+
 def test_what_stands_between_two_ways_is_found(tmp_path):
     """Of cutters of 9 the two ways of a groove of 20 clear all but a ridge of 2."""
     a, x = way(level=0.0, step=2.0)
