@@ -184,6 +184,7 @@ def test_an_allowance_is_left_by_all_but_the_last_pass(tmp_path: Path) -> None:
     assert [run[3, 2] for run in runs] == [43.75, 43.75, 37.5, 37.5, 37.5, 37.5]
 
 
+@pytest.mark.costly("the one drum that is undercut, whose cuts take as long to find as all else")
 def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None:
     text = program(UNDERCUT, ("cutter: 20", "cutter: 24"))
     assert exported(tmp_path, text).ok
