@@ -1,4 +1,4 @@
-"""What kinds of cams with recipes of their own have alike in the library: functions of a recipe, and designs."""
+"""Library of cams with recipes of their own: functions of a recipe, and designs, alike for all such kinds."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Library(Protocol):
 def root_of_kind(
     run: Callable[[], OwnKind[Any, Any]], library: Callable[[], Library], kind: str, judged: str
 ) -> Root[Any]:
-    """Functions of a kind of cam, from what it answers in a run and in the library, each imported when it is called.
+    """Functions of a kind of cam, from its run and its answers in the library, each imported when it is called.
 
     `kind` is its `cam.kind`; `judged` names the files of it that are judged: `a drawing of the plate`.
     """

@@ -60,7 +60,7 @@ class _NoGrooveError(CamgeoError, ValueError):
 
 
 class _Read(NamedTuple):
-    """What a file holds, in mm and as if not mirrored.
+    """Contents of a file, in mm and as if not mirrored.
 
     checks   on the file and on what is not a flank
     chains   of the drawing or section that has the flanks, the outermost first
@@ -428,4 +428,4 @@ def _refused(path: Path, *_: object) -> _Read:
 
 
 READERS = {"drawing": _of_drawing, "solid": _of_solid}
-"""What reads a file, by its contents."""
+"""Readers of files, by their contents."""

@@ -47,7 +47,7 @@ def faults(text: str) -> tuple[str, ...]:
     return ()
 
 
-@pytest.mark.parametrize("seed", few(range(40), 40))
+@pytest.mark.parametrize("seed", few(range(10), 10))
 @pytest.mark.parametrize("order", KINDS)
 def test_recipes_of_any_keys_have_faults_and_no_more(order: str, seed: int) -> None:
     """Each seed stands for 40 recipes; the first waits for the schema of all keys."""
@@ -70,8 +70,8 @@ def test_recipes_of_any_keys_have_the_keys_of_all_capabilities() -> None:
     ("wrong", "name"),
     [
         pytest.param(wrong, name, marks=() if name in QUICK and wrong == "@nought" else pytest.mark.slow)
-        for wrong in ("@nought", [], None, {"x": "y"}, -1)
-        for name in BASES
+        for number, name in enumerate(BASES)
+        for wrong in ("@nought", ([], None, {"x": "y"}, -1)[number % 4])
     ],
 )
 def test_a_sound_recipe_with_one_wrong_value_has_faults_and_no_more(name: str, wrong: Any) -> None:

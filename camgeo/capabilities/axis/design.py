@@ -64,7 +64,7 @@ class AxisDesign:
 
     @property
     def own(self) -> float:
-        """That unit in mm or rad."""
+        """Length of that unit: 1 mm, or a degree in rad."""
         return math.radians(1.0) if self.recipe.swings else 1.0
 
     @property
@@ -115,7 +115,7 @@ class AxisDesign:
         return Slave(title, self.rows, self.turn, self.motion.breaks.tolist(), 0.0, unit, scale)
 
     def driven(self, most: float, rates: tuple[float | None, float | None] = (None, None)) -> Driven:
-        """What a drive is to do, with errors up to `most`, mm or rad, and rates as shares; judged in time."""
+        """Motion that a drive is held to, in time: errors up to `most`, mm or rad, rates to shares of their peaks."""
         return Driven(self.motion, self.unit, 0.0, most / self.own, rates, math.degrees(self.speed))
 
     # --- figures ------------------------------------------------------------------------------------------------------

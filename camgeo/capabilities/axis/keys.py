@@ -63,7 +63,7 @@ class AxisRecipe(Order):
 
     @property
     def input_words(self) -> str:
-        """How the master runs, in words."""
+        """Speed of the master, in words."""
         return f"the master turns at {self.rpm:g} rpm"
 
     @property

@@ -121,7 +121,7 @@ def _table_checks(design: AxisDesign, path: Path, request: FileRequest | None, w
 
 
 def _advance_check(design: AxisDesign, path: Path, mm: float) -> Check:
-    """What the table's advance of a cycle misses of the motion's: it adds up from cycle to cycle."""
+    """Error of the table's advance of a cycle, which adds up from cycle to cycle."""
     unit = SLAVES["slave_deg"] if design.unit == "deg" else mm
     try:
         slave = read_drive(path, unit).rows.slave[0]

@@ -53,7 +53,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class Follower:
-    """What touches the plate: a radius, mm, 0 of a knife edge; a stem that leans by `lean`, rad, or an arm."""
+    """Contact of the follower: its radius, mm, 0 of a knife edge; a stem that leans by `lean`, rad, or an arm."""
 
     kind: Literal["roller", "shoe", "knife-edge"]
     radius: float = 0.0
@@ -68,7 +68,7 @@ class Follower:
 
 @dataclass(frozen=True)
 class Ends:
-    """How far the metal reaches beyond the contacts at the first and the last input, mm, and how it goes on there."""
+    """Overrun: length of metal beyond the contacts at the first and the last input, mm, and its shape there."""
 
     overrun: tuple[float, float]
     tangent: bool = True
@@ -141,7 +141,7 @@ class PlacedMark:
 
 @dataclass(frozen=True)
 class Plate:
-    """What the plate has besides its flank, mm; `height` is that of a plate with a groove."""
+    """Dimensions of the plate besides its flank, mm; `height` is that of a plate with a groove."""
 
     thickness: float | None = None
     chamfer: float = 0.0

@@ -183,7 +183,7 @@ class Arm:
 
 
 Guide: TypeAlias = Stem | Arm
-"""What leads the centre of the follower."""
+"""Guide of the follower's centre."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What kin judges the files of a linear cam by, and its verdicts in the report's terms."""
+"""Intents by which kin judges the files of a linear cam, and its verdicts in the report's terms."""
 
 from __future__ import annotations
 

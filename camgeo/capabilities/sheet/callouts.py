@@ -43,8 +43,8 @@ KNEE_OUT = 3.0  # mm from the part to the knees of leaders
 KNEES = np.radians(np.arange(0.0, 360.0, 12.0) + 6.0)  # their directions from the middle
 AIM = np.radians([0.0, -20.0, 20.0, -40.0, 40.0])  # of a leader against the direction to a circle's centre
 CROSSED, MET, ASKEW, BENT, LEVEL = 1e4, 60.0, 6.0, 4.0, 3.0
-"""What a placing costs, in mm of a leader: an opening or a text crossed, a leader crossed, a leader that does not point
-to the centre (by the radian), one with a knee, one that runs along the centre line."""
+"""Penalties of a leader, in mm of its length: for each opening or text that it crosses, for each leader that it
+crosses, for each rad by which it misses the circle's centre, for a knee, and for lying along the centre line."""
 NEAR = 3.0  # mm from an opening: leaders that end there may come nearer to it than that
 TOUCH = 1e-6  # mm: rounding of a leader's end at the edge of its own opening
 GRID = 2.0  # mm between heights that are tried
@@ -81,7 +81,7 @@ class ColumnCallout(NamedTuple):
 
     @property
     def lower(self) -> float:
-        """How much lower than usual its notes stand, mm: below the box of a letter."""
+        """Space, mm, by which its notes stand lower below the box of a datum letter."""
         return 1.0 if self.datum else 0.0
 
     @property
@@ -324,7 +324,7 @@ def _tips(row: ColumnCallout, scale: float, starts: Array) -> tuple[Array, Array
 
 
 def crossings(starts: Array, ends: Array, circles: Array) -> Array:
-    """How many of the circles (k, 3), mm, each line from `starts` (n, 1, 2) to `ends` (n, m, 2) crosses: (n, m)."""
+    """Number of circles (k, 3), mm, that each line from `starts` (n, 1, 2) to `ends` (n, m, 2) crosses: (n, m)."""
     x0, y0, x1, y1 = starts[..., 0], starts[..., 1], ends[..., 0], ends[..., 1]
     u, v = x1 - x0, y1 - y0
     over = 1.0 / np.maximum(u * u + v * v, 1e-12)
@@ -340,21 +340,21 @@ def crossings(starts: Array, ends: Array, circles: Array) -> Array:
 
 
 def leaders_cost(placed: Sequence[PlacedCallout]) -> float:
-    """What leaders cost by their lengths, knees and crossings, in mm of paper."""
+    """Lengths of leaders with the penalties of knees and crossings, mm of paper."""
     long = sum(float(np.hypot(*np.diff(each.leader, axis=0).T).sum()) for each in placed)
     bent = sum(len(each.leader) - 2 for each in placed)
     return long + BENT * bent + CROSSED * sum(each.crossings for each in placed) + MET * _meetings(placed)
 
 
 def _meetings(placed: Sequence[PlacedCallout]) -> int:
-    """How often leaders cross each other, or share a knee."""
+    """Number of pairs of leaders that cross each other or share a knee."""
     pairs = [(one.leader, other.leader) for one, other in combinations(placed, 2)]
     knees = sum(len(one) == len(other) > 2 and bool((one[1] == other[1]).all()) for one, other in pairs)
     return knees + sum(_meet(one, other) for one, other in pairs)
 
 
 def _meet(one: Array, other: Array) -> int:
-    """How often two chains of points cross."""
+    """Number of crossings of two chains of points."""
     count = 0
     for a, b in pairwise(one):
         for c, d in pairwise(other):

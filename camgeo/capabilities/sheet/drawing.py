@@ -197,7 +197,7 @@ def _mass(run: RunResults, rank: int) -> str:
 
 
 def _zone(recipe: Recipe, tolerance: Tolerance) -> Zone:
-    """What a spline through the table may be off: a tenth of the profile's zone, without one the files' tolerance."""
+    """Permitted error of a spline through the table: a tenth of the profile's zone, else the files' tolerance."""
     if tolerance.width is None:
         return Zone(recipe.export.tolerance, stated=False)
     return Zone(SHARE * tolerance.width, stated=True)

@@ -31,14 +31,14 @@ BAR = 100.0  # mm: length of the bar by which a print at 1 : 1 is checked
 
 
 class Zone(NamedTuple):
-    """What a spline through the table may be off, mm, and whether that is a share of the profile's zone."""
+    """Permitted error, mm, of a spline through a table; `stated` where it is a share of the profile's zone."""
 
     permitted: float
     stated: bool
 
     @property
     def words(self) -> str:
-        """What it is, in words."""
+        """Origin of the permitted error, in words."""
         return "a tenth of the profile's zone" if self.stated else "the tolerance of the files"
 
 

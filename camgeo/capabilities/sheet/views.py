@@ -229,7 +229,7 @@ def _fit_words(part: Part) -> str:
 
 
 class Extent(NamedTuple):
-    """What the face needs about the shaft, with its circles about the shaft, mm: x and y at its ends.
+    """Ends in x and y, mm from the shaft, of the face and of its circles about the shaft.
 
     `right` is as far out as the arcs that show the senses stand clear of the part.
     """
@@ -260,9 +260,8 @@ class Layout(NamedTuple):
     """Places of the views at a scale: centre of the face, left end of the section, centre of the view of the bore.
 
     `word` is the scale as a key of SCALES, `scale` its value, `extent` the face's, mm of paper; `callouts` stand beside
-    the face. `sense` is the
-    direction of view along x, 1 or -1: the section stands on the right, so in the first angle it is seen from the left
-    (1).
+    the face. `sense` is the direction of view along x, 1 or -1: the section stands on the right, so in the first angle
+    it is seen from the left (1).
     """
 
     word: str
@@ -276,7 +275,7 @@ class Layout(NamedTuple):
 
     @property
     def cost(self) -> float:
-        """What its leaders cost, in mm of paper."""
+        """Lengths of its leaders with their penalties, mm of paper."""
         return leaders_cost(self.callouts)
 
     @property

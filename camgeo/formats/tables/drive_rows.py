@@ -64,7 +64,7 @@ class Slave:
 
 
 class Wanted(NamedTuple):
-    """What is asked of a table: greatest error of the position, mm or rad, and of rates as shares of their peaks.
+    """Demands on a table: greatest error of the position, mm or rad, and of rates as shares of their peaks.
 
     `step` is the step between rows, rad, None for the fewest rows; with `joints` there are rows at all breaks.
     """
@@ -85,7 +85,7 @@ class Demand(NamedTuple):
 
     @property
     def share(self) -> float:
-        """What was reached as a share of what is allowed."""
+        """Error reached, as a share of the permitted one."""
         return self.reached / self.allowed if self.allowed else math.inf * self.reached
 
     def told(self) -> str:
@@ -136,7 +136,7 @@ class DriveRows:
         return JoinedRows(_radians(rows.degrees), values, self.controller.join, (first, last))
 
     def errors(self, rows: Rows) -> Errors:
-        """What the joined rows miss of the motion, mm or rad."""
+        """Greatest error of the joined rows against the motion, mm or rad."""
         return errors(self.joined(rows), self.slave.above, self.slave.breaks)
 
     @cached_property

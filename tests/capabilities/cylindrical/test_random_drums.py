@@ -103,12 +103,12 @@ def test_every_triangle_is_near_the_drum(seed: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(100, 148))
+@pytest.mark.parametrize("seed", range(100, 116))
 def test_every_triangle_of_many(seed: int) -> None:
     judged(seed, undercut=False)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(200, 212))
+@pytest.mark.parametrize("seed", [202, 203, 208, 209])  # a drum of each track
 def test_every_triangle_of_drums_that_are_cut_short(seed: int) -> None:
     judged(seed, undercut=True)
