@@ -36,7 +36,7 @@ def block(words, before, at, feed=300.0):
     return f"{words} F{feed / far:.4f}"
 
 
-def text_of(a, x, depths=(44.0, 37.5), digits=5, head="(cutter: diameter 20)"):
+def text_of(a, x, *, depths=(44.0, 37.5), digits=5, head="(cutter: diameter 20)"):
     """A program of the way in depths."""
     rows = [(round(math.degrees(p), digits), round(q, digits)) for p, q in zip(a.tolist(), x.tolist(), strict=True)]
     lines = [head, "G21", "G17 G90 G93", "G40 G49 G80", "G0 Z60", "S2000 M3"]
