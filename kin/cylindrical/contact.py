@@ -1,8 +1,7 @@
-"""A roller with ends set down on triangles at given angles, in closed form on edges and on cuts at its ends.
+"""A roller with ends set down on triangles at given angles, on edges and on cuts at its ends.
 
 Seen along the roller's axis, the part of a triangle within the roller's length is a polygon, and the roller a circle.
-On a side of it, from (y, v) on by s (dy, dv), F = v + sqrt(R^2 - y^2) is greatest at one of its ends or where
-y = R dv/hypot(dy, dv), with the sign of dy.
+On a side of it F is greatest where the roller says (`kin.cylindrical.roller`).
 """
 
 from __future__ import annotations
@@ -14,8 +13,8 @@ import numpy as np
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from kin.cylindrical.gauge import Gauge
-    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.cylindrical.roller import Gauge
+    from kin.numeric.arrays import Array, Indices
 
 PAIRS = 200_000  # of a triangle and an angle at a time
 
@@ -52,12 +51,15 @@ def set_down(gauge: Gauge, corners: Array, spans: tuple[Array, Array], theta: Ar
 
 def _gives(gauge: Gauge, corners: Array, theta: Array) -> Array:
     """F (n,) of triangles (n, 3, 3), each at its angle (n,), as far as they lie within the roller's length."""
-    sine, cosine = np.sin(theta)[:, None], np.cos(theta)[:, None]
-    px, py, pz = np.moveaxis(corners, 2, 0)
-    y, along = py * cosine - px * sine, px * cosine + py * sine
-    v = gauge.side * (gauge.axis(theta)[:, None] - pz)
-    best = np.full(len(theta), -np.inf)
-    cuts: dict[float, list[tuple[Array, Array, Array]]] = {gauge.inner: [], gauge.outer: []}
+    sine, cosine, lift = np.sin(theta), np.cos(theta), gauge.lifts.at(theta)[0]
+    along = corners[..., 0] * cosine[:, None] + corners[..., 1] * sine[:, None]
+    best, rows = np.full(len(theta), -np.inf), np.arange(len(theta))
+    cuts: dict[float, list[tuple[Array, Array]]] = {gauge.inner: [], gauge.outer: []}
+
+    def greatest(ends: tuple[Array, Array], shares: tuple[Array, Array]) -> Array:
+        most: Array = np.maximum(best, gauge.greatest(ends, shares, (lift, sine, cosine)))
+        return most
+
     for j in range(3):
         k = (j + 1) % 3
         low, high = np.zeros(len(theta)), np.ones(len(theta))
@@ -69,49 +71,15 @@ def _gives(gauge: Gauge, corners: Array, theta: Array) -> Array:
             low = np.where(crosses & (start < 0.0), np.maximum(low, share), low)
             high = np.where(crosses & (last < 0.0), np.minimum(high, share), high)
             high = np.where((start < 0.0) & (last < 0.0), -1.0, high)
-            share = np.where(crosses, share, 0.0)
-            points = [first[:, j] + share * (first[:, k] - first[:, j]) for first in (y, v)]
-            cuts[place].append((crosses, points[0], points[1]))
-        best = np.maximum(best, _on_side(gauge.radius, (y[:, j], y[:, k]), (v[:, j], v[:, k]), (low, high)))
+            share = np.where(crosses, share, 0.0)[:, None]
+            cuts[place].append((crosses, corners[:, j] + share * (corners[:, k] - corners[:, j])))
+        best = greatest((corners[:, j], corners[:, k]), (low, high))
     for crossings in cuts.values():
-        flags = np.stack([flag for flag, _, _ in crossings])
-        met = flags.any(axis=0)
+        flags, places = np.stack([flag for flag, _ in crossings]), np.stack([place for _, place in crossings])
         first, last = np.argmax(flags, axis=0), 2 - np.argmax(flags[::-1], axis=0)
-        ends = []
-        for row in (1, 2):
-            rows = np.stack([crossing[row] for crossing in crossings])
-            ends.append([np.take_along_axis(rows, which[None], axis=0)[0] for which in (first, last)])
-        whole = np.zeros(len(theta)), np.where(met, 1.0, -1.0)
-        best = np.maximum(best, _on_side(gauge.radius, (ends[0][0], ends[0][1]), (ends[1][0], ends[1][1]), whole))
+        whole = np.zeros(len(theta)), np.where(flags.any(axis=0), 1.0, -1.0)
+        best = greatest((places[first, rows], places[last, rows]), whole)
     return best
-
-
-def best_share(
-    radius: float, y: tuple[Array, Array], v: tuple[Array, Array], shares: tuple[Array, Array]
-) -> tuple[Array, Mask]:
-    """Share (n,) of segments at which F is greatest, from the first to the last of two shares of each, and if any is.
-
-    A segment goes from y[0], v[0] to y[1], v[1], (n,) each.
-    """
-    dy, dv = y[1] - y[0], v[1] - v[0]
-    low, high = shares
-    with np.errstate(divide="ignore", invalid="ignore"):
-        reach = [(sense * radius - y[0]) / dy for sense in (-1.0, 1.0)]
-        flat = dy == 0.0
-        low = np.where(flat, low, np.maximum(low, np.minimum(*reach)))
-        high = np.where(flat, high, np.minimum(high, np.maximum(*reach)))
-        there = (low <= high) & (~flat | (np.abs(y[0]) <= radius))
-        best = (radius * dv * np.sign(dy) / np.hypot(dy, dv) - y[0]) / dy
-        best = np.where(flat, np.where(dv > 0.0, high, low), best)
-    return np.clip(best, low, high), there
-
-
-def _on_side(radius: float, y: tuple[Array, Array], v: tuple[Array, Array], shares: tuple[Array, Array]) -> Array:
-    """Greatest F (n,) on segments between two shares of each; -inf where none is."""
-    share, there = best_share(radius, y, v, shares)
-    across = y[0] + share * (y[1] - y[0])
-    gives = v[0] + share * (v[1] - v[0]) + np.sqrt(np.maximum(radius**2 - across**2, 0.0))
-    return np.where(there, gives, -np.inf)
 
 
 def spans_of(theta: Array, corners: Indices, more: float) -> tuple[Array, Array]:

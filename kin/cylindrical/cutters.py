@@ -26,7 +26,7 @@ from kin.numeric.angles import TURN
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.roller import Gauge
     from kin.cylindrical.turned import Pass
     from kin.numeric.arrays import Array, Indices, Mask
 

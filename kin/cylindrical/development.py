@@ -1,6 +1,6 @@
 """Developments: lines of a drawing laid round a cylinder, and a roller set down on them there.
 
-A straight line of the drawing becomes a helix. Along it, in its polar angle, F of `kin.cylindrical.gauge` bends by no
+A straight line of the drawing becomes a helix. Along it, in its polar angle, F of `kin.cylindrical.roller` bends by no
 more than r^2 R^2/(R^2 - y^2)^(3/2), and in the shaft angle it is concave about its greatest value, so that points close
 to one another settle both what stands out and what holds the roller. A development says nothing of any other radius.
 """
@@ -29,14 +29,16 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.intent import Developed, DrumIntent, Limits
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array
 
 CONTOUR, MOTION = "contour", "motion"
 FINE = 0.05  # of the tolerance, within which what lies between points is known
 MOST = 400_000  # points of a line
 GAP = 1e-6  # of the radius: ends of lines that are so close meet
+SLACK = 1e-6  # of a limit that follows from the steepest slope
+TURNED, MEETINGS = 4096, 40  # angles of a turn at which an arm is looked at; steps to where its axis meets a cylinder
 
 
 class _Line(NamedTuple):
@@ -48,12 +50,16 @@ class _Line(NamedTuple):
 
 
 class _Measured(NamedTuple):
-    """What a line shows: its distance in the drawing, mm, at a shaft angle, rad, and the motion on it."""
+    """What a line shows: its distance in the drawing, mm, at a shaft angle, rad, and the motion on it.
+
+    The motion is in the follower's unit, of which a line that is off by 1 mm costs `steep` at most.
+    """
 
     off: float
     at: float
     remainder: float
     motion: MotionError
+    steep: float
 
 
 def read_lines(path: Path, lines: Sequence[Developed]) -> tuple[float | None, dict[str, list[Array]]]:
@@ -93,36 +99,32 @@ def judged_line(
         return FlankVerdict(line.flank), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
     if line.flank == "pitch":
         lifts, gauge = Lifts(drum.follower.law), None
-        found = _measured_pitch(
-            _laid(parts, line.radius, _step(lifts, line.radius, tolerance)), drum, lifts, line.radius
-        )
+        found = _measured_pitch(parts, drum, line.radius, tolerance)
     else:
         (gauge,) = (one for one in gauges_of(drum) if one.name == line.flank)
         lifts = gauge.lifts
-        bend = line.radius**2 * gauge.radius**2 / (gauge.radius**2 - _widest(gauge, line.radius) ** 2) ** 1.5
-        step = math.sqrt(8.0 * FINE * tolerance / (bend + float(lifts.bends(-gauge.side).max())))
-        found = _measured_flank(_laid(parts, line.radius, step), gauge, line.radius, bend)
+        bend = gauge.line_bend(line.radius, _climb(parts, line.radius))
+        step = math.sqrt(8.0 * FINE * tolerance / (bend + gauge.lever * float(lifts.bends(-gauge.side).max())))
+        found = _measured_flank(_laid(parts, line.radius, step), drum, gauge, line.radius, bend)
     slack = ROUNDING * max(float(np.abs(part).max()) for part in parts)
     sure = f"true within {length_words(found.remainder, '.2g')} {UNIT}"
     check = at_most(CONTOUR, found.off, tolerance, "mm", detail=f"{alone}; {sure}", slack=slack)
     checks = [replace(check, at=degrees(found.at))]
-    steep = math.hypot(1.0, lifts.steepest / line.radius) * (1.0 + 1e-6)
-    limit, room = limit_of(lambda e: e * steep, limits.motion, tolerance, slack)
+    follower = drum.follower
+    given = None if limits.motion is None else follower.told(limits.motion)
+    steep = found.steep * (1.0 + SLACK)
+    limit, room = limit_of(lambda e: e * steep, given, tolerance, slack)
     if not drum.shortened or gauge is None:  # what an undercut loses at one radius, another carries
-        check = at_most(MOTION, found.motion.max, limit, "mm", detail=alone, slack=room)
+        check = at_most(MOTION, found.motion.max, limit, follower.unit, detail=alone, slack=room)
         checks.append(replace(check, at=found.motion.at))
     return FlankVerdict(line.flank, found.motion, found.off), checks
 
 
-def _widest(gauge: Gauge, radius: float) -> float:
-    """Upper bound of |y| at contact on a cylinder, mm."""
-    nearest = math.sqrt(max(radius**2 - gauge.radius**2, (0.1 * radius) ** 2))
-    return gauge.radius * math.sin(math.atan2(gauge.lifts.steepest, nearest))
-
-
-def _step(lifts: Lifts, radius: float, tolerance: float) -> float:
-    bend = max(float(lifts.bends(side).max()) for side in (-1, 1))
-    return math.sqrt(8.0 * FINE * tolerance / max(bend, 1e-3 * radius))
+def _climb(parts: list[Array], radius: float) -> float:
+    """How fast the lines rise or fall at most, mm per rad round a cylinder."""
+    steps = [np.abs(np.diff(part, axis=0)) for part in parts]
+    rates = [float((step[:, 1] / np.maximum(step[:, 0], GAP * radius)).max(initial=0.0)) for step in steps]
+    return radius * max(rates)
 
 
 def _uncovered(parts: list[Array], radius: float) -> float | None:
@@ -157,31 +159,41 @@ def _laid(parts: list[Array], radius: float, step: float) -> _Line:
     return _Line(np.concatenate(phi), np.concatenate(z), np.concatenate(joined)[:-1])
 
 
-def _measured_pitch(line: _Line, drum: DrumIntent, lifts: Lifts, radius: float) -> _Measured:
-    """The path of the roller's axis: its height is the position itself."""
-    lift, slope, _ = lifts.at(line.phi)
-    error = line.z - drum.follower.level - lift
-    off = np.abs(error) / np.hypot(1.0, slope / radius)
-    bend = max(float(lifts.bends(side).max()) for side in (-1, 1))
+def _measured_pitch(parts: list[Array], drum: DrumIntent, radius: float, tolerance: float) -> _Measured:
+    """The path on which the roller's axis meets the cylinder: its height tells the position itself."""
+    follower, lifts = drum.follower, Lifts(drum.follower.law)
+    guide = follower.guide()
+    bends = max(float(lifts.bends(side).max()) for side in (-1, 1))
+    swung = guide.axis(*lifts.at(np.linspace(0.0, TURN, TURNED)))
+    slowest = 1.0 - float((np.abs(swung.y1) / np.sqrt(radius**2 - swung.y**2)).max())
+    bend = guide.lever * (bends + lifts.steepest**2 * guide.lever * guide.bend) / slowest**3
+    line = _laid(parts, radius, math.sqrt(8.0 * FINE * tolerance / max(bend, 1e-3 * radius)))
+    theta = line.phi
+    for _ in range(MEETINGS):
+        theta = line.phi - np.arcsin(guide.axis(*lifts.at(theta)).y / radius)
+    lift, slope, curve = lifts.at(theta)
+    axis, way = guide.axis(lift, slope, curve), guide.axis(lift, np.ones_like(lift), np.zeros_like(lift))
+    along = np.sqrt(radius**2 - axis.y**2)
+    climb = axis.z1 / (1.0 + axis.y1 / along)
+    error = guide.above(line.z, lift)
+    off = np.abs(error) / np.hypot(1.0, climb / radius)
+    rate = way.z1 - climb * way.y1 / along
+    error = error / rate
     room = 0.125 * bend * float((np.diff(line.phi)[line.joined] ** 2).max(initial=0.0))
     k, worst = int(np.argmax(off)), int(np.argmax(np.abs(error)))
-    motion = MotionError(
-        float(np.abs(error).max()),
-        degrees(float(line.phi[worst])),
-        room,
-        float(error.min()),
-        float(error.max()),
-        float(np.sqrt(np.mean(error**2))),
-    )
-    return _Measured(float(off[k]), float(line.phi[k]), room, motion)
+    told = follower.told(1.0)
+    sizes = [float(np.abs(error).max()), room / guide.lever, float(error.min()), float(error.max())]
+    most, rest, least, greatest, rms = (told * size for size in (*sizes, float(np.sqrt(np.mean(error**2)))))
+    motion = MotionError(most, degrees(float(theta[worst])), rest, least, greatest, rms, follower.unit)
+    steep = told * math.hypot(1.0, guide.lever * lifts.steepest / slowest / radius) / float(np.abs(rate).min())
+    return _Measured(float(off[k]), float(theta[k]), room, motion, steep)
 
 
-def _measured_flank(line: _Line, gauge: Gauge, radius: float, bend: float) -> _Measured:
+def _measured_flank(line: _Line, drum: DrumIntent, gauge: Gauge, radius: float, bend: float) -> _Measured:
     """A flank: how far it stands out at the worst angles of its points, and how high it holds the roller between."""
     points = np.stack([radius * np.cos(line.phi), radius * np.sin(line.phi), line.z], axis=-1)
     worst = gauge.worst(points)
-    # on the cylinder the exact flank rises by the lift's own slope
-    off = np.abs(worst.height) / np.hypot(1.0, gauge.lifts.at(worst.theta)[1] / radius)
+    off = gauge.off_line(worst, points, radius)
     room = 0.125 * bend * float((np.diff(line.phi)[line.joined] ** 2).max(initial=0.0))
     first, last = worst.theta[:-1][line.joined], worst.theta[1:][line.joined]
     middle = first + 0.5 * (np.remainder(last - first + math.pi, TURN) - math.pi)
@@ -191,5 +203,7 @@ def _measured_flank(line: _Line, gauge: Gauge, radius: float, bend: float) -> _M
     low, high = min(float(between[least]), float(worst.height.min())), float(worst.height[most])
     value, at = (high, float(worst.theta[most])) if high >= -low else (-low, float(middle[least]))
     rms = float(np.sqrt(np.mean(worst.height**2)))
-    motion = MotionError(value, degrees(at), room, low, high, rms)
-    return _Measured(float(off[k]), float(worst.theta[k]), room, motion)
+    told = drum.follower.told(1.0) / gauge.lever
+    most_, rest, least_, greatest, rms = (told * size for size in (value, room, low, high, rms))
+    motion = MotionError(most_, degrees(at), rest, least_, greatest, rms, drum.follower.unit)
+    return _Measured(float(off[k]), float(worst.theta[k]), room, motion, told * gauge.by_line(1.0, radius))

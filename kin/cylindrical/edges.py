@@ -31,7 +31,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.gauge import Gauge, Worst
+    from kin.cylindrical.roller import Gauge, Worst
     from kin.numeric.arrays import Array, Indices, Mask
 
 NODES = 250_000  # points of edges at a time
@@ -210,16 +210,10 @@ class _Look:
         fall = np.minimum(self.worst.bend[a], self.worst.bend[b])[own]
 
         k %= len(grid)
-        y, along, v = self._across(points, grid.sine[k], grid.cosine[k], grid.lift[k])
-        slope = gauge.side * grid.slope[k]
+        lifted = grid.lift[k], grid.slope[k], grid.bend[k]
+        height, rate, distance, along = gauge.near(points, lifted, grid.sine[k], grid.cosine[k])
         with np.errstate(invalid="ignore", divide="ignore"):
-            depth = np.sqrt(gauge.radius**2 - y * y)
-            rate = y * along / depth + slope
             more = rate**2 / (2.0 * fall)
-        height = v + depth
-        curve = along**2 - y**2 + slope**2 + v * gauge.side * grid.bend[k]
-        square = y * y + v * v - (v * slope - y * along) ** 2 / np.where(curve > 0.0, curve, np.inf)
-        distance = np.sqrt(np.maximum(square, 0.0)) - gauge.radius
         known = np.isfinite(height) & np.isfinite(more)
         height, more = np.where(known, height, -np.inf), np.where(known, more, np.inf)
         upright = height.copy()
@@ -241,12 +235,6 @@ class _Look:
         self.bare.reached(distance[flank[own]], theta[flank[own]])
         self._between(rows, (own, step, count), (share, theta, height + more, distance))
 
-    def _across(self, points: Sequence[Array], sine: Array, cosine: Array, lift: Array) -> tuple[Array, Array, Array]:
-        """y, X and v (n,) of points, three columns (n,), at angles of known sine and cosine."""
-        px, py, pz = points
-        v = self.gauge.side * (self.gauge.level + lift - pz)
-        return py * cosine - px * sine, px * cosine + py * sine, v
-
     def _midway(self, k: Indices, points: Sequence[Array], height: Array, held: Mask, flank: Mask) -> None:
         """Take in how high points hold the roller at angles number k (n,) and half a step to both sides.
 
@@ -257,13 +245,8 @@ class _Look:
         height = np.where(held, height[which], -np.inf)
         least = height
         for number in (k, k - 1):
-            lift, sine, cosine = self.grid.after[:, number % len(self.grid)]
-            y, along, v = self._across(points, sine, cosine, lift)
-            square = y * y
-            if flank.any():
-                self.bare.settled(np.sqrt((square + v * v)[flank]) - self.gauge.radius)
-            with np.errstate(invalid="ignore"):
-                gives = v + np.sqrt(self.gauge.radius**2 - square)
+            gives, away, along = self.gauge.held(points, *self.grid.after[:, number % len(self.grid)])
+            self.bare.settled(away[flank])
             least = np.where(
                 self._within(along) & (gives < least), gives, np.where(self._within(along), least, -np.inf)
             )
@@ -279,9 +262,9 @@ class _Look:
         places, theta = self.points[self.corners], self.worst.theta[self.corners]
         for held in holding(self.gauge, self.grid, places, theta, open_):
             points = list(held.points.T)
-            k, lift = held.number, self.grid.lift[held.number]
-            y, _, v = self._across(points, self.grid.sine[k], self.grid.cosine[k], lift)
-            height = v + np.sqrt(np.maximum(self.gauge.radius**2 - y * y, 0.0))
+            k = held.number
+            gives = self.gauge.held(points, self.grid.lift[k], self.grid.sine[k], self.grid.cosine[k]).gives
+            height = np.where(np.isfinite(gives), gives, -np.inf)
             every = np.ones(len(k), dtype=np.bool_)
             self._midway(k, points, height, every, ~every)
 
@@ -321,9 +304,9 @@ class _Look:
         rate = np.minimum(rate + flat * (0.125 * turned**2 + self.grid.width), flat)
         part, bend = shares[i + 1] - shares[i], np.abs(thetas[i + 1] - thetas[i])
         bend = np.where(bend > 2.0 * self.grid.width, flat[edge], rate[edge]) * part
-        out, proud = self._bounds(
-            bend, way[:, 2][edge] * part, (heights[i], heights[i + 1]), (distances[i], distances[i + 1])
-        )
+        first, last = (heights[i], distances[i]), (heights[i + 1], distances[i + 1])
+        bends = self.gauge.bounds(bend, way[:, 2][edge] * part, flat[edge] * part, np.minimum(first[1], last[1]))
+        out, proud = peak_between(first[0], last[0], bends[0]), peak_between(-first[1], -last[1], bends[1])
         flank, reached = self.flank[rows][edge], self.reached[rows][edge]
         near = (out <= self.out.value + self.near) | ~reached, (proud <= self.proud.value + self.near) | ~flank
         closed = near[0] & near[1]
@@ -338,31 +321,13 @@ class _Look:
                 self._bounded(ends, thetas[pair], heights[pair], distances[pair], (reached[open_], flank[open_]))
             )
 
-    def _bounds(
-        self, across: Array, up: Array, heights: tuple[Array, Array], distances: tuple[Array, Array]
-    ) -> tuple[Array, Array]:
-        """Bounds (n,), (n,) of what stands out along z and along the normal between two points of edges.
-
-        They are `across` and `up` apart, seen along the roller, at any of the worst angles between them.
-        """
-        radius = self.gauge.radius
-        most = self.gauge.widest + across
-        with np.errstate(invalid="ignore", divide="ignore"):
-            bend = across**2 * radius**2 / np.maximum(radius**2 - most**2, 0.0) ** 1.5
-            bend = np.where(most < radius, bend, np.inf)
-            least = np.maximum(radius + np.minimum(*distances) - 0.125 * (across + np.abs(up)), 0.5 * radius)
-            round_ = (across**2 + up**2) / least
-        return peak_between(*heights, bend), peak_between(-distances[0], -distances[1], round_)
-
     def _strips(self) -> None:
         """Bounds of corners of the flank within their own strips."""
         chosen = np.zeros(len(self.points), dtype=np.bool_)
         whole = self.flank & ~self.torn
         chosen[self.a[whole]] = chosen[self.b[whole]] = True
         k = np.floor(self.worst.theta[chosen] / self.grid.width).astype(np.intp) % len(self.grid)
-        lift, sine, cosine = self.grid.after[:, k]
-        y, _, v = self._across(list(self.points[chosen].T), sine, cosine, lift)
-        self.bare.settled(np.hypot(y, v) - self.gauge.radius)
+        self.bare.settled(self.gauge.held(list(self.points[chosen].T), *self.grid.after[:, k]).away)
 
     def _bounded(
         self, ends: Array, theta: Array, heights: Array, distances: Array, counts: tuple[Mask, Mask]
@@ -373,7 +338,9 @@ class _Look:
         across = np.abs(way[:, None, 1] * np.cos(theta) - way[:, None, 0] * np.sin(theta)).max(axis=1)
         across = np.minimum(across + flat * np.maximum(np.abs(theta[:, 1] - theta[:, 0]), self.grid.width), flat)
         limited = self._limited(ends, theta, heights, flat, counts[0])
-        out, proud = self._bounds(across, way[:, 2], limited, (distances[:, 0], distances[:, 1]))
+        bends = self.gauge.close_bounds(ends, theta, (across, way[:, 2], flat), distances.min(axis=1))
+        out = peak_between(*limited, bends[0])
+        proud = peak_between(-distances[:, 0], -distances[:, 1], bends[1])
         out, proud = np.where(counts[0], out, -np.inf), np.where(counts[1], proud, -np.inf)
         return _Parts(ends, theta, heights, distances, out, proud)
 
@@ -404,7 +371,7 @@ class _Look:
         r, phi = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
         y = points[:, 1] * np.cos(theta) - points[:, 0] * np.sin(theta)
         # nan: nothing of it is within the roller's length; nor is what is too far across
-        there = (most >= 0.0) & (least < self.gauge.radius)
+        there = (most >= 0.0) & (least < self.gauge.reach)
         found = np.where(there, heights, -np.inf)
         off = np.flatnonzero(there & ((np.abs(y) > most) | (np.abs(y) < least)))
         if len(off):

@@ -11,17 +11,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.cylindrical.frame import along_roller, rates, regularity_jet
+from kin.cylindrical.frame import On, place_jets, pressure_jet, rates, regularity_jet
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove, Rib
 from kin.numeric.angles import TURN
 from kin.numeric.extrema import extremes_over
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kin.cylindrical.follower import DrumFollower
     from kin.cylindrical.intent import DrumIntent
+    from kin.cylindrical.roller import Gauge
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
     from kin.numeric.elementary import Jet
@@ -66,7 +68,7 @@ class Undercut(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """Greatest contact force, N, and greatest and least torque on the cam, N mm, under a load along z."""
+    """Greatest contact force, N, and greatest and least torque on the cam, N mm, under a load along the motion."""
 
     contact: At
     torque: At
@@ -82,7 +84,7 @@ class Thickness(NamedTuple):
 
 
 class Plays(NamedTuple):
-    """Least and greatest free travel along z, mm, over all shaft angles."""
+    """Least and greatest free travel along z, mm, or of an arm, rad, over all shaft angles."""
 
     least: At
     most: At
@@ -94,28 +96,35 @@ def _extremes(follower: DrumFollower, figure: Callable[[Array, int], Jet]) -> tu
 
 
 def slopes(follower: DrumFollower) -> tuple[At, At]:
-    """Least and greatest slope S', mm per rad."""
+    """Least and greatest slope S', mm or rad per rad."""
     return _extremes(follower, lambda theta, side: rates(follower, theta, 2, side).slope)
 
 
-def pressure_angles(follower: DrumFollower, rho: float) -> Angles:
+def pressure_angles(follower: DrumFollower, rho: float, side: Side = -1) -> Angles:
     """Greatest and least pressure angle at the place rho, mm, along the roller, over all shaft angles."""
-    least, greatest = (At(math.atan2(slope.value, rho), slope.at) for slope in slopes(follower))
-    return Angles(greatest, least)
+    on = On(side)
+    found = _extremes(follower, lambda theta, own: pressure_jet(follower, rates(follower, theta, 2, own), rho, on))
+    return Angles(found[1], found[0])
 
 
-def outer_contact(follower: DrumFollower, radius: float, clearance: float = 0.0) -> At:
+def outer_contact(
+    follower: DrumFollower, radius: float, clearance: float = 0.0, side: Side = -1, beside: float = 0.0
+) -> At:
     """Least place along the roller, mm, at which a blank of `radius`, mm, ends the contact, over all shaft angles."""
-    steepest = max(slopes(follower), key=lambda slope: abs(slope.value))
-    return At(float(along_roller(steepest.value, radius, follower.radius + clearance)), steepest.at)
+    on = On(side, clearance, beside)
+    return _extremes(follower, lambda theta, own: place_jets(follower, rates(follower, theta, 2, own), radius, on)[0])[
+        0
+    ]
 
 
-def least_regularity(follower: DrumFollower, rho: float, side: Side = -1, clearance: float = 0.0) -> At:
+def least_regularity(
+    follower: DrumFollower, rho: float, side: Side = -1, clearance: float = 0.0, beside: float = 0.0
+) -> At:
     """Least regularity D of a flank, mm, at a place along the roller, over all shaft angles."""
-    radius = follower.radius + clearance
+    on = On(side, clearance, beside)
 
     def figure(theta: Array, knot_side: int) -> Jet:
-        return regularity_jet(rates(follower, theta, 2, knot_side), rho, radius, side)
+        return regularity_jet(follower, rates(follower, theta, 2, knot_side), rho, on)
 
     return _extremes(follower, figure)[0]
 
@@ -124,22 +133,21 @@ def undercut(drum: DrumIntent, side: Side = -1) -> Undercut:
     """Where a drum's flank is undercut, from its floor outwards, and the length of contact that is left."""
     follower = drum.follower
     clearance = drum.track.clearance if isinstance(drum.track, Groove) and side > 0 else 0.0
+    beside = -0.5 * side * drum.track.distance if isinstance(drum.track, Rib) else 0.0
 
     def least(rho: float) -> At:
-        return least_regularity(follower, rho, side, clearance)
-
-    def ends(slope: float) -> float:
-        roller = follower.radius + clearance
-        return min(follower.outer, float(along_roller(slope, drum.radius, roller)))
+        return least_regularity(follower, rho, side, clearance, beside)
 
     low, high = max(drum.floor, 0.1 * drum.radius), drum.radius
     inner = least(low)
     if inner.value > 0.0:
-        length = ends(max(abs(slope.value) for slope in slopes(follower))) - follower.inner
-        return Undercut(0.0, math.nan, length, 1.0)
+        end = outer_contact(follower, drum.radius, clearance, side, beside).value
+        return Undercut(0.0, math.nan, min(follower.outer, end) - follower.inner, 1.0)
     below = _rising_zero(lambda rho: least(rho).value, low, high)
     at = least(below).at
-    whole = ends(float(rates(follower, np.array([at])).slope.c[0, 0])) - follower.inner
+    rows, on = rates(follower, np.array([at])), On(side, clearance, beside)
+    end = float(place_jets(follower, rows, drum.radius, on)[0].c[0, 0])
+    whole = min(follower.outer, end) - follower.inner
     left = max(whole - max(below - follower.inner, 0.0), 0.0)
     return Undercut(below, at, left, left / whole)
 
@@ -172,26 +180,28 @@ def lost_alone(drum: DrumIntent, radius: float, theta: Array, side: Side = -1) -
     There the flank is what rollers at all angles leave; 0 where it is not undercut.
     """
     (gauge,) = (one for one in gauges_of(drum) if one.side == side)
-
-    def gives(y: Array) -> Array:
-        points = _beside(theta, y, np.sqrt(radius**2 - y * y))
-        flat = points.reshape(-1, 3)
-        stand = gauge.stand(flat, np.repeat(theta, y.shape[1]))
-        gone: Array = (gauge.worst(flat).height - stand.gives).reshape(y.shape)
-        return gone
-
-    return _least_across(gives, len(theta), gauge.radius, CORNERED)[1]
+    return _least_across(lambda y: _room(gauge, gauge, theta, y, (math.inf, radius)), gauge, theta, CORNERED)[1]
 
 
-def _beside(theta: Array, y: Array, x: Array) -> Array:
-    """Points (n, m, 3) at z = 0, x along and y across (n, m) a roller's axis at angles (n,)."""
-    sine, cosine = np.sin(theta)[:, None], np.cos(theta)[:, None]
-    return np.stack([x * cosine - y * sine, x * sine + y * cosine, np.zeros_like(y)], axis=-1)
+def _room(gauge: Gauge, roller: Gauge, theta: Array, across: Array, ends: tuple[float, float]) -> Array:
+    """How far (n, m) a roller at angles (n,) may go, mm or rad, until it meets the exact flank of a gauge.
+
+    It does so at places across its axis (n, m), mm, and along it at the first of `ends`, mm, or on the cylinder of the
+    second, where the blank ends it; infinite where it meets nothing.
+    """
+    y = gauge.aside(theta)[:, None] + across
+    x = np.minimum(ends[0], np.sqrt(ends[1] ** 2 - y * y))
+    r, phi = np.hypot(x, y), theta[:, None] + np.arctan2(y, x)
+    z = gauge.surface(phi.ravel(), r.ravel())
+    points = np.stack([(r * np.cos(phi)).ravel(), (r * np.sin(phi)).ravel(), z], axis=-1)
+    gives = roller.stand(points, np.repeat(theta, across.shape[1])).gives.reshape(across.shape)
+    return np.where(np.isfinite(gives), -gives / gauge.lever, np.inf)
 
 
-def _least_across(function: Callable[[Array], Array], count: int, roller: float, rounds: int) -> tuple[Array, Array]:
-    """Place across a roller, mm, at which a function of places (count, m) is least, and its value, by closer grids."""
-    middle, width = np.zeros((count, 1)), WITHIN * roller
+def _least_across(function: Callable[[Array], Array], gauge: Gauge, theta: Array, rounds: int) -> tuple[Array, Array]:
+    """Place across a roller, mm, at which a function of places (n, m) is least, and its value, by closer grids."""
+    middle, roller = np.zeros((len(theta), 1)), gauge.largest
+    width = WITHIN * roller
     for _ in range(rounds):
         y = np.clip(middle + width * np.linspace(-1.0, 1.0, ACROSS), -WITHIN * roller, WITHIN * roller)
         values = function(y)
@@ -210,12 +220,12 @@ def rib_thickness(drum: DrumIntent) -> Thickness:
     for radius in (drum.floor, drum.radius):
 
         def thick(phi: Array, radius: float = radius) -> Array:
-            points = np.stack([radius * np.cos(phi), radius * np.sin(phi), np.zeros_like(phi)], axis=-1)
-            # the height of z = 0 over a flank is that of the flank over it, but for its sign
-            return -upper.worst(points).height - lower.worst(points).height
+            far = np.full(len(phi), radius)
+            return upper.surface(phi, far) - lower.surface(phi, far)
 
         phi = _least_place(thick)
-        point = np.array([[radius * math.cos(phi), radius * math.sin(phi), 0.0]])
+        (height,) = upper.surface(np.array([phi]), np.array([radius]))
+        point = np.array([[radius * math.cos(phi), radius * math.sin(phi), height]])
         value = float(thick(np.array([phi]))[0])
         if value < best.value:
             best = Thickness(value, float(upper.worst(point).theta[0]) % TURN, radius)
@@ -234,22 +244,22 @@ def _least_place(function: Callable[[Array], Array], angles: int = ANGLES) -> fl
 
 
 def exact_play(drum: DrumIntent, theta: Array) -> Array:
-    """Travel (n,), mm along z, of the follower between exact flanks at shaft angles (n,), rad, cam at rest.
+    """Travel (n,), mm or rad, of the follower between exact flanks at shaft angles (n,), rad, cam at rest.
 
-    In a groove the roller goes up until it meets the upper flank, which it does at its outer end, or where the blank
+    In a groove the roller goes up until it meets the upper flank, which it does at one of its ends, or where the blank
     ends there; elsewhere there is no play.
     """
     if not isinstance(drum.track, Groove):
         return np.zeros(len(theta))
-    outer, roller, (_, upper) = drum.follower.outer, drum.follower.radius, gauges_of(drum)
-    axis = upper.axis(theta)[:, None]
+    _, upper = gauges_of(drum)
+    roller = replace(upper, radius=drum.follower.radius)
 
-    def room(y: Array) -> Array:
-        points = _beside(theta, y, np.minimum(outer, np.sqrt(drum.radius**2 - y * y)))
-        height: Array = upper.worst(points.reshape(-1, 3)).height.reshape(y.shape)
-        return height - np.sqrt(roller**2 - y * y) - axis
+    def play(end: float) -> Array:
+        return _least_across(lambda y: _room(upper, roller, theta, y, (end, drum.radius)), upper, theta, ROUNDS)[1]
 
-    return _least_across(room, len(theta), roller, ROUNDS)[1]
+    found = play(drum.follower.inner), play(drum.follower.outer)
+    least: Array = np.minimum(*found)
+    return least
 
 
 def plays(drum: DrumIntent) -> Plays:
@@ -259,9 +269,12 @@ def plays(drum: DrumIntent) -> Plays:
     return Plays(*(At(float(exact_play(drum, np.array([at]))[0]), at % TURN) for at in (least, most)))
 
 
-def forces(follower: DrumFollower, load: float, rho: float) -> Forces:
-    """Forces under a `load`, N, along z, all of it carried at the place rho, mm: N = F/cos a, torque F S'."""
+def forces(follower: DrumFollower, load: float, rho: float, side: Side = -1) -> Forces:
+    """Forces under a `load` along the motion, N or, on an arm, N mm, all of it carried at the place rho, mm.
+
+    The contact force is N = load/(lever cos a cos delta), the torque load S'.
+    """
     least, greatest = slopes(follower)
-    steepest = max(least, greatest, key=lambda slope: abs(slope.value))
-    contact = At(load * math.hypot(1.0, steepest.value / rho), steepest.at)
-    return Forces(contact, At(load * greatest.value, greatest.at), At(load * least.value, least.at))
+    angle = max(pressure_angles(follower, rho, side), key=lambda angle: abs(angle.value))
+    along = follower.guide().lever * math.cos(angle.value) * math.cos(follower.taper)
+    return Forces(At(load / along, angle.at), At(load * greatest.value, greatest.at), At(load * least.value, least.at))

@@ -1,17 +1,20 @@
 """The exact flank of a drum in closed form: where a roller touches it, how it bends, where it is undercut.
 
-A point of the roller's axis at rho moves, seen from the cam, by V = rho e_t + S' k per radian. The normal of contact is
-square to it and to the axis: with w = hypot(rho, S'), sin a = S'/w and cos a = rho/w,
+A point at rho on the roller's axis, which is at (y, z), moves seen from the cam by V = -y e_r + (rho + y') e_t + z' k
+per radian. There the roller has the radius R, which grows by g = tan delta along it. A normal of contact is square to V
+and to the cone (equation of meshing; Litvin, Gear Geometry): with A = rho + y' + R g, w = hypot(A, z') and
+n = -sin a e_t + cos a k,
 
-    n = -sin a e_t + cos a k,    flank = rho e_r + (level + S) k + side R n,
+    A sin a - z' cos a = side y g,    flank = rho e_r + y e_t + z k + side R n,
 
-side -1 below the roller and 1 above it (equation of meshing; Litvin, Gear Geometry). Both partial derivatives of the
-flank are square to n and span
+side -1 below the roller and 1 above it; on a cylinder, or with y = 0, sin a = z'/w and cos a = A/w. By its derivatives
 
-    D = w - side R rho S''/w^2 - R^2 S'^2/w^3,
+    a' = (-sin a y'' + cos a z'' + side y' g)/h    by the shaft angle,    h = cos a A + sin a z'
+    a. = -sin a (1 + g^2)/h                        along the roller
 
-above 0 where the flank is regular; the curvature of flank against roller across the line of contact is
-w (1 + (R sin a/w)^2)/(R D).
+follow both tangents of the flank. Their product along its normal is D, above 0 where the flank is regular: for a
+cylinder with y = 0 it is w - side R rho S''/w^2 - R^2 S'^2/w^3, and the curvature of flank against roller across the
+line of contact is w (1 + (R sin a/w)^2)/(R D).
 """
 
 from __future__ import annotations
@@ -20,21 +23,51 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.numeric.elementary import Jet, sqrt
+from kin.numeric.elementary import Jet, atan2, sqrt
 
 if TYPE_CHECKING:
     from kin.cylindrical.follower import DrumFollower
+    from kin.cylindrical.guide import Axis
     from kin.law.contacts import Side
     from kin.law.piecewise import Side as KnotSide
     from kin.numeric.arrays import Array
 
+STEPS = 60  # of the fixed point that finds a place along the roller, at most
+SETTLED = 1e-15  # of a radius
+
 
 class Rates(NamedTuple):
-    """Lift, mm, and two derivatives by the shaft angle, per rad and rad^2, as jets of it."""
+    """Lift, mm or rad, and two derivatives by the shaft angle, per rad and rad^2, as jets of it."""
 
     lift: Jet
     slope: Jet
     bend: Jet
+
+
+class On(NamedTuple):
+    """A flank by its side, -1 below the roller and 1 above it, by how much that is larger, and how far beside, mm."""
+
+    side: Side = -1
+    clearance: float = 0.0
+    beside: float = 0.0
+
+
+class Contact(NamedTuple):
+    """A roller on a flank: its axis, its radius, mm, sine and cosine of the contact angle, and h, mm, as jets."""
+
+    axis: Axis[Jet]
+    radius: Jet
+    sine: Jet
+    cosine: Jet
+    h: Jet
+
+
+class _Tangents(NamedTuple):
+    """D, mm, the square of the tangent by the place along the roller, and how fast the roller leaves a point, mm."""
+
+    product: Jet
+    square: Jet
+    leaving: Jet
 
 
 def rates(follower: DrumFollower, theta: Array, order: int = 0, knot_side: KnotSide = 1) -> Rates:
@@ -44,16 +77,52 @@ def rates(follower: DrumFollower, theta: Array, order: int = 0, knot_side: KnotS
     return Rates(Jet(lift.c[: order + 1]), Jet(slope.c[: order + 1]), slope.derivative())
 
 
-def regularity_jet(rows: Rates, rho: float, radius: float, side: Side) -> Jet:
-    """Regularity D, mm, of a flank of a roller of `radius`, mm, at the place rho, mm, along it."""
-    square = rows.slope * rows.slope + rho * rho
-    w = sqrt(square)
-    return w - rows.bend * (side * radius * rho) / square - rows.slope * rows.slope * radius**2 / (square * w)
+def contact(follower: DrumFollower, rows: Rates, rho: Array | float | Jet, on: On) -> Contact:
+    """Contact of a follower's roller at places rho, mm, along it."""
+    growth, axis = follower.growth, follower.guide(on.beside).jets(*rows)
+    radius = 0.0 * rows.lift + follower.radius_at(rho, on.clearance)
+    along = axis.y1 + radius * growth + rho
+    square = along * along + axis.z1 * axis.z1
+    lean = axis.y * (on.side * growth)
+    h = sqrt(square - lean * lean)
+    return Contact(axis, radius, (lean * along + axis.z1 * h) / square, (along * h - lean * axis.z1) / square, h)
 
 
-def contact_angles(follower: DrumFollower, theta: Array, rho: Array | float) -> Array:
-    """Contact angle (n,), rad, at shaft angles (n,), rad, and places along the roller, mm: tan a = S'/rho."""
-    angles: Array = np.arctan2(rates(follower, theta).slope.c[0], rho)
+def pressure_jet(follower: DrumFollower, rows: Rates, rho: float, on: On) -> Jet:
+    """Pressure angle, rad: of the normal, seen along the roller, against its path; above 0 where a rise is driven."""
+    found, still = contact(follower, rows, rho, on), 0.0 * rows.lift
+    way = follower.guide(on.beside).jets(rows.lift, still + 1.0, still)
+    return atan2(found.sine * way.z1 + found.cosine * way.y1, found.cosine * way.z1 - found.sine * way.y1)
+
+
+def regularity_jet(follower: DrumFollower, rows: Rates, rho: float, on: On) -> Jet:
+    """Regularity D, mm, of a flank at the place rho, mm, along the roller."""
+    return _tangents(follower, rows, rho, on).product
+
+
+def _tangents(follower: DrumFollower, rows: Rates, rho: Array | float, on: On) -> _Tangents:
+    side, growth = on.side, follower.growth
+    (y, _, y1, z1, y2, z2), radius, sine, cosine, h = contact(follower, rows, rho, on)
+    place, more = y - radius * sine * side, 1.0 + growth**2
+    turned = (cosine * z2 - sine * y2) * side + y1 * growth
+    by_angle, by_place = turned * side / h * radius, sine / h * radius * -more
+    # both tangents in (e_r, e_t, k); the cone's normal is that of contact, with -growth along e_r
+    first = (-place, y1 - cosine * by_angle * side + rho, z1 - sine * by_angle * side)
+    last = (-(sine * growth + cosine * by_place) * side, (cosine * growth - sine * by_place) * side)
+    cross = (
+        first[1] * last[1] - first[2] * last[0],
+        first[2] - first[0] * last[1],
+        first[0] * last[0] - first[1],
+    )
+    product = (cross[0] * (side * growth) + cross[1] * sine - cross[2] * cosine) / more**0.5
+    leaving = h * (h - radius * cosine * growth) / radius - turned + sine * place * (side * more)
+    return _Tangents(product, last[0] * last[0] + last[1] * last[1] + 1.0, leaving / more**0.5)
+
+
+def contact_angles(follower: DrumFollower, theta: Array, rho: Array | float, side: Side = -1) -> Array:
+    """Contact angle a (n,), rad, at shaft angles (n,), rad, and places along the roller, mm."""
+    found = contact(follower, rates(follower, theta), rho, On(side))
+    angles: Array = np.arctan2(found.sine.c[0], found.cosine.c[0])
     return angles
 
 
@@ -61,20 +130,20 @@ def regularity(
     follower: DrumFollower, theta: Array, rho: Array | float, side: Side = -1, clearance: float = 0.0
 ) -> Array:
     """Regularity D (n,), mm, of a flank at shaft angles, rad, and places along the roller, mm: undercut below 0."""
-    _, slope, bend = (jet.c[0] for jet in rates(follower, theta))
-    radius, w = follower.radius + clearance, np.hypot(rho, slope)
-    values: Array = w - side * radius * rho * bend / w**2 - (radius * slope) ** 2 / w**3
+    product = _tangents(follower, rates(follower, theta), rho, On(side, clearance)).product
+    values: Array = product.c[0]
     return values
 
 
 def relative_curvature(
     follower: DrumFollower, theta: Array, rho: Array | float, side: Side = -1, clearance: float = 0.0
 ) -> Array:
-    """Curvature of flank against roller across the line of contact (n,), 1/mm, for the pressure of a line contact."""
-    slope, radius = rates(follower, theta).slope.c[0], follower.radius + clearance
-    w = np.hypot(rho, slope)
-    spread = w * (1.0 + (radius * slope / w**2) ** 2)
-    curvature: Array = spread / (radius * regularity(follower, theta, rho, side, clearance))
+    """Curvature of flank against roller across the line of contact (n,), 1/mm, for the pressure of a line contact.
+
+    A line that moves on by D over the length of its tangent leaves half `leaving` between roller and flank behind.
+    """
+    found = _tangents(follower, rates(follower, theta), rho, On(side, clearance))
+    curvature: Array = (found.leaving * found.square / (found.product * found.product)).c[0]
     return curvature
 
 
@@ -82,19 +151,34 @@ def flank_points(
     follower: DrumFollower, theta: Array, rho: Array | float, side: Side = -1, clearance: float = 0.0
 ) -> Array:
     """Points (n, 3), mm, that the roller touches at shaft angles, rad, and places along it, mm: untrimmed envelope."""
-    lift, slope, _ = (jet.c[0] for jet in rates(follower, theta))
-    w, out = np.hypot(rho, slope), side * (follower.radius + clearance)
-    across, up = -out * slope / w, out * rho / w
+    across, up = (
+        jet.c[0] for jet in _touched(contact(follower, rates(follower, theta), rho, On(side, clearance)), side)
+    )
     sine, cosine = np.sin(theta), np.cos(theta)
-    return np.stack([rho * cosine - across * sine, rho * sine + across * cosine, follower.level + lift + up], axis=-1)
+    return np.stack([rho * cosine - across * sine, rho * sine + across * cosine, up], axis=-1)
 
 
-def along_roller(slope: Array | float, radius: float, roller: float) -> Array:
-    """Places (n,), mm, along a roller at which it touches a flank on a cylinder of `radius`, mm, at slopes (n,)."""
-    square = np.square(slope)
-    root = np.sqrt((radius**2 + square) ** 2 - 4.0 * square * roller**2)
-    place: Array = np.sqrt(0.5 * (radius**2 - square + root))
-    return place
+def _touched(found: Contact, side: Side) -> tuple[Jet, Jet]:
+    """Where the roller touches, across and up, mm."""
+    return found.axis.y - found.radius * found.sine * side, found.axis.z + found.radius * found.cosine * side
+
+
+def place_jets(follower: DrumFollower, rows: Rates, radius: float, on: On) -> tuple[Jet, Jet, Jet]:
+    """Place along the roller, mm, and that of the contact across and up, mm, of the flank on a cylinder.
+
+    Raises ValueError for a radius that the roller does not reach.
+    """
+    rho = 0.0 * rows.lift + radius
+    for _ in range(STEPS):
+        found = contact(follower, rows, rho, on)
+        across, up = _touched(found, on.side)
+        square, roller = radius**2 - across * across, float(np.max(found.radius.c[0]))
+        if radius < roller or (square.c[0] < 0.0).any():
+            raise ValueError(f"a roller of {roller:.6g} mm touches nothing on a cylinder of {radius:.6g} mm")
+        before, rho = rho, sqrt(square)
+        if float(np.abs(rho.c - before.c).max(initial=0.0)) <= SETTLED * radius:
+            break
+    return rho, across, up
 
 
 def on_cylinder(
@@ -102,13 +186,7 @@ def on_cylinder(
 ) -> tuple[Array, Array, Array]:
     """Place along the roller, mm, polar angle, rad, and height, mm, (n,) each, of the flank on a cylinder.
 
-    They are touched by the roller at shaft angles (n,), rad; raises ValueError for a radius below the roller's.
+    They are touched by the roller at shaft angles (n,), rad; raises ValueError for a radius that it does not reach.
     """
-    roller = follower.radius + clearance
-    if radius < roller:
-        raise ValueError(f"a roller of {roller:.6g} mm touches nothing on a cylinder of {radius:.6g} mm")
-    lift, slope, _ = (jet.c[0] for jet in rates(follower, theta))
-    rho = along_roller(slope, radius, roller)
-    w = np.hypot(rho, slope)
-    phi = theta + np.arctan2(-side * roller * slope / w, rho)
-    return rho, phi, follower.level + lift + side * roller * rho / w
+    rho, across, up = (jet.c[0] for jet in place_jets(follower, rates(follower, theta), radius, On(side, clearance)))
+    return rho, theta + np.arctan2(across, rho), up

@@ -1,259 +1,17 @@
-"""A roller without ends on one flank of a drum: how far points of the metal stand into it, at their worst angle.
-
-Of a point at the polar angle phi, the radius r and the height z, and of the roller at the shaft angle theta, let
-
-    y = r sin(phi - theta), X = r cos(phi - theta)   across the roller's axis, and along it
-    v = side (level + S(theta) - z)                  below 0 where the point is on the metal's side of that axis.
-
-The roller has to give way by F = v + sqrt(R^2 - y^2) along z. Its greatest value over theta is the height of the point
-over the exact flank, since that is the envelope of all rollers; it is reached where y X/sqrt(R^2 - y^2) = -side S', so
-that |y| <= R sin a, tan a the steepest slope over X. The distance from the flank is the least of hypot(y, v) - R over
-theta, above 0 inside the metal: rollers larger by d have an envelope d away. Positions alone make both.
-
-F is concave in theta where side S'' < (X^2 - y^2)/R, and has one peak then; elsewhere peaks are sought by cells.
-"""
+"""The gauges of a drum: a roller without ends for each of its flanks."""
 
 from __future__ import annotations
 
-import math
-from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from kin.cylindrical.intent import Groove, Rib
-from kin.cylindrical.lifts import BINS, Lifts, widened
-from kin.numeric.angles import TURN
-from kin.numeric.records import dataclass
+from kin.cylindrical.led import LedGauge
+from kin.cylindrical.lifts import Lifts
+from kin.cylindrical.roller import Gauge
 
 if TYPE_CHECKING:
     from kin.cylindrical.intent import DrumIntent
     from kin.law.contacts import Side
-    from kin.numeric.arrays import Array, Indices, Mask
-
-STEPS = 12  # of Newton's method at most
-SETTLED = 1e-10  # rad: after a step below this the next would be rounding
-WITHIN = 0.999  # of the roller's radius, within which a point is looked at
-CELLS = 16  # about a point, where peaks are sought by cells
-SMALL, NOTHING = 2e-3, 1e-12  # rad: half a cell that holds one peak at most, and one of which nothing is left
-BESIDE = 0.05  # rad
-
-
-class Stand(NamedTuple):
-    """How points stand to a roller at given angles, (n,) each: F, mm, its slope, per rad; y, X and v, mm."""
-
-    gives: Array
-    slope: Array
-    y: Array
-    along: Array
-    v: Array
-
-
-class Worst(NamedTuple):
-    """Points at their worst angles theta, rad: height over the exact flank, and distance from it into the metal.
-
-    `bend` bounds the curvature of F over theta there, mm per rad^2: F falls at least so fast. It is 0 where nothing is
-    known.
-    """
-
-    theta: Array
-    height: Array
-    distance: Array
-    bend: Array
-
-
-@dataclass(frozen=True, eq=False)
-class Gauge:
-    """A roller of `radius`, mm, on a flank on its `side`, its axis at `level` above z = 0 at lift 0.
-
-    inner, outer  where it begins and ends along its axis, mm, which counts for the motion alone
-    """
-
-    name: str
-    side: Side
-    radius: float
-    level: float
-    inner: float
-    outer: float
-    lifts: Lifts
-    floor: float
-
-    @cached_property
-    def widest(self) -> float:
-        """Upper bound of |y| at contact, mm, anywhere from the floor outwards."""
-        return self.radius * math.sin(math.atan2(self.lifts.steepest, self.shortest))
-
-    @cached_property
-    def shortest(self) -> float:
-        """Lower bound of X at contact, mm."""
-        return math.sqrt(max(self.floor**2 - self.radius**2, (0.1 * self.floor) ** 2))
-
-    @cached_property
-    def _bends(self) -> Array:
-        # a peak is where |y| is at most so wide, and F need be concave no farther away
-        return self.lifts.bends_near(self.side, math.asin(min(1.0, self.widest / self.floor)))
-
-    def least_bend(self, phi: Array, r: Array) -> Array:
-        """Lower bound (n,) of how fast F of points falls on both sides of its peak, mm per rad^2; below 0: unknown."""
-        place = np.floor(phi * (BINS / TURN)).astype(np.intp) % BINS
-        bends: Array = (r * r - 2.0 * self.widest**2) / self.radius - self._bends[place]
-        return bends
-
-    @cached_property
-    def _rooms(self) -> Array:
-        highest = self.lifts.highest_near(self.side, math.asin(min(1.0, self.radius / self.floor)) + BESIDE)
-        return highest + self.side * self.level + self.radius
-
-    def most(self, phi: Array, z: Array) -> Array:
-        """Upper bound (n,) of F, mm, of points at polar angles within BESIDE, rad, of phi (n,), at heights z (n,)."""
-        most: Array = self._rooms[np.floor(phi * (BINS / TURN)).astype(np.intp) % BINS] - self.side * z
-        return most
-
-    def beyond(self, phi: Array, z: Array) -> Array:
-        """Height (n,), mm, of points over the roller's axis as it passes over them, away from the metal."""
-        beyond: Array = self.side * (self.axis(phi) - z)
-        return beyond
-
-    def axis(self, theta: Array) -> Array:
-        """Height (n,) of the roller's axis at angles (n,), rad."""
-        return self.level + self.lifts.at(theta)[0]
-
-    def stand(self, points: Array, theta: Array) -> Stand:
-        """How points (n, 3) stand to the roller at angles (n,), rad; F is nan where it does not reach them."""
-        lift, slope, _ = self.lifts.at(theta)
-        sine, cosine = np.sin(theta), np.cos(theta)
-        px, py, pz = points.T
-        y, along = py * cosine - px * sine, px * cosine + py * sine
-        v = self.side * (self.level + lift - pz)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            depth = np.sqrt(self.radius**2 - y * y)
-            return Stand(v + depth, y * along / depth + self.side * slope, y, along, v)
-
-    def worst(self, points: Array) -> Worst:
-        """Points (n, 3) at their worst angles; of points within the roller's radius of the cam's axis nothing is known.
-
-        The distance is good where it is small beside the radius.
-        """
-        phi, r = np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1])
-        bend = self.least_bend(phi, r)
-        theta = self._climbed(self._guessed(phi, r), phi, r)
-        many = np.flatnonzero((bend <= 0.0) & (r > self.radius))
-        if len(many):
-            theta[many] = self._sought(phi[many], r[many])
-        stand = self.stand(points, theta)
-        return Worst(theta, stand.gives, self._distance(theta, stand), np.maximum(bend, 0.0))
-
-    def _distance(self, theta: Array, stand: Stand) -> Array:
-        """Distance (n,), mm, of points from the flank, into the metal, near angles where F is greatest.
-
-        Where two parts of a flank meet it is that from the part which F finds, no less than from the other.
-        """
-        # one step of Newton's method on (y^2 + v^2)/2, which the angle of F's peak is close to
-        _, slope, bend = self.lifts.at(theta)
-        _, _, y, along, v = stand
-        rate = -y * along + v * self.side * slope
-        curve = along**2 - y**2 + slope**2 + v * self.side * bend
-        square = y * y + v * v - np.where(curve > 0.0, rate**2 / np.where(curve > 0.0, curve, 1.0), 0.0)
-        distance: Array = np.sqrt(np.maximum(square, 0.0)) - self.radius
-        return distance
-
-    def _guessed(self, phi: Array, r: Array) -> Array:
-        """Angle (n,), rad, near a peak of F: where the roller touches with the slope of the lift there."""
-        theta = phi
-        for _ in range(3):
-            slope = self.lifts.at(theta)[1]
-            share = self.side * self.radius * slope / (np.hypot(slope, r) * r)
-            theta = phi + np.arcsin(np.clip(share, -WITHIN, WITHIN))
-        return theta
-
-    def _climbed(self, start: Array, phi: Array, r: Array) -> Array:
-        """Angle (n,) of the peak of F near `start`, rad; it does not depend on the height of a point."""
-        side, radius = self.side, self.radius
-        theta, open_ = start.copy(), np.arange(len(phi))
-        for _ in range(STEPS):
-            own, lead = r[open_], phi[open_]
-            _, slope, bend = self.lifts.at(theta[open_])
-            turn = lead - theta[open_]
-            y, along = own * np.sin(turn), own * np.cos(turn)
-            most = np.minimum(WITHIN * radius, own)
-            y = np.clip(y, -most, most)
-            depth = np.sqrt(radius**2 - y * y)
-            rate = y * along / depth + side * slope
-            fall = (along**2 * radius**2 - (y * depth) ** 2) / depth**3 - side * bend
-            step = np.where(fall > 0.0, rate / np.where(fall > 0.0, fall, 1.0), 0.0)
-            after = np.arcsin(np.clip(y / own, -1.0, 1.0)) - step
-            reach = np.arcsin(np.minimum(WITHIN * radius / own, 1.0))
-            moved = lead - np.clip(after, -reach, reach)
-            going = np.abs(moved - theta[open_]) > SETTLED
-            theta[open_] = moved
-            open_ = open_[going]
-            if not len(open_):
-                break
-        return theta
-
-    def _risen(self, theta: Array, phi: Array, r: Array) -> tuple[Array, Array]:
-        """F of points at z = 0, and its slope, (n,) each, at angles (n,), rad; -inf out of the roller's reach."""
-        lift, slope, _ = self.lifts.at(theta)
-        y, along = r * np.sin(phi - theta), r * np.cos(phi - theta)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            depth = np.sqrt(self.radius**2 - y * y)
-            gives = self.side * (self.level + lift) + depth
-            return np.where(np.isfinite(gives), gives, -np.inf), y * along / depth + self.side * slope
-
-    def _sought(self, phi: Array, r: Array) -> Array:
-        """Angle (n,) of the highest peak of F among several, by cells that may still hold it.
-
-        Small cells that may are climbed from, and those about a jump of the velocity are parted on.
-        """
-        reach = np.arcsin(np.minimum(min(1.02 * self.widest, WITHIN * self.radius) / r, 1.0))
-        shares = (np.arange(CELLS) + 0.5) / (0.5 * CELLS) - 1.0
-        own, half = np.repeat(np.arange(len(phi)), CELLS), np.repeat(reach / CELLS, CELLS)
-        theta = (phi[:, None] + reach[:, None] * shares).ravel()
-        best, at = np.full(len(phi), -np.inf), phi.copy()
-
-        def reached(own: Indices, theta: Array) -> tuple[Array, Array]:
-            value, slope = self._risen(theta, phi[own], r[own])
-            np.maximum.at(best, own, value)
-            won = np.flatnonzero(value == best[own])
-            at[own[won]] = theta[won]
-            return value, slope
-
-        while len(own):
-            value, slope = reached(own, theta)
-            cornered = self._cornered(theta, half)
-            with np.errstate(invalid="ignore"):
-                bound = value + np.abs(slope) * half + 0.5 * self._curving(theta, half) * half**2
-            bound += np.where(cornered, self.lifts.jump * half, 0.0)
-            open_ = ~(bound <= best[own]) & (half > np.where(cornered, NOTHING, SMALL))
-            small = np.flatnonzero(~(bound <= best[own]) & ~open_)
-            reached(own[small], self._climbed(theta[small], phi[own[small]], r[own[small]]))
-            own, theta, half = own[open_], theta[open_], half[open_]
-            theta = np.concatenate([theta - 0.5 * half, theta + 0.5 * half])
-            own, half = np.tile(own, 2), np.tile(0.5 * half, 2)
-        return at
-
-    def _curving(self, theta: Array, half: Array) -> Array:
-        """Upper bound (n,) of the second derivative of F over cells about angles, beside corners of the lift."""
-        bends = widened(self._own_bends, float(half.max(initial=0.0)))
-        place = np.floor(theta * (BINS / TURN)).astype(np.intp) % BINS
-        return np.maximum(bends + self._hollow, 0.0)[place]
-
-    @cached_property
-    def _own_bends(self) -> Array:
-        return self.lifts.bends(self.side)
-
-    @cached_property
-    def _hollow(self) -> float:
-        """Upper bound of the second derivative of sqrt(R^2 - y^2), mm per rad^2: 0 as long as |y| < X."""
-        if self.shortest > self.widest:
-            return 0.0
-        return self.widest**2 / math.sqrt(self.radius**2 - self.widest**2)
-
-    def _cornered(self, theta: Array, half: Array) -> Mask:
-        held = np.zeros(len(theta), dtype=np.bool_)
-        for corner in self.lifts.corners:
-            held |= np.abs((theta - corner + math.pi) % TURN - math.pi) <= half
-        return held
 
 
 def gauges_of(drum: DrumIntent) -> tuple[Gauge, ...]:
@@ -262,13 +20,16 @@ def gauges_of(drum: DrumIntent) -> tuple[Gauge, ...]:
     lifts = Lifts(own.law)
     floor = drum.floor
 
-    def gauge(side: Side, level: float, radius: float = own.radius) -> Gauge:
+    def gauge(side: Side, beside: float = 0.0, clearance: float = 0.0) -> Gauge:
         name = "lower" if side < 0 else "upper"
-        return Gauge(name, side, radius, level, own.inner, own.outer, lifts, floor)
+        common = (name, side, own.radius + clearance, own.level + beside, own.inner, own.outer, lifts, floor)
+        if own.arm is None and not own.offset and not own.taper:
+            return Gauge(*common)
+        return LedGauge(*common, own.guide(beside), own.growth, own.at or 0.0, drum.radius)
 
     if isinstance(track, Groove):
-        return gauge(-1, own.level), gauge(1, own.level, own.radius + track.clearance)
+        return gauge(-1), gauge(1, clearance=track.clearance)
     if isinstance(track, Rib):
         half = 0.5 * track.distance
-        return gauge(-1, own.level + half), gauge(1, own.level - half)
-    return (gauge(-1 if track.facing == "top" else 1, own.level),)
+        return gauge(-1, half), gauge(1, -half)
+    return (gauge(-1 if track.facing == "top" else 1),)

@@ -13,7 +13,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array
 
 FINE = 0.05  # of the tolerance: what angles between two of the grid may cost
@@ -52,8 +52,5 @@ def angles_for(gauges: Sequence[Gauge], tolerance: float) -> int:
     """How many angles the grid needs: between two of them a point holds a roller to a share of the tolerance, mm."""
     count = LEAST
     for gauge in gauges:
-        radius, widest = gauge.radius, gauge.widest
-        bend = max(float(gauge.lifts.bends(side).max()) for side in (-1, 1))
-        far = gauge.outer**2 * radius**2 / (radius**2 - widest**2) ** 1.5 + bend
-        count = max(count, math.ceil(TURN / math.sqrt(8.0 * FINE * tolerance / far)))
+        count = max(count, math.ceil(TURN / math.sqrt(8.0 * FINE * tolerance / gauge.fastest)))
     return min(count, MOST)

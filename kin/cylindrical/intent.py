@@ -105,7 +105,7 @@ class Developed:
 
 @dataclass(frozen=True)
 class Limits:
-    """Permitted errors, mm: `tolerance` of the surfaces along their normals; motion and play along z.
+    """Permitted errors: `tolerance` of the surfaces along their normals, mm; motion and play, mm, or rad of an arm.
 
     `motion` is the greatest error of the position, `play` the greatest play or interference of the gauges. None stands
     for the most that flanks within the tolerance can cause.

@@ -1,7 +1,7 @@
 """The verdict on a file of a cylindrical cam: whether it is the intended drum, and its roller moves as intended.
 
 A solid is taken as it lies on disk. The way it was made is not known here: the exact flank is what rollers leave at all
-angles (`kin.cylindrical.gauge`), the motion is that of the roller set down on the file's own triangles. Every triangle
+angles (`kin.cylindrical.roller`), the motion is that of the roller set down on the file's own triangles. Every triangle
 is measured against a face of the intended drum. Together with a closed surface and the volume that says that nothing of
 the drum is missing: a closed surface all of which is near that of the drum goes round it once, if it encloses as much.
 """
@@ -9,6 +9,7 @@ the drum is missing: a closed surface all of which is near that of the drum goes
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,8 +17,9 @@ import numpy as np
 from kin.cylindrical.contact import set_down, spans_of
 from kin.cylindrical.edges import Edges, look
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, faces_of
-from kin.cylindrical.gauge import Worst, gauges_of
+from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.grid import angles_for
+from kin.cylindrical.roller import Worst
 from kin.cylindrical.split import joined
 from kin.cylindrical.torn import missing, triangles_at
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
@@ -25,7 +27,7 @@ from kin.cylindrical.volume import exact_volume
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.check import ROUNDING, Check, about, at_most, failed
 from kin.numeric.errors import UnsettledError
-from kin.numeric.lengths import UNIT, length_words
+from kin.numeric.lengths import UNIT, amount_words, length_words
 from kin.numeric.limits import is_loose, limit_of, unlimited
 from kin.numeric.records import dataclass, replace
 from kin.read.checks import count_check, demand_same, units_check, unread_check
@@ -39,8 +41,10 @@ if TYPE_CHECKING:
 
     from kin.cylindrical.edges import Seen
     from kin.cylindrical.faces import Faces, Stands
-    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.follower import DrumFollower
+    from kin.cylindrical.guide import Unit
     from kin.cylindrical.intent import Developed, DrumIntent, Limits
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array
     from kin.read.mesh.checked import CheckedMesh
 
@@ -100,13 +104,26 @@ def verify_development(
 
 @dataclass(frozen=True, eq=False)
 class _Judged:
-    """A body being judged: its faces, the intent, the limits, and the rounding of the file's places, `slack`, mm."""
+    """A body being judged: its faces, the intent, the limits, and the rounding of the file's places, `slack`, mm.
+
+    Positions are mm along the path of the roller's axis; `told` gives them in the follower's unit, mm or deg.
+    """
 
     body: Body
     faces: Faces
     drum: DrumIntent
     limits: Limits
     slack: float
+
+    @property
+    def unit(self) -> Unit:
+        """Unit of positions as they are reported."""
+        return self.drum.follower.unit
+
+    @cached_property
+    def told(self) -> float:
+        """One mm of travel in the unit of positions."""
+        return in_unit(self.drum.follower, self.faces.stands[0].gauge)
 
 
 def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = "") -> DrumVerdict:
@@ -120,6 +137,8 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
     gauges = gauges_of(drum)
     verdicts, seen, play = [], [], None
     try:
+        for gauge in gauges:
+            gauge.demand_bounded()
         faces = faces_of(body, drum, gauges, limits.tolerance + slack)
         job = _Judged(body, faces, drum, limits, slack)
         checks += _plain_checks(job)
@@ -142,7 +161,8 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
 def positions(read: CheckedMesh, drum: DrumIntent, theta: Array) -> tuple[Array, Array]:
     """Heights (n,), (n,), mm, of the roller's axis set down on the lower and on the upper flank at angles (n,), rad.
 
-    Of a rib the heights are those of the middle between its rollers; nan where there is no such flank, or no contact.
+    Of an arm they are its angles, rad. Of a rib the heights are those of the middle between its rollers; nan where
+    there is no such flank, or no contact.
     The roller of an upper flank is the drum's own, without the clearance.
     """
     body = Body.of(read.mesh, mirrored=drum.mirrored)
@@ -150,9 +170,9 @@ def positions(read: CheckedMesh, drum: DrumIntent, theta: Array) -> tuple[Array,
     faces = faces_of(body, drum, gauges_of(drum), read.rounding)
     for stands in faces.stands:
         lift = stands.gauge.lifts.at(theta)[0]
-        gives = _own_gives(body, stands, drum, theta)
+        gives = _own_gives(body, stands, drum, theta) / stands.gauge.lever
         away = gives if stands.gauge.side < 0 else -gives
-        found[stands.gauge.name] = np.where(np.isfinite(gives), drum.follower.level + lift + away, np.nan)
+        found[stands.gauge.name] = np.where(np.isfinite(gives), drum.follower.start + lift + away, np.nan)
     return found["lower"], found["upper"]
 
 
@@ -205,35 +225,49 @@ def _flank(job: _Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, See
     if stands.across.any():
         where = body.points[body.corners[stands.across][0]].mean(axis=0)
         angle = degrees(math.atan2(where[1], where[0]))
-        blocked = failed(MOTION, f"metal stands in the roller's way, about an angle of {angle:.6g} degrees", unit="mm")
+        blocked = failed(
+            MOTION, f"metal stands in the roller's way, about an angle of {angle:.6g} degrees", unit=job.unit
+        )
         return FlankVerdict(gauge.name, None, worst, count), seen, [*checks, blocked]
     if not np.isfinite(seen.least).all():
         free = degrees(float(np.flatnonzero(~np.isfinite(seen.least))[0]) * seen.grid.width)
-        loose = failed(MOTION, f"the roller touches nothing at an angle of {free:.6g} degrees", unit="mm")
+        loose = failed(MOTION, f"the roller touches nothing at an angle of {free:.6g} degrees", unit=job.unit)
         return FlankVerdict(gauge.name, None, worst, count), seen, [*checks, loose]
-    motion = _motion_error(seen)
-    checks.append(motion_check(motion, gauge, job.limits, job.slack))
+    motion = _motion_error(seen, job.told, job.unit)
+    checks.append(_motion_check(job, motion, gauge))
     return FlankVerdict(gauge.name, motion, worst, count), seen, checks
 
 
-def _motion_error(seen: Seen) -> MotionError:
+def in_unit(follower: DrumFollower, gauge: Gauge) -> float:
+    """One mm of travel of a follower's roller in the unit of its positions."""
+    return follower.told(1.0) / gauge.lever
+
+
+def _motion_error(seen: Seen, told: float, unit: Unit) -> MotionError:
     k = int(np.argmin(seen.holds))
     least, most = float(seen.holds[k]), seen.out.value
     bound = max(seen.out.value + seen.out.remainder, -float(seen.least.min()))
     worst, at = (-least, k * seen.grid.width) if -least > most else (most, seen.out.at)
     rms = float(np.sqrt(np.mean(seen.holds**2)))
-    return MotionError(worst, degrees(at), max(bound - worst, 0.0), least, most, rms)
+    left = told * max(bound - worst, 0.0)
+    return MotionError(told * worst, degrees(at), left, told * least, told * most, told * rms, unit)
 
 
-def motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: float) -> Check:
-    """Check of an error of the position against the recipe's limit, or what flanks within the tolerance can cause."""
-    limit, room = limit_of(lambda e: _implied(gauge, e), limits.motion, limits.tolerance, slack)
-    worst = assured(motion.max, motion.remainder, limits.tolerance) if limits.motion is None else motion.bound
-    detail = f"true within {length_words(motion.remainder, '.2g')} {UNIT}" if motion.remainder else ""
-    check = at_most(MOTION, worst, limit, "mm", detail=detail, slack=room)
+def _motion_check(job: _Judged, motion: MotionError, gauge: Gauge) -> Check:
+    told, tolerance, given = job.told, job.limits.tolerance, _given(job, job.limits.motion)
+    limit, room = limit_of(lambda e: told * _implied(gauge, e), given, tolerance, job.slack)
+    worst = assured(motion.max, motion.remainder, told * tolerance) if given is None else motion.bound
+    detail = f"true within {amount_words(motion.remainder, job.unit, '.2g')}" if motion.remainder else ""
+    check = at_most(MOTION, worst, limit, job.unit, detail=detail, slack=room)
     check = replace(check, at=motion.at)
-    loose = limits.motion is None and is_loose(limit, limits.tolerance, lambda: gauge.lifts.stroke)
+    stroke = job.drum.follower.told(gauge.lifts.stroke)
+    loose = given is None and is_loose(limit, told * tolerance, lambda: stroke)
     return unlimited(check) if loose else check
+
+
+def _given(job: _Judged, limit: float | None) -> float | None:
+    """A limit that is given, mm or rad, in the unit of positions."""
+    return None if limit is None else job.drum.follower.told(limit)
 
 
 def assured(value: float, remainder: float, tolerance: float) -> float:
@@ -243,7 +277,7 @@ def assured(value: float, remainder: float, tolerance: float) -> float:
 
 def _implied(gauge: Gauge, tolerance: float) -> float:
     """Greatest motion error, mm, by a flank within a tolerance, mm: at the roller's inner end, where it is steepest."""
-    return tolerance * math.hypot(1.0, gauge.lifts.steepest / gauge.inner) * (1.0 + SLACK)
+    return gauge.by_error(tolerance) * (1.0 + SLACK)
 
 
 def placed(check: Check, theta: float) -> Check:
@@ -255,7 +289,7 @@ def _own_gives(body: Body, stands: Stands, drum: DrumIntent, theta: Array) -> Ar
     """How far the drum's own roller is kept from its place at angles (n,), rad, mm, above 0 away from the metal."""
     gauge = replace(stands.gauge, radius=drum.follower.radius)
     corners = body.corners[stands.touched]
-    reach = math.asin(min(1.0, gauge.radius / gauge.inner))
+    reach = math.asin(min(1.0, gauge.reach / gauge.inner))
     return set_down(gauge, body.points[corners], spans_of(body.phi, corners, reach), theta)
 
 
@@ -284,19 +318,26 @@ def _play(job: _Judged, both: Sequence[Seen]) -> tuple[Play, Check]:
     pinched: Array = both[0].holds + both[1].holds
     k = int(np.argmax(np.abs(pinched)))
     held = [_held(job, one, found) for one, found in zip(stands, both, strict=True)]
-    own: Array = -(held[0] + held[1])
+    own: Array = -(held[0] + held[1]) * job.told
     least, most = int(np.argmin(own)), int(np.argmax(own))
-    play = Play(float(own[least]), degrees(least * width), float(own[most]), degrees(most * width), len(own))
+    places = degrees(least * width), degrees(most * width)
+    play = Play(float(own[least]), places[0], float(own[most]), places[1], len(own), job.unit)
 
     def implied(tolerance: float) -> float:
-        return sum(_implied(one.gauge, tolerance) for one in stands)
+        return job.told * sum(_implied(one.gauge, tolerance) for one in stands)
 
-    limit, room = limit_of(implied, job.limits.play, job.limits.tolerance, job.slack)
-    told = f"the follower's own play is {length_words(play.least)} to {length_words(play.most)} {UNIT}"
+    limit, room = limit_of(implied, _given(job, job.limits.play), job.limits.tolerance, job.slack)
+    told = f"the follower's own play is {_between(play)}"
     if play.least < 0.0:
-        told += f": it is pinched by up to {length_words(-play.least, '.3g')} {UNIT}"
-    check = at_most(PLAY, float(abs(pinched[k])), limit, "mm", detail=told, slack=room)
+        told += f": it is pinched by up to {amount_words(-play.least, job.unit, '.3g')}"
+    check = at_most(PLAY, job.told * float(abs(pinched[k])), limit, job.unit, detail=told, slack=room)
     return play, placed(check, k * width)
+
+
+def _between(play: Play) -> str:
+    if play.unit == "mm":
+        return f"{length_words(play.least)} to {length_words(play.most)} {UNIT}"
+    return f"{play.least:.6g} to {play.most:.6g} {play.unit}"
 
 
 def _volume_check(read: CheckedMesh, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance: float) -> Check:

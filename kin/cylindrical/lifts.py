@@ -50,7 +50,7 @@ class Lifts:
         return a + x * (b + x * (c + x * d)), b + x * (2.0 * c + 3.0 * x * d), 2.0 * c + 6.0 * x * d
 
     @cached_property
-    def _enclosed(self) -> tuple[Array, Array]:
+    def enclosed(self) -> tuple[Array, Array]:
         """Lower and upper bounds (3, m) of lift, slope and bend over the cells."""
         mid, rad = self.law.enclosure(self.nodes[:-1], self.nodes[1:], 2)
         return mid - rad, mid + rad
@@ -58,7 +58,7 @@ class Lifts:
     @cached_property
     def steepest(self) -> float:
         """Upper bound of the magnitude of the slope, mm per rad."""
-        low, high = self._enclosed
+        low, high = self.enclosed
         return float(max(-low[1].min(), high[1].max()))
 
     @cached_property
@@ -96,7 +96,7 @@ class Lifts:
 
     def _greatest(self, side: int, order: int) -> Array:
         """Upper bounds (BINS,) of side times a derivative over each part of a turn."""
-        low, high = self._enclosed
+        low, high = self.enclosed
         row = high[order] if side > 0 else -low[order]
         width = TURN / BINS
         first = np.minimum(np.floor(self.nodes[:-1] / width).astype(np.intp), BINS - 1)

@@ -18,13 +18,14 @@ import numpy as np
 from kin.cylindrical.cutters import END, left_on
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove, Rib
-from kin.cylindrical.judge import CONTOUR, assured, motion_check, placed
+from kin.cylindrical.judge import CONTOUR, MOTION, SLACK, assured, placed
 from kin.cylindrical.turned import passes_of, read_turned
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.check import ROUNDING, Check, about, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.lengths import UNIT, length_words
+from kin.numeric.limits import is_loose, limit_of, unlimited
 from kin.numeric.records import dataclass, replace
 from kin.read.checks import count_check, unread_check
 from kin.read.errors import ReadError
@@ -34,9 +35,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kin.cylindrical.cutters import Left
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.intent import DrumIntent, Limits
     from kin.cylindrical.lifts import Lifts
+    from kin.cylindrical.roller import Gauge
     from kin.cylindrical.turned import Pass, TurnedProgram
     from kin.numeric.arrays import Array
 
@@ -74,7 +75,13 @@ class _Path(NamedTuple):
 
 
 def verify_program(path: Path, drum: DrumIntent, cutting: Cutting, limits: Limits) -> DrumVerdict:
-    """Judge a program by what its cutter leaves; raises OSError where the disk refuses."""
+    """Judge a program by what its cutter leaves, of a cylindrical roller on a radius of the drum, led along its axis.
+
+    Raises OSError where the disk refuses, ValueError for any other roller.
+    """
+    roller = drum.follower
+    if roller.arm is not None or roller.offset or roller.taper:
+        raise ValueError("programs of such a roller are not judged")
     try:
         program = read_turned(path)
     except ReadError as error:
@@ -151,7 +158,7 @@ def _flank(
     value = worst if worst > tolerance else assured(worst, remainder, tolerance)
     checks = [placed(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=slack), at)]
     motion = _motion(gauge, left)
-    checks.append(motion_check(motion, gauge, limits, slack))
+    checks.append(_motion_check(motion, gauge, limits, slack))
     return FlankVerdict(gauge.name, motion, worst), checks
 
 
@@ -187,6 +194,15 @@ def _motion(gauge: Gauge, left: Left) -> MotionError:
     )
 
 
+def _motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: float) -> Check:
+    limit, room = limit_of(lambda e: gauge.by_error(e) * (1.0 + SLACK), limits.motion, limits.tolerance, slack)
+    worst = assured(motion.max, motion.remainder, limits.tolerance) if limits.motion is None else motion.bound
+    detail = f"true within {length_words(motion.remainder, '.2g')} {UNIT}" if motion.remainder else ""
+    check = replace(at_most(MOTION, worst, limit, "mm", detail=detail, slack=room), at=motion.at)
+    loose = limits.motion is None and is_loose(limit, limits.tolerance, lambda: gauge.lifts.stroke)
+    return unlimited(check) if loose else check
+
+
 def _by_path(gauge: Gauge, passes: list[Pass], limits: Limits, slack: float) -> tuple[FlankVerdict, list[Check]]:
     """A flank by the paths of cutters as large as its roller: what they cut is off by no more than they are."""
     tolerance = limits.tolerance
@@ -204,7 +220,7 @@ def _by_path(gauge: Gauge, passes: list[Pass], limits: Limits, slack: float) -> 
     least, most = min(each.least for each in off), max(each.most for each in off)
     least, most = (least, most) if gauge.side < 0 else (-most, -least)
     motion = MotionError(worst, degrees(at), 0.0, least, most, max(abs(least), abs(most)))
-    return FlankVerdict(gauge.name, motion, worst), [check, motion_check(motion, gauge, limits, slack)]
+    return FlankVerdict(gauge.name, motion, worst), [check, _motion_check(motion, gauge, limits, slack)]
 
 
 def _is_about(one: Pass, gauge: Gauge) -> bool:

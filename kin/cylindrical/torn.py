@@ -16,7 +16,7 @@ from kin.numeric.arrays import paired
 
 if TYPE_CHECKING:
     from kin.cylindrical.faces import Body
-    from kin.cylindrical.gauge import Gauge, Worst
+    from kin.cylindrical.roller import Gauge, Worst
     from kin.numeric.arrays import Array, Indices, Mask
 
 PARTINGS = 24
@@ -61,8 +61,7 @@ def missing(gauge: Gauge, points: Array, theta: Array, known: Peak, tolerance: f
 
 def _farthest(gauge: Gauge, points: Array, theta: Array) -> Array:
     """Greatest distance (n,) of triangles' corners (n, 3, 3) from the roller at one angle of each (n,), mm."""
-    stand = gauge.stand(points.reshape(-1, 3), np.repeat(theta, 3))
-    farthest: Array = np.hypot(stand.y, stand.v).reshape(-1, 3).max(axis=1) - gauge.radius
+    farthest: Array = gauge.away(points.reshape(-1, 3), np.repeat(theta, 3)).reshape(-1, 3).max(axis=1)
     return farthest
 
 

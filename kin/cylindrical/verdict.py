@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
+    from kin.cylindrical.guide import Unit
     from kin.numeric.arrays import Array
     from kin.numeric.check import Check
     from kin.read.mesh.mesh import Mesh
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MotionError:
-    """Error of the position, mm along z, measured less intended, over all shaft angles.
+    """Error of the position, measured less intended, over all shaft angles, in its `unit`: mm, or deg of an arm.
 
     An error above 0 pushes the roller away from the metal of its flank.
 
@@ -30,6 +31,7 @@ class MotionError:
     least: float
     most: float
     rms: float
+    unit: Unit = "mm"
 
     @property
     def bound(self) -> float:
@@ -39,7 +41,9 @@ class MotionError:
 
 @dataclass(frozen=True)
 class Play:
-    """Least and greatest free travel of the follower, cam at rest, mm along z, at shaft angles, degrees.
+    """Least and greatest free travel of the follower, cam at rest, in its `unit`, at shaft angles, degrees.
+
+    It is mm along z, or deg of an arm.
 
     Below 0 the roller is pinched: the flanks stand closer than it is wide, as far as their tolerance permits.
     Both are exact at so many `angles`; between these the check of the gauges bounds it.
@@ -50,6 +54,7 @@ class Play:
     most: float
     most_at: float
     angles: int
+    unit: Unit = "mm"
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,8 @@ from kin.cylindrical.intent import Groove, Rib
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.intent import DrumIntent
+    from kin.cylindrical.roller import Gauge
 
 ANGLES = 1440  # of a turn
 RADII = 16  # by Gauss' rule from the floor to the blank
@@ -40,13 +40,13 @@ def _below(drum: DrumIntent, gauge: Gauge) -> float:
     shares, weights = np.polynomial.legendre.leggauss(RADII)
     r = 0.5 * (floor + radius) + 0.5 * (radius - floor) * shares
     phi = np.arange(ANGLES) * (TURN / ANGLES)
-    x, y = np.cos(phi)[:, None] * r, np.sin(phi)[:, None] * r
-    points = np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)
-    height = gauge.side * gauge.worst(points).height.reshape(x.shape)
+    angle, far = (row.ravel() for row in np.broadcast_arrays(phi[:, None], r))
+    height = gauge.surface(angle, far).reshape(ANGLES, RADII)
     volume = float((height @ (weights * r)).sum()) * 0.5 * (radius - floor) * (TURN / ANGLES)
     if drum.bore is None or drum.track.depth is not None:
         return volume
     # a keyway reaches beyond the nearest point of the bore: its area, times the mean height over it
     keyed = drum.bore.contour.area - math.pi * floor**2
-    own = signed_distance(drum.bore.contour.as_arcs()[0], points[:, :2]) < 0.0
+    flat = np.stack([far * np.cos(angle), far * np.sin(angle)], axis=-1)
+    own = signed_distance(drum.bore.contour.as_arcs()[0], flat) < 0.0
     return volume - keyed * float(height.ravel()[own].mean()) if own.any() else volume

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.cylindrical.contact import best_share
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.grid import Grid
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices
 
 PAIRS = 200_000  # of a triangle and an angle at a time
@@ -69,20 +68,16 @@ def _held(gauge: Gauge, grid: Grid, corners: Array, theta: Array, number: Indice
     start, last = every[np.argmax(met, axis=0), rows], every[2 - np.argmax(met[::-1], axis=0), rows]
     number %= len(grid)
     sine, cosine = grid.sine[number], grid.cosine[number]
-    y, along = (
-        [own[:, 1] * cosine - own[:, 0] * sine for own in (start, last)],
-        [own[:, 0] * cosine + own[:, 1] * sine for own in (start, last)],
-    )
-    v = [gauge.side * (gauge.level + grid.lift[number] - own[:, 2]) for own in (start, last)]
+    along = [own[:, 0] * cosine + own[:, 1] * sine for own in (start, last)]
     # while theta goes half a step, X changes by no more than y times that
-    room = 0.51 * grid.width * gauge.radius
+    room = 0.51 * grid.width * gauge.reach
     with np.errstate(divide="ignore", invalid="ignore"):
         ends = [(place - along[0]) / (along[1] - along[0]) for place in (gauge.inner + room, gauge.outer - room)]
     level = along[1] == along[0]
     inside = (along[0] >= gauge.inner + room) & (along[0] <= gauge.outer - room)
     low = np.where(level, np.where(inside, 0.0, 2.0), np.maximum(np.minimum(*ends), 0.0))
     high = np.where(level, 1.0, np.minimum(np.maximum(*ends), 1.0))
-    share, there = best_share(gauge.radius, (y[0], y[1]), (v[0], v[1]), (low, high))
+    share, there = gauge.best_within((start, last), (low, high), grid.lift[number], sine, cosine)
     there &= met.any(axis=0)
     points = start + share[:, None] * (last - start)
     return Holding(number[there], points[there])

@@ -8,8 +8,8 @@ import re
 from typing import TYPE_CHECKING
 
 import numpy as np
-from capabilities.cylindrical.made_drums import random_drum
-from capabilities.cylindrical.positions import Lift, envelope
+from capabilities.cylindrical.made_drums import LED, random_drum
+from capabilities.cylindrical.positions import envelope
 from support.heavy import ezdxf
 
 from attacks.outcome import Attack
@@ -17,6 +17,8 @@ from attacks.outcome import Attack
 if TYPE_CHECKING:
     from pathlib import Path
     from random import Random
+
+    from capabilities.cylindrical.positions import Lift
 
     from attacks.outcome import Done
 
@@ -30,6 +32,11 @@ SLIPS = (
     ("law: cycloidal", "law: linear"),
     ("bore: ", "bore: 9"),
     ("radius: ", "radius: 0"),
+    ("pivot: ", "pivot: 1e4"),
+    ("side: ", "side: un"),
+    ("offset: ", "offset: 9"),
+    ("taper: ", "taper: 8"),
+    ("taper: axis", "taper: apex"),
 )
 
 
@@ -37,13 +44,13 @@ def turned(rng: Random, number: int) -> Attack:
     """A random drum: the development at the blank is what all rollers leave there."""
     inch, ccw = rng.random() < 0.5, rng.random() < 0.5
     track = rng.choice(["groove", "rib", "top", "bottom"])
-    text, rows = random_drum(rng, track, inch=inch, ccw=ccw, undercut=False)
+    text, lift = random_drum(rng, track, inch=inch, ccw=ccw, undercut=False, led=rng.choice(LED))
     text = text.replace("files: [stl]", "files: [{dxf: {at: [outer]}}, csv]")
 
     def judge(done: Done, folder: Path) -> list[str]:
         if done.status:
             return [] if done.status in {1, 2} else [f"verdict: {done.err[:200]}"]
-        return wrong(folder, text, rows)
+        return wrong(folder, text, lift)
 
     return Attack(f"drum {number}", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2), judge)
 
@@ -78,7 +85,8 @@ def milled(rng: Random, number: int) -> Attack:
 
 def slipped(rng: Random, number: int) -> Attack:
     """A random drum with a slip in it: it is refused, or made, and nothing is half written."""
-    text, _ = random_drum(rng, rng.choice(["groove", "rib", "top"]), inch=False, ccw=False, undercut=False)
+    track, led = rng.choice(["groove", "rib", "top"]), rng.choice(LED)
+    text, _ = random_drum(rng, track, inch=False, ccw=False, undercut=False, led=led)
     old, new = rng.choice([slip for slip in SLIPS if slip[0] in text])
     text = text.replace("files: [stl]", "files: [csv]").replace(old, new, 1)
     return Attack(f"slipped drum {number}", ("check", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2))
@@ -89,13 +97,13 @@ def number_after(text: str, key: str) -> float:
     return float(re.split(r"[\s,}\]]", text.split(key, 1)[1], maxsplit=1)[0])
 
 
-def wrong(folder: Path, text: str, rows: list[tuple]) -> list[str]:
+def wrong(folder: Path, text: str, lift: Lift) -> list[str]:
     """Lines of a development that are not what rollers leave on the blank, within ten tolerances of their own."""
     mm = 25.4 if "units: inch" in text else 1.0
     level_at_0, tolerance = (number_after(text, f"{key}: ") * mm for key in ("pitch_height", "tolerance"))
     _, blank, touching, *_ = text.split("radius: ")
     radius, roller = (number_after(f"radius: {part}", "radius: ") * mm for part in (blank, touching))
-    found, lift = [], Lift(rows)
+    found = []
     for line in ezdxf.readfile(next(folder.rglob("*.dxf"))).modelspace().query("LWPOLYLINE"):
         layer = line.dxf.layer
         if not layer.endswith(("LOWER", "UPPER")):
@@ -105,12 +113,12 @@ def wrong(folder: Path, text: str, rows: list[tuple]) -> list[str]:
         more = 0.0
         if "clearance: " in text and side > 0:
             more = number_after(text, "clearance: ") * mm
-        level = level_at_0
+        own = lift
         if "distance: " in text:
-            level -= 0.5 * side * number_after(text, "distance: ") * mm
+            own = lift.second(-0.5 * side * number_after(text, "distance: ") * mm)
         phi = (-x if "rotation: ccw" in text else x) / radius
-        wanted, _ = envelope(lift, side, roller + more, np.full_like(phi, radius), np.mod(phi, 2.0 * math.pi))
-        off = float(np.abs(z - level - wanted).max())
+        wanted, _ = envelope(own, side, roller + more, np.full_like(phi, radius), np.mod(phi, 2.0 * math.pi))
+        off = float(np.abs(z - level_at_0 - wanted).max())
         if off > 10.0 * tolerance:
             found.append(f"flank: {layer} is off by {off:.4g} mm")
     return found

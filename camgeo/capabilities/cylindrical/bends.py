@@ -1,8 +1,10 @@
 """Proved bounds of the second derivatives of a flank over (theta, r), by which its triangles are as fine as need be.
 
-Over (theta, r), r the real radius, a flank is r e^(i phi), z with phi = theta + f(v, r), z = level + S + g(v, r) and
-v = S' (`camgeo.capabilities.cylindrical.flank`), so that all its second derivatives follow from those of f and g and
-from S'' and S'''. All are balls over a cell.
+Over (theta, r), r the real radius, the flank of a roller on a radius is r e^(i phi), z with phi = theta + f(v, r),
+z = level + S + g(v, r) and v = S' (`camgeo.capabilities.cylindrical.flank`), so that all its second derivatives follow
+from those of f and g and from S'' and S'''. On an arm, beside a radius or with a taper the angle a of the contact is
+implicit, and so is rho on a cylinder: its derivatives follow from A sin a - z' cos a = side y tan d and from
+rho^2 + q^2 = r^2, over balls of rho that hold every solution. All are balls over a cell.
 
 A triangle whose corners lie on the surface within h1 by h2 of its parameters is off by at most
 
@@ -16,11 +18,12 @@ distance from the surface is at most that of N, and `BESIDE` t times that of M.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.numeric.interval import Ball
+from kin.numeric.interval import Ball, asin, atan2, sin_cos
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.flank import Flank
@@ -29,6 +32,7 @@ if TYPE_CHECKING:
 BESIDE = 2.1  # once for the normal of the place in place of the cell's, once for the surface beside the foot
 TINY = 1e-300
 STEPS = 2
+SETTLE, WIDER = 8, 1e-12  # rounds by which places along a roller are enclosed, and the rounding of the first
 
 
 class Bends(NamedTuple):
@@ -37,7 +41,7 @@ class Bends(NamedTuple):
     across   of |p_ij . n|, (3, n): twice by theta, by theta and r, twice by r
     whole    of |p_ij|, (3, n)
     turns    of the turn of the normal by theta and by r, (2, n)
-    regular  least D/w, above 0 where the flank is proved regular
+    regular  least of D cos d/M, cos a and (rho + q q_2)/rho, above 0 where the flank is proved regular
     sweep    greatest |dphi/dtheta|
     unrolled of the second derivative by theta of (r phi, z), a row unrolled
     """
@@ -122,6 +126,11 @@ class _Second(NamedTuple):
 def bends(flank: Flank, theta: tuple[Array, Array], r: tuple[Array, Array]) -> Bends:
     """Bounds over cells from theta[0] to theta[1], rad, without a break inside, and r[0] to r[1], mm, (n,) each."""
     rows = Ball(*flank.law.enclosure(theta[0], theta[1], 3))
+    return _explicit(flank, rows, r) if flank.radial else _implicit(flank, rows, Ball.between(*r))
+
+
+def _explicit(flank: Flank, rows: Ball, r: tuple[Array, Array]) -> Bends:
+    """Bounds of the flank of a roller whose axis is a radius, from rows of S to the third derivative."""
     v, bend, jerk = rows[1], rows[2], rows[3]
     radius, side = flank.radius, float(flank.side)
     s, c, h, square = _angles(v, Ball.between(*r), radius)
@@ -203,3 +212,112 @@ def _angles(v: Ball, r: Ball, radius: float) -> tuple[_Second, _Second, _Second,
     c = s.through(u**0.5, -(s.value * u**-0.5), -(u**-1.5))
     h = s.times(_Second(r**-1 * radius, nothing, r**-2 * -radius, nothing, nothing, r**-3 * (2.0 * radius)))
     return s, c, h, x.value
+
+
+class _Contact(NamedTuple):
+    """Balls of contact along the roller: sine and cosine of a, R, M, and a's derivatives by theta and by rho."""
+
+    s: Ball
+    c: Ball
+    radius: Ball
+    m: Ball
+    first: Ball
+    second: Ball
+
+
+def _contact(flank: Flank, y: list[Ball], z: list[Ball], rho: Ball) -> _Contact:
+    t = flank.slope
+    radius = (rho - flank.at) * t + flank.radius
+    along = rho + radius * t + y[1]
+    lag = y[0] * (flank.side * t)
+    square = along * along + z[1] ** 2
+    m = (square - lag * lag) ** 0.5
+    s, c = sin_cos(atan2(z[1], along) + asin(lag * square**-0.5))
+    first = (y[1] * (flank.side * t) - y[2] * s + z[2] * c) * m**-1
+    return _Contact(s, c, radius, m, first, s * m**-1 * -(1.0 + t * t))
+
+
+def _places(flank: Flank, y: list[Ball], z: list[Ball], r: Ball) -> Ball:
+    """Balls of the distances along the roller at which cylinders are touched.
+
+    Each solution stays inside: it is the root of r^2 - q^2, with q of a place that was inside before.
+    """
+    reach = np.abs(y[0].magnitude) + flank.size(r.magnitude)
+    low = np.sqrt(np.maximum(r.bounds()[0] ** 2 - reach**2, 0.0))
+    rho = Ball.between(low * (1.0 - WIDER), r.bounds()[1])
+    for _ in range(SETTLE):
+        contact = _contact(flank, y, z, rho)
+        q = y[0] - contact.radius * contact.s * float(flank.side)
+        low, high = ((r * r - q * q) ** 0.5).bounds()
+        before = rho.bounds()
+        rho = Ball.between(np.maximum(low, before[0]), np.maximum(np.minimum(high, before[1]), before[0]))
+    return rho
+
+
+def _implicit(flank: Flank, rows: Ball, r: Ball) -> Bends:
+    """Bounds of the flank of any roller, from rows of S to the third derivative, in axes that turn with the roller."""
+    y, z = flank.guide.place(rows)
+    t, side = flank.slope, float(flank.side)
+    rho = _places(flank, y, z, r)
+    s, c, radius, m, a1, a2 = _contact(flank, y, z, rho)
+    inverse, spread = m**-1, 1.0 + t * t
+    lag, lag2 = y[0] * (side * t), y[2] * (side * t)
+
+    # A sin a - z' cos a = lag, differentiated twice: A_1 = y'', A_2 = 1 + t^2
+    lean1, lean2 = y[2] * c + z[2] * s, c * spread
+    a11 = (lag2 - y[3] * s + z[3] * c - a1 * lean1 * 2.0 + lag * a1 * a1) * inverse
+    a12 = (lag * a1 * a2 - a2 * lean1 - a1 * lean2) * inverse
+    a22 = (lag * a2 * a2 - a2 * lean2 * 2.0) * inverse
+
+    # across q = y - side R sin a, height h = z + side R cos a, over (theta, rho)
+    q = y[0] - radius * s * side
+    q1 = y[1] - radius * c * a1 * side
+    q2, h2 = (s * t + radius * c * a2) * -side, (c * t - radius * s * a2) * side
+    q11 = y[2] - radius * (c * a11 - s * a1 * a1) * side
+    h11 = z[2] - radius * (s * a11 + c * a1 * a1) * side
+    q12 = (c * a1 * t + radius * (c * a12 - s * a1 * a2)) * -side
+    h12 = (s * a1 * t + radius * (s * a12 + c * a1 * a2)) * -side
+    q22 = (c * a2 * (2.0 * t) + radius * (c * a22 - s * a2 * a2)) * -side
+    h22 = (s * a2 * (2.0 * t) + radius * (s * a22 + c * a2 * a2)) * -side
+
+    # rho^2 + q^2 = r^2
+    out = rho + q * q2
+    over = out**-1
+    rho1, rho2 = q * q1 * over * -1.0, r * over
+    k11, k12, k22 = q1 * q1 + q * q11, q1 * q2 + q * q12, q2 * q2 + q * q22 + 1.0
+    rho11 = (k11 + k12 * rho1 * 2.0 + k22 * rho1 * rho1) * over * -1.0
+    rho12 = (k12 + k22 * rho1) * rho2 * over * -1.0
+    rho22 = (1.0 - k22 * rho2 * rho2) * over
+
+    # second derivatives over (theta, rho) along e_r, e_t and z, then over (theta, r)
+    one = Ball.exact(np.ones_like(r.mid))
+    p2 = (one, q2, h2)
+    p11, p12, p22 = (q1 * -2.0 - rho, q11 - q, h11), (q2 * -1.0, q12 + 1.0, h12), (one * 0.0, q22, h22)
+    second = (
+        [a + b * rho1 * 2.0 + d * rho1 * rho1 + rho11 * e for a, b, d, e in zip(p11, p12, p22, p2, strict=True)],
+        [(b + d * rho1) * rho2 + rho12 * e for b, d, e in zip(p12, p22, p2, strict=True)],
+        [d * rho2 * rho2 + rho22 * e for d, e in zip(p22, p2, strict=True)],
+    )
+    # along the normal p_2 has no part, and the rest is short
+    n11 = (q1 * 2.0 + rho) * t + (s * (q - y[2]) + c * z[2]) * side - radius * a1 * a1
+    n12 = (s * spread + radius * c * a2 * t) * -side - radius * a1 * a2
+    n22 = radius * a2 * a2 * -1.0
+    steep = math.cos(flank.taper)
+    across = (n11 + n12 * rho1 * 2.0 + n22 * rho1 * rho1, (n12 + n22 * rho1) * rho2, n22 * rho2 * rho2)
+    turn1, turn2 = a1 + a2 * rho1, a2 * rho2
+    turns = (
+        steep * s.magnitude,
+        (c * turn1 * (steep * side) + math.sin(flank.taper)).magnitude,
+        steep * (s * turn1).magnitude,
+    )
+    factor = 1.0 - (radius * c * t + radius * (a1 + q * a2) * side) * inverse
+    around = (q11 + q12 * rho1 * 2.0 + q22 * rho1 * rho1 + q2 * rho11, q1 + q2 * rho1)
+    phi11 = (around[0] * rho - around[1] * rho1) * rho**-2
+    return Bends(
+        np.stack([steep * ball.magnitude for ball in across]),
+        np.stack([np.sqrt(sum(part.magnitude**2 for part in parts)) for parts in second]),
+        np.stack([np.sqrt(sum(part**2 for part in turns)), steep * turn2.magnitude]),
+        np.min([factor.bounds()[0], c.bounds()[0], (out * rho**-1).bounds()[0]], axis=0),
+        (around[1] * rho**-1 + 1.0).magnitude,
+        np.hypot((r * phi11).magnitude, second[0][2].magnitude),
+    )

@@ -12,7 +12,7 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.figures import carried_from, outer_end
 from camgeo.capabilities.cylindrical.shells import PLACES, height, shell
-from camgeo.capabilities.cylindrical.turning import LINES, levels, sense
+from camgeo.capabilities.cylindrical.turning import LINES, rollers, sense
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.recipe.figures import PRESSURE_ANGLE
 
@@ -20,12 +20,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.flank import Flank
     from kin.numeric.arrays import Array, Indices, Mask
 
 TURN = 2.0 * math.pi
 WIDTH, LEFT, RIGHT, TOP, FOOT = 420.0, 46.0, 10.0, 8.0, 30.0  # px of a chart, and of its margins
 FIELD = WIDTH - LEFT - RIGHT
 HIGH = 150.0  # px of the map's field
+BEYOND = 0.3  # rad
 ROUND = 48  # chords of a roller's section
 COLUMNS, ROWS = 180, 16  # cells of the map
 STEPS_OF = (1.0, 2.0, 5.0, 10.0, 15.0)  # degrees from colour to colour
@@ -59,30 +61,31 @@ def development(design: DrumDesign) -> str:
             f'<path class="{look}" d="{_path(np.column_stack([x, y(height(design, name, radius))]))}"/>'
             for name in design.flanks
         ]
-    theta = np.linspace(0.0, TURN, LINES + 1)
-    share = theta / TURN if sense(design) > 0.0 else 1.0 - theta / TURN
-    path = design.law.derivatives(theta, 0)[0]
+    more = 0.0 if recipe.guide.radial else BEYOND  # beside a radius a path begins elsewhere than the turn
+    theta = np.linspace(-more, TURN + more, LINES + 1)
     short = lost_from(design, theta) > inner
-    for level in levels(design):
-        points = np.column_stack([LEFT + FIELD * share, TOP + tall - scale * (level + path)])
-        parts.append(f'<path class="line pitch" d="{_path(points)}"/>')
-        parts += [f'<path class="line lost" d="{_path(points[run])}"/>' for run in _runs(short) if run.size > 1]
     sections = "".join(
-        f'<path class="section{look}" d="{_path(_section(design, radius, level))}Z"/>'
-        for level in levels(design)
+        f'<path class="section{look}" d="{_path(_section(design, radius))}Z"/>'
         for radius, look in ((blank, ""), (inner, " inner"))
     )
-    at = 0.0 if sense(design) > 0.0 else FIELD
-    place = TOP + tall - scale * float(path[0])
-    rollers = "".join(
-        f'<g class="roller-at" transform="translate({LEFT + at + FIELD * (k - 1):.2f} {place:.2f})">{sections}</g>'
-        for k in range(3)
-    )
+    shown = ""
+    for flank in rollers(design):
+        beside, z = flat_axis(design, flank, theta)
+        share = theta / TURN + beside
+        share = share if sense(design) > 0.0 else 1.0 - share
+        points = np.column_stack([LEFT + FIELD * share, TOP + tall - scale * z])
+        parts.append(f'<path class="line pitch" d="{_path(points)}"/>')
+        parts += [f'<path class="line lost" d="{_path(points[run])}"/>' for run in _runs(short) if run.size > 1]
+        x, y = np.array([np.interp(0.0, theta, row) for row in points.T]).tolist()
+        shown += "".join(
+            f'<g class="roller-at" transform="translate({x + FIELD * (k - 1):.2f} {y:.2f})">{sections}</g>'
+            for k in range(3)
+        )
     clip = f'<clipPath id="flat"><rect x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/></clipPath>'
     field = f'<rect class="field" x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/>'
     told = f"the drum unrolled over one turn: {', '.join(design.flanks)} flank and the path of the roller's axis"
     axes = _axes(design, tall, (0.0, recipe.height), "angle on the drum, °", "z")
-    body = f'{clip}{field}<g clip-path="url(#flat)">{"".join(parts)}{rollers}</g>{axes}'
+    body = f'{clip}{field}<g clip-path="url(#flat)">{"".join(parts)}{shown}</g>{axes}'
     return _chart("development", tall, told, body)
 
 
@@ -91,12 +94,18 @@ def lost_from(design: DrumDesign, theta: Array) -> Array:
     return np.asarray(np.max([carried_from(design, name, theta) for name in design.flanks], axis=0))
 
 
-def _section(design: DrumDesign, radius: float, level: float) -> Array:
-    """The roller cut by a cylinder, unrolled, in px from the place of its axis at lift 0."""
-    roller = design.recipe.roller.radius
+def flat_axis(design: DrumDesign, flank: Flank, theta: Array) -> tuple[Array, Array]:
+    """Turn from the shaft angle to where a roller's axis meets the blank, a share of one, and its height, mm (n,)."""
+    pose = flank.pose(theta)
+    return np.arcsin(pose.y / design.recipe.radius) / TURN, pose.z
+
+
+def _section(design: DrumDesign, radius: float) -> Array:
+    """The roller cut by a cylinder, unrolled, in px from the place of its axis."""
+    roller = design.recipe.roller.size(radius)
     t = np.arange(ROUND) * (TURN / ROUND)
     across = np.arcsin(np.minimum(roller / radius, 1.0) * np.sin(t)) * (FIELD / TURN)
-    return np.column_stack([across, -flat_scale(design) * (level + roller * np.cos(t))])
+    return np.column_stack([across, -flat_scale(design) * roller * np.cos(t)])
 
 
 # --- map --------------------------------------------------------------------------------------------------------------
@@ -119,10 +128,15 @@ def angle_map(design: DrumDesign) -> AngleMap:
     roller = design.recipe.roller
     theta = np.asarray((np.arange(COLUMNS) + 0.5) * (TURN / COLUMNS), dtype=np.float64)
     rho = np.asarray(roller.inner + (np.arange(ROWS) + 0.5) * (roller.outer - roller.inner) / ROWS, dtype=np.float64)
-    angle = np.degrees(np.arctan2(np.abs(design.law.derivatives(theta, 1)[1]), rho[:, None]))
+    angle = np.degrees([_steepness(design, theta, np.full_like(theta, place)) for place in rho])
     outer = np.min([outer_end(design, name, theta) for name in design.flanks], axis=0)
     short = rho[:, None] < lost_from(design, theta)
     return AngleMap(theta, rho, np.where(rho[:, None] > outer, np.nan, angle), short)
+
+
+def _steepness(design: DrumDesign, theta: Array, rho: Array) -> Array:
+    """Greater magnitude of the pressure angles of all flanks, rad (n,), at shaft angles and distances along."""
+    return np.asarray(np.max([np.abs(flank.pressure(theta, rho)) for flank in design.flanks.values()], axis=0))
 
 
 def greatest(design: DrumDesign) -> tuple[float, float, float]:
@@ -130,9 +144,10 @@ def greatest(design: DrumDesign) -> tuple[float, float, float]:
     theta = np.linspace(0.0, TURN, COLUMNS * ROWS + 1)
     begin = lost_from(design, theta)
     outer = np.min([outer_end(design, name, theta) for name in design.flanks], axis=0)
-    angle = np.where(begin <= outer, np.arctan2(np.abs(design.law.derivatives(theta, 1)[1]), begin), 0.0)
+    rho = np.concatenate([begin, outer])
+    angle = np.where(np.tile(begin <= outer, 2), _steepness(design, np.tile(theta, 2), rho), 0.0)
     k = int(angle.argmax())
-    return math.degrees(angle[k]), math.degrees(theta[k]), float(begin[k])
+    return math.degrees(angle[k]), math.degrees(theta[k % theta.size]), float(rho[k])
 
 
 def colour_step(most: float) -> float:

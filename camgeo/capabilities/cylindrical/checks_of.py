@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 TURN = 2.0 * math.pi
 STEEP = 30.0  # degrees, by rule of thumb for a follower on a straight guide
+STEEP_ARM = 45.0
 ROUNDING = 1e-9  # mm: a wall that is less by no more holds
 LENGTH, RIB = "contact-length", "rib-thickness"
 
@@ -48,23 +49,14 @@ def walls(design: DrumDesign) -> list[tuple[float, str]]:
     """Walls of a drum, mm, each with what it stands between; without a bore those of the ends alone."""
     recipe, track = design.recipe, design.recipe.track
     low, high = design.motion.range
-    radius, level, height = recipe.roller.radius, recipe.level, recipe.height
+    word = "rib" if isinstance(track, Rib) else "groove" if isinstance(track, Groove) else "flank"
     found = []
-    if isinstance(track, Groove):
-        found += [
-            (level + low - radius, "between the groove and the lower face"),
-            (height - (level + high + radius + track.clearance), "between the groove and the upper face"),
-        ]
-    elif isinstance(track, Rib):
-        half = 0.5 * track.distance
-        found += [
-            (level - half + low + radius, "between the rib and the lower face"),
-            (height - (level + half + high - radius), "between the rib and the upper face"),
-        ]
-    elif track.facing == "top":
-        found.append((level + low - radius, "between the flank and the lower face"))
-    else:
-        found.append((height - (level + high + radius), "between the flank and the upper face"))
+    for name, flank in design.flanks.items():
+        # a rib's lower face is the flank above a roller
+        if (name == "lower") != (word == "rib"):
+            found.append((flank.resting(low, recipe.radius), f"between the {word} and the lower face"))
+        else:
+            found.append((recipe.height - flank.resting(high, recipe.radius), f"between the {word} and the upper face"))
     if design.bore is not None:
         points = design.bore.outline.points
         reach = float(np.hypot(*points.T).max())
@@ -86,11 +78,12 @@ def remarks_on(design: DrumDesign, figures: Sequence[Figure]) -> tuple[RuleRemar
     """Remarks on what is unusual, and on what becomes of a development that is taken for more than it is."""
     recipe, known = design.recipe, {figure.name: figure for figure in figures}
     remarks = []
-    steep = known[PRESSURE_ANGLE]
+    steep, usual = known[PRESSURE_ANGLE], STEEP_ARM if recipe.swings else STEEP
     limited = {bound.figure for bound in recipe.limits}
-    if steep.value > STEEP and PRESSURE_ANGLE not in limited:
-        sentence = f"the pressure angle reaches {steep.value:.4g} degrees at the roller's inner end, {STEEP:g} is usual"
-        remarks.append(RuleRemark(PRESSURE_ANGLE, steep.value, STEEP, "deg", sentence, steep.at))
+    if steep.value > usual and PRESSURE_ANGLE not in limited:
+        where = "" if recipe.swings else " at the roller's inner end"
+        sentence = f"the pressure angle reaches {steep.value:.4g} degrees{where}, {usual:g} is usual"
+        remarks.append(RuleRemark(PRESSURE_ANGLE, steep.value, usual, "deg", sentence, steep.at))
     kept = design.motion.kept
     remarks += [] if kept is None else [RuleRemark(name, None, None, "", told) for name, told in kept.remarks]
     pressure, bearable = known.get("contact-pressure"), bears(design)
@@ -100,7 +93,8 @@ def remarks_on(design: DrumDesign, figures: Sequence[Figure]) -> tuple[RuleRemar
     chosen = [each for request in recipe.export.files if request.as_ == DEVELOPMENT for each in radii(design, request)]
     walls_at = dict.fromkeys(radius for radius, pitch in chosen if not pitch)
     remarks += [] if any(design.tips.values()) else [_wrapped(design, radius) for radius in walls_at]
-    remarks += [_offset(design, radius) for radius in dict.fromkeys(radius for radius, pitch in chosen if pitch)]
+    if all(flank.radial for flank in design.flanks.values()):  # no cutter with a radial axis follows another path
+        remarks += [_offset(design, radius) for radius in dict.fromkeys(radius for radius, pitch in chosen if pitch)]
     return tuple(remarks)
 
 

@@ -14,7 +14,7 @@ from camgeo.capabilities.cylindrical.undercut import cut_at, demand_regular, tip
 from camgeo.curve.curve import CurveError
 from camgeo.part.body import bore_of
 from kin.numeric.lengths import in_unit
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.keys import DrumRecipe
@@ -42,16 +42,16 @@ class DrumDesign:
     @cached_property
     def flanks(self) -> dict[str, Flank]:
         """Flanks by name: `lower` with the metal below, `upper` with the metal above."""
-        recipe = self.recipe
-        radius, level, track = recipe.roller.radius, recipe.level, recipe.track
-        lower, upper = Flank(self.law, level, radius, -1), Flank(self.law, level, radius, 1)
+        roller, guide, track = self.recipe.roller, self.recipe.guide, self.recipe.track
+        lower = Flank(self.law, guide, roller.radius, -1, roller.taper, roller.at)
+        upper = replace(lower, side=1)
         if isinstance(track, Groove):
-            return {"lower": lower, "upper": Flank(self.law, level, radius + track.clearance, 1)}
+            return {"lower": lower, "upper": replace(upper, radius=roller.radius + track.clearance)}
         if isinstance(track, Rib):
             half = 0.5 * track.distance
             return {
-                "lower": Flank(self.law, level + half, radius, -1),
-                "upper": Flank(self.law, level - half, radius, 1),
+                "lower": replace(lower, guide=guide.beside(half)),
+                "upper": replace(upper, guide=guide.beside(-half)),
             }
         return {"lower": lower} if track.facing == "top" else {"upper": upper}
 

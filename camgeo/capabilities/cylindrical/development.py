@@ -18,6 +18,7 @@ from camgeo.capabilities.cylindrical.undercut import cut_at
 from camgeo.fit.bound import Bound
 from camgeo.fit.nodes import ToleranceError
 from kin.cylindrical.intent import Developed
+from kin.numeric.interval import Ball
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -66,8 +67,7 @@ def drawn(design: DrumDesign, line: Developed, tolerance: float) -> Line:
     """Points of a line over its period and the overlap, in the axes of the drawing; ToleranceError where too many."""
     look = looks_of(design.law)
     if line.flank == PITCH:
-        mid, rad = design.law.enclosure(look[:-1], look[1:], 2)
-        bend, begin = np.abs(mid[2]) + rad[2], 0.0
+        bend, begin = _pitch_bends(design, line.radius, look), _pitch_start(design, line.radius)
     else:
         flank, r = design.flanks[line.flank], np.full(look.size - 1, line.radius)
         bend, begin = bends(flank, (look[:-1], look[1:]), (r, r)).unrolled, _start(flank, line.radius)
@@ -84,8 +84,49 @@ def drawn(design: DrumDesign, line: Developed, tolerance: float) -> Line:
     return Line(line, points, off)
 
 
+def unrolled(design: DrumDesign, tolerance: float) -> list[Array]:
+    """Lines (n, 2), mm, of the flanks on the blank, with the blank's ends and the marks of the overlap."""
+    recipe = design.recipe
+    lines = [drawn(design, Developed("", recipe.radius, name), tolerance).points for name in design.flanks]  # type: ignore[arg-type]
+    begin, end = _reach(design, recipe.radius, 0.0), _reach(design, recipe.radius, TURN + OVERLAP)
+    edges = [np.array([[begin, z], [end, z]]) for z in (0.0, recipe.height)]
+    return [*lines, *edges, *(_mark(design, recipe.radius, at) for at in (0.0, TURN, TURN + OVERLAP))]
+
+
+def _reach(design: DrumDesign, radius: float, at: float) -> float:
+    """Place of a polar angle, rad, on a development, mm."""
+    return (radius if design.recipe.rotation == "cw" else -radius) * at
+
+
+def _mark(design: DrumDesign, radius: float, at: float) -> Array:
+    x = _reach(design, radius, at)
+    return np.array([[x, 0.0], [x, design.recipe.height]])
+
+
 def _pitch(design: DrumDesign, radius: float, theta: Array) -> Array:
-    return np.column_stack([radius * theta, design.recipe.level + design.law.derivatives(theta, 0)[0]])
+    """Where the roller's axis, or the middle between two, meets the cylinder."""
+    y, z = design.recipe.guide.place(design.law.derivatives(theta, 0))
+    return np.column_stack([radius * (theta + np.arcsin(y[0] / radius)), z[0]])
+
+
+def _pitch_bends(design: DrumDesign, radius: float, look: Array) -> Array:
+    """Bounds of the second derivative of the path by the shaft angle between neighbours of `look`, mm."""
+    y, z = design.recipe.guide.place(Ball(*design.law.enclosure(look[:-1], look[1:], 2)))
+    if design.recipe.guide.radial:
+        return z[2].magnitude
+    root = (radius**2 - y[0] * y[0]) ** -0.5
+    across = y[2] * root + y[0] * y[1] * y[1] * root * root * root
+    return np.hypot((across * radius).magnitude, z[2].magnitude)
+
+
+def _pitch_start(design: DrumDesign, radius: float) -> float:
+    """Shaft angle, rad, at which the path has the polar angle 0."""
+    guide, theta = design.recipe.guide, np.zeros(1)
+    if guide.radial:
+        return 0.0
+    for _ in range(NEWTON):  # the roller leaves the radius slowly
+        theta = -np.arcsin(guide.place(design.law.derivatives(theta, 0))[0][0] / radius)
+    return float(theta[0])
 
 
 def _flank(design: DrumDesign, line: Developed, theta: Array) -> Array:
@@ -136,9 +177,7 @@ def write_development(
         boxes = [_draw(space, line.of.layer, COLOURS[line.of.flank], line.points / mm) for line in lines]
         for radius in dict.fromkeys(line.of.radius for line in lines):
             layer = f"R{radius / mm:.9g}_{MARKS}"
-            for at in (TURN, TURN + OVERLAP):
-                x = (radius if recipe.rotation == "cw" else -radius) * at
-                boxes.append(_draw(space, layer, 8, np.array([[x, 0.0], [x, recipe.height]]) / mm))
+            boxes += [_draw(space, layer, 8, _mark(design, radius, at) / mm) for at in (TURN, TURN + OVERLAP)]
         corners = np.array(boxes)
         return (*corners[:, :2].min(axis=0).tolist(), *corners[:, 2:].max(axis=0).tolist())
 

@@ -1,8 +1,9 @@
-"use strict";
-// what turns with the page's player: the drum, its lines of contact, the roller on the development, the map's cursor
-function playDrum(data) {
-  const root = document.documentElement;
-  const drum = document.querySelector("#drawing .drum");
+// What turns with the page's player: the drum, its lines of contact, the roller on the development, the map's cursor.
+// It returns what shows them at a share of the turn. Of a drum that is kept beside another, whose drawing is in `kept`,
+// that is what stands on the blank.
+function playDrum(data, kept = null) {
+  const drum = (kept || document).querySelector("#drawing .drum");
+  if (kept) for (const path of drum.querySelectorAll("path:not(.metal)")) path.remove();
   const paths = [...drum.querySelectorAll("path")];
   const arcs = [...document.querySelectorAll("#drawing .contacts path")];
   const developed = document.querySelectorAll("#development .roller-at");
@@ -33,8 +34,9 @@ function playDrum(data) {
     radius: shell.radius,
     bands: shell.bands.map((band) => band.map((row) => along(row, data.places))),
   }));
-  const lines = data.lines.map((line) => ({ ...line, low: along(line.low, data.parts), high: along(line.high, data.parts) }));
-  const lift = along(data.lift, data.parts);
+  const over = (rows) => Object.fromEntries(Object.entries(rows).map(([name, row]) => [name, along(row, data.parts)]));
+  const lines = data.lines.map(over);
+  const rollers = data.rollers.map(over);
 
   // outlines of the bands of a shell between two angles to the right of the viewer
   function seen(shell, turn, low, high, chords) {
@@ -67,8 +69,12 @@ function playDrum(data) {
     });
   }
 
-  function show() {
-    const share = (Number(root.dataset.at) || 0) / 360;
+  function showKept(share) {
+    paths[0].setAttribute("d", closed(near(shells.at(-1), data.sense * share * TURN)));
+  }
+  if (kept) return showKept;
+
+  function show(share) {
     const turn = data.sense * share * TURN;
     const n = shells.length;
     shells.forEach((shell, k) => {
@@ -77,17 +83,21 @@ function playDrum(data) {
     });
     paths[2 * n].setAttribute("d", closed(rims(turn)));
     lines.forEach((line, i) => {
-      const [low, high] = [line.low(share), line.high(share)];
-      const angles = Array.from({ length: 13 }, (_, k) => low + ((high - low) * k) / 12);
-      const place = (a) => [-data.sense * line.reach * Math.sin(a), line.level + line.reach * Math.cos(a)];
-      arcs[i].setAttribute("d", Number.isFinite(low) ? path(angles.map(place)) : "");
+      const [low, high, near, far] = [line.low(share), line.high(share), line.near(share), line.far(share)];
+      const place = (_, k) => {
+        const [a, reach] = [low + ((high - low) * k) / 12, near + ((far - near) * k) / 12];
+        return [-data.sense * reach * Math.sin(a), reach * Math.cos(a)];
+      };
+      arcs[i].setAttribute("d", Number.isFinite(low) ? path(Array.from({ length: 13 }, place)) : "");
     });
     const [scale, width, height, left, top] = data.flat;
     const at = data.sense > 0 ? share : 1 - share;
-    developed.forEach((roller, k) => {
-      roller.setAttribute("transform", `translate(${(left + width * (at + k - 1)).toFixed(2)} ${(top + height - scale * lift(share)).toFixed(2)})`);
+    developed.forEach((group, i) => {
+      const roller = rollers[Math.floor(i / 3)];
+      const x = left + width * (at + data.sense * roller.beside(share) + (i % 3) - 1);
+      group.setAttribute("transform", `translate(${x.toFixed(2)} ${(top + height - scale * roller.z(share)).toFixed(2)})`);
     });
-    cursor.setAttribute("transform", `translate(${(data.map[0] + data.map[1] * share).toFixed(2)} 0)`);
+    cursor?.setAttribute("transform", `translate(${(data.map[0] + data.map[1] * share).toFixed(2)} 0)`);
   }
 
   // the drum is dragged round as its near side goes
@@ -100,14 +110,12 @@ function playDrum(data) {
   drum.addEventListener("pointermove", (event) => {
     if (grip === null) return;
     const radius = shells.at(-1).radius * drum.getScreenCTM().a;
-    const next = Number(root.dataset.at) - (data.sense * (event.clientX - grip) * 180) / (Math.PI * radius);
+    const next = Number(document.documentElement.dataset.at) - (data.sense * (event.clientX - grip) * 180) / (Math.PI * radius);
     grip = event.clientX;
     const slider = document.getElementById("slider");
     slider.value = ((next % 360) + 360) % 360;
     slider.dispatchEvent(new Event("input"));
   });
   for (const name of ["pointerup", "pointercancel"]) drum.addEventListener(name, () => (grip = null));
-
-  new MutationObserver(show).observe(root, { attributes: true, attributeFilter: ["data-at"] });
-  show();
+  return show;
 }

@@ -1,20 +1,31 @@
-"""The page of a cylindrical cam: the drum turns under its follower, development, pressure angles, curves and checks."""
+"""The page of a cylindrical cam: the drum turns under its follower, development, pressure angles, curves, figures."""
 
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.charts import FIELD, LEFT, TOP, development, flat_scale, keys, limits, pressure_map
+from camgeo.capabilities.cylindrical.charts import (
+    FIELD,
+    LEFT,
+    TOP,
+    development,
+    flat_axis,
+    flat_scale,
+    keys,
+    limits,
+    pressure_map,
+)
 from camgeo.capabilities.cylindrical.figures import contact_length
 from camgeo.capabilities.cylindrical.shells import FACE, PLACES, RIM, shells
-from camgeo.capabilities.cylindrical.turning import LINES, contact_angles, scene, sense
+from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, sense, touched
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
-from camgeo.report.page.page import filled, pack_numbers, picture, plotted, script_json
+from camgeo.report.page.page import pack_numbers, picture, plotted
 from camgeo.report.page.scene import STEPS
 from camgeo.report.plot import Plot, Series
 
@@ -22,15 +33,33 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.output.own_kind import Made
-    from kin.cylindrical.verdict import DrumVerdict
+    from camgeo.capabilities.cylindrical.shells import Shell
 
 
-def page(design: DrumDesign, _made: Sequence[Made[DrumVerdict]], report: dict[str, Any]) -> str:
-    """Return the HTML of the page, from the design, the files that were made or given, and the report."""
+def looks() -> tuple[str, str]:
+    """Return the rules of the charts, and the player that turns the drum."""
+    return _asset("drum.css"), _asset("drum.js")
+
+
+def panels(design: DrumDesign, report: dict[str, Any]) -> str:
+    """Return the HTML of development, map and figures."""
+    return f'<div class="charts-and-figures">{_charts(design)}{_figures(report)}</div>'
+
+
+@lru_cache(maxsize=1)
+def drawn(design: DrumDesign) -> dict[str, Any]:
+    """Data of the page's script that show the drum and its follower, and turn them; the last are kept."""
+    of = shells(design)
+    seen = scene(design, of=of)
     turn = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
-    data = {
-        **picture(design.recipe, scene(design), turn, -1 if design.recipe.rotation == "cw" else 1),
+    shown = picture(design.recipe, seen, turn, -1 if design.recipe.rotation == "cw" else 1)
+    return {**shown, "player": {"name": "playDrum", "data": _played(design, of, seen.digits)}}
+
+
+def script(design: DrumDesign) -> dict[str, Any]:
+    """All data of the page's script."""
+    return {
+        **drawn(design),
         "marks": [],
         "plots": [plotted(plot) for plot in _plots(design)],
         "rests": [
@@ -40,8 +69,6 @@ def page(design: DrumDesign, _made: Sequence[Made[DrumVerdict]], report: dict[st
         "contours": {},
         "errors": [],
     }
-    panels = f'<div class="charts-and-figures">{_charts(design)}{_figures(report)}</div>{_script(design)}'
-    return filled(design.recipe, data, report, panels=panels, style=_asset("drum.css"))
 
 
 def _asset(name: str) -> str:
@@ -61,14 +88,14 @@ def _charts(design: DrumDesign) -> str:
     )
 
 
-def _script(design: DrumDesign) -> str:
-    """Return the script that turns the drum with the page's player, and its data in the recipe's unit."""
+def _played(design: DrumDesign, of: Sequence[Shell], digits: int) -> dict[str, Any]:
+    """Return the data of the drum's player in the recipe's unit; `digits` are those of the drawing's coordinates."""
     recipe = design.recipe
     mm = recipe.mm
     theta = np.linspace(0.0, 2.0 * math.pi, LINES + 1)
-    data = {
+    return {
         "sense": sense(design),
-        "digits": scene(design).digits,
+        "digits": digits,
         "places": PLACES,
         "parts": LINES,
         "face": FACE,
@@ -79,24 +106,24 @@ def _script(design: DrumDesign) -> str:
                 "radius": each.radius / mm,
                 "bands": [[pack_numbers(z / mm, recipe.height / mm) for z in band] for band in each.bands],
             }
-            for each in shells(design)
+            for each in of
         ],
         "lines": [
             {
-                "level": flank.level / mm,
-                "reach": flank.side * flank.radius / mm,
-                **dict(zip(("low", "high"), map(pack_numbers, contact_angles(design, name)), strict=True)),
+                "low": pack_numbers(ends.low),
+                "high": pack_numbers(ends.high),
+                "near": pack_numbers(ends.near / mm),
+                "far": pack_numbers(ends.far / mm),
             }
-            for name, flank in design.flanks.items()
+            for ends in (touched(design, name) for name in design.flanks)
         ],
-        "lift": pack_numbers(design.law.derivatives(theta, 0)[0] / mm),
+        "rollers": [
+            {"beside": pack_numbers(beside), "z": pack_numbers(z / mm)}
+            for beside, z in (flat_axis(design, flank, theta) for flank in rollers(design))
+        ],
         "flat": [flat_scale(design) * mm, FIELD, flat_scale(design) * recipe.height, LEFT, TOP],
         "map": [LEFT, FIELD],
     }
-    return (
-        f'<script type="application/json" id="drum-data">{script_json(data)}</script>\n<script>\n{_asset("drum.js")}'
-        'playDrum(JSON.parse(document.getElementById("drum-data").textContent));\n</script>'
-    )
 
 
 def _figures(report: dict[str, Any]) -> str:
@@ -114,14 +141,19 @@ def _plots(design: DrumDesign) -> list[Plot]:
     recipe = design.recipe
     theta = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
     unit = UNIT_NAMES[recipe.units]
-    rows = design.law.derivatives(theta, 2) / recipe.mm
-    names = (("lift", ""), ("velocity", "/rad"), ("acceleration", "/rad²"))
+    rows = design.law.derivatives(theta, 2)
+    rows = np.degrees(rows) if recipe.swings else rows / recipe.mm
+    shown = "°" if recipe.swings else unit
+    names = ("swing" if recipe.swings else "lift", ""), ("velocity", "/rad"), ("acceleration", "/rad²")
     plots = [
-        Plot(name.capitalize(), f"{unit}{per}", (Series(name, rows[k]),), dwells=True)
+        Plot(name.capitalize(), f"{shown}{per}", (Series(name, rows[k]),), dwells=True)
         for k, (name, per) in enumerate(names)
     ]
-    ends = {"inner end": recipe.roller.inner / recipe.mm, "outer end": recipe.roller.outer / recipe.mm}
-    angles = tuple(Series(name, np.degrees(np.arctan2(rows[1], rho))) for name, rho in ends.items())
+    flank, *_ = design.flanks.values()
+    ends = {"inner end": recipe.roller.inner, "outer end": recipe.roller.outer}
+    angles = tuple(
+        Series(name, np.degrees(flank.pressure(theta, np.full_like(theta, rho)))) for name, rho in ends.items()
+    )
     lines = tuple((sign * value, "limit" if sign > 0 else "") for value in limits(design) for sign in (1.0, -1.0))
     note = "at both ends of the roller; above 0 where the drum drives a rise"
     plots.append(Plot("Pressure angle", "°", angles, limits=lines, dwells=True, note=note))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.flank import distance
 from camgeo.capabilities.cylindrical.grid import breaks_of
 from camgeo.capabilities.cylindrical.keys import Groove, Rib
 from camgeo.capabilities.cylindrical.undercut import below
@@ -34,7 +34,7 @@ NEWTON = 40
 
 
 def slopes(design: DrumDesign, order: int = 1) -> tuple[Extreme, Extreme]:
-    """Least and greatest derivative of S of an order by the radian, mm."""
+    """Least and greatest derivative of S of an order by the radian, mm or rad."""
 
     def figure(tau: Series, side: Side = 1) -> Series:
         s = design.law.on(tau, side)
@@ -47,7 +47,7 @@ def slopes(design: DrumDesign, order: int = 1) -> tuple[Extreme, Extreme]:
 
 
 def steepest(design: DrumDesign, order: int = 1) -> tuple[float, float]:
-    """Greatest magnitude of a derivative of S by the radian, mm, and its shaft angle, rad."""
+    """Greatest magnitude of a derivative of S by the radian, mm or rad, and its shaft angle, rad."""
     low, high = slopes(design, order)
     worst = high if high.value >= -low.value else low
     return abs(worst.value), worst.at
@@ -56,8 +56,7 @@ def steepest(design: DrumDesign, order: int = 1) -> tuple[float, float]:
 def outer_end(design: DrumDesign, name: str, theta: Array) -> Array:
     """Distance along the roller (n,), mm, at which contact with a flank ends outside: at its end, or the blank's."""
     recipe, flank = design.recipe, design.flanks[name]
-    v = design.law.derivatives(theta, 1)[1]
-    return np.minimum(recipe.roller.outer, distance(np.full_like(v, recipe.radius), v, flank.radius))
+    return np.minimum(recipe.roller.outer, flank.reached(flank.pose(theta), recipe.radius))
 
 
 def carried_from(design: DrumDesign, name: str, theta: Array) -> Array:
@@ -85,22 +84,65 @@ def contact_length(design: DrumDesign, name: str, theta: Array) -> Array:
 def figures_of(design: DrumDesign) -> list[Figure]:
     """All figures that a design has, in the order of reports."""
     recipe = design.recipe
-    v, at = steepest(design)
-    ends = {name: float(outer_end(design, name, np.array([at]))[0]) for name in design.flanks}
-    outer, place = min(ends.values()), math.degrees(at)
-    middle = 0.5 * (recipe.roller.inner + recipe.roller.outer)
-    found = [
-        Figure(name, math.degrees(math.atan2(v, rho)), "deg", place)
-        for name, rho in ((PRESSURE_ANGLE, recipe.roller.inner), (MIDDLE, middle), (OUTER, outer))
-    ]
+    angles = steepest_contacts(design)
+    found = [Figure(name, math.degrees(angle), "deg", math.degrees(at)) for name, (angle, at) in angles.items()]
     found += _carrying(design)
+    if recipe.swings:
+        found.append(_off_radius(design))
     if isinstance(recipe.track, Groove):
-        play = recipe.track.clearance * math.hypot(v, outer) / outer
-        found.append(Figure("play", play, "mm", place))
+        play, place = greatest_of(lambda theta: play_at(design, theta), TURN)
+        found.append(_displaced(design, "play", play, "", math.degrees(place)))
     if isinstance(recipe.track, Rib):
         thickness, thin = greatest_of(lambda theta: -rib_thickness(design, theta, recipe.floor), TURN)
         found.append(Figure("rib-thickness", -thickness, "mm", math.degrees(thin)))
-    return [*found, *_curved(design), *_driven(design), *_loaded(design), *_heavy(design)]
+    steep = angles[PRESSURE_ANGLE]
+    return [*found, *_curved(design), *_driven(design), *_loaded(design, steep), *_heavy(design)]
+
+
+def _displaced(design: DrumDesign, name: str, value: float, per: str, at: float | None) -> Figure:
+    """Figure of the follower's displacement, mm or rad, or of a derivative of it, `per` such as /s."""
+    unit = design.recipe.guide.unit
+    return Figure(name, math.degrees(value) if design.recipe.swings else value, f"{unit}{per}", at)
+
+
+def steepest_contacts(design: DrumDesign) -> dict[str, tuple[float, float]]:
+    """Greatest pressure angles, rad, and their shaft angles, rad: of all contacts, half way along, and where they end.
+
+    Along a cylinder tan alpha is a straight line over 1/rho, so that it is greatest at an end.
+    """
+    roller = design.recipe.roller
+    middle = 0.5 * (roller.inner + roller.outer)
+
+    def at(rho: float | None) -> tuple[float, float]:
+        def angle(theta: Array, name: str) -> Array:
+            ends = outer_end(design, name, theta) if rho is None else np.full_like(theta, rho)
+            return np.asarray(np.abs(design.flanks[name].pressure(theta, ends)))
+
+        return max(greatest_of(partial(angle, name=name), TURN) for name in design.flanks)
+
+    inner, half, outer = at(roller.inner), at(middle), at(None)
+    return {PRESSURE_ANGLE: max(inner, outer), MIDDLE: half, OUTER: outer}
+
+
+def play_at(design: DrumDesign, theta: Array) -> Array:
+    """Play of the roller of a groove at shaft angles (n,), mm or rad, to first order in the clearance.
+
+    It is the clearance over cos alpha where that is least along the line of contact.
+    """
+    track, flank = design.recipe.track, design.flanks["upper"]
+    clearance = track.clearance if isinstance(track, Groove) else 0.0
+    angles = np.abs([flank.pressure(theta, rho) for rho in _along(design, "upper", theta)])
+    return np.asarray(clearance / np.cos(angles.min(axis=0)) / flank.guide.reach)
+
+
+def _off_radius(design: DrumDesign) -> Figure:
+    """Greatest distance of a roller's axis on an arm from a radius of the drum."""
+
+    def off(theta: Array) -> Array:
+        return np.asarray(np.max([np.abs(flank.pose(theta).y) for flank in design.flanks.values()], axis=0))
+
+    value, at = greatest_of(off, TURN)
+    return Figure("off-radius", value, "mm", math.degrees(at))
 
 
 def _carrying(design: DrumDesign) -> list[Figure]:
@@ -171,36 +213,39 @@ def _driven(design: DrumDesign) -> list[Figure]:
         return []
     rate = rpm * TURN / MINUTE
     found = []
-    for order, name, unit in ((1, "velocity", "mm/s"), (2, "acceleration", "mm/s^2")):
+    for order, name, per in ((1, "velocity", "/s"), (2, "acceleration", "/s^2")):
         value, at = steepest(design, order)
-        found.append(Figure(name, value * rate**order, unit, math.degrees(at)))
+        found.append(_displaced(design, name, value * rate**order, per, math.degrees(at)))
     return found
 
 
-def _loaded(design: DrumDesign) -> list[Figure]:
+def _loaded(design: DrumDesign, steep: tuple[float, float]) -> list[Figure]:
     """Forces under the load, N, the torque, N m, and the pressure of the contact, N/mm^2.
 
-    Force and thrust are those of a load that the roller's inner end carries alone, where the contact is steepest; for
-    the pressure the load is spread evenly along the line.
+    Force and thrust are those of a load that the steepest contact carries alone, its pressure angle and shaft angle in
+    rad; for the pressure the load is spread evenly along the line.
     """
     recipe, drive = design.recipe, design.recipe.drive
     if drive.load is None:
         return []
-    v, at = steepest(design)
-    place, inner = math.degrees(at), recipe.roller.inner
+    (rate, at), (angle, place), taper = steepest(design), steep, recipe.roller.taper
+    across = drive.load / math.cos(angle)
+    reach = max(flank.guide.reach for flank in design.flanks.values())
     found = [
-        Figure("contact-force", drive.load * math.hypot(v, inner) / inner, "N", place),
-        Figure("side-thrust", drive.load * v / inner, "N", place),
-        Figure("torque", 1e-3 * drive.load * v, "N m", place),
+        Figure("contact-force", across / math.cos(taper), "N", math.degrees(place)),
+        Figure("side-thrust", drive.load * math.tan(angle), "N", math.degrees(place)),
     ]
+    if taper:
+        found.append(Figure("axial-thrust", across * math.tan(taper), "N", math.degrees(place)))
+    found.append(Figure("torque", 1e-3 * drive.load * rate * reach, "N m", math.degrees(at)))
     if drive.material is None or recipe.shortens:
         return found
     load, drum, roller = drive.load, drive.material, drive.roller_material or drive.material
 
     def pressure(name: str, theta: Array) -> Array:
-        slope, length = design.law.derivatives(theta, 1)[1], contact_length(design, name, theta)
+        length, flank = contact_length(design, name, theta), design.flanks[name]
         rho, curvature = _along(design, name, theta), _sharpest(design, name, theta)[1]
-        force = load * np.hypot(slope, rho) / rho
+        force = load / np.cos([flank.pressure(theta, place) for place in rho]) / math.cos(taper)
         width = np.where(length > 0.0, length, np.inf)
         found: Array = line_pressure(force * curvature / width, np.ones_like(force), 1.0, drum, roller).max(axis=0)
         return found
@@ -252,7 +297,7 @@ def _areas(design: DrumDesign, name: str, r: Array) -> Array:
     half, radius = 0.5 * (high - low), np.repeat(r, count)
     theta = (low + half)[:, None] + half[:, None] * node
     contact = flank.on(theta.ravel(), np.repeat(radius, PLACES))
-    parts = (contact.z * flank.sweep(contact)).reshape(theta.shape) @ weight
+    parts = (contact.z * flank.sweep(contact, theta.ravel())).reshape(theta.shape) @ weight
     return r * np.add.reduceat(half * parts, np.cumsum(count) - count)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.common.rounding import upward
+from camgeo.curve.curve import CurveError
 from camgeo.fit.nodes import ToleranceError
 from kin.numeric.records import dataclass
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 TURN = 2.0 * math.pi
 LOOKS = 360  # parts of a turn, and
 BLOCKS = 8  # of the depth, over each of which second derivatives are bounded
+SPLITS = 6  # rounds by which a place without a bound is halved
 MOST_ROWS = 4000
 MOST_CELLS = 1_000_000
 COARSER = 1.2  # times the tolerance that the number of cells calls for, in a remedy
@@ -62,17 +64,23 @@ def breaks_of(flank: Flank) -> Array:
 def bends_over(flank: Flank, knots: Array, low: float, high: float) -> tuple[Array, Bends]:
     """Places (n + 1,), rad, and bounds of second derivatives (n,) between neighbours, from radius `low` to `high`, mm.
 
-    The `knots` are among the places.
+    The `knots` are among the places. Raises CurveError where no bound is found.
     """
     look = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], LOOKS + 1), knots]))
     look = look[np.append(np.diff(look) > SAME, True)]
-    edges, n = np.linspace(low, high, BLOCKS + 1), look.size - 1
-    cells = bends(
-        flank,
-        (np.tile(look[:-1], BLOCKS), np.tile(look[1:], BLOCKS)),
-        (np.repeat(edges[:-1], n), np.repeat(edges[1:], n)),
-    )
-    return look, cells.most(BLOCKS)
+    edges = np.linspace(low, high, BLOCKS + 1)
+    for _ in range(SPLITS):
+        n = look.size - 1
+        cells = bends(
+            flank,
+            (np.tile(look[:-1], BLOCKS), np.tile(look[1:], BLOCKS)),
+            (np.repeat(edges[:-1], n), np.repeat(edges[1:], n)),
+        ).most(BLOCKS)
+        wide = ~np.isfinite(cells.whole).all(axis=0)
+        if not wide.any():
+            return look, cells
+        look = np.sort(np.concatenate([look, 0.5 * (look[:-1] + look[1:])[wide]]))
+    raise CurveError("a flank bends so sharply that no grid of it is proved", float(look[:-1][wide][0]))
 
 
 def grid_of(
@@ -81,7 +89,7 @@ def grid_of(
     """Grid whose triangles are within a tolerance of a regular flank between the radii `ends`, mm.
 
     Its edges on both cylinders are within the tolerance of them, too. `rows` are radii and `columns` shaft angles that
-    it has at least. Raises ToleranceError where it would have too many cells.
+    it has at least. Raises ToleranceError where it would have too many cells, CurveError where no bound is found.
     """
     low, high = ends
     knots = breaks_of(flank)

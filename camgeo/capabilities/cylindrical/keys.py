@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from camgeo.formats.options import RECIPE_UNITS, SOLID_UNITS, TOLERANCE
@@ -29,6 +30,7 @@ from kin.numeric.records import dataclass, replace
 if TYPE_CHECKING:
     from typing import ClassVar
 
+    from camgeo.capabilities.cylindrical.guide import Guide
     from camgeo.motions.motion import MotionSource
     from camgeo.part.part import Part
     from camgeo.recipe.figure_bounds import Bound
@@ -41,7 +43,8 @@ if TYPE_CHECKING:
 FLOOR_GAP = 0.5  # mm that a roller stands off the floor where the recipe does not say where it begins
 MOST_RADII = 20  # of one development
 OUTER, PITCH = "outer", "pitch"
-NOT_YET = "a roller that follows on an arm, beside the axis or with a cone is not made yet"
+APEX = "axis"  # of a cone whose apex is on the drum's axis
+STEEPEST_CONE = 60  # degrees, half angle of a conical roller
 
 
 @dataclass(frozen=True)
@@ -73,16 +76,34 @@ Track: TypeAlias = Groove | Rib | End
 
 @dataclass(frozen=True)
 class Roller:
-    """A roller of a radius that bears from `inner` to `outer` along its axis, from the cam's, mm."""
+    """A roller that bears from `inner` to `outer` along its axis, from the cam's, mm.
+
+    It has its radius, mm, at the distance `at`, mm; `taper` is its half angle, rad, 0 of a cylinder. `apex` says that
+    the taper is that of a cone with its apex on the cam's axis, whatever its radius.
+    """
 
     radius: float
     inner: float
     outer: float
+    taper: float = 0.0
+    at: float = 0.0
+    apex: bool = False
+
+    def resized(self, radius: float) -> Roller:
+        """The roller of another radius, mm."""
+        return replace(self, radius=radius, taper=math.atan(radius / self.at) if self.apex else self.taper)
+
+    def size(self, rho: float) -> float:
+        """Radius, mm, at a distance from the cam's axis, mm."""
+        return self.radius + (rho - self.at) * math.tan(self.taper)
 
 
 @dataclass(frozen=True)
 class Drive:
-    """Turns a minute, the load along the cam's axis, N, and what touches; None where the recipe does not say."""
+    """Turns a minute, the load, N, and what touches; None where the recipe does not say.
+
+    The load is along the cam's axis, or on an arm at its roller, square to the arm.
+    """
 
     rpm: float | None = None
     load: float | None = None
@@ -94,8 +115,8 @@ class Drive:
 class DrumRecipe(ShaftOrder):
     """A recipe of a cylindrical cam; lengths in mm, angles in rad.
 
-    `radius` is the blank's, `level` the height of the roller's axis at lift 0 over the lower face, z = 0, in the middle
-    between the rollers of a rib. The thickness of `part` is the drum's length.
+    `radius` is the blank's; `guide` leads the roller's axis, or the middle between the rollers of a rib, over the lower
+    face, z = 0. The thickness of `part` is the drum's length.
     """
 
     root: ClassVar[str] = "cylindrical"
@@ -103,7 +124,7 @@ class DrumRecipe(ShaftOrder):
     radius: float
     track: Track
     roller: Roller
-    level: float
+    guide: Guide
     motion: MotionSource
     part: Part
     undercut: Literal["refuse", "shorten"] = "refuse"
@@ -111,6 +132,22 @@ class DrumRecipe(ShaftOrder):
     limits: tuple[Bound, ...] = ()
 
     __repr__ = ShaftOrder.__repr__
+
+    @property
+    def level(self) -> float:
+        """Height of the roller's axis at lift 0 over the lower face, mm; of a rib the middle between its rollers."""
+        return self.guide.height(0.0)
+
+    @property
+    def follower_name(self) -> str:
+        """Name of the follower in reports."""
+        roller = "conical roller" if self.roller.taper else "roller"
+        return f"{roller} on an arm" if self.swings else f"{roller} on a carriage along the axis"
+
+    @property
+    def swings(self) -> bool:
+        """Whether the follower swings on an arm, by angles."""
+        return self.guide.unit == "deg"
 
     @property
     def floor(self) -> float:
@@ -132,13 +169,71 @@ class DrumRecipe(ShaftOrder):
 
 # --- keys -------------------------------------------------------------------------------------------------------------
 
+
+def _read_taper(reader: Reader, field: Field, node: Node, path: str) -> float | str | None:
+    """Read a half angle, rad, or the word for a cone with its apex on the axis; None after a fault."""
+    if isinstance(node, Scalar) and node.text == APEX:
+        return APEX
+    faults = len(reader.errors)
+    value = read_numeric(reader, replace(field, kind=Kind.ANGLE, form=None), node, path)
+    if len(reader.errors) > faults:
+        told = reader.errors[-1]
+        reader.errors[-1] = replace(told, remedy=f"{told.remedy}, or {APEX} for an apex on the drum's axis")
+    return value
+
+
+def _taper_schema(field: Field) -> Schema:
+    return {"anyOf": [{"enum": [APEX]}, number_schema(replace(field, kind=Kind.ANGLE, form=None))]}
+
+
+_TAPER: OwnForm[Reader] = OwnForm(
+    f"an angle above 0, or {APEX}", f"an angle, or {APEX} for an apex on the drum's axis", _read_taper, _taper_schema
+)
+
+
+def _place(name: str, about: str, default: str = "", *, required: bool = False) -> Field:
+    return Field(name, Kind.LENGTH, about, default=default, required=required, at_least=-MOST, at_most=MOST)
+
+
 ROLLER = mapping(
     "follower",
-    "the roller, on a carriage that travels along the cam's axis",
-    Field("kind", Kind.CHOICE, "what touches the drum", default="roller", choices=("roller",), others=NOT_YET),
+    "the roller, on a carriage that travels along the cam's axis, or on an arm",
+    Field(
+        "kind",
+        Kind.CHOICE,
+        "what touches the drum",
+        default="roller",
+        choices=("roller",),
+        others="a conical roller is a roller with a taper",
+    ),
     length("radius", "radius of the roller", required=True),
     length("from", "where it begins to bear along its axis, from the cam's axis", default="the floor and 0.5 mm"),
     length("to", "where it ends", default="radius of the blank"),
+    _place("offset", "distance of its axis from a radius of the drum, the way the contact runs on a turning drum", "0"),
+    Field(
+        "taper",
+        Kind.OWN,
+        "half angle of a conical roller, thicker outwards, or `axis` for an apex on the drum's axis",
+        default="a cylinder",
+        above=0,
+        at_most=STEEPEST_CONE,
+        form=_TAPER,
+    ),
+    length("at", "distance from the drum's axis at which a cone has its radius", default="middle of from and to"),
+    mapping(
+        "arm",
+        "an arm in place of the carriage, swinging about an axis parallel to the roller's; lifts are angles",
+        length("length", "from its pivot to the roller's axis; of a rib to the middle of both rollers", required=True),
+        _place("offset", "distance of its pivot from the radius about which the roller swings", required=True),
+        _place("pivot", "height of its pivot over the lower face", required=True),
+        Field(
+            "side",
+            Kind.CHOICE,
+            "trailing: the drum's surface runs from the pivot to the contact; leading: the other way",
+            default="trailing",
+            choices=("trailing", "leading"),
+        ),
+    ),
 )
 _DEPTH = length("depth", "depth below the blank", required=True)
 TRACK = Field(
@@ -164,7 +259,9 @@ TRACK = Field(
             mapping(
                 "rib",
                 "a rib between two rollers",
-                length("distance", "distance of their axes along the cam's axis", required=True),
+                length(
+                    "distance", "distance of their axes along the cam's axis; on an arm square to it", required=True
+                ),
                 _DEPTH,
             ),
             Field(
@@ -181,7 +278,7 @@ DRIVE = mapping(
     "drive",
     "how fast the drum turns, and what it carries",
     Field("rpm", Kind.NUMBER, "turns a minute", above=0, at_most=MOST_RPM),
-    Field("load", Kind.NUMBER, "load on the follower along the axis, N", above=0, at_most=MOST, unit=Kind.FORCE),
+    Field("load", Kind.NUMBER, "load on the follower along its way, N", above=0, at_most=MOST, unit=Kind.FORCE),
     material("material", "material of the drum"),
     material("roller_material", "that of the roller", default="that of the drum"),
 )
@@ -199,7 +296,13 @@ CAM = FieldTable(
             at_least=-MOST,
             at_most=MOST,
         ),
-        motion_field("motion", Kind.STROKE, "lift over one turn, 360 degrees", over=WHOLE_PART, required=True),
+        motion_field(
+            "motion",
+            Kind.STROKE,
+            "lift, of an arm its swing, over one turn, 360 degrees",
+            over=WHOLE_PART,
+            required=True,
+        ),
         Field(
             "undercut",
             Kind.CHOICE,
@@ -227,19 +330,21 @@ PART = replace(
     required=True,
 )
 FIGURES = {
-    PRESSURE_ANGLE: ("greatest pressure angle, at the roller's inner end, degrees", Kind.ANGLE),
+    PRESSURE_ANGLE: ("greatest pressure angle, mostly at the roller's inner end, degrees", Kind.ANGLE),
     f"{PRESSURE_ANGLE}-middle": ("greatest pressure angle in the middle of the roller, degrees", Kind.ANGLE),
     f"{PRESSURE_ANGLE}-outer": ("greatest pressure angle where the contact ends outside, degrees", Kind.ANGLE),
     "contact-length": ("least length of the line of contact", Kind.LENGTH),
     "carrying-share": ("least share of the roller's line that carries, from 0 to 1", Kind.NUMBER),
     "undercut-radius": ("distance from the axis within which a flank is undercut", Kind.LENGTH),
     "rib-thickness": ("least thickness of a rib along the axis", Kind.LENGTH),
-    "play": ("greatest play in a groove along the axis", Kind.LENGTH),
+    "off-radius": ("greatest distance of the roller's axis on an arm from a radius of the drum", Kind.LENGTH),
+    "play": ("greatest play of the follower in a groove", Kind.STROKE),
     "mating-radius": ("least radius, of both bodies together, across the line of contact", Kind.LENGTH),
-    "velocity": ("greatest velocity of the follower, a second", Kind.LENGTH),
-    "acceleration": ("greatest acceleration of the follower, a second squared", Kind.LENGTH),
+    "velocity": ("greatest velocity of the follower, a second", Kind.STROKE),
+    "acceleration": ("greatest acceleration of the follower, a second squared", Kind.STROKE),
     "contact-force": ("greatest force between drum and roller, N", Kind.FORCE),
-    "side-thrust": ("greatest force on the follower's guide, N", Kind.FORCE),
+    "side-thrust": ("greatest force on the follower's guide, of an arm along it, N", Kind.FORCE),
+    "axial-thrust": ("greatest force that pushes a conical roller outwards along its axis, N", Kind.FORCE),
     "torque": ("greatest torque that turns the drum against the load, N m", Kind.NUMBER),
     "contact-pressure": ("greatest pressure of the contact by Hertz, N/mm²", Kind.NUMBER),
     "mass": ("mass, kg", Kind.NUMBER),
@@ -395,8 +500,8 @@ RECIPE = FieldTable(
             "how each file is judged",
             Field(
                 "motion_error",
-                Kind.LENGTH,
-                "greatest motion error permitted, along the axis",
+                Kind.MOTION,
+                "greatest motion error permitted, along the axis, of an arm an angle",
                 default="what the tolerance implies",
                 above=0,
                 at_most=MOST,

@@ -68,7 +68,7 @@ class CylindricalCam(KindDesign):
         return Figures(found)
 
     def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array:
-        """Lift, mm, at shaft angles, rad, or a derivative by the radian, up to the sixth, in the shape of `theta`.
+        """Lift, mm, of an arm its swing, rad, at shaft angles, rad, in their shape, or a derivative up to the sixth.
 
         Raises CallError for another order and for angles that are not finite; TypeError for what is no number.
         """
@@ -107,13 +107,15 @@ def remedy(check: Entry, recipe: DrumRecipe) -> str:
         return ""
     share = 100.0 * limit / value if value else 0.0
     if name == f"{LIMIT}{PRESSURE_ANGLE}" and check["sense"] == "at_most":
+        if recipe.swings or recipe.roller.taper:
+            return "a larger drum, or a longer motion"
         factor = np.tan(np.radians(value)) / np.tan(np.radians(limit))
         inner = f"{upward(recipe.roller.inner / recipe.mm * factor, 5)} {recipe.units}"
         return f"a larger drum, whose roller begins at {inner} from the axis, or a longer motion"
     if name in {f"{LIMIT}velocity", f"{LIMIT}acceleration"}:
         turns = (limit / value) ** (1.0 if name.endswith("velocity") else 0.5) * (recipe.drive.rpm or 0.0)
         return f"cam.drive.rpm of at most {downward(turns, 5)}"
-    if name in {f"{LIMIT}contact-force", f"{LIMIT}side-thrust", f"{LIMIT}torque"}:
+    if name in {f"{LIMIT}{force}" for force in ("contact-force", "side-thrust", "axial-thrust", "torque")}:
         return f"a load of {downward(share, 4)} percent"
     if name == f"{LIMIT}contact-pressure":
         return f"a load of {downward(1e-2 * share * share, 4)} percent"

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from camgeo.capabilities.cylindrical.guide import Arm, Carriage
 from camgeo.capabilities.cylindrical.keys import (
+    APEX,
     FILES,
     FLOOR_GAP,
     NEEDED,
@@ -27,13 +29,14 @@ from camgeo.recipe.figure_bounds import build_bounds, check_bounds
 from camgeo.recipe.keys import read_units
 from camgeo.recipe.recipe import Verify, name_by_stem, reader_of_kind
 from camgeo.schema.errors import RecipeErrors
-from camgeo.schema.fields import either
-from camgeo.schema.yaml_source import Mapping
+from camgeo.schema.fields import Kind, either
+from camgeo.schema.yaml_source import Mapping, entries
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from camgeo.capabilities.cylindrical.guide import Guide
     from camgeo.capabilities.cylindrical.keys import Track
     from camgeo.schema.errors import RecipeError
     from camgeo.schema.reader import Reader, Values
@@ -41,9 +44,7 @@ if TYPE_CHECKING:
 
 ANGLES = 1  # what a disc would be judged at: a drum is judged at all angles
 TURN = 2.0 * math.pi
-_FOLLOWER = "the roller is a cylinder on a carriage along the axis, and its own axis a radius of the drum"
 NOT_YET = {
-    **dict.fromkeys((f"cam.follower.{key}" for key in ("arm", "offset", "taper", "cone", "half_angle")), _FOLLOWER),
     "cam.turns": "a track closes after one turn",
     "cam.sizing": "give the radius of the blank",
     "manufacture": "a program has its cutter and feeds beside its axes, {gcode: {axes: [X, A], cutter: 20}}",
@@ -58,12 +59,21 @@ RIDGE = 0.02  # mm by which what two cuts along a groove clear is wider than the
 NOTHING = 1e-9  # mm: a length below it is none
 
 
-def read_cylindrical(source: Source, path: Path) -> DrumRecipe:
-    """Read the recipe of a cylindrical cam; raises RecipeErrors with all its faults."""
+def reader_of(source: Source) -> tuple[Reader, Values]:
+    """Reader that has read the text of a cylindrical cam, but for faults between its keys; and its values."""
     reader = reader_of_kind(source, "cylindrical")
     read_units(reader)
     root = source.root
-    values = reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
+    cam = entries(root).get("cam") if isinstance(root, Mapping) else None
+    follower = entries(cam).get("follower") if isinstance(cam, Mapping) else None
+    if isinstance(follower, Mapping) and "arm" in entries(follower):
+        reader.angular |= {Kind.STROKE, Kind.ERROR, Kind.MOTION}
+    return reader, reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
+
+
+def read_cylindrical(source: Source, path: Path) -> DrumRecipe:
+    """Read the recipe of a cylindrical cam; raises RecipeErrors with all its faults."""
+    reader, values = reader_of(source)
     name_by_stem(values, reader, path)
     reader.errors = [_not_yet(error) for error in reader.errors]
     if not reader.errors:
@@ -89,6 +99,7 @@ def _check(values: Values, reader: Reader) -> None:
     cam, part = values["cam"], values["part"]
     whole, several = "the whole turn, 360 degrees", "a track of several turns is not made yet"
     check_filled(cam["motion"], "cam.motion", TURN, whole, reader, why=several)
+    _check_guide(cam, reader)
     _check_track(cam, reader)
     _check_drive(cam.get("drive", {}), reader)
     _check_part(part, reader)
@@ -104,6 +115,36 @@ def _shown(value: float, reader: Reader) -> str:
     return f"{value / reader.mm:.9g} {reader.units}"
 
 
+def _check_guide(cam: Values, reader: Reader) -> None:
+    """Note an arm that does not reach the drum, and keys of a guide and of a cone that do not go together."""
+    roller, path = cam["follower"], "cam.follower"
+    arm = roller.get("arm")
+    if "at" in roller and "taper" not in roller:
+        remedy = "leave it out: a cylinder has its radius everywhere; or give taper"
+        reader.fault_at(f"{path}.at", "cannot stand without taper", None, remedy)
+    if arm is None:
+        return
+    if "offset" in roller:
+        remedy = "leave it out: arm.offset places the pivot"
+        reader.fault_at(f"{path}.offset", "does not go with an arm", None, remedy)
+    height = cam["pitch_height"] - arm["pivot"]
+    if not abs(height) < arm["length"]:
+        low, high = (cam["pitch_height"] + sign * arm["length"] for sign in (-1.0, 1.0))
+        remedy = f"give a pivot between {_shown(low, reader)} and {_shown(high, reader)}"
+        problem = "the arm does not reach pitch_height at lift 0"
+        reader.fault_at(f"{path}.arm.pivot", problem, _shown(arm["pivot"], reader), remedy)
+
+
+def _roller(cam: Values, floor: float) -> Roller:
+    """The roller of a track down to a floor, mm."""
+    given, radius = cam["follower"], cam["radius"]
+    inner, outer = given.get("from", floor + FLOOR_GAP), given.get("to", radius)
+    at, taper = given.get("at", 0.5 * (inner + outer)), given.get("taper", 0.0)
+    if taper == APEX:
+        return Roller(given["radius"], inner, outer, at=at, apex=True).resized(given["radius"])
+    return Roller(given["radius"], inner, outer, taper, at if taper else 0.0)
+
+
 def _check_track(cam: Values, reader: Reader) -> None:
     """Note a roller that does not lie between the floor of its track and the blank."""
     radius, roller, path = cam["radius"], cam["follower"], "cam.follower"
@@ -114,7 +155,13 @@ def _check_track(cam: Values, reader: Reader) -> None:
         return
     depth = radius - begins + FLOOR_GAP if kind == "end" else track["depth"]
     floor, ends = radius - depth, roller.get("to", radius)
-    if not floor > roller["radius"]:
+    made = _roller(cam, floor)
+    least = made.size(floor)  # of a cylinder its radius
+    if not least > 0.0:
+        problem = f"the cone ends in its apex before the floor, {_shown(floor, reader)} from the axis"
+        reader.fault_at(f"{path}.taper", problem, None, "give a smaller taper, axis, or a larger radius")
+        return
+    if not floor > least:
         at = f"{path}.from" if kind == "end" else f"cam.track.{kind}.depth"
         most = radius - roller["radius"]
         remedy = (
@@ -125,8 +172,8 @@ def _check_track(cam: Values, reader: Reader) -> None:
         reader.fault_at(at, "the floor is no farther from the axis than the radius of the roller", None, remedy)
         return
     clearance = track["clearance"] if kind == "groove" and "clearance" in track else 0.0
-    if not floor > roller["radius"] + clearance:
-        remedy = f"give less than {_shown(floor - roller['radius'], reader)}"
+    if not floor > least + clearance:
+        remedy = f"give less than {_shown(floor - least, reader)}"
         problem = "the upper flank is that of a roller whose radius is no less than that of the floor"
         reader.fault_at("cam.track.groove.clearance", problem, _shown(clearance, reader), remedy)
         return
@@ -138,8 +185,9 @@ def _check_track(cam: Values, reader: Reader) -> None:
         at = f"{path}.to" if f"{path}.to" in reader.marks else f"{path}.from" if begins is not None else path
         remedy = f"let it bear between {_shown(floor, reader)} and {_shown(radius, reader)}"
         reader.fault_at(at, "the roller bears nowhere", None, remedy)
-    if kind == "rib" and not track["distance"] > 2.0 * roller["radius"]:
-        remedy = f"give more than {_shown(2.0 * roller['radius'], reader)}, and the rib's thickness"
+    thick = 2.0 * made.size(radius)
+    if kind == "rib" and not track["distance"] > thick:
+        remedy = f"give more than {_shown(thick, reader)}, and the rib's thickness"
         reader.fault_at("cam.track.rib.distance", "the rollers leave no rib", _shown(track["distance"], reader), remedy)
 
 
@@ -184,6 +232,10 @@ def _check_programs(values: Values, reader: Reader) -> None:
         path = f"{file['path']}.{file['kind']}"
         if not FILES[file["kind"]].program:
             continue
+        if any(cam["follower"].get(key) for key in ("arm", "offset", "taper")):
+            problem = "a program of a roller on an arm, beside the drum's axis or conical is not made yet"
+            reader.fault_at(file["path"], problem, None, "leave it out, and take stl or a development")
+            continue
         if "axes" not in file:  # the format's word alone
             remedy = f"give {either(NEEDED, 'and')}: {{gcode: {{{EXAMPLE}}}}}"
             reader.fault_at(file["path"], "a program needs its machine and cutter", None, remedy)
@@ -222,6 +274,8 @@ def _check_limits(values: Values, reader: Reader) -> None:
         "acceleration": driven,
         "contact-force": loaded,
         "side-thrust": loaded,
+        "axial-thrust": ("load" in drive and "taper" in cam["follower"], "cam.drive.load and a taper"),
+        "off-radius": ("arm" in cam["follower"], "an arm"),
         "torque": loaded,
         "contact-pressure": ("material" in drive and regular, f"cam.drive.load and material, and {REFUSE}"),
         "mating-radius": (regular, REFUSE),
@@ -244,8 +298,13 @@ def _track(cam: Values) -> Track:
 def _built(values: Values, document: Document, mm: float) -> DrumRecipe:
     """Make the recipe of values in which there is no fault."""
     cam, part = values["cam"], values["part"]
-    track, roller = _track(cam), cam["follower"]
-    inner = roller.get("from", cam["radius"] - track.depth + FLOOR_GAP)
+    track, level, arm = _track(cam), cam["pitch_height"], cam["follower"].get("arm")
+    if arm is None:
+        guide: Guide = Carriage(level, cam["follower"].get("offset", 0.0))
+    else:
+        side = -1 if arm.get("side") == "leading" else 1
+        start = math.asin((level - arm["pivot"]) / arm["length"])
+        guide = Arm(arm["length"], arm["offset"], arm["pivot"], side, start)
     keyway = KEYWAY.build(part)
     return DrumRecipe(
         name=values["name"],
@@ -257,8 +316,8 @@ def _built(values: Values, document: Document, mm: float) -> DrumRecipe:
         verify=Verify(angles=ANGLES, **values.get("verify", {})),
         radius=cam["radius"],
         track=track,
-        roller=Roller(roller["radius"], inner, roller.get("to", cam["radius"])),
-        level=cam["pitch_height"],
+        roller=_roller(cam, cam["radius"] - track.depth),
+        guide=guide,
         motion=cam["motion"],
         part=Part(
             thickness=part["length"],

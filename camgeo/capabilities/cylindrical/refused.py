@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from camgeo.capabilities.cylindrical.guide import Arm
 from camgeo.capabilities.cylindrical.keys import End
 from camgeo.capabilities.cylindrical.undercut import CutError, tips
 from camgeo.common.rounding import downward, upward
@@ -13,18 +16,18 @@ from camgeo.measures.placed import greatest_of
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.undercut import Tip
 
 TURN = 2.0 * math.pi
+MOST_SWING = 80.0  # degrees of an arm off the plane across the drum's axis
 SHARP = 1e-3  # of a radius in a remedy, and its distance from the size at which undercut begins
 ROLLER = "cam.follower.radius"
 
 
 def demand_sound(design: DrumDesign) -> None:
     """Raise RecipeErrors where a drum is not made as its recipe has it, with the changes that serve."""
+    _demand_near(design)
     _demand_core(design)
     try:
         found = design.tips
@@ -72,8 +75,9 @@ def _smaller(design: DrumDesign) -> str:
     ends = recipe.floor, recipe.radius
 
     def free(radius: float) -> bool:
-        more = radius - recipe.roller.radius
-        return not any(tips(replace(flank, radius=flank.radius + more), *ends) for flank in design.flanks.values())
+        roller, more = recipe.roller.resized(radius), radius - recipe.roller.radius
+        other = (replace(each, radius=each.radius + more, taper=roller.taper) for each in design.flanks.values())
+        return not any(tips(flank, *ends) for flank in other)
 
     low, high = 0.0, recipe.roller.radius
     while high - low > SHARP * high:
@@ -101,24 +105,53 @@ def _demand_carried(design: DrumDesign) -> None:
             raise design.error("cam.undercut", problem, _smaller(design))
 
 
+def _demand_near(design: DrumDesign) -> None:
+    """Raise RecipeErrors where a roller is led past the floor, or so that its cone ends, or an arm swings too far."""
+    recipe, mm, units = design.recipe, design.recipe.mm, design.recipe.units
+    for flank in design.flanks.values():
+        low, high = design.motion.range
+        if recipe.swings:
+            ends = [math.degrees(abs(float(flank.guide.lean(np.array([lift]))[0]))) for lift in (low, high)]
+            if not max(ends) < MOST_SWING:
+                problem = f"the arm swings to {max(ends):.6g} degrees off the plane across the drum's axis"
+                remedy = (
+                    f"keep it within {MOST_SWING:g}: a smaller swing, or a pivot nearer to the middle of the stroke"
+                )
+                raise design.error("cam.motion", problem, remedy)
+        off, at = greatest_of(lambda theta, flank=flank: np.abs(flank.pose(theta).y), TURN)  # type: ignore[misc]
+        room = recipe.floor - float(flank.size(recipe.floor))
+        if not off < room:
+            problem = f"the roller's axis stands {off / mm:.6g} {units} off a radius of the drum, past the floor's edge"
+            field, remedy = "cam.follower.offset", f"give less than {downward(room / mm, 5)} {units}"
+            if isinstance(flank.guide, Arm):
+                y = flank.guide.middle(low, high)
+                field, remedy = "cam.follower.arm.offset", f"give {y / mm:.6g} {units}, or a longer arm"
+            raise design.error(field, f"{problem}, near {math.degrees(at):.6g} degrees", remedy)
+        least = math.sqrt(recipe.floor**2 - (off + float(flank.size(recipe.floor))) ** 2)
+        if not float(flank.size(least)) > 0.0:
+            problem = "the cone ends in its apex before the floor"
+            raise design.error("cam.follower.taper", problem, "give a smaller taper, axis, or a larger radius")
+
+
 def _demand_core(design: DrumDesign) -> None:
     """Raise RecipeErrors for an end cam whose core ends between the lowest and the highest place of its flank."""
     recipe, track = design.recipe, design.recipe.track
     if not isinstance(track, End):
         return
-    low, high = design.motion.range
-    radius, level = recipe.roller.radius, recipe.level
+    (flank,) = design.flanks.values()
+    least, most = (flank.resting(lift, recipe.floor) for lift in design.motion.range)
     if track.facing == "top":
-        least, most, end, field = level + low - radius, level + high - radius, recipe.height, "part.length"
+        end, field = recipe.height, "part.length"
         problem = "the drum ends between the lowest and the highest place of its flank"
     else:
-        least, most, end, field = level + low + radius, level + high + radius, 0.0, "cam.pitch_height"
+        end, field = 0.0, "cam.pitch_height"
         problem = "the lower face lies between the lowest and the highest place of the flank"
     if least < end < most:
         mm, units = recipe.mm, recipe.units
-        remedy = (
-            f"give more than {most / mm:.6g} {units}, or less than {least / mm:.6g} {units}"
-            if track.facing == "top"
-            else f"give more than {(level - least) / mm:.6g} {units}"
-        )
+        if track.facing == "top":
+            remedy = f"give more than {most / mm:.6g} {units}, or less than {least / mm:.6g} {units}"
+        elif recipe.swings:
+            remedy = f"raise it and the arm's pivot by more than {-least / mm:.6g} {units}"
+        else:
+            remedy = f"give more than {(recipe.level - least) / mm:.6g} {units}"
         raise design.error(field, problem, remedy)

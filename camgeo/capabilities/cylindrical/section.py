@@ -22,6 +22,7 @@ def drum_section(design: DrumDesign, figures: Sequence[Figure]) -> dict[str, Any
         "floor": recipe.floor / recipe.mm,
         "from": recipe.roller.inner / recipe.mm,
         "to": recipe.roller.outer / recipe.mm,
+        **({"taper_deg": math.degrees(recipe.roller.taper)} if recipe.roller.taper else {}),
         "figures": [figure_entry(recipe, figure, 1.0) for figure in figures],
     }
     undercuts = [

@@ -12,8 +12,10 @@ _MOTION = (
 )
 
 
-def _starter(title: str, task: str, track: Given, cam: Given, part: Given) -> Starter:
+def _starter(title: str, task: str, track: Given, cam: Given, part: Given, *, arm: str = "") -> Starter:
     roller: Given = {"kind": "roller", "radius": "8", **({"from": "40"} if "end" in track else {})}
+    if arm:
+        roller["arm"] = arm
     return Starter(
         title,
         "",
@@ -25,14 +27,14 @@ def _starter(title: str, task: str, track: Given, cam: Given, part: Given) -> St
                 "track": track,
                 "follower": roller,
                 **cam,
-                "motion": _MOTION.format("25"),
+                "motion": _MOTION.format("20" if arm else "25"),
             },
             "part": {**part, "bore": "{diameter: 25, fit: H7}", "keyway": "din6885"},
             "export": {
                 "tolerance": "0.01",
                 "files": "[stl, {dxf: {as: development, at: [outer, pitch]}}, {csv: {as: flank}}]",
             },
-            "verify": {"motion_error": "0.02"},
+            "verify": {"motion_error": "0.03" if arm else "0.02"},
         },
         root="cylindrical",
         task=task,
@@ -62,6 +64,14 @@ ANSWERS = Starters(
             {"end": "top"},
             {"pitch_height": "40"},
             {"length": "80"},
+        ),
+        "cylindrical-arm": _starter(
+            "A drum with a rib between two rollers that swing an arm.",
+            "a drum cam that swings an arm",
+            {"rib": {"distance": "32", "depth": "11"}},
+            {"pitch_height": "31"},
+            {"length": "90"},
+            arm="{length: 80, offset: 79.4, pivot: 45}",
         ),
     }
 )

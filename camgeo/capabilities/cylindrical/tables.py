@@ -36,11 +36,15 @@ def write_csv(design: DrumDesign, request: FileRequest, path: Path) -> None:
 
 
 def motion_table(design: DrumDesign, theta: Array, mm: float, unit: str) -> tuple[tuple[str, ...], Array]:
-    """Names of 5 columns, and rows (n, 5): shaft angle, lift, velocity, acceleration and jerk by the radian."""
-    rows = design.law.derivatives(theta, ORDER) / mm
-    return ("shaft_deg", f"lift_{unit}", "velocity", "acceleration", "jerk"), np.column_stack(
-        [np.degrees(theta), *rows]
-    )
+    """Names of 5 columns, and rows (n, 5): shaft angle, lift, velocity, acceleration and jerk by the radian.
+
+    The swing of an arm is in degrees.
+    """
+    swings = design.recipe.swings
+    rows = design.law.derivatives(theta, ORDER)
+    rows = np.degrees(rows) if swings else rows / mm
+    name = "swing_deg" if swings else f"lift_{unit}"
+    return ("shaft_deg", name, "velocity", "acceleration", "jerk"), np.column_stack([np.degrees(theta), *rows])
 
 
 def flank_table(design: DrumDesign, theta: Array, mm: float, unit: str) -> tuple[tuple[str, ...], Array]:

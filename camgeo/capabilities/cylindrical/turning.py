@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from camgeo.capabilities.cylindrical.figures import carried_from, outer_end
+from camgeo.capabilities.cylindrical.guide import Arm
+from camgeo.capabilities.cylindrical.keys import Rib
 from camgeo.capabilities.cylindrical.shells import far, near, rims, shells
 from camgeo.curve.ring import Ring, bar, box, disc
-from camgeo.report.page.scene import CONTACTS, STEPS, FilledShape, MovingBody, Scene, pin, poses, still
+from camgeo.report.page.scene import CONTACTS, STEPS, FilledShape, MovingBody, Scene, pin, pivot, poses, still
 
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
+    from camgeo.capabilities.cylindrical.flank import Flank
     from camgeo.capabilities.cylindrical.shells import Shell
     from kin.numeric.arrays import Array
 
@@ -28,20 +31,21 @@ def sense(design: DrumDesign) -> float:
     return 1.0 if design.recipe.rotation == "cw" else -1.0
 
 
-def scene(design: DrumDesign, step: int = 0) -> Scene:
-    """The drum as it stands at a step of the turn, and its follower over the turn, in the recipe's unit."""
+def scene(design: DrumDesign, step: int = 0, of: list[Shell] | None = None) -> Scene:
+    """The drum as it stands at a step of the turn, and its follower over the turn, in the recipe's unit.
+
+    `of` are its shells, by default as they are made here.
+    """
     recipe = design.recipe
     theta = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
-    lift = design.law.derivatives(theta, 0)[0]
     size = JOINT * (2.0 * recipe.radius + recipe.height)
-    shapes = drum_shapes(design, shells(design), sense(design) * float(theta[step]))
-    bodies = [MovingBody("drum", DRUM, tuple(shapes), still()), *_follower(design, lift, size)]
-    bodies += [
-        MovingBody(
-            f"contact {name}", CONTACTS, (FilledShape("contact line", (_arc(design, name, step),)),), poses(0, lift, 0)
-        )
-        for name in design.flanks
-    ]
+    shapes = drum_shapes(design, of or shells(design), sense(design) * float(theta[step]))
+    guide = recipe.guide
+    follower = _arm(design, guide, theta, size) if isinstance(guide, Arm) else _carriage(design, theta, size)
+    bodies = [MovingBody("drum", DRUM, tuple(shapes), still()), *follower]
+    for name, flank in design.flanks.items():
+        arc = FilledShape("contact line", (_arc(design, name, step),))
+        bodies.append(MovingBody(f"contact {name}", CONTACTS, (arc,), poses(*seen_axis(design, flank, theta), 0.0)))
     way = "clockwise" if recipe.rotation == "cw" else "counter-clockwise"
     note = f"seen along the roller's axis; the drum turns {way}, seen from above"
     return Scene(tuple(bodies), note).scaled(1.0 / recipe.mm)
@@ -60,24 +64,57 @@ def _shape(role: str, outlines: list[Array], name: str = "") -> FilledShape:
     return FilledShape(role, tuple(Ring.through(outline) for outline in outlines), name)
 
 
-def levels(design: DrumDesign) -> list[float]:
-    """Heights of the axes of all rollers at lift 0, mm, from the lowest."""
-    return sorted({flank.level for flank in design.flanks.values()})
+def rollers(design: DrumDesign) -> list[Flank]:
+    """A flank of each roller, from the lowest at lift 0."""
+    return sorted({flank.guide: flank for flank in design.flanks.values()}.values(), key=lambda flank: flank.level)
 
 
-def _follower(design: DrumDesign, lift: Array, size: float) -> list[MovingBody]:
+def seen_axis(design: DrumDesign, flank: Flank, theta: Array) -> tuple[Array, Array]:
+    """Places to the right and up, mm (n,) each, of the axis of a flank's roller at shaft angles (n,)."""
+    pose = flank.pose(theta)
+    return sense(design) * pose.y, pose.z
+
+
+def _roller(design: DrumDesign, x: float, y: float) -> FilledShape:
+    """The roller's outer end about a place."""
+    roller = design.recipe.roller
+    return FilledShape("roller", (disc(x, y, roller.size(roller.outer)),), "roller")
+
+
+def _arm(design: DrumDesign, guide: Arm, theta: Array, size: float) -> list[MovingBody]:
+    """Rollers on their arm, and its pivot; the arm's own x leads from the pivot to the roller."""
+    way = -sense(design) * guide.side
+    psi = guide.start + design.law.derivatives(theta, 0)[0]
+    x = sense(design) * guide.y
+    pose = poses(x, guide.z, psi if way > 0.0 else math.pi - psi)
+    track = design.recipe.track
+    half = 0.5 * track.distance if isinstance(track, Rib) else 0.0
+    places = [(guide.length, way * side * half) for side in (-1.0, 1.0)] if half else [(guide.length, 0.0)]
+    shape = [bar((0.0, 0.0), (guide.length, 0.0), 1.4 * size)]
+    shape += [bar(places[0], places[-1], 1.4 * size)] if half else []
+    return [
+        MovingBody("rollers", "follower", tuple(_roller(design, *place) for place in places), pose),
+        MovingBody("arm", "follower", tuple(FilledShape("follower", (each,), "arm") for each in shape), pose),
+        MovingBody("pins", "follower", tuple(pin(size, *place) for place in places), pose),
+        pivot("pivot", x, guide.z, size, "P"),
+    ]
+
+
+def _carriage(design: DrumDesign, theta: Array, size: float) -> list[MovingBody]:
     """Rollers, and the carriage with its rail beside the drum."""
-    recipe, heights = design.recipe, levels(design)
+    recipe, heights = design.recipe, [flank.level for flank in rollers(design)]
+    lift = design.law.derivatives(theta, 0)[0]
     low, high = heights[0], heights[-1]
+    x = float(seen_axis(design, rollers(design)[0], theta[:1])[0][0])
     beside, half = recipe.radius + 3.5 * size, 1.6 * size
     rail = box(beside - 0.6 * size, low - 4.0 * size, beside + 0.6 * size, high + float(lift.max()) + 4.0 * size)
-    carriage = [bar((0.0, z), (beside, z), 1.1 * size) for z in heights]
+    carriage = [bar((x, z), (beside, z), 1.1 * size) for z in heights]
     block = box(beside - half, low - 2.4 * size, beside + half, high + 2.4 * size)
-    rollers = tuple(FilledShape("roller", (disc(0.0, z, recipe.roller.radius),), "roller") for z in heights)
+    ends = tuple(_roller(design, x, z) for z in heights)
     pose = poses(0.0, lift, 0.0)
     return [
         MovingBody("rail", "ground", (FilledShape("fixed", (rail,), "rail"),), still()),
-        MovingBody("rollers", "follower", (*rollers, *(pin(size, 0.0, z) for z in heights)), pose),
+        MovingBody("rollers", "follower", (*ends, *(pin(size, x, z) for z in heights)), pose),
         MovingBody(
             "carriage",
             "follower",
@@ -87,19 +124,33 @@ def _follower(design: DrumDesign, lift: Array, size: float) -> list[MovingBody]:
     ]
 
 
-def contact_angles(design: DrumDesign, name: str) -> tuple[Array, Array]:
-    """Pressure angles, rad (LINES + 1,), at both ends of the line that carries; nan where nothing carries."""
-    theta = np.linspace(0.0, 2.0 * math.pi, LINES + 1)
-    begin, end = carried_from(design, name, theta), outer_end(design, name, theta)
-    v = np.where(begin < end, design.law.derivatives(theta, 1)[1], np.nan)
-    return np.arctan2(v, begin), np.arctan2(v, end)
+class Touched(NamedTuple):
+    """Both ends of a line of contact over the turn (LINES + 1,) each.
+
+    low, high  angles about the roller's axis, rad; nan where nothing carries
+    near, far  distances from that axis, mm, below 0 of a lower flank
+    """
+
+    low: Array
+    high: Array
+    near: Array
+    far: Array
+
+
+def touched(design: DrumDesign, name: str) -> Touched:
+    """Both ends of the line along which a flank carries the roller."""
+    flank, theta = design.flanks[name], np.linspace(0.0, 2.0 * math.pi, LINES + 1)
+    ends = carried_from(design, name, theta), outer_end(design, name, theta)
+    carries = ends[0] < ends[1]
+    low, high = (np.where(carries, flank.along(theta, rho).angle, np.nan) for rho in ends)
+    return Touched(low, high, *(flank.side * flank.size(rho) for rho in ends))
 
 
 def _arc(design: DrumDesign, name: str, step: int) -> Ring:
-    """The line of contact as it shows on the roller's end, from the roller's place at lift 0."""
-    flank = design.flanks[name]
-    low, high = (rows[step * LINES // STEPS] for rows in contact_angles(design, name))
-    angle = np.linspace(low, high, ARC + 1) if np.isfinite(low) else np.zeros(2)
-    reach = flank.side * flank.radius
-    points = np.column_stack([-sense(design) * reach * np.sin(angle), flank.level + reach * np.cos(angle)])
+    """The line of contact as it shows on the roller's end, from the roller's axis."""
+    low, high, near_end, far_end = (rows[step * LINES // STEPS] for rows in touched(design, name))
+    angle, reach = np.linspace(low, high, ARC + 1), np.linspace(near_end, far_end, ARC + 1)
+    if not np.isfinite(low):
+        angle, reach = np.zeros(2), np.full(2, near_end)
+    points = np.column_stack([-sense(design) * reach * np.sin(angle), reach * np.cos(angle)])
     return Ring.through(points, closed=False)

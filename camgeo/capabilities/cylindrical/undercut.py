@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.capabilities.cylindrical.bends import bends
-from camgeo.capabilities.cylindrical.flank import distance, regularity
 from camgeo.capabilities.cylindrical.grid import TURN, breaks_of
 from camgeo.curve.curve import CurveError
 from camgeo.measures.placed import greatest_of
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
-    from camgeo.capabilities.cylindrical.flank import Flank
+    from collections.abc import Sequence
+
+    from camgeo.capabilities.cylindrical.flank import Flank, Pose
     from kin.numeric.arrays import Array
 
 SEEK = 2880  # shaft angles of a turn at which an undercut is sought
@@ -31,7 +32,7 @@ ZOOMS = 8
 ALONG = 400  # places on either branch of a row near its crossing
 NEWTON = 12
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
-CELLS, PARTS, ROUNDS = 360, 4, 8  # of the proof that a flank is regular
+CELLS, PARTS, ROUNDS = 360, 4, 11  # of the proof that a flank is regular
 
 
 class Tip(NamedTuple):
@@ -68,31 +69,20 @@ class Cut:
         return first, last
 
 
-class _Bends(NamedTuple):
-    """S' and S'' (n,) at shaft angles, at a break of one side."""
-
-    v: Array
-    bend: Array
-
-    def ratio(self, flank: Flank, r: Array) -> Array:
-        """D/w (n,) on cylinders r (n,), mm."""
-        return self.along(flank, distance(r, self.v, flank.radius))
-
-    def along(self, flank: Flank, rho: Array) -> Array:
-        """D/w at distances rho, mm, along the roller, of a shape that goes with (n,)."""
-        found: Array = regularity(rho, self.v, self.bend, flank.side * flank.radius) / np.hypot(rho, self.v)
-        return found
+def _both(flank: Flank, theta: Array) -> tuple[Pose, Pose]:
+    """Poses at shaft angles (n,), before and behind a break."""
+    return flank.pose(theta, -1), flank.pose(theta, 1)
 
 
-def _both(flank: Flank, theta: Array) -> tuple[_Bends, _Bends]:
-    """S' and S'' at shaft angles (n,), before and behind a break."""
-    before, behind = (_Bends(*flank.law.derivatives(theta, 2, side)[1:]) for side in (-1, 1))
-    return before, behind
+def _regular(flank: Flank, poses: Sequence[Pose], r: Array | float) -> Array:
+    """D (n,), mm, on cylinders r, mm, the least of all poses (n,)."""
+    found = [flank.regularity(pose, flank.reached(pose, r)) for pose in poses]
+    return np.asarray(np.min(found, axis=0))
 
 
-def _ratio(flank: Flank, theta: Array, r: Array) -> Array:
-    """D/w (n,) on cylinders r (n,), the lesser of both limits at a break."""
-    return np.minimum(*(bends_.ratio(flank, r) for bends_ in _both(flank, theta)))
+def _along(flank: Flank, poses: Sequence[Pose], rho: Array) -> Array:
+    """D, mm, at distances rho, mm, along the roller, of a shape that goes with (n,), the least of all poses (n,)."""
+    return np.asarray(np.min([flank.regularity(pose, rho) for pose in poses], axis=0))
 
 
 def tips(flank: Flank, low: float, high: float) -> list[Tip]:
@@ -129,18 +119,16 @@ def tips(flank: Flank, low: float, high: float) -> list[Tip]:
 def _reach(flank: Flank, theta: Array, low: float, high: float) -> Array:
     """Greatest radius (n,), mm, at which the flank is undercut at shaft angles (n,), up to `high`; else `low`."""
     radii, both = np.linspace(low, high, DEPTHS), _both(flank, theta)
-    under = np.stack(
-        [np.minimum(*(each.ratio(flank, np.full_like(theta, radius)) for each in both)) < 0.0 for radius in radii]
-    )
+    under = np.stack([_regular(flank, both, radius) < 0.0 for radius in radii.tolist()])
     last = DEPTHS - 1 - np.argmax(under[::-1], axis=0)
     some = under.any(axis=0)
     reach = np.where(some, radii[last], low)
     where = np.flatnonzero(some & (last < DEPTHS - 1))
     a, b = radii[last[where]], radii[last[where] + 1]
-    near = [_Bends(each.v[where], each.bend[where]) for each in both]
+    near = [pose.at(where) for pose in both]
     for _ in range(HALVINGS):
         middle = 0.5 * (a + b)
-        below = np.minimum(*(each.ratio(flank, middle) for each in near)) < 0.0
+        below = _regular(flank, near, middle) < 0.0
         a, b = np.where(below, middle, a), np.where(below, b, middle)
     reach[where] = b
     return reach
@@ -154,16 +142,16 @@ def below(flank: Flank, low: float, high: float) -> tuple[float, float]:
 
     def reach(theta: Array) -> Array:
         both = _both(flank, theta)
-        inner, outer = (distance(np.full_like(theta, r), both[1].v, flank.radius) for r in (low, high))
+        inner, outer = (flank.reached(both[1], r) for r in (low, high))
         share = np.linspace(0.0, 1.0, DEPTHS)[:, None]
         rho = inner * (1.0 - share) + outer * share
-        under = np.minimum(*(each.along(flank, rho) for each in both)) < 0.0
+        under = _along(flank, both, rho) < 0.0
         last = DEPTHS - 1 - np.argmax(under[::-1], axis=0)
         places = np.arange(theta.size)
         a, b = rho[last, places], rho[np.minimum(last + 1, DEPTHS - 1), places]
         for _ in range(HALVINGS):
             middle = 0.5 * (a + b)
-            less = np.minimum(*(each.along(flank, middle) for each in both)) < 0.0
+            less = _along(flank, both, middle) < 0.0
             a, b = np.where(less, middle, a), np.where(less, b, middle)
         return np.where(under.any(axis=0), b, 0.0)
 
@@ -185,7 +173,7 @@ def demand_regular(flank: Flank, low: float, high: float) -> None:
             return
         a, b, c, d = a[open_], b[open_], c[open_], d[open_]
         t, r = 0.5 * (a + b), 0.5 * (c + d)
-        if (_ratio(flank, t, r) < 0.0).any():
+        if (_regular(flank, _both(flank, t), r) < 0.0).any():
             break
         a, b = np.concatenate([a, t, a, t]), np.concatenate([t, b, t, b])
         c, d = np.concatenate([c, c, r, r]), np.concatenate([r, r, d, d])
@@ -232,7 +220,7 @@ def _crossings(flank: Flank, tip: Tip, r: Array) -> tuple[Array, Array]:
     phi = np.stack([_place(flank, theta, np.full_like(theta, radius))[0] for radius in r.tolist()])
     spans = []
     for radius in r.tolist():
-        back = np.minimum(*(each.ratio(flank, np.full_like(theta, radius)) for each in both)) < 0.0
+        back = _regular(flank, both, radius) < 0.0
         back[middle] = True
         a = middle - int(np.argmax(~back[: middle + 1][::-1]))  # the last before the turn back
         b = middle + int(np.argmax(~back[middle:]))  # the first behind it
@@ -276,6 +264,6 @@ def _turning(flank: Flank, sound: Array, back: Array, r: Array) -> Array:
     """Shaft angles (k,), rad, between regular places and ones that are not, at which rows turn back."""
     for _ in range(HALVINGS):
         middle = 0.5 * (sound + back)
-        turned = _ratio(flank, middle, r) < 0.0
+        turned = _regular(flank, _both(flank, middle), r) < 0.0
         sound, back = np.where(turned, sound, middle), np.where(turned, middle, back)
     return sound

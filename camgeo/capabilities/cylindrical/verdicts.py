@@ -36,9 +36,12 @@ def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
     else:
         own = intent.Rib(track.depth, track.distance)
     roller = recipe.roller
+    led: dict[str, Any] = recipe.guide.intended()
+    if roller.taper:
+        led |= {"taper": roller.taper, "at": roller.at}
     bore = None if design.bore is None else holes_of(Body(recipe.height, (design.bore,)))[0]
     return intent.DrumIntent(
-        DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law),
+        DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law, **led),
         own,
         recipe.radius,
         recipe.height,
@@ -102,7 +105,8 @@ def file_rows(recipe: DrumRecipe, verdict: DrumVerdict) -> dict[str, Any]:
         entry["surfaces"] = [{"name": flank.name, **_flank(recipe, flank)} for flank in verdict.flanks]
     if verdict.play is not None:
         play = verdict.play
-        (least, unit), (most, _) = in_units(recipe, play.least, "mm"), in_units(recipe, play.most, "mm")
+        given = recipe.guide.unit
+        (least, unit), (most, _) = in_units(recipe, play.least, given), in_units(recipe, play.most, given)
         places = {"min_at": play.least_at, "max_at": play.most_at}
         entry["play"] = [{"between": ["lower", "upper"], "min": least, "max": most, "unit": unit, **places}]
     return entry
@@ -114,6 +118,6 @@ def _flank(recipe: DrumRecipe, flank: FlankVerdict) -> dict[str, Any]:
         return {"measured_error": error, "motion": None}
     motion: dict[str, Any] = {}
     for key in ("max", "least", "most", "rms", "remainder"):
-        motion[key], unit = in_units(recipe, getattr(flank.motion, key), "mm")
+        motion[key], unit = in_units(recipe, getattr(flank.motion, key), recipe.guide.unit)
     motion |= {"unit": unit, "at": flank.motion.at, "at_unit": "deg", "extremes": "proved"}
     return {"measured_error": error, "motion": motion}

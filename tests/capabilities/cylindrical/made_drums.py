@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from capabilities.cylindrical.positions import Lift
 
 from camgeo.capabilities.cylindrical.exact import designed
 from camgeo.capabilities.cylindrical.reading import read_cylindrical
@@ -15,6 +18,15 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.keys import DrumRecipe
+
+
+def changed(text: str, *pairs: tuple[str, str]) -> str:
+    """Text with the first of each pair replaced by the second; each has to be there."""
+    for old, new in pairs:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
 
 MOTION = (
     "[{rise: 40, over: 120, law: cycloidal}, {dwell: 60}, {return: 40, over: 120, law: polynomial-345}, {dwell: 60}]"
@@ -46,15 +58,27 @@ part: {length: 65}
 export: {tolerance: 0.05, files: [stl]}
 """
 """Drums of the worked cases: a groove, its rib and end cams, and one that is undercut near its floor."""
+CONE = changed(GROOVE, ("radius: 10,", "radius: 10, taper: axis, at: 44,"))
+BESIDE = changed(GROOVE, ("radius: 10,", "radius: 10, offset: 6,"))
+ARM = changed(
+    GROOVE,
+    ("radius: 10,", "radius: 10, arm: {length: 80, offset: 78, pivot: 40},"),
+    ("pitch_height: 20", f"pitch_height: {40.0 - 80.0 * math.sin(math.radians(15.0))!r}"),
+    ("rise: 40", "rise: 30"),
+    ("return: 40", "return: 30"),
+)
+LEADING = changed(ARM, ("offset: 78, pivot: 40", "offset: -78, pivot: 40, side: leading"))
+CONE_ON_ARM = changed(ARM, ("radius: 10,", "radius: 10, taper: 6, at: 44,"))
+RIB_ON_ARM = changed(
+    ARM,
+    ("groove: {depth: 12.5}", "rib: {distance: 36, depth: 12}"),
+    (", from: 38", ""),
+    ("pivot: 40", "pivot: 60"),
+    ("pitch_height: ", f"pitch_height: {60.0 - 80.0 * math.sin(math.radians(15.0))!r} # "),
+    ("length: 80, bore", "length: 120, bore"),
+)
+"""Drums whose roller is a cone, beside a radius or on an arm, and a rib between two rollers on one arm."""
 LAWS = ("cycloidal", "polynomial-345", "polynomial-4567")
-
-
-def changed(text: str, *pairs: tuple[str, str]) -> str:
-    """Text with the first of each pair replaced by the second; each has to be there."""
-    for old, new in pairs:
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return text
 
 
 def recipe_of(text: str, name: str = "drum.yaml") -> DrumRecipe:
@@ -67,8 +91,31 @@ def design_of(text: str) -> DrumDesign:
     return designed(recipe_of(text), Clock())
 
 
-def random_drum(rng: Random, track: str, *, inch: bool, ccw: bool, undercut: bool) -> tuple[str, list[tuple]]:
-    """Text of a random recipe, and its motion as rows (kind, stroke in mm, degrees, law) for `positions.Lift`.
+LED = ("carriage", "beside", "cone", "apex", "trailing", "leading", "cone on an arm")
+
+
+def _led(rng: Random, led: str, radius: float, stroke: float) -> tuple[dict, dict]:
+    """Keys of a follower, and what `Lift` takes of it; of an arm its start in degrees, not the pivot's height."""
+    if led == "beside":
+        offset = rng.uniform(-0.12, 0.12) * radius
+        return {"offset": offset}, {"offset": offset}
+    if led == "apex":
+        return {"taper": "axis"}, {}
+    taper = rng.uniform(2, 9)
+    cone = {"taper": taper} if led.startswith("cone") else {}
+    if led in {"carriage", "cone"}:
+        return cone, dict(cone)
+    side, length = (-1 if led == "leading" else 1), rng.uniform(1.1, 2.0) * radius
+    half = math.asin(0.5 * stroke / length)
+    y = 0.5 * side * length * (1.0 + math.cos(half)) + rng.uniform(-1.0, 1.0)
+    start = rng.uniform(-4, 4) - math.degrees(half)
+    return cone, {**cone, "arm": (length, y, start, side)}
+
+
+def random_drum(
+    rng: Random, track: str, *, inch: bool, ccw: bool, undercut: bool, led: str = "carriage"
+) -> tuple[str, Lift]:
+    """Text of a random recipe, and its motion and roller by positions; `led` is one of `LED`.
 
     An undercut drum has a large roller and a sharp motion.
     """
@@ -82,17 +129,34 @@ def random_drum(rng: Random, track: str, *, inch: bool, ccw: bool, undercut: boo
     rest = rng.uniform(0.3, 0.7) * (360 - over - back)
     up, down = rng.choice(LAWS), rng.choice(LAWS)
     (stroke,) = strokes
-    motion = [("rise", stroke, over, up), ("dwell", 0.0, rest, ""), ("return", stroke, back, down)]
-    motion.append(("dwell", 0.0, 360 - over - rest - back, ""))
-    rows = ", ".join(
-        f"{{dwell: {a!r}}}" if kind == "dwell" else f"{{{kind}: {s / mm!r}, over: {a!r}, law: {law}}}"
-        for kind, s, a, law in motion
-    )
     distance = 2.0 * roller + rng.uniform(0.8, 1.5) * radius
     clearance = rng.choice([0.0, rng.uniform(0.01, 0.1)])
     low = roller + rng.uniform(3, 9) + (0.5 * distance if track == "rib" else 0.0)
-    level = low + 0.0
-    length = level + stroke + low + rng.uniform(0, 5)
+    if led != "carriage":  # a cone is thicker outside, and an arm has its rollers aslant
+        low += 0.2 * radius
+    level, length = low, low + stroke + low + rng.uniform(0, 5)
+    taken, drawn = _led(rng, led, radius, stroke)
+    at = radius - 0.5 * depth + 0.25  # the middle of a roller from the floor's gap to the blank
+    if led == "apex":
+        drawn |= {"taper": math.degrees(math.atan(roller / at)), "at": at}
+    elif "taper" in drawn:
+        drawn |= {"at": at}
+    guide = "".join(f", {key}: {value / mm if key == 'offset' else value}" for key, value in taken.items())
+    if "arm" in drawn:
+        arm_length, y, start, side = drawn["arm"]
+        z = -arm_length * math.sin(math.radians(start))
+        drawn["arm"] = (arm_length, y, z, side)
+        place = {"length": arm_length, "offset": y, "pivot": level + z}
+        told = ", ".join(f"{key}: {value / mm!r}" for key, value in place.items())
+        guide += f", arm: {{{told}, side: {'trailing' if side > 0 else 'leading'}}}"
+        stroke = math.degrees(2.0 * math.asin(0.5 * stroke / arm_length))
+    unit = 1.0 if "arm" in drawn else mm
+    motion = [("rise", stroke, over, up), ("dwell", 0.0, rest, ""), ("return", stroke, back, down)]
+    motion.append(("dwell", 0.0, 360 - over - rest - back, ""))
+    rows = ", ".join(
+        f"{{dwell: {a!r}}}" if kind == "dwell" else f"{{{kind}: {s / unit!r}, over: {a!r}, law: {law}}}"
+        for kind, s, a, law in motion
+    )
     own = {
         "groove": f"{{groove: {{depth: {depth / mm!r}, clearance: {clearance / mm!r}}}}}",
         "rib": f"{{rib: {{distance: {distance / mm!r}, depth: {depth / mm!r}}}}}",
@@ -104,8 +168,8 @@ def random_drum(rng: Random, track: str, *, inch: bool, ccw: bool, undercut: boo
     return (
         f"units: {'inch' if inch else 'mm'}\nrotation: {'ccw' if ccw else 'cw'}\n"
         f"cam:\n  kind: cylindrical\n  radius: {radius / mm!r}\n  track: {own}\n"
-        f"  follower: {{radius: {roller / mm!r}{begins}}}\n  pitch_height: {level / mm!r}\n"
+        f"  follower: {{radius: {roller / mm!r}{begins}{guide}}}\n  pitch_height: {level / mm!r}\n"
         f"  undercut: {'shorten' if undercut else 'refuse'}\n  motion: [{rows}]\n"
         f"part: {{length: {length / mm!r}, bore: {bore!r}}}\n"
         f"export: {{tolerance: {rng.choice([0.1, 0.05, 0.02]) / mm!r}, files: [stl]}}\n"
-    ), motion
+    ), Lift(motion, **drawn)

@@ -27,10 +27,42 @@ def law_at(law: str, u: Any, m: Any = np) -> Any:
 
 
 class Lift:
-    """Lift over the shaft angle from rows (kind, stroke, degrees, law)."""
+    """Lift over the shaft angle from rows (kind, stroke, degrees, law), and where it leads a roller.
 
-    def __init__(self, rows: Sequence[tuple]) -> None:
-        self.rows = rows
+    The roller is on a carriage, `offset` mm beside a radius, or on an `arm`: its length, y of its pivot, height of the
+    pivot over the roller at lift 0, and side. Strokes are then degrees. `taper` is a cone's half angle in degrees; its
+    radius is that at `at` mm; `beside` is how far the roller is square to its arm, or along the axis.
+    """
+
+    def __init__(
+        self,
+        rows: Sequence[tuple],
+        *,
+        offset: float = 0.0,
+        arm: tuple[float, float, float, int] | None = None,
+        taper: float = 0.0,
+        at: float = 0.0,
+        beside: float = 0.0,
+    ) -> None:
+        self.rows, self.offset, self.arm, self.beside = rows, offset, arm, beside
+        self.slope, self.at = math.tan(math.radians(taper)), at
+
+    def second(self, beside: float) -> Lift:
+        """The same motion of a roller beside this one."""
+        other = Lift(self.rows, offset=self.offset, arm=self.arm, at=self.at, beside=beside)
+        other.slope = self.slope
+        return other
+
+    def place(self, theta: np.ndarray) -> tuple[Any, Any]:
+        """Y, and z over the height of the middle at lift 0, mm, of the roller's axis at shaft angles, rad."""
+        lift = self(theta)
+        if self.arm is None:
+            return self.offset, lift + self.beside
+        length, y, z, side = self.arm
+        psi = math.asin(-z / length) + np.radians(lift)
+        cosine, sine = np.cos(psi), np.sin(psi)
+        across, up = length * cosine - self.beside * sine, length * sine + self.beside * cosine
+        return y - side * across, z + up
 
     def __call__(self, theta: np.ndarray) -> np.ndarray:
         """Lift, mm, at shaft angles, rad, of any shape."""
@@ -52,12 +84,14 @@ def envelope(lift: Lift, side: int, roller: float, r: np.ndarray, phi: np.ndarra
     """
 
     def height(theta: np.ndarray) -> np.ndarray:
-        across = r[:, None] * np.sin(phi[:, None] - theta)
-        inside = roller * roller - across * across
-        found = side * (lift(theta) + side * np.sqrt(np.maximum(inside, 0.0)))
+        y, z = lift.place(theta)
+        along, across = r[:, None] * np.cos(phi[:, None] - theta), r[:, None] * np.sin(phi[:, None] - theta) - y
+        inside = (roller + (along - lift.at) * lift.slope) ** 2 - across * across
+        found = side * (z + side * np.sqrt(np.maximum(inside, 0.0)))
         return np.where(inside > 0.0, found, -np.inf)
 
-    half = np.arcsin(np.minimum(roller / r, 1.0))
+    most = roller + (r - lift.at) * lift.slope + np.abs(lift.place(np.linspace(0.0, 6.3, 200))[0]).max()
+    half = np.arcsin(np.minimum(most / r, 1.0))
     theta = phi[:, None] + half[:, None] * np.linspace(-1.0, 1.0, LOOKS)
     best = np.argmax(height(theta), axis=1)
     step = 2.0 * half / (LOOKS - 1)
@@ -75,6 +109,6 @@ def off_flank(lift: Lift, side: int, roller: float, level: float, points: np.nda
     """Distance (n,) of points (n, 3) above an envelope of rollers, square to the roller that touches beneath each."""
     r, phi = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
     z, at = envelope(lift, side, roller, r, phi)
-    across = r * np.sin(phi - at)
-    lean = np.sqrt(np.maximum(roller * roller - across * across, 0.0)) / roller
+    across, size = r * np.sin(phi - at) - lift.place(at)[0], roller + (r * np.cos(phi - at) - lift.at) * lift.slope
+    lean = np.sqrt(np.maximum(size * size - across * across, 0.0)) / size / math.hypot(1.0, lift.slope)
     return (points[:, 2] - level - z) * lean

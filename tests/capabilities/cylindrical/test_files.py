@@ -18,7 +18,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from capabilities.cylindrical.made_drums import BOTTOM, GROOVE, RIB, TOP, UNDERCUT, changed, design_of
+from capabilities.cylindrical.made_drums import (
+    ARM,
+    BESIDE,
+    BOTTOM,
+    CONE,
+    GROOVE,
+    LEADING,
+    RIB,
+    RIB_ON_ARM,
+    TOP,
+    UNDERCUT,
+    changed,
+    design_of,
+)
 from support.heavy import ezdxf, manifold3d, trimesh
 
 import camgeo
@@ -35,6 +48,8 @@ from kin.numeric.records import replace
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
+
+    from camgeo.capabilities.cylindrical.design import DrumDesign
 
 TOLERANCE = 0.02
 SIMPLER = 0.1 * TOLERANCE
@@ -113,6 +128,34 @@ def test_a_shortened_flank_loses_no_motion(tmp_path: Path) -> None:
     assert report.ok, [str(check) for check in report.checks if not check.ok]
     found: Any = dict(report)
     assert len(found["drum"]["undercut"]) == 4
+
+
+LED = {"leading": LEADING, "rib": RIB_ON_ARM, "cone": CONE, "beside": BESIDE}
+
+
+@pytest.mark.costly("solids of arms and cones, judged")
+@pytest.mark.parametrize("name", ["rib", "cone"])
+def test_other_followers(name: str, tmp_path: Path) -> None:
+    judge_led(LED[name], tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["leading", "beside"])
+def test_more_followers(name: str, tmp_path: Path) -> None:
+    judge_led(LED[name], tmp_path)
+
+
+def judge_led(text: str, folder: Path) -> None:
+    """Demand a solid and developments that are judged right, in the follower's unit."""
+    text = changed(text, ("tolerance: 0.02", "tolerance: 0.4"), ("[stl]", "[stl, {dxf: {at: [outer, pitch, 40]}}]"))
+    report = exported(folder, text)
+    assert report.ok, [str(check) for check in report.checks if not check.ok]
+    demand_foreseen(folder, report)
+    unit = "deg" if "arm:" in text else "mm"
+    assert {check.unit for check in report.checks if check.name == "motion"} == {unit}
+    found: Any = dict(report)
+    assert found["files"][0]["surfaces"][0]["motion"]["unit"] == unit
+    assert found["files"][0]["play"][0]["unit"] == unit
 
 
 # --- developments and tables ------------------------------------------------------------------------------------------
@@ -238,6 +281,30 @@ def test_wrong_walls_are_refused(wrong: type[Flank], drum: tuple[Path, Mesh]) ->
     assert "motion" in failing(report)
 
 
+def led_wrong(design: DrumDesign, **guide: float) -> dict[str, Flank]:
+    return {name: replace(flank, guide=replace(flank.guide, **guide)) for name, flank in design.flanks.items()}
+
+
+WRONG: dict[str, tuple[str, Callable[[DrumDesign], dict[str, Flank]]]] = {
+    "on the other side": (ARM, lambda design: led_wrong(design, y=-78.0, side=-1)),
+    "pivot 0.3 off": (ARM, lambda design: led_wrong(design, y=78.3)),
+    "a cylinder": (CONE, lambda design: {name: replace(each, taper=0.0) for name, each in design.flanks.items()}),
+    "on a radius": (BESIDE, lambda design: led_wrong(design, offset=0.0)),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_followers_are_refused(name: str, tmp_path: Path) -> None:
+    text, wrong = WRONG[name]
+    text = changed(text, ("tolerance: 0.02", "tolerance: 0.3"))
+    (tmp_path / "drum.yaml").write_text(text, encoding="utf-8")
+    design = design_of(text)
+    design.__dict__["flanks"] = wrong(design)
+    mesh, _ = drum_mesh(design, 0.3, numbers_of("stl", 1.0))
+    assert {"contour", "motion"} & failing(verdict((tmp_path / "drum.yaml", mesh), mesh))
+
+
 def moved(mesh: Mesh) -> Mesh:
     points = mesh.points.copy()
     lower = np.abs(np.hypot(points[:, 0], points[:, 1]) - 44.0) < 2.0
@@ -324,6 +391,17 @@ def test_harmless_changes_are_accepted(harmless: Callable[[Mesh], Mesh], drum: t
 # --- library, commands ------------------------------------------------------------------------------------------------
 
 
+def test_the_library_has_an_arm(tmp_path: Path) -> None:
+    """Swings are radians, and the flank on the blank is where the worked case has it."""
+    (tmp_path / "drum.yaml").write_text(ARM, encoding="utf-8")
+    design: Any = camgeo.design(camgeo.load(tmp_path / "drum.yaml"))
+    assert design.ok
+    assert design.motion(math.radians(60)) == pytest.approx(math.radians(15))
+    assert design.figures["off-radius"].value == pytest.approx(2.0)
+    x, y, z = design.flank([math.radians(60)], 38.3609494216)[0]
+    assert [math.degrees(math.atan2(y, x)), z - 40.0] == pytest.approx([67.8660599927, -6.88749461915])
+
+
 def test_the_library_has_the_exact_drum(tmp_path: Path) -> None:
     (tmp_path / "drum.yaml").write_text(GROOVE, encoding="utf-8")
     design: Any = camgeo.design(camgeo.load(tmp_path / "drum.yaml"))
@@ -369,7 +447,7 @@ def test_remedies_hold(limit: str, words: str, change: tuple[str, str], tmp_path
     assert exported(tmp_path, changed(text, change)).ok
 
 
-@pytest.mark.parametrize("name", ["cylindrical", "cylindrical-rib", "cylindrical-end"])
+@pytest.mark.parametrize("name", ["cylindrical", "cylindrical-rib", "cylindrical-end", "cylindrical-arm"])
 def test_starters_are_drums(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", name]) == 0
     (tmp_path / "it.yaml").write_text(capsys.readouterr().out, encoding="utf-8")

@@ -12,9 +12,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 from capabilities.cylindrical.made_drums import (
+    ARM,
     BOTTOM,
+    CONE,
     GROOVE,
     RIB,
+    RIB_ON_ARM,
     TOP,
     UNDERCUT,
     changed,
@@ -36,9 +39,37 @@ _THEN = ", law: cycloidal}, {dwell:"
 REFUSED = [
     (GROOVE, ("radius: 50", "rdius: 50"), "cam.rdius: unknown key; did you mean radius?"),
     (GROOVE, ("kind: cylindrical", "kind: cylindrical\n  turns: 3"), "cam.turns: not made yet; leave it out"),
-    (GROOVE, ("radius: 10,", "radius: 10, arm: {length: 80},"), "cam.follower.arm: not made yet; leave it out"),
-    (GROOVE, ("radius: 10,", "radius: 10, offset: 6,"), "cam.follower.offset: not made yet; leave it out"),
-    (GROOVE, ("radius: 10,", "kind: cone, radius: 10,"), "beside the axis or with a cone is not made yet"),
+    (GROOVE, ("radius: 10,", "radius: 10, arm: {length: 80},"), "cam.follower.arm.offset: missing"),
+    (GROOVE, ("radius: 10,", "kind: cone, radius: 10,"), "a conical roller is a roller with a taper"),
+    (GROOVE, ("radius: 10,", "radius: 10, at: 40,"), "cam.follower.at: cannot stand without taper; leave it out"),
+    (GROOVE, ("radius: 10,", "radius: 10, taper: 61,"), "cam.follower.taper: above 60"),
+    (GROOVE, ("radius: 10,", "radius: 10, taper: apex,"), "in degrees, or axis for an apex on the drum's axis"),
+    (GROOVE, ("radius: 10,", "radius: 10, taper: 60,"), "the cone ends in its apex before the floor, 37.5 mm from"),
+    (
+        GROOVE,
+        ("radius: 10,", "radius: 10, offset: 27.5,"),
+        "past the floor's edge, near 0 degrees; give less than 27.5 mm",
+    ),
+    (GROOVE, ("radius: 10,", "radius: 10, offset: 20,"), None),
+    (ARM, ("radius: 10,", "radius: 10, offset: 6,"), "cam.follower.offset: does not go with an arm; leave it out"),
+    (
+        ARM,
+        ("pivot: 40", "pivot: 100"),
+        "does not reach pitch_height at lift 0, given 100 mm; give a pivot between -60.7",
+    ),
+    (ARM, ("pivot: 40", "pivot: 98.5"), "cam.motion: the arm swings to 81.9"),
+    (ARM, ("offset: 78", "offset: 38"), "past the floor's edge, near 60 degrees; give 78.637 mm, or a longer arm"),
+    (ARM, ("offset: 78", "offset: 78.637"), None),
+    (RIB_ON_ARM, ("distance: 36", "distance: 20"), "give more than 20 mm, and the rib's thickness"),
+    (CONE, ("{groove: {depth: 12.5}}", "{rib: {depth: 12.5, distance: 22}}"), "give more than 22.7272727 mm, and"),
+    (
+        ARM,
+        ("{groove: {depth: 12.5}}", "{end: bottom}"),
+        None,
+    ),
+    (ARM, ("export:", "limits: {velocity: {at_most: 9}}\nexport:"), "velocity needs cam.drive.rpm; give that"),
+    (GROOVE, ("export:", "limits: {off-radius: {at_most: 9}}\nexport:"), "off-radius needs an arm; give that"),
+    (GROOVE, ("export:", "limits: {axial-thrust: {at_most: 9}}\nexport:"), "needs cam.drive.load and a taper"),
     (GROOVE, ("[stl]", "[step]"), "step is not made yet of a cylindrical cam; give stl, 3mf or ply"),
     (GROOVE, ("export:", "manufacture: {cutter: 20}\nexport:"), "manufacture: not made yet; leave it out"),
     (GROOVE, ("bore: 24", "flat: 20, bore: 24"), "part.flat: unknown key; the keys here are"),
@@ -94,21 +125,33 @@ def test_a_fault_names_its_remedy(text: str, change: tuple[str, str], wanted: st
     assert re.match(r"drum\.yaml:\d+:\d+: ", str(error.value))
 
 
+ON_ARM = ("radius: 12", "radius: 12, arm: {length: 50, offset: 49.5, pivot: 32}")
+
+
 @pytest.mark.slow
-def test_remedies_of_an_undercut_hold() -> None:
+@pytest.mark.parametrize(
+    ("follower", "sharp"),
+    [
+        (("radius: 12", "radius: 12"), ["radius", "depth"]),
+        (ON_ARM, ["radius", "depth"]),
+        # a shallower groove has a cone nearer the blank, and thinner
+        (("radius: 12", "radius: 12, taper: axis"), ["radius"]),
+    ],
+    ids=["cylinder", "arm", "cone"],
+)
+def test_remedies_of_an_undercut_hold(follower: tuple[str, str], sharp: list[str]) -> None:
     """A smaller roller, a shallower groove and a shortened contact each give a drum; a bit less of either does not."""
+    text = changed(REFUSE, follower)
     with pytest.raises(RecipeErrors) as error:
-        design_of(REFUSE)
-    radius, depth = re.findall(r"at most ([\d.]+) mm", str(error.value))
+        design_of(text)
+    found = dict(zip(("radius", "depth"), re.findall(r"at most ([\d.]+) mm", str(error.value)), strict=True))
     assert "or let contact begin farther out: undercut: shorten" in str(error.value)
-    for old, new, beyond in (
-        ("radius: 12", f"radius: {radius}", f"radius: {1.003 * float(radius)}"),
-        ("depth: 20", f"depth: {depth}", f"depth: {1.003 * float(depth)}"),
-    ):
-        design_of(changed(REFUSE, (old, new)))
-        with pytest.raises(RecipeErrors):
-            design_of(changed(REFUSE, (old, beyond)))
-    design_of(UNDERCUT)
+    for key, old in (("radius", "radius: 12"), ("depth", "depth: 20")):
+        design_of(changed(text, (old, f"{key}: {found[key]}")))
+        if key in sharp:
+            with pytest.raises(RecipeErrors):
+                design_of(changed(text, (old, f"{key}: {1.003 * float(found[key])}")))
+    design_of(changed(text, ("refuse", "shorten")))
 
 
 @pytest.mark.parametrize("word", ["barrel", "drum"])
@@ -118,7 +161,7 @@ def test_other_words_for_the_kind(word: str, tmp_path: Path) -> None:
     with pytest.raises(RecipeErrors) as error:
         camgeo.load(path)
     assert str(error.value).endswith(f"cam.kind: not one of the choices, given '{word}'; give cylindrical")
-    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-rib and cylindrical-end"):
+    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-rib, cylindrical-end and cylindrical-arm"):
         starter(word)
 
 

@@ -12,7 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from capabilities.cylindrical.made_drums import GROOVE, RIB, TOP, UNDERCUT, changed, design_of
+from capabilities.cylindrical.made_drums import (
+    CONE,
+    GROOVE,
+    RIB,
+    RIB_ON_ARM,
+    TOP,
+    UNDERCUT,
+    changed,
+    design_of,
+)
 from capabilities.cylindrical.positions import Lift, envelope
 from support.browser import Browser, executable
 
@@ -29,6 +38,26 @@ if TYPE_CHECKING:
 LIFT = Lift([("rise", 40, 120, "cycloidal"), ("dwell", 0, 60, ""), ("return", 40, 120, "polynomial-345")])
 SMALL = Lift([("rise", 15, 60, "cycloidal"), ("dwell", 0, 120, ""), ("return", 15, 60, "cycloidal")])
 CCW = changed(GROOVE, ("cam:\n", "rotation: ccw\ncam:\n"))
+
+
+ON_ARM = Lift(
+    [("rise", 30, 120, "cycloidal"), ("dwell", 0, 60, ""), ("return", 30, 120, "polynomial-345")],
+    arm=(80.0, 78.0, 80.0 * math.sin(math.radians(15.0)), 1),
+)
+
+
+@pytest.mark.parametrize(("head", "sign"), [("", 1.0), ("rotation: ccw\n", -1.0)])
+def test_rollers_of_an_arm_are_where_it_leads_them(head: str, sign: float) -> None:
+    """Both of a rib, on one body; to the right of the viewer y counts, or -y of a drum that turns the other way."""
+    bodies = {body.name: body for body in scene(design_of(head + RIB_ON_ARM)).bodies}
+    for step in (0, 150, 500):
+        theta = np.array([math.radians(0.5 * step)])
+        for half, shape in zip((-18.0, 18.0), bodies["rollers"].shapes, strict=True):
+            points = bodies["rollers"].placed(shape.rings[0].flattened(), step)
+            y, z = ON_ARM.second(half).place(theta)
+            wanted = sign * y[0], z[0] + 60.0 - 80.0 * math.sin(math.radians(15.0))
+            np.testing.assert_allclose(0.5 * (points.min(axis=0) + points.max(axis=0)), wanted, atol=2e-3)
+            np.testing.assert_allclose(np.ptp(points, axis=0), 20.0, atol=4e-3)
 
 
 def edges(design: DrumDesign, radius: float, turn: float) -> tuple[np.ndarray, np.ndarray]:
@@ -115,7 +144,7 @@ def test_a_page_shows_drum_and_map_and_asks_for_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(executable() is None, reason="no browser")
-@pytest.mark.parametrize("text", [GROOVE, RIB, CCW, UNDERCUT])
+@pytest.mark.parametrize("text", [GROOVE, RIB, CCW, UNDERCUT, RIB_ON_ARM, CONE])
 def test_the_script_draws_the_same(tmp_path: Path, text: str) -> None:
     """At an angle between the values that a page has, and at one of them."""
     text = text.replace("files: [stl]", "files: [html]")
@@ -126,7 +155,13 @@ def test_the_script_draws_the_same(tmp_path: Path, text: str) -> None:
             browser.open(page.as_uri() + f"#deg={0.5 * step}")
             ask = '[...document.querySelectorAll("#drawing .drum path")].map((p) => p.getAttribute("d"))'
             found = browser.ask(ask)
-            wanted = scene(design_of(text), step).bodies[0].shapes
+            bodies = scene(design_of(text), step).bodies
+            arcs = [body.shapes[0].rings[0].points for body in bodies if body.kind == "contacts"]
+            drawn = browser.ask(
+                '[...document.querySelectorAll("#drawing .contacts path")].map((p) => p.getAttribute("d"))'
+            )
+            np.testing.assert_allclose(numbers("".join(drawn)), np.concatenate(arcs), atol=0.01)
+            wanted = bodies[0].shapes
             for path, shape in zip(found, wanted, strict=True):
                 outlines = np.concatenate([ring.points for ring in shape.rings])
                 if shape.role != "fixed":

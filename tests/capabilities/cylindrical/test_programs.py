@@ -222,6 +222,11 @@ def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None
             "give an allowance below 4.99 mm",
             ("cutter: 20, allowance: 6", "cutter: 20"),
         ),
+        (
+            [("radius: 10,", "radius: 10, taper: axis,")],
+            "a program of a roller on an arm, beside the drum's axis or conical is not made yet",
+            (", taper: axis", ""),
+        ),
         ([("depth_of_cut: 7", "depth_of_cut: 0.001")], "makes more than 2000 passes", ("0.001", "6")),
     ],
 )

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from capabilities.cylindrical.made_drums import design_of, random_drum, recipe_of
-from capabilities.cylindrical.positions import Lift, off_flank
+from capabilities.cylindrical.made_drums import LED, design_of, random_drum, recipe_of
+from capabilities.cylindrical.positions import off_flank
 from support.heavy import manifold3d, trimesh
 
 from camgeo.capabilities.cylindrical.figures import volume
@@ -22,26 +22,28 @@ from camgeo.output.extension import numbers_of
 from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
+    from capabilities.cylindrical.positions import Lift
+
     from camgeo.files.mesh import Mesh
 
 TRACKS = ("groove", "rib", "top", "bottom")
 SHARES = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [1, 1, 0], [0, 1, 1], [1, 0, 1]], dtype=float)
 
 
-def rollers(recipe: Any) -> list[tuple[int, float, float]]:
-    """Side, radius and level of the roller of each flank."""
-    track, radius, level = recipe.track, recipe.roller.radius, recipe.level
+def rollers(recipe: Any, lift: Lift) -> list[tuple[Lift, int, float]]:
+    """Motion, side and radius of the roller of each flank."""
+    track, radius = recipe.track, recipe.roller.radius
     if isinstance(track, Groove):
-        return [(-1, radius, level), (1, radius + track.clearance, level)]
+        return [(lift, -1, radius), (lift, 1, radius + track.clearance)]
     if isinstance(track, Rib):
-        return [(-1, radius, level + 0.5 * track.distance), (1, radius, level - 0.5 * track.distance)]
-    return [(-1, radius, level)] if track.facing == "top" else [(1, radius, level)]
+        half = 0.5 * track.distance
+        return [(lift.second(half), -1, radius), (lift.second(-half), 1, radius)]
+    return [(lift, -1, radius)] if track.facing == "top" else [(lift, 1, radius)]
 
 
-def strayed(text: str, rows: list[tuple], mesh: Mesh) -> np.ndarray:
+def strayed(text: str, lift: Lift, mesh: Mesh) -> np.ndarray:
     """Distance (k,) of places all over a mesh from the nearest surface of the intended drum, mm."""
     recipe = recipe_of(text)
-    lift = Lift(rows)
     weights = SHARES / SHARES.sum(axis=1)[:, None]
     corners = mesh.points[mesh.triangles]
     points = np.einsum("wc,tcx->twx", weights, corners).reshape(-1, 3)
@@ -55,17 +57,17 @@ def strayed(text: str, rows: list[tuple], mesh: Mesh) -> np.ndarray:
     )
     slack = recipe.export.tolerance
     near = (off > slack) & (r > recipe.floor - slack) & (r < recipe.radius + slack)
-    found = [abs(off_flank(lift, *roller, points[near])) for roller in rollers(recipe)]
+    found = [abs(off_flank(*roller, recipe.level, points[near])) for roller in rollers(recipe, lift)]
     off[near] = np.min([off[near], *found], axis=0)
     return off
 
 
-def made(seed: int, *, undercut: bool) -> tuple[str, list[tuple], Any, Mesh, Any]:
+def made(seed: int, led: str, *, undercut: bool) -> tuple[str, Lift, Any, Mesh, Any]:
     """A random drum as a mesh in the precision of an STL, with its text, motion and design."""
     rng = random.Random(seed)
     track = TRACKS[seed % 4]
     for _ in range(40):
-        text, rows = random_drum(rng, track, inch=seed % 3 == 0, ccw=seed % 2 == 1, undercut=undercut)
+        text, lift = random_drum(rng, track, inch=seed % 3 == 0, ccw=seed % 2 == 1, undercut=undercut, led=led)
         try:
             design = design_of(text)
         except RecipeErrors as error:  # drawn again where the drum is refused for a reason
@@ -75,15 +77,15 @@ def made(seed: int, *, undercut: bool) -> tuple[str, list[tuple], Any, Mesh, Any
         if undercut == any(design.tips.values()):
             recipe = design.recipe
             mesh, facts = drum_mesh(design, recipe.export.tolerance, numbers_of("stl", 1.0))
-            return text, rows, design, mesh, facts
+            return text, lift, design, mesh, facts
     raise AssertionError(f"seed {seed}: no drum is made")
 
 
-def judged(seed: int, *, undercut: bool) -> None:
-    text, rows, design, mesh, facts = made(seed, undercut=undercut)
+def judged(seed: int, led: str = "carriage", *, undercut: bool = False) -> None:
+    text, lift, design, mesh, facts = made(seed, led, undercut=undercut)
     tolerance = design.recipe.export.tolerance
     assert facts.bound.worst <= tolerance
-    off = strayed(text, rows, mesh)
+    off = strayed(text, lift, mesh)
     assert off.max() <= tolerance * (1.0 + 1e-6), (text, off.max())
     body = trimesh.Trimesh(mesh.points, mesh.triangles, process=False)
     assert body.is_watertight
@@ -99,13 +101,32 @@ def judged(seed: int, *, undercut: bool) -> None:
 @pytest.mark.costly("drums of each track against positions over all of their triangles")
 @pytest.mark.parametrize("seed", range(4))
 def test_every_triangle_is_near_the_drum(seed: int) -> None:
-    judged(seed, undercut=False)
+    judged(seed)
+
+
+@pytest.mark.costly("drums of each follower against positions over all of their triangles")
+@pytest.mark.parametrize(("seed", "led"), [(0, "trailing"), (1, "cone on an arm"), (2, "beside"), (3, "apex")])
+def test_every_triangle_with_other_followers(seed: int, led: str) -> None:
+    judged(seed, led)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("led", LED[1:])
+@pytest.mark.parametrize("seed", range(300, 301))
+def test_every_triangle_of_many_with_other_followers(seed: int, led: str) -> None:
+    judged(seed, led)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("led", LED[1:])
+def test_every_triangle_of_other_followers_that_are_cut_short(led: str) -> None:
+    judged(400 + LED.index(led), led, undercut=True)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(100, 116))
 def test_every_triangle_of_many(seed: int) -> None:
-    judged(seed, undercut=False)
+    judged(seed)
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from support.programmes import Segment, law, programme
 
-from kin.cylindrical.follower import DrumFollower
+from kin.cylindrical.follower import Arm, DrumFollower
 from kin.cylindrical.intent import DrumIntent, End, Groove, Rib
 
 TURN = 2.0 * math.pi
@@ -88,6 +88,55 @@ class Drum:
     bore: float = 12.0
     shortened: bool = False
     mirrored: bool = False
+    offset: float = 0.0
+    taper: float = 0.0
+    at: float = 44.0
+    arm: Arm | None = None
+
+    @property
+    def plain(self):
+        """Whether the roller is a cylinder whose axis is a radius."""
+        return not (self.offset or self.taper or self.arm)
+
+    @property
+    def growth(self):
+        return math.tan(self.taper)
+
+    def size(self, roller, x):
+        """Radius of a roller at places x along it."""
+        return roller + (x - self.at) * self.growth
+
+    def axis(self, theta, level, order=0):
+        """Places y and z of a roller's axis, at a height at lift 0, or their derivatives by the angle."""
+        if self.arm is None:
+            still = np.zeros_like(theta)
+            lift = self.motion(theta, order)
+            return (still + self.offset, level + lift) if order == 0 else (still, lift)
+        arm, beside = self.arm, level - self.level
+        psi = math.asin((self.level - arm.pivot) / arm.length) + self.motion(theta)
+        y = -arm.side * (arm.length * np.cos(psi) - beside * np.sin(psi))
+        z = arm.length * np.sin(psi) + beside * np.cos(psi)
+        if order == 0:
+            return arm.offset + y, arm.pivot + z
+        # everything turns about the pivot
+        rate = arm.side * self.motion(theta, 1)
+        return z * rate, -y * rate
+
+    def gives(self, theta, place, roller, side, level):
+        """How far a roller at angles has to give way to points at (x, y, z): mm, rad of an arm; -inf out of reach."""
+        x, y, z = place
+        size = self.size(roller, x)
+        y0, z0 = self.axis(theta, level)
+        with np.errstate(invalid="ignore"):
+            if self.arm is None:
+                gone = side * (z0 - z) + np.sqrt(size**2 - (y - y0) ** 2)
+            else:
+                arm = self.arm
+                way, reach = np.hypot(y - arm.offset, z - arm.pivot), math.hypot(arm.length, level - self.level)
+                towards = np.arctan2(z - arm.pivot, arm.side * (arm.offset - y))
+                own = np.arctan2(z0 - arm.pivot, arm.side * (arm.offset - y0))
+                gone = side * (own - towards) + np.arccos((way**2 + reach**2 - size**2) / (2.0 * way * reach))
+        return np.where(np.isfinite(gone), gone, -np.inf)
 
     @property
     def floor(self):
@@ -96,7 +145,10 @@ class Drum:
     def intent(self, **more):
         from kin.contour.holes import round_hole
 
-        follower = DrumFollower(self.roller, self.inner, self.outer, self.level, self.motion.law)
+        follower = DrumFollower(
+            self.roller, self.inner, self.outer, self.level, self.motion.law,
+            self.offset, self.taper, self.at if self.taper else None, self.arm,
+        )  # fmt: skip
         hole = round_hole("the bore", "bore", (0.0, 0.0), 2.0 * self.bore)
         given = {"bore": hole, "shortened": self.shortened, "mirrored": self.mirrored, **more}
         return DrumIntent(follower, self.track, self.radius, self.length, **given)
@@ -126,14 +178,36 @@ class Drum:
             for side, roller in sides
         )
 
+    def envelops(self, flank):
+        """Whether a flank is nowhere undercut at its inner edge: what is touched there stands in no roller's way."""
+        theta = np.linspace(0.0, TURN, 181)
+        phi, z = self.touched(theta, np.array([self.floor]), *flank[1:])
+        points = polar(phi, self.floor, z)[:, 0]
+        whole = replace(self, mirrored=False)
+        return np.abs(distances(whole, points, flank)[0]).max() < 1e-7
+
     def touched(self, theta, r, side, roller, level):
         """Polar angle and height (n, m) of the flank on cylinders r (m,), touched at angles theta (n,)."""
+        if not self.plain:
+            return self._touched_anywhere(theta[:, None], r, side, roller, level)
         slope = self.motion(theta, 1)[:, None]
         square = 0.5 * (r**2 - slope**2 + np.sqrt((r**2 + slope**2) ** 2 - 4.0 * (slope * roller) ** 2))
         rho = np.sqrt(square)
         a = np.arctan2(slope, rho)
         phi = theta[:, None] + np.arctan2(-side * roller * np.sin(a), rho)
         return phi, level + self.motion(theta)[:, None] + side * roller * np.cos(a)
+
+    def _touched_anywhere(self, theta, r, side, roller, level):
+        y, z = self.axis(theta, level)
+        y1, z1 = self.axis(theta, level, 1)
+        x = np.broadcast_to(r, (len(theta), len(r))).astype(float)
+        for _ in range(60):
+            size = self.size(roller, x)
+            along = x + y1 + size * self.growth
+            a = np.arctan2(z1, along) + side * np.arcsin(y * self.growth / np.hypot(along, z1))
+            across = y - side * size * np.sin(a)
+            x = np.sqrt(r**2 - across**2)
+        return theta + np.arctan2(across, x), z + side * size * np.cos(a)
 
 
 def polar(phi, r, z):
@@ -285,33 +359,39 @@ def sought(function, at, width, best, rounds=7):
     return np.take_along_axis(value, best(value, axis=1)[:, None], axis=1)[:, 0]
 
 
-def distances(drum, points, flank):
+def distances(drum, points, flank, *, highest=False):
     """Distance (n,) of points (n, 3) from an exact flank, above 0 within the metal, and the height over it, (n,).
 
-    Positions alone: the least distance from all axes of the roller, and how far it has to give way to the point.
+    Positions alone: the least distance from all axes of the roller, and how far it has to give way to the point. With
+    `highest`, side times the height (n,) of the flank itself.
     """
     _, side, roller, level = flank
     if drum.mirrored:
         points = points * [1.0, -1.0, 1.0]
     phi, r = np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1])
-    reach = np.arcsin(np.minimum(1.0, 1.02 * roller / r))
+    most = 1.02 * roller if drum.plain else 1.3 * roller + np.abs(drum.axis(np.linspace(0.0, 7.0, 99), level)[0]).max()
+    reach = np.arcsin(np.minimum(1.0, most / r))
 
-    def across(theta):
-        y = r[:, None] * np.sin(phi[:, None] - theta)
-        return y, side * (level + drum.motion(theta) - points[:, [2]])
+    def along(theta):
+        return r[:, None] * np.cos(phi[:, None] - theta), r[:, None] * np.sin(phi[:, None] - theta)
 
     def away(theta):
-        return np.hypot(*across(theta))
+        (x, y), (y0, z0) = along(theta), drum.axis(theta, level)
+        return (np.hypot(y - y0, points[:, [2]] - z0) - drum.size(roller, x)) * math.cos(drum.taper)
 
     def gives(theta):
-        y, v = across(theta)
+        return drum.gives(theta, (*along(theta), points[:, [2]]), roller, side, level)
+
+    def heights(theta):
+        (x, y), (y0, z0) = along(theta), drum.axis(theta, level)
         with np.errstate(invalid="ignore"):
-            height = v + np.sqrt(roller**2 - y**2)
-        return np.where(np.isfinite(height), height, -np.inf)
+            return np.nan_to_num(side * z0 + np.sqrt(drum.size(roller, x) ** 2 - (y - y0) ** 2), nan=-np.inf)
 
     at = phi[:, None] + reach[:, None] * np.linspace(-1.0, 1.0, 201)
     width = reach[:, None] / 100.0
-    return sought(away, at, width, np.argmin) - roller, sought(gives, at, width, np.argmax)
+    if highest:
+        return sought(heights, at, width, np.argmax)
+    return sought(away, at, width, np.argmin), sought(gives, at, width, np.argmax)
 
 
 def enveloped(drum):
@@ -323,7 +403,7 @@ def enveloped(drum):
         points = np.stack([far * np.cos(phi), far * np.sin(phi), np.zeros_like(far)], axis=-1)
         height = np.concatenate(
             [
-                distances(replace(drum, mirrored=False), part, flank)[1]
+                distances(replace(drum, mirrored=False), part, flank, highest=True)
                 for part in np.array_split(points, 1 + len(points) // 4000)
             ]
         )
@@ -338,12 +418,13 @@ def resting(drum, points, theta, flank):
     if drum.mirrored:
         points = points * [1.0, -1.0, 1.0]
     found = []
-    for t, lift in zip(theta, drum.motion(theta), strict=True):
+    for t in theta:
         x = points[:, 0] * np.cos(t) + points[:, 1] * np.sin(t)
         y = points[:, 1] * np.cos(t) - points[:, 0] * np.sin(t)
-        v = side * (level + lift - points[:, 2])
-        own = (x >= drum.inner) & (x <= drum.outer) & (np.abs(y) <= roller) & (v < 0.0)
-        found.append(np.max(v[own] + np.sqrt(roller**2 - y[own] ** 2), initial=-np.inf))
+        _, z0 = drum.axis(t, level)
+        own = (x >= drum.inner) & (x <= drum.outer) & (side * (z0 - points[:, 2]) < 0.0)
+        place = (x[own], y[own], points[own, 2])
+        found.append(np.max(drum.gives(t, place, roller, side, level), initial=-np.inf))
     return np.array(found)
 
 
@@ -392,6 +473,36 @@ def random_drum(chance, kind):
     return drum, size
 
 
+LED = ("offset", "cone", "arm", "cone on an arm", "rib on an arm", "cone beside the axis")
+
+
+def random_led(chance, kind):
+    """A drum by chance whose roller is a cone, on an arm or beside the axis, with its size: `random_drum` otherwise."""
+    tracks = {"offset": "hub", "cone": "rib", "arm": "groove", "cone on an arm": "bottom", "rib on an arm": "rib"}
+    drum, size = random_drum(chance, tracks.get(kind, "groove"))
+    sense = int(chance.choice([-1, 1]))
+    more = {}
+    if "cone" in kind:
+        middle = 0.5 * (drum.inner + drum.outer)
+        apex = math.atan(drum.roller / middle)
+        more |= {"at": middle, "taper": apex if chance.integers(2) else chance.uniform(0.3, 1.2) * apex}
+    if kind in {"offset", "cone beside the axis"}:
+        more["offset"] = sense * chance.uniform(0.05, 0.15) * drum.radius
+    if "arm" in kind:
+        stroke = drum.motion.parts[0][0]
+        reach = drum.radius * chance.uniform(1.5, 2.5)
+        swing = 2.0 * math.asin(0.5 * stroke / reach)
+        parts = tuple((lift / stroke * swing, over, name) for lift, over, name in drum.motion.parts)
+        pivot = drum.level + chance.uniform(0.35, 0.65) * stroke
+        aside = sense * reach * 0.5 * (1.0 + math.cos(0.5 * swing)) + chance.uniform(-0.03, 0.03) * drum.radius
+        more |= {"motion": Motion(parts), "arm": Arm(reach, aside, pivot, sense)}
+    drum = replace(drum, **more)
+    while not all(drum.envelops(flank) for flank in drum.flanks):
+        parts = tuple((0.85 * lift, over, name) for lift, over, name in drum.motion.parts)
+        drum = replace(drum, motion=Motion(parts))
+    return drum, size
+
+
 def on_triangles(made, name, chance, count):
     """Places (n, 3) on the triangles of a part of a drum: points of all edges, and so many within by chance."""
     names = np.array(made.names * len(made.theta))
@@ -406,6 +517,8 @@ def on_triangles(made, name, chance, count):
 
 __all__ = [
     "KINDS",
+    "LED",
+    "Arm",
     "Drum",
     "End",
     "Groove",
@@ -419,6 +532,7 @@ __all__ = [
     "fitting",
     "on_triangles",
     "random_drum",
+    "random_led",
     "replace",
     "resting",
 ]

@@ -12,10 +12,11 @@ from capabilities.cylindrical.kin.drums import TURN, Drum, Groove, Rib, replace
 from support.programmes import Segment, law, programme
 
 from kin.cylindrical.cutters import left_on
-from kin.cylindrical.gauge import Gauge, gauges_of
+from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Limits
 from kin.cylindrical.lifts import Lifts
 from kin.cylindrical.program import Cutting, off_path, verify_program
+from kin.cylindrical.roller import Gauge
 from kin.cylindrical.turned import Pass, passes_of, read_turned
 from kin.read.errors import ReadError
 
@@ -67,6 +68,13 @@ def test_a_cutter_of_the_roller_s_size_along_its_path(tmp_path):
         assert 0.9 * most < flank.motion.max < 1.001 * most
         assert flank.measured_error < flank.motion.max
         assert flank.motion.remainder < 0.15 * TOLERANCE
+
+
+def test_rollers_of_other_kinds_are_not_judged(tmp_path):
+    drum = DRUM.intent()
+    follower = replace(drum.follower, offset=3.0)
+    with pytest.raises(ValueError, match="not judged"):
+        verify_program(tmp_path / "drum.ngc", replace(drum, follower=follower), CUTTING, Limits(TOLERANCE))
 
 
 def without(text, number):
