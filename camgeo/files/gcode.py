@@ -93,7 +93,7 @@ def write_gcode(
     decimals. Raises OSError where the disk refuses.
     """
     number = _Numbers(count, mm)
-    lines = [f"({_comment(text)})" for text in remarks]
+    lines = [f"({comment(text)})" for text in remarks]
     lines += [
         "G20" if mm == 25.4 else "G21",
         "G17 G90 G94",
@@ -103,7 +103,7 @@ def write_gcode(
     ]
     for name, steps in features:
         for k, step in enumerate(steps, start=1):
-            lines.append(f"({_comment(f'{name}, pass {k} of {len(steps)}')})")
+            lines.append(f"({comment(f'{name}, pass {k} of {len(steps)}')})")
             lines += _pass(step, cutting, number)
     lines += ["M5", "M30", ""]
     path.write_bytes("\n".join(lines).encode("ascii"))
@@ -129,8 +129,8 @@ def _pass(step: Pass, cutting: Cutting, number: _Numbers) -> Iterator[str]:
     points = number.rounded(step.loop.points)
     places = [(_plain(x, number.count), _plain(y, number.count)) for x, y in points.tolist()]
     yield f"G0 X{places[0][0]} Y{places[0][1]}"
-    yield f"G1 Z{number(step.z)} F{_feed(cutting.plunge / number.mm)}"
-    feed = f" F{_feed(cutting.feed / number.mm)}"
+    yield f"G1 Z{number(step.z)} F{feed_text(cutting.plunge / number.mm)}"
+    feed = f" F{feed_text(cutting.feed / number.mm)}"
     for i, bulge in enumerate(step.loop.bulges.tolist()):
         if places[i + 1] == places[i]:
             continue
@@ -154,7 +154,7 @@ def plain(value: float) -> str:
     return np.format_float_positional(value, precision=9, fractional=False, trim="-")
 
 
-def _feed(value: float) -> str:
+def feed_text(value: float) -> str:
     """Write a feed in three decimals, or as many as make up `FIGURES`."""
     return _plain(value, max(LEAST_PLACES, FIGURES - 1 - math.floor(math.log10(value))))
 
@@ -164,7 +164,7 @@ def _plain(value: float, count: int) -> str:
     return text[1:] if float(text) == 0.0 and text.startswith("-") else text
 
 
-def _comment(text: str) -> str:
+def comment(text: str) -> str:
     """One line of ASCII without parentheses, which end a comment."""
     plain = text.replace("(", "[").replace(")", "]").encode("ascii", "replace").decode("ascii")
     return " ".join("".join(c if c.isprintable() else " " for c in plain).split())[:_COMMENT]

@@ -236,7 +236,7 @@ def _flank(job: Judged, stands: Stands, angles: int) -> tuple[FlankVerdict, Seen
 def contour_check(job: Judged, proud: Peak, bare: Peak) -> tuple[Check, float]:
     """Check of the distance of a flank's surface, mm, out of the metal and into it, and the greater distance."""
     tolerance = job.limits.tolerance
-    worst = max(sure(peak.value, peak.remainder, tolerance) for peak in (proud, bare))
+    worst = max(assured(peak.value, peak.remainder, tolerance) for peak in (proud, bare))
     words = " and ".join(
         f"{length_words(max(peak.value, 0.0), '.3g')} {UNIT} {way}" for peak, way in ((proud, "proud"), (bare, "bare"))
     )
@@ -264,7 +264,7 @@ def motion_check(job: Judged, motion: MotionError, gauge: Gauge) -> Check:
     """Check of the motion on a flank, in the unit of positions."""
     told, tolerance, given = job.told, job.limits.tolerance, _given(job, job.limits.motion)
     limit, room = limit_of(lambda e: told * _implied(gauge, e), given, tolerance, job.slack)
-    worst = sure(motion.max, motion.remainder, told * tolerance) if given is None else motion.bound
+    worst = assured(motion.max, motion.remainder, told * tolerance) if given is None else motion.bound
     detail = f"true within {amount_words(motion.remainder, job.unit, '.2g')}" if motion.remainder else ""
     check = at_most(MOTION, worst, limit, job.unit, detail=detail, slack=room)
     check = replace(check, at=motion.at)
@@ -278,7 +278,7 @@ def _given(job: Judged, limit: float | None) -> float | None:
     return None if limit is None else job.drum.follower.told(limit)
 
 
-def sure(value: float, remainder: float, tolerance: float) -> float:
+def assured(value: float, remainder: float, tolerance: float) -> float:
     """A value found, mm, or its bound where the proof leaves more open than a share of the tolerance."""
     return value if remainder <= OPEN * tolerance else value + remainder
 
@@ -288,7 +288,8 @@ def _implied(gauge: Gauge, tolerance: float) -> float:
     return gauge.by_error(tolerance) * (1.0 + SLACK)
 
 
-def _at(check: Check, theta: float) -> Check:
+def placed(check: Check, theta: float) -> Check:
+    """The check with its shaft angle, rad."""
     return replace(check, at=degrees(theta) if math.isfinite(theta) else None)
 
 
@@ -345,7 +346,7 @@ def play_check(job: Judged, pinched: Array, own: Array) -> tuple[Play, Check]:
     if play.least < 0.0:
         told += f": it is pinched by up to {amount_words(-play.least, job.unit, '.3g')}"
     check = at_most(PLAY, job.told * float(abs(pinched[k])), limit, job.unit, detail=told, slack=room)
-    return play, _at(check, k * width)
+    return play, placed(check, k * width)
 
 
 def _between(play: Play) -> str:

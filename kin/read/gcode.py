@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,7 @@ LARGEST = 1e6  # of a number as written
 CENTRES = "have the post-processor write arcs by their centre, I and J"
 _WORD = re.compile(r"([A-Z])([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+))")
 _COMMENT = re.compile(r"\(([^()]*)\)")
-_GROUPS = {
+GROUPS = {
     "motion": ("0", "1", "2", "3"),
     "plane": ("17",),
     "units": ("20", "21"),
@@ -37,7 +37,6 @@ _GROUPS = {
     "cycle": ("80",),
     "offsets": ("54",),
 }
-_GROUP_OF = {code: group for group, codes in _GROUPS.items() for code in codes}
 _SPINDLE, _END = ("3", "5"), ("2", "30")
 
 
@@ -79,21 +78,26 @@ def read_gcode(path: Path | str) -> Program:
     Raises OSError where the file cannot be read; ReadError for a file that is too large or not ASCII, a program that
     does not end or makes no move, and, with the number of the line, for words that are not read or do not fit together.
     """
-    path = Path(path)
+    machine = Machine(Path(path))
+    follow(machine)
+    return Program(machine.path, tuple(machine.moves), machine.unit, tuple(machine.comments))
+
+
+def follow(machine: Machine) -> None:
+    """Let a machine follow its program to the end; raises as `read_gcode` does."""
+    path = machine.path
     try:
         text = contents(path, "gcode").decode("ascii")
     except UnicodeDecodeError as error:
         raise ReadError("syntax", f"byte {error.start} is not ASCII", path) from error
     if max(text.count("\n"), text.count("\r")) > MOST_LINES:
         raise ReadError("range", f"more than {MOST_LINES} lines", path)
-    machine = _Machine(path)
     for number, line in enumerate(text.splitlines(), start=1):
         machine.block(number, line)
     if not machine.ended:
         raise ReadError("truncated", "the program does not end: there is no M30 or M2", path)
     if not machine.moves:
         raise ReadError("empty", "the program makes no move", path)
-    return Program(path, tuple(machine.moves), machine.unit, tuple(machine.comments))
 
 
 def arcs_of(moves: tuple[ToolMove, ...] | list[ToolMove]) -> Arcs:
@@ -121,13 +125,20 @@ def arcs_of(moves: tuple[ToolMove, ...] | list[ToolMove]) -> Arcs:
     return arcs.cut(1 + (np.abs(sweep) > 0.5 * math.pi).astype(np.intp) * 3)[0]
 
 
-class _Machine:
-    """State of a machine that follows a program block by block, with the moves made and the comments met so far."""
+class Machine:
+    """State of a machine that follows a program block by block, with the moves made and the comments met so far.
+
+    `letters` are those of words with lengths and angles, `groups` the codes of the G words that exclude one another.
+    """
+
+    letters: ClassVar[str] = "XYZIJ"
+    groups: ClassVar[dict[str, tuple[str, ...]]] = GROUPS
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.moves: list[ToolMove] = []
         self.comments: list[str] = []
+        self._group_of = {code: group for group, codes in self.groups.items() for code in codes}
         self.modes: dict[str, str] = {}  # code in force of each group of G words
         self.at: list[float | None] = [None, None, None]  # x, y, z, mm, None until a word has set it
         self.unit = 0.0  # mm, 0 before G20 or G21
@@ -145,13 +156,13 @@ class _Machine:
         numbers = self._numbers(number, words)
         self._modes(number, codes)
         if "F" in numbers:
-            self.feed = self._length(number, numbers["F"])
+            self.feed = self._feed(number, numbers["F"])
         self.speed = numbers.get("S", self.speed)
         for value in (numbers.get("F", 1.0), numbers.get("S", 1.0)):
             if not value > 0.0:
                 raise self._error(number, "a feed and a speed must be above 0")
         self._spindle(number, codes)
-        if any(axis in numbers for axis in "XYZIJ"):
+        if any(axis in numbers for axis in self.letters):
             self._move(number, numbers)
         if any(code in _END for letter, code in codes if letter == "M"):
             self.ended = True
@@ -183,7 +194,7 @@ class _Machine:
                 continue
             code = f"{float(text):g}"
             group = (
-                _GROUP_OF.get(code)
+                self._group_of.get(code)
                 if letter == "G"
                 else {**dict.fromkeys(_SPINDLE, "spindle"), **dict.fromkeys(_END, "end")}.get(code)
             )
@@ -200,7 +211,7 @@ class _Machine:
         for letter, text in words:
             if letter in "GM":
                 continue
-            if letter not in "XYZIJFS":
+            if letter not in self.letters + "FS":
                 remedy = f", an arc by its radius; {CENTRES}" if letter == "R" else ""
                 raise self._error(number, f"{letter}{text} is not read{remedy}")
             if letter in numbers:
@@ -213,11 +224,14 @@ class _Machine:
     def _modes(self, number: int, codes: list[tuple[str, str]]) -> None:
         for letter, code in codes:
             if letter == "G":
-                self.modes[_GROUP_OF[code]] = code
+                self.modes[self._group_of[code]] = code
         unit = {"20": 25.4, "21": 1.0}.get(self.modes.get("units", ""), 0.0)
         if self.unit and unit != self.unit:
             raise self._error(number, "the unit changes within the program")
         self.unit = unit
+
+    def _feed(self, number: int, value: float) -> float:
+        return self._length(number, value)
 
     def _length(self, number: int, value: float) -> float:
         if not self.unit:

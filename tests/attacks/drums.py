@@ -70,6 +70,34 @@ def stepped(rng: Random, number: int) -> Attack:
     return Attack(f"drum {number} as STEP", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 1, 2, 3), judge)
 
 
+def milled(rng: Random, number: int) -> Attack:
+    """A random drum as a program with random words: it is made, or refused with a reason, and nothing else."""
+    track = rng.choice(["groove", "rib", "top", "bottom"])
+    inch = rng.random() < 0.5
+    mm = 25.4 if inch else 1.0
+    text, _ = random_drum(rng, track, inch=inch, ccw=rng.random() < 0.5, undercut=rng.random() < 0.1)
+    roller = number_after(text.split("follower:")[1], "radius: ")
+    own = {
+        "axes": rng.choice(["[X, A]", *["[X, Y, A]"] * 5, "[A, X, Z]", "[X]"]),
+        "cutter": f"{roller * rng.choice([2.0, 2.0, 1.99, 1.9, 1.5, 1.2, 0.9, 2.1])!r}",
+        "feed": f"{rng.choice([*[300.0] * 6, 1e-6, 1e7]) / mm!r}",
+        "plunge": f"{60 / mm!r}",
+        "spindle": "2500",
+        "safe_height": f"{rng.choice([*[5.0] * 6, 1e-7]) / mm!r}",
+        "depth_of_cut": f"{rng.uniform(0.5, 20.0) / mm!r}",
+        "allowance": f"{rng.choice([0.2, 0.2, 3.0]) / mm!r}",
+        "decimals": rng.choice(["3", "5", "9"]),
+        "feed_mode": rng.choice(["inverse-time", "per-minute"]),
+    }
+    needed = ("axes", "cutter", "feed", "plunge", "spindle", "safe_height")
+    for key in ("allowance", "decimals", "feed_mode", "depth_of_cut", rng.choice(list(own))):
+        if rng.random() < (0.6 if key not in needed else 0.1):
+            own.pop(key, None)
+    options = ", ".join(f"{key}: {value}" for key, value in own.items())
+    text = text.replace("files: [stl]", f"files: [{{gcode: {{{options}}}}}]")
+    return Attack(f"milled drum {number}", ("export", "drum.yaml"), {"drum.yaml": text.encode()}, (0, 2))
+
+
 def slipped(rng: Random, number: int) -> Attack:
     """A random drum with a slip in it: it is refused, or made, and nothing is half written."""
     track, led = rng.choice(["groove", "rib", "top"]), rng.choice(LED)

@@ -134,10 +134,8 @@ def _explicit(flank: Flank, rows: Ball, r: tuple[Array, Array]) -> Bends:
     v, bend, jerk = rows[1], rows[2], rows[3]
     radius, side = flank.radius, float(flank.side)
     s, c, h, square = _angles(v, Ball.between(*r), radius)
-
-    # phi = theta + f, sin f = -side h; z = level + S + g, g = side R c
     k = 1.0 - h.value * h.value
-    f = h.through(h.value, k**-0.5 * -side, h.value * k**-1.5 * -side)
+    f = _turned(h, side)
     reach = side * radius
     phi1, phi2 = f.v * bend + 1.0, f.r
     phi11, phi12, phi22 = f.vv * bend * bend + f.v * jerk, f.vr * bend, f.rr
@@ -164,6 +162,30 @@ def _explicit(flank: Flank, rows: Ball, r: tuple[Array, Array]) -> Bends:
         phi1.magnitude,
         np.hypot((radial * phi11).magnitude, z11.magnitude),
     )
+
+
+def ways_bend(flank: Flank, theta: tuple[Array, Array], r: float, cutter: float) -> Array:
+    """Bounds (n,) over cells of the second derivative of the path of a cutter that leaves a flank on a cylinder.
+
+    The path is that of `camgeo.capabilities.cylindrical.ways`: A and x on the cylinder r, mm, of a cutter of a radius,
+    mm; in mm per rad^2, that of A times r.
+    """
+    rows = Ball(*flank.law.enclosure(theta[0], theta[1], 3))
+    v, bend, jerk = rows[1], rows[2], rows[3]
+    side, radial = float(flank.side), Ball.between(np.full_like(v.mid, r), np.full_like(v.mid, r))
+    turns, heights = [], []
+    for radius in (flank.radius, cutter):
+        _, c, h, _ = _angles(v, radial, radius)
+        f = _turned(h, side)
+        turns.append(f.vv * bend * bend + f.v * jerk)
+        heights.append((c.vv * bend * bend + c.v * jerk) * (side * radius))
+    return np.hypot(r * (turns[0] - turns[1]).magnitude, (bend + heights[0] - heights[1]).magnitude)
+
+
+def _turned(h: _Second, side: float) -> _Second:
+    """The angle f by which a contact lies before the roller: sin f = -side h."""
+    k = 1.0 - h.value * h.value
+    return h.through(h.value, k**-0.5 * -side, h.value * k**-1.5 * -side)
 
 
 def _angles(v: Ball, r: Ball, radius: float) -> tuple[_Second, _Second, _Second, Ball]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.angles import LOOKS, TURN, looks_of, parted
 from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.capabilities.cylindrical.keys import OUTER, PITCH
 from camgeo.capabilities.cylindrical.undercut import cut_at
@@ -30,9 +31,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import FileRequest
     from kin.numeric.arrays import Array
 
-TURN = 2.0 * math.pi
 OVERLAP = TURN / 24.0  # by which a line goes on beyond its period
-LOOKS = 720  # parts of a turn over each of which a line's second derivative is bounded
 MOST_POINTS = 2_000_000
 NEWTON = 30
 COLOURS = {"lower": 5, "upper": 1, PITCH: 3}
@@ -66,20 +65,16 @@ def developed(design: DrumDesign, request: FileRequest, mm: float) -> list[Devel
 
 def drawn(design: DrumDesign, line: Developed, tolerance: float) -> Line:
     """Points of a line over its period and the overlap, in the axes of the drawing; ToleranceError where too many."""
-    look = np.unique(np.concatenate([np.linspace(0.0, TURN, LOOKS + 1), np.mod(design.law.breaks, TURN), [TURN]]))
+    look = looks_of(design.law)
     if line.flank == PITCH:
         bend, begin = _pitch_bends(design, line.radius, look), _pitch_start(design, line.radius)
     else:
         flank, r = design.flanks[line.flank], np.full(look.size - 1, line.radius)
         bend, begin = bends(flank, (look[:-1], look[1:]), (r, r)).unrolled, _start(flank, line.radius)
-    step = np.minimum(np.sqrt(8.0 * tolerance / np.maximum(bend, 1e-300)), TURN / 36.0)
-    count = np.maximum(np.ceil(np.diff(look) / step), 1).astype(np.intp)
-    if count.sum() > MOST_POINTS:
-        least = tolerance * (float(count.sum()) / MOST_POINTS) ** 2
+    first, off = parted(look, bend, tolerance)
+    if first.size > MOST_POINTS:
+        least = tolerance * (float(first.size) / MOST_POINTS) ** 2
         raise ToleranceError(f"a development within {tolerance:.3g} mm would take too many points", least)
-    off = float((bend * (np.diff(look) / count) ** 2).max()) / 8.0
-    parts = np.repeat(np.diff(look) / count, count)
-    first = np.repeat(look[:-1], count) + parts * (np.arange(parts.size) - np.repeat(np.cumsum(count) - count, count))
     theta = np.concatenate([first - TURN, first, first + TURN])
     theta = np.unique(np.concatenate([theta, [begin, begin + TURN, begin + TURN + OVERLAP]]))
     theta = theta[(theta >= begin) & (theta <= begin + TURN + OVERLAP)]

@@ -146,6 +146,9 @@ def _of_file(recipe: DrumRecipe, request: FileRequest) -> list[str]:
     """Names of the checks of a file."""
     if request.kind == "dxf":
         return ["units", "contour", "motion"]
+    if request.format.program:
+        names = ["cutter", "rapid", "ways", "feed", "depth", "contour", "motion"]
+        return [*names, "cleared"] if isinstance(recipe.track, Groove) else names
     names = [WATERTIGHT.name, "contour", "motion", *OF_SOLIDS]
     names += ["bore"] if recipe.part.bore is not None else []
     return [*names, FORM_CLOSURE.name] if isinstance(recipe.track, (Groove, Rib)) else names

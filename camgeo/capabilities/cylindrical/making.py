@@ -65,6 +65,8 @@ def make(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> 
             return _view(design, clock, request, path)
         if kind == "step":
             return _surfaces(design, clock, request, path)
+        if request.format.program:
+            return _program(design, clock, request, path)
         return _mesh(design, clock, request, path)
 
 
@@ -121,4 +123,14 @@ def _development(design: DrumDesign, clock: Clock, request: FileRequest, path: P
     mm = UNIT_MM[request.unit_for(design.recipe.units)]
     with clock.stage("write dxf"):
         fit = write_development(design, request, path, _tolerance(design, request), mm)
+    return _judged(design, clock, request, path, fit)
+
+
+def _program(design: DrumDesign, clock: Clock, request: FileRequest, path: Path) -> Made[DrumVerdict]:
+    from camgeo.capabilities.cylindrical.program import write_program
+
+    with clock.stage(f"write {request.kind}"):
+        fit = write_program(
+            design, request, path, _tolerance(design, request), UNIT_MM[request.unit_for(design.recipe.units)]
+        )
     return _judged(design, clock, request, path, fit)

@@ -10,6 +10,7 @@ from camgeo.capabilities.cylindrical.keys import (
     APEX,
     FILES,
     FLOOR_GAP,
+    NEEDED,
     RECIPE,
     Drive,
     DrumRecipe,
@@ -28,7 +29,7 @@ from camgeo.recipe.figure_bounds import build_bounds, check_bounds
 from camgeo.recipe.keys import read_units
 from camgeo.recipe.recipe import Verify, name_by_stem, reader_of_kind
 from camgeo.schema.errors import RecipeErrors
-from camgeo.schema.fields import Kind
+from camgeo.schema.fields import Kind, either
 from camgeo.schema.yaml_source import Mapping, entries
 from kin.numeric.records import replace
 
@@ -46,11 +47,15 @@ TURN = 2.0 * math.pi
 NOT_YET = {
     "cam.turns": "a track closes after one turn",
     "cam.sizing": "give the radius of the blank",
-    "manufacture": "a machine of four axes takes the path of the roller's axis from the development",
+    "manufacture": "a program has its cutter and feeds beside its axes, {gcode: {axes: [X, A], cutter: 20}}",
 }
 """Keys of what is not made yet, each with what is."""
-FORMATS_NOT_YET = ("gcode", "svg")
+FORMATS_NOT_YET = ("svg",)
+EXAMPLE = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, safe_height: 5"
 REFUSE = "undercut: refuse, as a cut ends in a sharp edge"
+LEAST_TOLD = {"feed": 1e-3, "plunge": 1e-3, "safe_height": 1e-3, "allowance": 1e-4, "depth_of_cut": 1e-4}
+"""Least figures of a program, in the recipe's unit: bounds against slips, far below what any machine keeps to."""
+RIDGE = 0.02  # mm by which what two cuts along a groove clear is wider than the groove
 NOTHING = 1e-9  # mm: a length below it is none
 
 
@@ -104,6 +109,7 @@ def _check(values: Values, reader: Reader) -> None:
     if reader.errors:
         return
     _check_radii(values, reader)
+    _check_programs(values, reader)
     _check_limits(values, reader)
 
 
@@ -217,6 +223,45 @@ def _check_radii(values: Values, reader: Reader) -> None:
                 remedy = f"give one from {_shown(low, reader)} to {_shown(high, reader)}"
                 where = f"{file['path']}.{file['kind']}.at[{i}]"
                 reader.fault_at(where, "no flank there", _shown(radius, reader), remedy)
+
+
+def _check_programs(values: Values, reader: Reader) -> None:
+    """Note what a program lacks, and a cutter that does not leave the flanks, or what lies between them."""
+    cam = values["cam"]
+    (kind, track), roller = next(iter(cam["track"].items())), cam["follower"]["radius"]
+    clearance = track.get("clearance", 0.0) if kind == "groove" else 0.0
+    for file in values.get("export", {}).get("files", []):
+        path = f"{file['path']}.{file['kind']}"
+        if not FILES[file["kind"]].program:
+            continue
+        if any(cam["follower"].get(key) for key in ("arm", "offset", "taper")):
+            problem = "a program of a roller on an arm, beside the drum's axis or conical is not made yet"
+            reader.fault_at(file["path"], problem, None, "leave it out, and take stl or a development")
+            continue
+        if "axes" not in file:  # the format's word alone
+            remedy = f"give {either(NEEDED, 'and')}: {{gcode: {{{EXAMPLE}}}}}"
+            reader.fault_at(file["path"], "a program needs its machine and cutter", None, remedy)
+            continue
+        for key, least in LEAST_TOLD.items():
+            if key in file and file[key] < least * reader.mm:
+                remedy = f"give at least {least:g} {reader.units}"
+                reader.fault_at(f"{path}.{key}", "too little for a program", _shown(file[key], reader), remedy)
+        widest, told = 2.0 * roller, _shown(file["cutter"], reader)
+        narrowest = roller + 0.5 * clearance + RIDGE if kind == "groove" else 0.0
+        allowance = file.get("allowance", 0.0)
+        if kind == "groove":
+            widest -= 2.0 * allowance
+        if file["cutter"] > widest + NOTHING:
+            if widest <= narrowest:
+                remedy = f"give an allowance below {_shown(0.5 * (2.0 * roller - narrowest), reader)}"
+                reader.fault_at(f"{path}.allowance", "leaves no room for a cutter", _shown(allowance, reader), remedy)
+                continue
+            what = "the roller" if widest == 2.0 * roller else "the roller less the allowance on both flanks"
+            remedy = f"give at most {_shown(widest, reader)}"
+            reader.fault_at(f"{path}.cutter", f"a cutter wider than {what} cuts the flanks away", told, remedy)
+        elif file["cutter"] < narrowest - NOTHING:
+            remedy = f"give at least {_shown(narrowest, reader)}"
+            reader.fault_at(f"{path}.cutter", "does not clear the groove along both flanks", told, remedy)
 
 
 def _check_limits(values: Values, reader: Reader) -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.cylindrical.development import developed
 from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, FILES, End, Groove
+from camgeo.capabilities.cylindrical.program import cutting_of
 from camgeo.measures.units import in_units
 from camgeo.part.as_intent import holes_of
 from camgeo.part.body import Body
@@ -67,6 +68,8 @@ def judged_file(
     """
     recipe = design.recipe
     limits = intent.Limits(tolerance, recipe.verify.motion_error)
+    if format_of(path).contents == "program":
+        return _judged_program(design, path, request, limits)
     stated = format_of(path).units
     if format_of(path).shell is not None:
         from kin.cylindrical.exact import verify_surfaces
@@ -80,6 +83,18 @@ def judged_file(
     mm = 25.4 if asked[0].unit_for(recipe.units) == "inch" else 1.0
     lines = {line.layer: line for each in asked for line in developed(design, each, mm)}
     return verify_development(path, intended(design, mm), list(lines.values()), limits, None if stated else units or mm)
+
+
+def _judged_program(design: DrumDesign, path: Path, request: FileRequest | None, limits: intent.Limits) -> DrumVerdict:
+    """Kin's verdict on a program; one that the recipe does not ask for is judged by the cutter of one that it does."""
+    from kin.cylindrical.program import verify_program
+
+    recipe = design.recipe
+    asked = request or next((each for each in recipe.export.files if each.format.program), None)
+    if asked is None:
+        remedy = "give export: {files: [{gcode: {axes: [X, A], cutter: 20, ...}}]}: a program is judged by its cutter"
+        raise recipe.error("export.files", "no program is asked for", None, remedy)
+    return verify_program(path, intended(design), cutting_of(design, asked), limits)
 
 
 # --- in a report ------------------------------------------------------------------------------------------------------

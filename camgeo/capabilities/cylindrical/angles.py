@@ -1,0 +1,34 @@
+"""Shaft angles between which a line or a path of a drum is straight within a tolerance, by bounds of how it bends."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from kin.law.piecewise import Piecewise
+    from kin.numeric.arrays import Array
+
+TURN = 2.0 * math.pi
+LOOKS = 720  # parts of a turn over each of which a second derivative is bounded
+WIDEST = TURN / 36.0
+
+
+def looks_of(law: Piecewise) -> Array:
+    """Angles (n + 1,), rad, over a turn, between which a second derivative is bounded; breaks are among them."""
+    return np.unique(np.concatenate([np.linspace(0.0, TURN, LOOKS + 1), np.mod(law.breaks, TURN), [TURN]]))
+
+
+def parted(look: Array, bend: Array, tolerance: float) -> tuple[Array, float]:
+    """Angles over a turn, rad, without its end, and the bound of what lies between them, mm.
+
+    `bend` (n,) bounds the second derivative over each part of `look` (n + 1,).
+    """
+    step = np.minimum(np.sqrt(8.0 * tolerance / np.maximum(bend, 1e-300)), WIDEST)
+    count = np.maximum(np.ceil(np.diff(look) / step), 1).astype(np.intp)
+    off = float((bend * (np.diff(look) / count) ** 2).max()) / 8.0
+    parts = np.repeat(np.diff(look) / count, count)
+    first = np.repeat(look[:-1], count) + parts * (np.arange(parts.size) - np.repeat(np.cumsum(count) - count, count))
+    return first, off

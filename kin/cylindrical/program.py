@@ -1,0 +1,366 @@
+"""The verdict on a program of a machine with a rotary axis: what its cutter leaves of a drum, and how it goes there.
+
+The cutter's path is what the control makes of the blocks: all axes move evenly between them. The metal is what no
+position of the cutter takes away, held against the exact flanks over all shaft angles, from the roller's inner end to
+the blank (`kin.cylindrical.cutters`). A flank that is shortened by undercut, or has corners, is judged by the path
+alone: a cutter as large as the roller leaves what the rollers leave, but for the error of its own path.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.cylindrical.cutters import END, left_on
+from kin.cylindrical.gauge import gauges_of
+from kin.cylindrical.intent import Groove, Rib
+from kin.cylindrical.judge import CONTOUR, MOTION, SLACK, assured, placed
+from kin.cylindrical.turned import passes_of, read_turned
+from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.check import ROUNDING, Check, about, at_most, failed
+from kin.numeric.errors import UnsettledError
+from kin.numeric.lengths import UNIT, length_words
+from kin.numeric.limits import is_loose, limit_of, unlimited
+from kin.numeric.records import dataclass, replace
+from kin.read.checks import count_check, unread_check
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kin.cylindrical.cutters import Left
+    from kin.cylindrical.intent import DrumIntent, Limits
+    from kin.cylindrical.lifts import Lifts
+    from kin.cylindrical.roller import Gauge
+    from kin.cylindrical.turned import Pass, TurnedProgram
+    from kin.numeric.arrays import Array
+
+SAME = 1e-9  # mm: sizes that differ by less are one
+LEAN = 1e-2  # by which the slope of a flank may be more between two angles
+FEED = 0.01  # of a feed, by which it may differ
+COARSE, FAR = 20.0, 3.0  # times the tolerance: what a first look is good for, and what is refused at it
+LEAST = 1e-6  # of the cutter's diameter, by which what a program names may differ
+_CUTTER = re.compile(r"^cutter: diameter ([0-9.]+)")
+
+
+@dataclass(frozen=True)
+class Cutting:
+    """How a program should cut, mm.
+
+    radius        of the cutter
+    feed          mm a minute along the path on the blank's radius
+    inverse       whether every block states the inverse of its time, G93
+    depth_of_cut  greatest depth of a pass
+    """
+
+    radius: float
+    feed: float
+    inverse: bool
+    depth_of_cut: float
+
+
+class _Path(NamedTuple):
+    """How far a pass is off the path of a roller's axis along the drum: least and greatest, mm, and where, rad."""
+
+    least: float
+    least_at: float
+    most: float
+    most_at: float
+
+
+def verify_program(path: Path, drum: DrumIntent, cutting: Cutting, limits: Limits) -> DrumVerdict:
+    """Judge a program by what its cutter leaves, of a cylindrical roller on a radius of the drum, led along its axis.
+
+    Raises OSError where the disk refuses, ValueError for any other roller.
+    """
+    roller = drum.follower
+    if roller.arm is not None or roller.offset or roller.taper:
+        raise ValueError("programs of such a roller are not judged")
+    try:
+        program = read_turned(path)
+    except ReadError as error:
+        return DrumVerdict("gcode", (about(unread_check("program", error), path.name),))
+    if drum.mirrored:
+        program = replace(program, moves=tuple(move.mirrored() for move in program.moves))
+    passes = list(passes_of(program.moves, drum.radius))
+    checks, flanks = judged_passes(program, passes, drum, cutting, limits)
+    told = tuple(about(check, path.name) for check in checks)
+    return DrumVerdict("gcode", told, tuple(flanks), units=program.units_mm)
+
+
+def judged_passes(
+    program: TurnedProgram, passes: list[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits
+) -> tuple[list[Check], list[FlankVerdict]]:
+    """Checks of a program, not mirrored, and verdicts on the flanks that its passes leave."""
+    checks = [
+        _cutter(program, cutting),
+        _rapid(program, drum),
+        _ways(program, passes, drum),
+        _feed(program, drum, cutting),
+    ]
+    if not passes:
+        return [*checks, failed(CONTOUR, "the program cuts nothing", unit="mm", limit=limits.tolerance)], []
+    checks.append(_depth(program, passes, drum, cutting, limits))
+    if not all(check.ok for check in checks[1:3]):
+        unseen = failed(CONTOUR, "what is left is not looked at on such ways", unit="mm", limit=limits.tolerance)
+        return [*checks, unseen], []
+    if isinstance(drum.track, Groove):
+        checks.append(_cleared(passes, drum, cutting.radius))
+    flanks = []
+    try:
+        for gauge in gauges_of(drum):
+            flank, own = _flank(gauge, passes, drum, cutting.radius, limits)
+            flanks.append(flank)
+            checks += [replace(check, surface=gauge.name) for check in own]
+    except UnsettledError as error:
+        checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))
+    return checks, flanks
+
+
+# --- what is left -----------------------------------------------------------------------------------------------------
+
+
+def _flank(
+    gauge: Gauge, passes: list[Pass], drum: DrumIntent, cutter: float, limits: Limits
+) -> tuple[FlankVerdict, list[Check]]:
+    tolerance = limits.tolerance
+    slack = ROUNDING * (drum.radius + drum.length)
+    if cutter > gauge.radius + SAME:
+        why = f"a cutter {length_words(2.0 * cutter, '.9g')} {UNIT} across is wider than the roller"
+        return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
+    alike = abs(cutter - gauge.radius) <= SAME
+    if drum.shortened or len(gauge.lifts.corners):
+        if not alike:
+            why = "of a flank with a cut or a corner, what a cutter smaller than the roller leaves is not known"
+            return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
+        return _by_path(gauge, passes, limits, slack)
+    whole = replace(gauge, outer=drum.radius)
+    left = left_on(whole, passes, cutter, COARSE * tolerance)
+    if left is None or _extremes(left)[0] <= FAR * tolerance:
+        left = left_on(whole, passes, cutter, tolerance)
+    if left is None:
+        why = "it would take too many points to tell"
+        return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
+    if not np.isfinite(left.off).all():
+        k = int(np.flatnonzero(~np.isfinite(left.off).all(axis=0))[0])
+        why = f"nothing cuts as deep as the roller goes at an angle of {degrees(float(left.theta[k])):.6g} degrees"
+        return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
+    worst, at, remainder = _extremes(left)
+    most, least = max(float(left.off.max()), 0.0), max(-float(left.off.min()), 0.0)
+    words = f"{length_words(most, '.3g')} {UNIT} left and {length_words(least, '.3g')} {UNIT} too deep"
+    detail = f"{words}; true within {length_words(remainder, '.2g')} {UNIT}"
+    value = worst if worst > tolerance else assured(worst, remainder, tolerance)
+    checks = [placed(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=slack), at)]
+    motion = _motion(gauge, left)
+    checks.append(_motion_check(motion, gauge, limits, slack))
+    return FlankVerdict(gauge.name, motion, worst), checks
+
+
+def _extremes(left: Left) -> tuple[float, float, float]:
+    """Greatest error found, mm, its angle, rad, and by how much one between the points may exceed it, mm."""
+    error = np.abs(left.off)
+    k = int(np.argmax(error)) % len(left.theta)
+    worst = float(error.max())
+    bound = max(float(left.above.max()), -float(left.below.min()))
+    return worst, float(left.theta[k]), max(bound - worst, 0.0)
+
+
+def _motion(gauge: Gauge, left: Left) -> MotionError:
+    """Error of the roller on what is left: it stands where that holds it highest along its length."""
+    slope = gauge.lifts.at(left.theta)[1]
+    rows = max(int(np.searchsorted(left.rho, gauge.outer, side="right")), 2)
+    lean = np.hypot(1.0, slope / left.rho[:rows, None])
+    held = (left.off[:rows] * lean).max(axis=0)
+    steep = np.maximum(lean[:-1, 1:], lean[:-1, :-1]) * (1.0 + LEAN)
+    above, below = left.above[: rows - 1], left.below[: rows - 1]
+    most = float(np.where(above > 0.0, above * steep, above).max())
+    least = float(np.where(below < 0.0, below * steep, below).max(axis=0).min())
+    k = int(np.argmax(np.abs(held)))
+    worst = float(abs(held[k]))
+    share = 0.5 * (np.append(np.diff(left.theta), 0.0) + np.append(0.0, np.diff(left.theta))) / TURN
+    return MotionError(
+        worst,
+        degrees(float(left.theta[k])),
+        max(most - worst, -least - worst, 0.0),
+        float(held.min()),
+        float(held.max()),
+        float(np.sqrt((share * held**2).sum())),
+    )
+
+
+def _motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: float) -> Check:
+    limit, room = limit_of(lambda e: gauge.by_error(e) * (1.0 + SLACK), limits.motion, limits.tolerance, slack)
+    worst = assured(motion.max, motion.remainder, limits.tolerance) if limits.motion is None else motion.bound
+    detail = f"true within {length_words(motion.remainder, '.2g')} {UNIT}" if motion.remainder else ""
+    check = replace(at_most(MOTION, worst, limit, "mm", detail=detail, slack=room), at=motion.at)
+    loose = limits.motion is None and is_loose(limit, limits.tolerance, lambda: gauge.lifts.stroke)
+    return unlimited(check) if loose else check
+
+
+def _by_path(gauge: Gauge, passes: list[Pass], limits: Limits, slack: float) -> tuple[FlankVerdict, list[Check]]:
+    """A flank by the paths of cutters as large as its roller: what they cut is off by no more than they are."""
+    tolerance = limits.tolerance
+    own = [one for one in passes if _is_about(one, gauge)]
+    whole = [one for one in own if one.z <= gauge.inner + END and float(np.ptp(one.a)) >= TURN - SAME]
+    if not whole:
+        why = "no pass as deep as the roller goes right round"
+        return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
+    off = [off_path(one, gauge.lifts, gauge.level) for one in own]
+    beside = max(float(np.abs(one.y).max()) for one in own)
+    errors = [(-each.least, each.least_at) for each in off] + [(each.most, each.most_at) for each in off]
+    worst, at = max(errors)
+    detail = f"by its path, which is off by {length_words(worst, '.3g')} {UNIT} along the drum"
+    check = placed(at_most(CONTOUR, math.hypot(worst, beside), tolerance, "mm", detail=detail, slack=slack), at)
+    least, most = min(each.least for each in off), max(each.most for each in off)
+    least, most = (least, most) if gauge.side < 0 else (-most, -least)
+    motion = MotionError(worst, degrees(at), 0.0, least, most, max(abs(least), abs(most)))
+    return FlankVerdict(gauge.name, motion, worst), [check, _motion_check(motion, gauge, limits, slack)]
+
+
+def _is_about(one: Pass, gauge: Gauge) -> bool:
+    """Whether a pass follows the roller of a flank, and not that of the other."""
+    return abs(float(np.mean(one.x - gauge.axis(one.a)))) < gauge.radius
+
+
+def off_path(one: Pass, lifts: Lifts, level: float) -> _Path:
+    """How far a pass is off the path level + S(theta) along the drum, between all of its points; both are cubics."""
+    turns = np.arange(math.floor(float(one.a.min()) / TURN), math.ceil(float(one.a.max()) / TURN) + 1)
+    knots = (lifts.nodes[:-1] + TURN * turns[:, None]).ravel()
+    knots = knots[(knots > one.a.min()) & (knots < one.a.max())]
+    a, x = (one.a, one.x) if one.a[-1] >= one.a[0] else (one.a[::-1], one.x[::-1])
+    at = np.unique(np.concatenate([a, knots]))
+    # places where the difference may be greatest: ends of the pieces, and where it is flat within them
+    low, width = at[:-1], np.diff(at)
+    middle = low + 0.5 * width
+    _, slope, bend = lifts.at(middle)
+    after, before = lifts.at(middle + 0.25 * width)[2], lifts.at(middle - 0.25 * width)[2]
+    third = (after - before) / (0.5 * width)
+    rise = (np.interp(at[1:], a, x) - np.interp(low, a, x)) / width
+    # slope + bend t + third t^2/2 = rise, t from the middle
+    c, root = slope - rise, np.sqrt(np.maximum(bend**2 - 2.0 * third * (slope - rise), 0.0))
+    q = -(bend + np.where(bend < 0.0, -root, root))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        flat = [np.where(np.isfinite(t), t, 0.0) for t in (2.0 * c / q, q / third)]
+    inside = [middle + np.clip(t, -0.5 * width, 0.5 * width) for t in flat]
+    looked = np.concatenate([at, *inside])
+    off = np.interp(looked, a, x) - level - lifts.at(looked)[0]
+    # where X moves while the drum stands, both of its ends count
+    ends = one.x - level - lifts.at(one.a)[0]
+    looked, off = np.concatenate([looked, one.a]), np.concatenate([off, ends])
+    least, most = int(np.argmin(off)), int(np.argmax(off))
+    return _Path(float(off[least]), float(looked[least]), float(off[most]), float(looked[most]))
+
+
+# --- how it goes there ------------------------------------------------------------------------------------------------
+
+
+def _cutter(program: TurnedProgram, cutting: Cutting) -> Check:
+    """Check the diameter of the cutter that the program names at its head, if it names one."""
+    named = [float(found[1]) for text in program.comments if (found := _CUTTER.match(text))]
+    if not named:
+        return Check("cutter", True, None, None, "mm", detail="the program names no cutter")
+    diameter, expected = named[0] * program.units_mm, 2.0 * cutting.radius
+    names = f"the program names {length_words(diameter, '.9g')} {UNIT} across"
+    detail = f"{names}, {length_words(expected, '.9g')} are expected"
+    return at_most("cutter", abs(diameter - expected), LEAST * expected, "mm", detail=detail)
+
+
+def _rapid(program: TurnedProgram, drum: DrumIntent) -> Check:
+    """Check that nothing moves fast below the blank's radius, but for the cutter that is drawn out."""
+    bad = []
+    for move in program.moves:
+        low = min(move.start.z, move.end.z)
+        out = move.end.z > move.start.z and move.start._replace(z=0.0) == move.end._replace(z=0.0)
+        if move.rapid and low < drum.radius and not out:
+            bad.append(f"line {move.line} moves fast at Z {length_words(low)} {UNIT}")
+    return count_check("rapid", bad)
+
+
+def _ways(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent) -> Check:
+    """Check that the cutter stays out of the metal, goes down at rest, and that a pass turns the drum one way."""
+    low = [move for move in program.moves if min(move.start.z, move.end.z) < drum.radius]
+    bad = [
+        f"line {move.line} goes down while another axis moves"
+        for move in low
+        if not move.rapid and move.start.z != move.end.z and move.start._replace(z=0.0) != move.end._replace(z=0.0)
+    ]
+    bad += [
+        f"the drum turns to and fro in the pass from line {one.line}"
+        for one in passes
+        if (np.diff(one.a) < 0.0).any() and (np.diff(one.a) > 0.0).any()
+    ]
+    ends = np.array([(*move.start, *move.end) for move in low]).reshape(-1, 4)
+    within = [gauge.radius - gauge.side * (ends[:, 0] - gauge.axis(ends[:, 3])) > 0.0 for gauge in gauges_of(drum)]
+    free = np.any(within, axis=0) if isinstance(drum.track, Rib) else np.all(within, axis=0)
+    if not free.all():
+        bad.append(f"line {low[int(np.argmin(free)) // 2].line} stands in the metal")
+    return count_check("ways", bad)
+
+
+def _feed(program: TurnedProgram, drum: DrumIntent, cutting: Cutting) -> Check:
+    """Check the speed of every cutting block on the blank's radius."""
+    worst, line = 0.0, 0
+    for move in program.moves:
+        start, end = move.start, move.end
+        if move.rapid or start.z != end.z or start.z >= drum.radius or start == end:
+            continue
+        if move.inverse != cutting.inverse:
+            stated, wanted = ("G93", "G94") if move.inverse else ("G94", "G93")
+            return failed("feed", f"line {move.line} moves by {stated}, {wanted} is expected", limit=FEED)
+        far = math.hypot(end.x - start.x, end.y - start.y, drum.radius * (end.a - start.a))
+        off = abs((move.feed * far if move.inverse else move.feed) / cutting.feed - 1.0)
+        if off > worst:
+            worst, line = off, move.line
+    detail = f"line {line}, as a share of the feed" if line else "as a share of the feed"
+    return at_most("feed", worst, FEED, "", detail=detail)
+
+
+def _depth(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits) -> Check:
+    """Check that the deepest passes reach the floor, and that none goes too far below those before it."""
+    deepest = min(program.moves, key=lambda move: move.end.z)
+    if not abs(deepest.end.z - drum.floor) <= limits.tolerance:
+        ends = f"from line {deepest.line} on the cutter ends at a radius of {length_words(deepest.end.z)} {UNIT}"
+        why = f"{ends}, the floor has {length_words(drum.floor)} {UNIT}"
+        return failed("depth", why, unit="mm", limit=cutting.depth_of_cut)
+    worst, line = 0.0, passes[0].line
+    for k, one in enumerate(passes):
+        before = min([drum.radius, *(other.z for other in passes[:k] if _beside(one, other) <= cutting.radius)])
+        if before - one.z > worst:
+            worst, line = before - one.z, one.line
+    slack = limits.tolerance
+    return at_most("depth", worst, cutting.depth_of_cut, "mm", detail=f"the pass from line {line}", slack=slack)
+
+
+def _cleared(passes: Sequence[Pass], drum: DrumIntent, cutter: float) -> Check:
+    """Check that passes at the floor lie so near to one another that nothing stands between."""
+    low = min(one.z for one in passes)
+    ways = [one for one in passes if one.z <= low + END]
+    gauge = gauges_of(drum)[0]
+    ways.sort(key=lambda one: float(np.mean(one.x - gauge.axis(one.a))))
+    worst = max((_beside(one, other) for one, other in pairwise(ways)), default=0.0)
+    detail = "between the centres of neighbouring passes, against the cutter's diameter"
+    return at_most("cleared", worst, 2.0 * cutter, "mm", detail=detail)
+
+
+def _beside(one: Pass, other: Pass) -> float:
+    """Greatest distance of two ways at one angle, mm, at angles that both have."""
+
+    def at(way: Pass, values: Array, angles: Array) -> Array:
+        order = slice(None) if way.a[-1] >= way.a[0] else slice(None, None, -1)
+        return np.interp(angles, way.a[order], values[order])
+
+    angles = np.concatenate([one.a, other.a])
+    low, high = max(one.a.min(), other.a.min()), min(one.a.max(), other.a.max())
+    angles = angles[(angles >= low) & (angles <= high)]
+    if not len(angles):
+        return math.inf
+    apart = np.hypot(
+        at(one, one.x, angles) - at(other, other.x, angles), at(one, one.y, angles) - at(other, other.y, angles)
+    )
+    return float(apart.max())

@@ -1,0 +1,303 @@
+"""Programs of a drum, written here: what their cutters leave against brute force, and planted faults.
+
+Holds: kin.cylindrical.program, kin.cylindrical.cutters, kin.cylindrical.turned.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from capabilities.cylindrical.kin.drums import TURN, Drum, Groove, Rib, replace
+from support.programmes import Segment, law, programme
+
+from kin.cylindrical.cutters import left_on
+from kin.cylindrical.gauge import gauges_of
+from kin.cylindrical.intent import Limits
+from kin.cylindrical.lifts import Lifts
+from kin.cylindrical.program import Cutting, off_path, verify_program
+from kin.cylindrical.roller import Gauge
+from kin.cylindrical.turned import Pass, passes_of, read_turned
+from kin.read.errors import ReadError
+
+TOLERANCE = 1e-3
+CUTTING = Cutting(10.0, 300.0, inverse=True, depth_of_cut=7.0)
+DRUM = Drum(track=Groove(12.5))
+
+
+def way(motion=DRUM.motion, level=20.0, step=0.5, over=365.0):
+    """Angles, rad, and places along the drum of the roller's axis."""
+    a = np.radians(np.arange(0.0, over + 1e-9, step))
+    return a, level + motion(a)
+
+
+def block(words, before, at, feed=300.0):
+    """Words of a block by G93 with the feed for a radius of 50."""
+    far = math.hypot(at[1] - before[1], math.radians(at[0] - before[0]) * 50.0)
+    return f"{words} F{feed / far:.4f}"
+
+
+def text_of(a, x, *, depths=(44.0, 37.5), digits=5, head="(cutter: diameter 20)"):
+    """A program of the way in depths."""
+    rows = [(round(math.degrees(p), digits), round(q, digits)) for p, q in zip(a.tolist(), x.tolist(), strict=True)]
+    lines = [head, "G21", "G17 G90 G93", "G40 G49 G80", "G0 Z60", "S2000 M3"]
+    for z in depths:
+        lines += [f"G0 X{rows[0][1]} A{rows[0][0]}", f"G1 Z{z} F10"]
+        lines += [block(f"G1 X{q} A{p}", before, (p, q)) for before, (p, q) in pairwise(rows)]
+        lines.append("G0 Z60")
+    return "\n".join([*lines, "M5", "M30", ""])
+
+
+def judged(folder, text, drum=DRUM, cutting=CUTTING, tolerance=TOLERANCE):
+    path = folder / "drum.ngc"
+    path.write_text(text, "ascii")
+    return verify_program(path, drum.intent(), cutting, Limits(tolerance))
+
+
+def refused(verdict):
+    return {check.name for check in verdict.checks if not check.ok}
+
+
+def test_a_cutter_of_the_roller_s_size_along_its_path(tmp_path):
+    verdict = judged(tmp_path, text_of(*way()))
+    assert verdict.ok, verdict.checks
+    assert [flank.name for flank in verdict.flanks] == ["lower", "upper"]
+    # between blocks of 0.5 degrees a chord is off by S'' h^2/8, at most 57.3 mm/rad^2 in the polynomial's return
+    most = 57.74 * math.radians(0.5) ** 2 / 8.0
+    for flank in verdict.flanks:
+        assert 0.9 * most < flank.motion.max < 1.001 * most
+        assert flank.measured_error < flank.motion.max
+        assert flank.motion.remainder < 0.15 * TOLERANCE
+
+
+def test_rollers_of_other_kinds_are_not_judged(tmp_path):
+    drum = DRUM.intent()
+    follower = replace(drum.follower, offset=3.0)
+    with pytest.raises(ValueError, match="not judged"):
+        verify_program(tmp_path / "drum.ngc", replace(drum, follower=follower), CUTTING, Limits(TOLERANCE))
+
+
+def without(text, number):
+    lines = text.split("\n")
+    return "\n".join(lines[:number] + lines[number + 1 :])
+
+
+FAULTS = {
+    "a block left out": (lambda text: without(text, 8 + 733 + 50), {"contour", "feed"}),
+    "X shifted by 0.01": (lambda _: text_of(way()[0], way()[1] + 0.01), {"contour", "motion"}),
+    "A mirrored": (lambda _: text_of(-way()[0], way()[1]), {"ways"}),
+    "A rounded to 0.01": (
+        lambda _: text_of(np.radians(np.round(np.degrees(way(step=0.495)[0]), 2)), way(step=0.495)[1]),
+        {"contour", "motion"},
+    ),
+    "another cutter": (lambda _: text_of(*way(), head="(cutter: diameter 19.9)"), {"cutter"}),
+    "a feed by the minute": (lambda text: text.replace("G93", "G94"), {"feed"}),
+    "twice the feed": (lambda text: text.replace("F10\n", "F20\n").replace("F68", "F136"), {"feed"}),
+    "not deep enough": (lambda _: text_of(*way(), depths=(44.0, 38.2)), {"depth", "contour"}),
+    "too deep": (lambda _: text_of(*way(), depths=(44.0, 37.4)), {"depth"}),
+    "too deep at a time": (lambda _: text_of(*way(), depths=(42.0, 37.5)), {"depth"}),
+    "less than a turn": (lambda _: text_of(*way(over=355.0)), {"contour"}),
+    "fast in the metal": (lambda text: text.replace("G0 Z60\nM5", "G0 X25\nG0 Z60\nM5"), {"rapid"}),
+    "into the wall": (lambda text: text.replace("G0 Z60\nM5", "G1 X70 F5\nG0 Z60\nM5"), {"ways"}),
+    "down while it turns": (lambda text: text.replace("G1 Z44.0", "G1 Z44.0 A0.5"), {"ways"}),
+    "to and fro": (
+        lambda _: text_of(np.concatenate([way()[0][:5], way()[0][3:]]), np.concatenate([way()[1][:5], way()[1][3:]])),
+        {"ways"},
+    ),
+}
+
+
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("fault", FAULTS)
+def test_planted_faults_are_refused(tmp_path, fault):
+    make, names = FAULTS[fault]
+    verdict = judged(tmp_path, make(text_of(*way())))
+    assert names <= refused(verdict), verdict.checks
+    if names <= {"feed", "cutter", "depth"}:
+        assert refused(verdict) == names
+
+
+def test_a_cutter_smaller_than_the_roller_leaves_metal(tmp_path):
+    """By 0.05 of the diameter, on the path for the roller: half of that stays on each flank."""
+    verdict = judged(tmp_path, text_of(*way(), head=""), cutting=replace(CUTTING, radius=9.975))
+    assert refused(verdict) == {"contour", "motion"}
+    for flank in verdict.flanks:
+        assert flank.measured_error == pytest.approx(0.025, abs=1e-3)
+
+
+def test_a_rest_in_one_long_block(tmp_path):
+    """In dwells the drum turns by 58 degrees at a time; what is left is as before."""
+    a, x = way(step=1.0)
+    rest = np.isin(np.mod(np.degrees(a).round(), 360.0), np.r_[122:179, 302:359])
+    found = [judged(tmp_path, text_of(*each), tolerance=0.005) for each in ((a, x), (a[~rest], x[~rest]))]
+    for verdict in found:
+        assert verdict.ok, verdict.checks
+    for first, second in zip(*(verdict.flanks for verdict in found), strict=True):
+        assert second.motion.max == pytest.approx(first.motion.max, abs=1e-6)
+        assert second.motion.rms == pytest.approx(first.motion.rms, abs=1e-5)
+
+
+def test_what_stands_between_two_ways_is_found(tmp_path):
+    """Of cutters of 9 the two ways of a groove of 20 clear all but a ridge of 2."""
+    a, x = way(level=0.0, step=2.0)
+    ways = "".join(text_of(a, x + level).split("M5")[0] for level in (14.5, 25.5))
+    text = ways.replace("(cutter: diameter 20)", "") + "M5\nM30\n"
+    verdict = judged(tmp_path, text, cutting=replace(CUTTING, radius=4.5), tolerance=1.0)
+    (check,) = [each for each in verdict.checks if each.name == "cleared"]
+    assert not check.ok
+    assert check.value == pytest.approx(11.0)
+
+
+def test_a_cut_flank_is_judged_by_the_path(tmp_path):
+    """With a corner of the motion, or an undercut: the greatest distance of the path from the chords."""
+    a, x = way()
+    verdict = judged(tmp_path, text_of(a, x), replace(DRUM, shortened=True))
+    assert verdict.ok, verdict.checks
+    fine = np.linspace(0.0, TURN, 1_000_001)
+    wanted = float(np.abs(np.interp(fine, a, np.round(x, 5)) - 20.0 - DRUM.motion(fine)).max())
+    assert verdict.flanks[0].motion.max == pytest.approx(wanted, abs=2e-8)
+    shifted = judged(tmp_path, text_of(a, x + 0.01), replace(DRUM, shortened=True))
+    assert {"contour", "motion"} == refused(shifted)
+    smaller = judged(tmp_path, text_of(a, x, head=""), replace(DRUM, shortened=True), replace(CUTTING, radius=9.9))
+    assert refused(smaller) == {"contour"}
+
+
+def test_a_path_s_extremes_are_between_its_points():
+    """Two chords over a rise: the difference is greatest where the slopes are one, found here on a fine grid."""
+    a, x = np.array([0.1, 0.9, 1.7, 1.7]), np.array([0.3, 11.0, 33.0, 34.0])
+    found = off_path(Pass(1, 40.0, a, x, np.zeros(4)), Lifts(DRUM.motion.law), 0.0)
+    fine = np.linspace(0.1, 1.7, 2_000_001)
+    off = np.interp(fine, a[:3], x[:3]) - DRUM.motion(fine)
+    assert found.least == pytest.approx(off.min(), abs=1e-9)
+    assert found.most == pytest.approx(max(off.max(), 34.0 - float(DRUM.motion(np.array([1.7]))[0])), abs=1e-9)
+
+
+# --- brute force ------------------------------------------------------------------------------------------------------
+
+
+def nearest(points, passes, cutter, looks=400):
+    """D (n,) of points (n, 3) by positions alone: so many on every block near a point, each pass down to its end."""
+    best = np.full(len(points), np.inf)
+    for one in passes:
+        share = np.arange(looks) / looks
+        a, x, y = ((row[:-1, None] + share * np.diff(row)[:, None]).ravel() for row in (one.a, one.x, one.y))
+        for k, (px, py, pz) in enumerate(points):
+            phi = math.atan2(py, px)
+            near = np.abs(np.mod(a - phi + math.pi, TURN) - math.pi) < 0.35
+            across = py * np.cos(a[near]) - px * np.sin(a[near]) - y[near]
+            along = px * np.cos(a[near]) + py * np.sin(a[near])
+            far = np.hypot(across, pz - x[near]) - cutter
+            best[k] = min(best[k], far[along >= one.z].min(initial=np.inf))
+    return best
+
+
+@pytest.mark.costly("brute force over the positions of a cutter")
+@pytest.mark.thin(1)
+@pytest.mark.parametrize("case", ["radial", "beside", "rib"])
+def test_what_is_left_is_what_no_position_takes(case):
+    """Smaller cutters on wavy ways, in two depths: D at places of the grid, and between them within the bounds."""
+    rng = np.random.default_rng(3)
+    drum = DRUM if case != "rib" else Drum(track=Rib(12.5, 40.0))
+    gauge = gauges_of(drum.intent())[0]
+    a = np.sort(np.concatenate([np.linspace(-0.1, TURN + 0.1, 300), rng.uniform(0.0, TURN, 30)]))
+    wave = 0.01 * np.sin(40.0 * a)
+    x = gauge.axis(a) - 2.0 + wave
+    y = 0.8 * np.cos(a) if case == "beside" else np.zeros_like(a)
+    passes = [Pass(1, 37.5, a, x, y), Pass(2, 43.0, a + 0.003, x - 0.05, y)]
+    left = left_on(gauge, passes, 8.0, 0.02)
+    chosen = rng.integers(0, len(left.rho), 12), rng.integers(0, len(left.theta), 12)
+    theta, rho = left.theta[chosen[1]], left.rho[chosen[0]]
+    points = on_flank(gauge, drum.motion, theta, rho)
+    np.testing.assert_allclose(left.off[chosen], nearest(points, passes, 8.0), atol=2e-6)
+    cells = rng.integers(0, len(left.rho) - 1, 12), rng.integers(0, len(left.theta) - 1, 12)
+    share = rng.uniform(0.0, 1.0, (2, 12))
+    theta = left.theta[cells[1]] * (1.0 - share[0]) + left.theta[cells[1] + 1] * share[0]
+    rho = left.rho[cells[0]] * (1.0 - share[1]) + left.rho[cells[0] + 1] * share[1]
+    between = nearest(on_flank(gauge, drum.motion, theta, rho), passes, 8.0)
+    assert (between <= left.above[cells] + 1e-9).all()
+    assert (between >= left.below[cells] - 2e-6).all()
+    assert np.median(left.above[cells] - left.below[cells]) < 0.02
+
+
+def on_flank(gauge, motion, theta, rho):
+    """Points (n, 3) that the roller touches, by the equation of meshing."""
+    v = motion(theta, 1)
+    w = np.hypot(rho, v)
+    across, up = -gauge.side * gauge.radius * v / w, gauge.side * gauge.radius * rho / w
+    x, y = rho * np.cos(theta) - across * np.sin(theta), rho * np.sin(theta) + across * np.cos(theta)
+    return np.stack([x, y, gauge.level + motion(theta) + up], axis=-1)
+
+
+@pytest.mark.parametrize(
+    ("beside", "outside", "inside"),
+    [(False, 0.00212883859238, 0.168907879811), (True, 4.81844361801e-6, 0.0175138654945)],
+    ids=["radial", "beside"],
+)
+def test_a_smaller_cutter_on_a_helix(beside, outside, inside):
+    """Worked case c13: a roller of 10, a cutter of 8, a helix of 30 degrees at the radius 50 where it is set."""
+    v = 50.0 * math.tan(math.radians(30.0))
+    rise = Segment("rise", math.radians(300.0), v * math.radians(300.0), law("constant-velocity"))
+    back = Segment("return", math.radians(60.0), v * math.radians(300.0), law("constant-velocity"))
+    lifts = Lifts(programme([rise, back], TURN).motion)
+    gauge = Gauge("lower", -1, 10.0, 0.0, 36.0, 50.0, lifts, 35.0)
+    sine = v / math.hypot(50.0, v)
+    y, up = 2.0 * sine, -2.0 * math.sqrt(1.0 - sine**2)
+    a = np.linspace(0.3, 4.9, 2000)
+    turn = 0.0 if beside else math.atan2(y, 50.0)
+    one = Pass(1, 30.0, a + turn, v * a + up, np.full_like(a, y if beside else 0.0))
+    left = left_on(gauge, [one], 8.0, 2e-3)
+    column = int(np.argmin(np.abs(left.theta - 2.6)))
+    w = np.hypot(left.rho, v)
+    r = np.hypot(left.rho, 10.0 * v / w)
+    # the case measures on the cylinder r, square to the flank's curve there: its normal leans by its part along r
+    along = 10.0 * (v / w) ** 2 / r
+    smooth = np.polynomial.Polynomial.fit(r, left.off[:, column] / np.sqrt(1.0 - along**2), 7)
+    found = smooth(np.array([38.0, 50.0]))
+    # along the curve's normal the metal is thicker by its bend: second order
+    np.testing.assert_allclose(found, [inside, outside], rtol=2e-3)
+    assert found[1] == pytest.approx(outside, rel=6e-4)
+
+
+# --- reading ----------------------------------------------------------------------------------------------------------
+
+
+def read(folder, text):
+    path = folder / "part.ngc"
+    path.write_text(text, "ascii")
+    return read_turned(path)
+
+
+HEAD = "G21\nG90 G93\nS1000 M3\nG0 Z60 X5 A10\n"
+
+
+def test_moves_are_read_with_the_time_of_their_blocks(tmp_path):
+    program = read(tmp_path, f"{HEAD}G1 Z40 F10\nG1 X6 A-350 F2.5\nG94 G1 X7 Y1 F100\nG0 Z60\nM30\n")
+    (down, turn, along, out) = program.moves[1:]
+    assert (down.end.z, down.feed, down.inverse) == (40.0, 10.0, True)
+    assert turn.end.a == pytest.approx(math.radians(-350.0))
+    assert (along.feed, along.inverse, along.end.y) == (100.0, False, 1.0)
+    assert out.rapid
+    assert program.beside
+    (one,) = passes_of(program.moves, 50.0)
+    assert (one.line, one.z, len(one.a)) == (6, 40.0, 3)
+
+
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        ("G1 Z40 F10\nG1 X6", "every block that cuts"),
+        ("G2 X6 Y0 I1", "is not read"),
+        ("G1 B6 F1", "is not read"),
+        ("G91 G1 X6 F1", "is not read"),
+        ("M5\nG1 X6 F1", "a spindle that turns"),
+    ],
+)
+def test_what_is_not_read_is_refused_with_its_line(tmp_path, words, problem):
+    with pytest.raises(ReadError, match=problem):
+        read(tmp_path, f"{HEAD}{words}\nM30\n")
+    assert not judged(tmp_path, f"{HEAD}{words}\nM30\n").ok
+
+
+def test_a_feed_move_has_to_begin_somewhere(tmp_path):
+    with pytest.raises(ReadError, match="from an unknown place"):
+        read(tmp_path, "G21\nG90 G94\nS1000 M3\nF100\nG1 X5\nM30\n")

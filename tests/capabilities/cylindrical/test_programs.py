@@ -1,0 +1,315 @@
+# needs: milling
+"""Programs of drums: written, read by a few lines of their own, held against brute force, judged, refused.
+
+Holds: camgeo.capabilities.cylindrical.program, camgeo.capabilities.cylindrical.ways,
+camgeo.capabilities.cylindrical.angles, camgeo.capabilities.cylindrical.bends.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from capabilities.cylindrical.made_drums import GROOVE, RIB, TOP, UNDERCUT, changed, design_of
+from capabilities.cylindrical.positions import Lift, envelope
+
+import camgeo
+from camgeo.api.root import root_of
+from camgeo.capabilities.cylindrical.ways import Way, radially_off, set_beside, set_radially
+from camgeo.cli.main import main
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+OPTIONS = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, depth_of_cut: 7, safe_height: 5"
+RISE, RETURN = ("rise", 40.0, 120.0, "cycloidal"), ("return", 40.0, 120.0, "polynomial-345")
+REST = ("dwell", 0.0, 60.0, "")
+LIFT = Lift([RISE, REST, RETURN, REST])
+
+
+def program(text: str = GROOVE, *pairs: tuple[str, str]) -> str:
+    """Text of a recipe whose file is a program, with changes."""
+    return changed(changed(text, ("[stl]", f"[{{gcode: {{{OPTIONS}}}}}]")), *pairs)
+
+
+def exported(folder: Path, text: str) -> camgeo.Report:
+    (folder / "drum.yaml").write_text(text, encoding="utf-8")
+    return camgeo.export(folder / "drum.yaml", folder / "out")
+
+
+def words(folder: Path) -> str:
+    return (folder / "out" / "drum" / "drum.ngc").read_text("ascii")
+
+
+def failing(report: camgeo.Report) -> set[str]:
+    return {check.name for check in report.checks if not check.ok}
+
+
+def positions(text: str) -> list[np.ndarray]:
+    """Points (n, 4) of X, Y, Z and A, mm and degrees, of the feed moves between rapid ones, by their letters alone."""
+    at, runs, rapid = dict.fromkeys("XYZA", 0.0), list[list[list[float]]](), True
+    for line in re.sub(r"\([^)]*\)", "", text).splitlines():
+        if not line.startswith(("G0 ", "G1 ")):
+            continue
+        before = list(at.values())
+        at |= {letter: float(value) for letter, value in re.findall(r"([XYZA])(-?[\d.]+)", line)}
+        if line.startswith("G1"):
+            if rapid:
+                runs.append([before])
+            runs[-1].append(list(at.values()))
+        rapid = line.startswith("G0")
+    return [np.array(run) for run in runs]
+
+
+CASES = {
+    "as large as the roller": program(),
+    "beside": program(
+        GROOVE, ("12.5}", "12.5, clearance: 0.04}"), ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 16")
+    ),
+    "rib": program(RIB, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 17")),
+    "end": program(TOP, ("cutter: 20", "cutter: 19.8")),
+}
+
+
+@pytest.mark.costly("brute force over the positions of a cutter")
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("case", CASES)
+def test_the_cutter_leaves_the_flanks_that_rollers_leave(tmp_path: Path, case: str) -> None:
+    """At random places of each flank no position of the cutter takes metal, and one takes all in front of it."""
+    text = CASES[case]
+    report = exported(tmp_path, text)
+    assert report.ok, [str(check) for check in report.checks if not check.ok]
+    cutter = 0.5 * float(re.findall(r"cutter: ([\d.]+)", text)[0])
+    runs = positions(words(tmp_path))
+    share = np.linspace(0.0, 1.0, 120, endpoint=False)
+    rows = np.concatenate(
+        [(run[:-1, None] + share[:, None] * np.diff(run, axis=0)[:, None]).reshape(-1, 4) for run in runs]
+    )
+    rng = np.random.default_rng(5)
+    for name, side, roller, level in flanks_of(text):
+        r, phi = rng.uniform(39.0, 50.0, 25), rng.uniform(0.0, 2.0 * math.pi, 25)
+        z, _ = envelope(LIFT, side, roller, r, phi)
+        for radius, angle, height in zip(r, phi, z + level, strict=True):
+            turn = angle - np.radians(rows[:, 3])
+            stands = (radius * np.cos(turn) >= rows[:, 2]) & (np.cos(turn) > 0.0)
+            far = np.hypot(radius * np.sin(turn) - rows[:, 1], height - rows[:, 0])[stands] - cutter
+            assert abs(far.min()) < 0.02, (name, radius, math.degrees(angle))
+
+
+def flanks_of(text: str) -> list[tuple[str, int, float, float]]:
+    if "rib" in text:
+        return [("lower", -1, 10.0, 65.0), ("upper", 1, 10.0, 15.0)]
+    if "end: top" in text:
+        return [("lower", -1, 10.0, 20.0)]
+    return [("lower", -1, 10.0, 20.0), ("upper", 1, 10.04 if "clearance" in text else 10.0, 20.0)]
+
+
+def test_a_program_says_how_it_is_meant(tmp_path: Path) -> None:
+    report = exported(tmp_path, program())
+    assert report.ok
+    lines = words(tmp_path).splitlines()
+    for told in (
+        "(cutter: diameter 20, its axis square to the drum's)",
+        "(X zero: the lower face; X grows along the drum's axis, towards the upper face)",
+        "(A zero: the roller's place at shaft angle 0, from which the keyway's angle counts)",
+        "(A grows as the cutter goes round the drum counter-clockwise, seen from the upper face)",
+        "(Z zero: the drum's axis; blank 50, floor 37.5)",
+        "(feed: G93, the inverse of the minutes of a block, 300 a minute at a radius of 50)",
+    ):
+        assert told in lines
+    assert lines[lines.index("G21") + 1] == "G17 G90 G93"
+    assert not any("Y" in line for line in lines if line.startswith("G1"))
+    # every block takes its length at the blank over 300 mm a minute
+    for run in positions(words(tmp_path)):
+        assert run[:, 0].min() > 19.99
+        assert np.diff(run[1:, 3]).min() > 0.0
+    feeds = [float(f) for f in re.findall(r"^G1 X\S+ A\S+ F(\S+)$", "\n".join(lines), re.MULTILINE)]
+    (first, *_) = positions(words(tmp_path))
+    far = np.hypot(np.diff(first[1:, 0]), 50.0 * np.radians(np.diff(first[1:, 3])))
+    np.testing.assert_allclose(feeds[: len(far)] * far, 300.0, rtol=1e-5)
+    recipe = camgeo.load(tmp_path / "drum.yaml")
+    found = {(check.name, check.file) for check in report.checks}
+    assert {(each.name, each.file) for each in root_of(recipe).foresee(recipe)} <= found
+
+
+def test_a_drum_that_turns_the_other_way_has_the_mirrored_program(tmp_path: Path) -> None:
+    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18"))
+    plain, mirrored = tmp_path / "a", tmp_path / "b"
+    for folder, own in ((plain, text), (mirrored, "rotation: ccw\n" + text)):
+        folder.mkdir()
+        assert exported(folder, own).ok
+    # it climbs all the same, and so goes the other way along each flank
+    pairs = zip(positions(words(plain)), positions(words(mirrored)), strict=True)
+    for first, second in pairs:
+        back = second[1:][::-1] * np.array([1.0, -1.0, 1.0, -1.0])
+        np.testing.assert_allclose(first[1:], back, atol=1e-9)
+        assert np.sign(first[-1, 3] - first[1, 3]) == (1.0 if first[3, 0] < 20.0 else -1.0)
+
+
+def test_inches_and_a_feed_by_the_minute(tmp_path: Path) -> None:
+    text = "units: inch\n" + program(GROOVE, ("cutter: 20", "cutter: 20, feed_mode: per-minute"))
+    named = (
+        "radius|depth|from|pitch_height|rise|return|length|bore|cutter|feed|plunge|depth_of_cut|safe_height|tolerance"
+    )
+    text = re.sub(rf"\b({named}): ([\d.]+)", r"\1: \2 mm", text)
+    report = exported(tmp_path, text)
+    assert report.ok, failing(report)
+    lines = words(tmp_path).splitlines()
+    assert "G20" in lines
+    assert "G17 G90 G94" in lines
+    assert f"G1 Z{43.75 / 25.4:.5f} F2.36220" in lines
+    assert sum(" F11.8110" in line for line in lines) == 2
+    assert max(run[:, 0].max() for run in positions(words(tmp_path))) == pytest.approx(60.0 / 25.4, abs=1e-4)
+
+
+def test_an_allowance_is_left_by_all_but_the_last_pass(tmp_path: Path) -> None:
+    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18, allowance: 0.3"))
+    assert exported(tmp_path, text).ok
+    lines = words(tmp_path).splitlines()
+    assert [line for line in lines if " pass " in line] == [
+        "(lower flank, rough, pass 1 of 6)",
+        "(upper flank, rough, pass 2 of 6)",
+        "(lower flank, rough, pass 3 of 6)",
+        "(upper flank, rough, pass 4 of 6)",
+        "(lower flank, last, pass 5 of 6)",
+        "(upper flank, last, pass 6 of 6)",
+    ]
+    runs = positions(words(tmp_path))
+    # in the dwell at lift 0 the cutter stands 1 mm off the roller's path, and 0.3 mm less before
+    at = [float(run[2:-2][np.argmin(np.abs(run[2:-2, 3] - 350.0)), 0]) for run in runs]
+    np.testing.assert_allclose(at, [19.3, 20.7, 19.3, 20.7, 19.0, 21.0], atol=1e-3)
+    assert [run[3, 2] for run in runs] == [43.75, 43.75, 37.5, 37.5, 37.5, 37.5]
+
+
+@pytest.mark.costly("the one drum that is undercut, whose cuts take as long to find as all else")
+def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None:
+    text = program(UNDERCUT, ("cutter: 20", "cutter: 24"))
+    assert exported(tmp_path, text).ok
+    (tmp_path / "drum.yaml").write_text(changed(text, ("cutter: 24", "cutter: 23")), encoding="utf-8")
+    with pytest.raises(camgeo.RecipeErrors, match="with an undercut, only a cutter as large as the roller"):
+        camgeo.export(tmp_path / "drum.yaml", tmp_path / "out")
+
+
+@pytest.mark.parametrize(
+    ("pairs", "problem", "remedy"),
+    [
+        ([("cutter: 20", "cutter: 20.5")], "a cutter wider than the roller cuts the flanks away", ("20.5", "20")),
+        ([("cutter: 20", "cutter: 9")], "does not clear the groove", ("[X, A], cutter: 9", "[X, Y, A], cutter: 10.02")),
+        ([("cutter: 20", "cutter: 16")], "it is right at one radius alone", ("[X, A]", "[X, Y, A]")),
+        ([("cutter: 20", "cutter: 16")], "give a cutter of at least 19.7", ("16", "19.78")),
+        (
+            [("cutter: 20", "cutter: 20, decimals: 2"), ("0.02", "0.002")],
+            "give at least 3",
+            ("decimals: 2", "decimals: 3"),
+        ),
+        ([("cutter: 20, ", "")], "gcode.cutter: missing", ("[X, A],", "[X, A], cutter: 20,")),
+        (
+            [(f"{{gcode: {{{OPTIONS}}}}}", "gcode")],
+            "a program needs its machine and cutter; give axes, cutter, feed",
+            ("[gcode]", f"[{{gcode: {{{OPTIONS}}}}}]"),
+        ),
+        ([("[X, A]", "[X, B]")], "not the axes of such a machine", ("[X, B]", "[X, Z, A]")),
+        (
+            [("cutter: 20", "cutter: 20, allowance: 0.2"), ("[X, A]", "[X, Y, A]")],
+            "give at most 19.6 mm",
+            ("cutter: 20", "cutter: 19.6"),
+        ),
+        (
+            [("cutter: 20", "cutter: 20, allowance: 6")],
+            "give an allowance below 4.99 mm",
+            ("cutter: 20, allowance: 6", "cutter: 20"),
+        ),
+        (
+            [("radius: 10,", "radius: 10, taper: axis,")],
+            "a program of a roller on an arm, beside the drum's axis or conical is not made yet",
+            (", taper: axis", ""),
+        ),
+        ([("depth_of_cut: 7", "depth_of_cut: 0.001")], "makes more than 2000 passes", ("0.001", "6")),
+    ],
+)
+def test_what_is_refused_says_what_to_give(
+    tmp_path: Path,
+    pairs: list[tuple[str, str]],
+    problem: str,
+    remedy: tuple[str, str],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = program(GROOVE, *pairs)
+    (tmp_path / "drum.yaml").write_text(text, encoding="utf-8")
+    assert main(["export", str(tmp_path / "drum.yaml"), "--out", str(tmp_path / "out")]) == 2
+    assert problem in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+    assert exported(tmp_path, changed(text, remedy)).ok
+
+
+def test_a_program_is_read_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert exported(tmp_path, program()).ok
+    path, recipe = tmp_path / "other.nc", str(tmp_path / "drum.yaml")
+    path.write_text(words(tmp_path), "ascii")
+    assert main(["verify", recipe, str(path)]) == 0
+    path.write_text(words(tmp_path).replace("X20.000", "X20.200"), "ascii")
+    assert main(["verify", recipe, str(path)]) == 1
+    assert "contour" in capsys.readouterr().out
+    path.write_text(words(tmp_path).replace("M30", "G2 X1"), "ascii")
+    assert main(["verify", recipe, str(path)]) == 1
+    (tmp_path / "drum.yaml").write_text(GROOVE, encoding="utf-8")
+    assert main(["verify", recipe, str(path)]) == 2
+    assert "no program is asked for" in capsys.readouterr().err
+
+
+# --- ways -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize("side", ["lower", "upper"])
+def test_a_way_bends_no_more_than_its_bound(beside: bool, side: str) -> None:
+    way = Way(design_of(GROOVE).flanks[side], 7.0, 42.0, beside)
+    look, bound = way.bends(50.0)
+    h = 1e-4
+    for theta in np.linspace(0.01, 2.0, 60):
+        a, x, y = way.places(np.array([theta - h, theta, theta + h]))
+        second = [(row[0] - 2.0 * row[1] + row[2]) / h**2 for row in (a * 50.0, x, y)]
+        k = int(np.searchsorted(look, theta)) - 1
+        assert math.hypot(*second) <= bound[k - 1 : k + 2].max() * 1.01 + 1e-4
+    assert bound.max() < 300.0
+
+
+def test_a_smaller_cutter_is_off_as_brute_force_finds() -> None:
+    """A helix of 30 degrees at 50: positions of the cutter along it, as near as they come to points of the flank."""
+    flank, v = design_of(GROOVE).flanks["lower"], 50.0 * math.tan(math.radians(30.0))
+    t = np.linspace(-0.4, 0.4, 400_001)
+
+    def left(r: float, at: float) -> float:
+        def of(radius: float, on: float) -> tuple[float, float]:
+            apart = on**2 - v**2
+            rho = math.sqrt(0.5 * (apart + math.sqrt(apart**2 + 4.0 * v * v * (on**2 - radius**2))))
+            w = math.hypot(rho, v)
+            return math.atan2(radius * v / w, rho), -radius * rho / w
+
+        (f, g), (less, lower), (phi, z) = of(10.0, at), of(8.0, at), of(10.0, r)
+        return float(np.hypot(r * np.sin(phi - (f - less) - t), z - (g - lower) - v * t).min()) - 8.0
+
+    for at in (38.0, 44.0, 50.0):
+        off = radially_off(flank, 8.0, v, at, (38.0, 50.0))
+        inner, outer = left(38.0, at), left(50.0, at)
+        for bound, true in ((off.left, inner), (off.deep, -outer)):
+            assert max(true, 0.0) - 1e-9 <= bound <= 1.12 * max(true, 0.0) + 1e-9
+    way, off = set_radially(flank, 8.0, v, (38.0, 50.0))
+    assert off.left == pytest.approx(off.deep, rel=1e-3)
+    assert 38.0 < way.at < 50.0
+
+
+def test_depths_are_as_many_as_the_tolerance_asks_for() -> None:
+    flank = design_of(GROOVE).flanks["lower"]
+    counts = []
+    for most in (0.02, 0.005, 0.0004):
+        ways, off = set_beside(flank, 8.0, 38.2, (38.0, 50.0), most)
+        assert off.left <= most
+        assert ways[-1][1] == pytest.approx(38.0)
+        assert [low for _, low in ways] == sorted((low for _, low in ways), reverse=True)
+        counts.append(len(ways))
+    assert counts == sorted(counts)
+    assert counts[0] < counts[2] < 8
