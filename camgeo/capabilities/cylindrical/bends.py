@@ -230,8 +230,8 @@ def _contact(flank: Flank, y: list[Ball], z: list[Ball], rho: Ball) -> _Contact:
     radius = (rho - flank.at) * t + flank.radius
     along = rho + radius * t + y[1]
     lag = y[0] * (flank.side * t)
-    square = along * along + z[1] ** 2
-    m = (square - lag * lag) ** 0.5
+    square = along**2 + z[1] ** 2
+    m = (square - lag**2) ** 0.5
     s, c = sin_cos(atan2(z[1], along) + asin(lag * square**-0.5))
     first = (y[1] * (flank.side * t) - y[2] * s + z[2] * c) * m**-1
     return _Contact(s, c, radius, m, first, s * m**-1 * -(1.0 + t * t))
@@ -248,7 +248,7 @@ def _places(flank: Flank, y: list[Ball], z: list[Ball], r: Ball) -> Ball:
     for _ in range(SETTLE):
         contact = _contact(flank, y, z, rho)
         q = y[0] - contact.radius * contact.s * float(flank.side)
-        low, high = ((r * r - q * q) ** 0.5).bounds()
+        low, high = ((r**2 - q**2) ** 0.5).bounds()
         before = rho.bounds()
         rho = Ball.between(np.maximum(low, before[0]), np.maximum(np.minimum(high, before[1]), before[0]))
     return rho

@@ -131,6 +131,10 @@ def _demand_near(design: DrumDesign) -> None:
         if not float(flank.size(least)) > 0.0:
             problem = "the cone ends in its apex before the floor"
             raise design.error("cam.follower.taper", problem, "give a smaller taper, axis, or a larger radius")
+        back, at = greatest_of(lambda theta, flank=flank: -flank.pose(theta).y1, TURN)  # type: ignore[misc]
+        if not back < least:
+            problem = f"the arm takes its roller back faster than the floor turns, near {math.degrees(at):.6g} degrees"
+            raise design.error("cam.motion", problem, "give a longer motion, or an arm that stands less aslant")
 
 
 def _demand_core(design: DrumDesign) -> None:

@@ -32,7 +32,7 @@ ZOOMS = 8
 ALONG = 400  # places on either branch of a row near its crossing
 NEWTON = 12
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
-CELLS, PARTS, ROUNDS = 360, 4, 11  # of the proof that a flank is regular
+CELLS, PARTS, ROUNDS, MOST_OPEN = 360, 4, 11, 100_000  # of the proof that a flank is regular
 
 
 class Tip(NamedTuple):
@@ -171,6 +171,8 @@ def demand_regular(flank: Flank, low: float, high: float) -> None:
         open_ = ~(bends(flank, (a, b), (c, d)).regular > 0.0)
         if not open_.any():
             return
+        if np.count_nonzero(open_) > MOST_OPEN:
+            break
         a, b, c, d = a[open_], b[open_], c[open_], d[open_]
         t, r = 0.5 * (a + b), 0.5 * (c + d)
         if (_regular(flank, _both(flank, t), r) < 0.0).any():

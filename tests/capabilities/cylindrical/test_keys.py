@@ -36,6 +36,12 @@ if TYPE_CHECKING:
 
 REFUSE = changed(UNDERCUT, ("shorten", "refuse"))
 _THEN = ", law: cycloidal}, {dwell:"
+ASLANT = changed(
+    ARM,
+    ("length: 80, offset: 78, pivot: 40", "length: 60, offset: -36, pivot: -10.7, side: leading"),
+    ("rise: 30, over: 120", "rise: 40, over: 60"),
+    ("return: 30, over: 120", "return: 40, over: 180"),
+)
 REFUSED = [
     (GROOVE, ("radius: 50", "rdius: 50"), "cam.rdius: unknown key; did you mean radius?"),
     (GROOVE, ("kind: cylindrical", "kind: cylindrical\n  turns: 3"), "cam.turns: not made yet; leave it out"),
@@ -51,6 +57,7 @@ REFUSED = [
         "past the floor's edge, near 0 degrees; give less than 27.5 mm",
     ),
     (GROOVE, ("radius: 10,", "radius: 10, offset: 20,"), None),
+    (BOTTOM, ("radius: 10,", "radius: 10, offset: -25,"), None),
     (ARM, ("radius: 10,", "radius: 10, offset: 6,"), "cam.follower.offset: does not go with an arm; leave it out"),
     (
         ARM,
@@ -60,6 +67,11 @@ REFUSED = [
     (ARM, ("pivot: 40", "pivot: 98.5"), "cam.motion: the arm swings to 81.9"),
     (ARM, ("offset: 78", "offset: 38"), "past the floor's edge, near 60 degrees; give 78.637 mm, or a longer arm"),
     (ARM, ("offset: 78", "offset: 78.637"), None),
+    (
+        ASLANT,
+        ("over: 60,", "over: 60,"),
+        "cam.motion: the arm takes its roller back faster than the floor turns, near 3",
+    ),
     (RIB_ON_ARM, ("distance: 36", "distance: 20"), "give more than 20 mm, and the rib's thickness"),
     (CONE, ("{groove: {depth: 12.5}}", "{rib: {depth: 12.5, distance: 22}}"), "give more than 22.7272727 mm, and"),
     (

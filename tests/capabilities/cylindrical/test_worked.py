@@ -423,12 +423,12 @@ def test_forces_of_an_end_cam() -> None:
 def test_forces_of_a_cone() -> None:
     """Its share along the axis is sin d, and the load is what both leave along the way."""
     text = changed(CONE, ("pitch_height: 20", "pitch_height: 20\n  drive: {load: 200}"), ("from: 38", "from: 44"))
-    force, thrust = figure(text, "contact-force"), figure(text, "axial-thrust")
-    close(thrust / force, 0.221621103589)
-    angle = math.radians(39.5389734592)
-    close(figure(text, "pressure-angle"), 39.5389734592)
+    values = {each.name: each.value for each in figures_of(design_of(text))}
+    force, angle = values["contact-force"], math.radians(39.5389734592)
+    close(values["axial-thrust"] / force, 0.221621103589)
+    close(values["pressure-angle"], 39.5389734592)
     close(force * math.cos(math.atan(10 / 44)) * math.cos(angle), 200.0)
-    close(figure(text, "side-thrust"), 200.0 * math.tan(angle))
+    close(values["side-thrust"], 200.0 * math.tan(angle))
 
 
 def test_figures_of_an_arm() -> None:
