@@ -242,7 +242,7 @@ def contour_check(job: Judged, proud: Peak, bare: Peak) -> tuple[Check, float]:
     )
     told = f"true within {length_words(max(proud.remainder, bare.remainder), '.2g')} {UNIT}"
     check = at_most(CONTOUR, worst, tolerance, "mm", detail=f"{words} of the exact flank; {told}", slack=job.slack)
-    return _at(check, proud.at if proud.value >= bare.value else bare.at), worst
+    return placed(check, proud.at if proud.value >= bare.value else bare.at), worst
 
 
 def in_unit(follower: DrumFollower, gauge: Gauge) -> float:

@@ -116,7 +116,7 @@ def test_the_solid_of_a_kind_is_closed(name: str) -> None:
     assert all(count == edges[end, start] for (start, end), count in edges.items())
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     deep = {"plate-endless": 8.0, "plate-feed": 12.0, "plate-groove": 16, "drum-end": 60, "drum-groove": 80}
-    deep |= {"drum-rib": 4.2 * 25.4, "drum-arm": 90, "drum-cone": 80}
+    deep |= {"drum-milled": 70, "drum-rib": 4.2 * 25.4, "drum-shortened": 65, "drum-arm": 90, "drum-cone": 80}
     assert high[2] - low[2] == pytest.approx(deep[name], rel=0.2 if name == "drum-end" else 1e-6)
 
 

@@ -473,11 +473,6 @@ PROGRAM = (
 NEEDED = ("axes", "cutter", "feed", "plunge", "spindle", "safe_height")
 """Options that a program cannot do without."""
 FILES: dict[str, Format] = {
-    **{
-        name: replace(record, options=FieldTable(PROGRAM), check=NO_CHECK)
-        for name, record in FORMATS.items()
-        if record.program
-    },
     **{name: _mesh(name, SOLID_UNITS, TOLERANCE) for name in ("stl", "ply", "3mf")},
     "step": _surfaces("step", SOLID_UNITS, TOLERANCE),
     "glb": replace(_mesh("glb", TOLERANCE), contour=False),
@@ -490,6 +485,11 @@ FILES: dict[str, Format] = {
         TOLERANCE,
         contour=True,
     ),
+    **{
+        name: replace(record, options=FieldTable(PROGRAM), check=NO_CHECK)
+        for name, record in FORMATS.items()
+        if record.program
+    },
     "csv": _tables(),
     "html": replace(FORMATS["html"], options=FieldTable(())),
 }
