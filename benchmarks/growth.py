@@ -3,7 +3,8 @@
 `growth` prints milliseconds over the size of the work, and the exponent of one by the other, by least squares over the
 last two decades of the size that were measured, or over all where they are fewer; aim: 1.1. `scale` does so for what
 users bring in great numbers, up to the most that is taken, each size in a process of its own, with the greatest memory
-and what the last decade costs beyond ten times: aim 1.15. `warm` prints milliseconds
+and what the last decade costs beyond ten times: a decade that costs more than 1.15 times as much a unit as the one
+before it ends the call with status 1. `warm` prints milliseconds
 from a recipe object to its exact design without part and limits, as shipped, and with every figure that may be asked;
 then with arcs at 0.001 mm and their verdict at 3600 angles in memory, of a whole export of a DXF, and of the scene of a
 finished design, which is all that a page draws. `unseen` prints those of a whole export of a DXF of recipes that the
@@ -29,6 +30,7 @@ import sys
 import tempfile
 import time
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, NamedTuple
@@ -357,10 +359,13 @@ SCALES: dict[str, tuple[Callable[[int, Path], Callable[[], object]], tuple[int, 
 SCALE_HEADING = "| what grows | size: s | beyond ten times | MB |\n| --- | --- | --- | --- |\n"
 
 
-def scale(pattern: str, *, small: bool, docs: bool) -> None:
-    """Print a line for each row of `SCALES`."""
+MOST = 1.15  # times the cost of a unit, from one decade to the next
+
+
+def scale(pattern: str, *, small: bool, docs: bool) -> list[str]:
+    """Print a line for each row of `SCALES`, and give the names of those whose cost outgrows their size."""
     print(f"\n{SCALE_HEADING}", end="")
-    rows = []
+    rows, beyond = [], []
     for name, (_, sizes) in SCALES.items():
         if not re.search(pattern, name):
             continue
@@ -369,17 +374,22 @@ def scale(pattern: str, *, small: bool, docs: bool) -> None:
         for size in (sizes[0] // 100, sizes[0] // 10) if small else sizes:
             done = subprocess.run([*command, str(size)], capture_output=True, text=True, check=True)
             told.append((size, *map(float, done.stdout.split()[-2:])))
-        last = told[-1][1] / told[-2][1] / (told[-1][0] / told[-2][0])
+        each = [seconds / size for size, seconds, _ in told]
+        decades = [after / before for before, after in pairwise(each)]
+        if max(decades) > MOST and not small:
+            beyond.append(name)
         cells = ", ".join(f"{size:,}: {seconds:.3g}" for size, seconds, _ in told)
-        rows.append(f"| {name} | {cells} | {last:.2f} | {', '.join(f'{mb:.0f}' for *_, mb in told)} |")
+        rows.append(f"| {name} | {cells} | {decades[-1]:.2f} | {', '.join(f'{mb:.0f}' for *_, mb in told)} |")
         print(rows[-1], flush=True)
     if docs and not small:
         rewrite(SCALE_HEADING, rows)
+    return beyond
 
 
 def one_size(name: str, size: int) -> None:
     """Print the processor seconds of one size, after a small one that imports, and the greatest memory, MB."""
     make, sizes = SCALES[name]
+    gc.set_threshold(COLLECT_AFTER)  # as the command has
     with tempfile.TemporaryDirectory() as folder:
         make(max(sizes[0] // 10, 100), Path(folder))()
         work = make(size, Path(folder))
@@ -502,9 +512,12 @@ if __name__ == "__main__":
     if not arguments.part or "growth" in arguments.part:
         rows = [row for row in growing() if re.search(arguments.only, row.name)]
         growth(rows[:: 12 if arguments.small else 1], small=arguments.small, docs=arguments.docs)
+    outgrown: list[str] = []
     if not arguments.part or "scale" in arguments.part:
-        scale(arguments.only, small=arguments.small, docs=arguments.docs)
+        outgrown = scale(arguments.only, small=arguments.small, docs=arguments.docs)
     if not arguments.part or "warm" in arguments.part:
         warm(arguments.only, small=arguments.small, docs=arguments.docs)
     if not arguments.part or "unseen" in arguments.part:
         unseen(small=arguments.small, docs=arguments.docs)
+    if outgrown:
+        sys.exit(f"a decade costs more than {MOST:g} times as much a unit as the one before: {', '.join(outgrown)}")

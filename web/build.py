@@ -18,10 +18,18 @@ import subprocess
 import sys
 import tempfile
 import urllib.request
+import zlib
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+from examples import EXAMPLES
+
+if TYPE_CHECKING:
+    from camgeo.api.shown import Shown
+    from camgeo.recipe.recipe import Order
 
 ROOT = Path(__file__).resolve().parents[1]
 WEB = ROOT / "web"
@@ -166,8 +174,17 @@ for name in sys.argv[2:]:
         live.answer(call, json.dumps({"name": name, "text": starter(name)}))
 print(*sys.modules)
 """
-    command = [sys.executable, "-c", program, str(WEB), *DESIGNED]
+    command = [sys.executable, "-c", program, str(WEB), *DESIGNED, *of_kinds()]
     return set(subprocess.run(command, check=True, capture_output=True, text=True).stdout.split())
+
+
+def of_kinds() -> list[str]:
+    """Starters of kinds of cams with recipes of their own that the page shows."""
+    from camgeo.api.root import root_by_key
+    from camgeo.recipe.starter import STARTERS
+    from camgeo.registry.root import kinds
+
+    return [name for name, entry in STARTERS.items() if entry.root in kinds() and root_by_key(entry.root).shown]
 
 
 def packed() -> tuple[bytes, bytes]:
@@ -278,30 +295,116 @@ def entry_of(name: str) -> ZipInfo:
 
 
 def starters() -> list[dict[str, object]]:
-    """Starters and shipped recipes of single cams: name, task, title, text, tables that it names, and the picture."""
-    import camgeo
-    from camgeo.api.notebook import drawing
+    """Starters and shipped recipes of cams: name, task, title, text, tables that it names, and the picture."""
     from camgeo.recipe.starter import STARTERS, starter
     from camgeo.registry.root import CAM
 
     entries: list[dict[str, object]] = []
+    of_kind = of_kinds()
     for name, entry in STARTERS.items():
-        if entry.root == CAM and entry.kind:
+        if (entry.root == CAM and entry.kind) or name in of_kind:
             text = starter(name)
-            design = camgeo.design(camgeo.load(text))
-            picture = drawing(design.recipe, design.exact)
             words = {"title": entry.title, "task": entry.task or name, "also": entry.also}
-            entries.append({"name": name, **words, "text": text, "tables": {}, "picture": picture})
-    recipes = [(path, camgeo.load(path)) for path in sorted((ROOT / "recipes").glob("*.yaml"))]
-    recipes.sort(key=lambda pair: re.match(PAPER, pair[1].about or "") is not None)  # figures of papers come last
-    for path, recipe in recipes:
+            entries.append({"name": name, **words, "text": text, "tables": {}, "picture": drawing(text)})
+    for path, recipe in shipped():
         text = path.read_text("utf-8")
-        named = {name: (path.parent / name).read_text("utf-8") for name in re.findall(r"[\w.-]+\.csv\b", text)}
         picture = (ROOT / "docs" / "gallery" / f"{path.stem}.svg").read_text("utf-8")
         words = {"title": recipe.about, "task": path.stem, "also": ""}
-        shipped = {"name": path.stem, **words, "text": text, "tables": named, "picture": picture}
-        entries.append({**shipped, "shipped": True})
+        one = {"name": path.stem, **words, "text": text, "tables": tables_of(text), "picture": picture}
+        entries.append({**one, "shipped": True})
     return entries
+
+
+def tables_of(text: str) -> dict[str, str]:
+    """Tables that a shipped recipe names, by their names."""
+    return {name: (ROOT / "recipes" / name).read_text("utf-8") for name in re.findall(r"[\w.-]+\.csv\b", text)}
+
+
+def shipped() -> list[tuple[Path, Order]]:
+    """Shipped recipes of cams that the page shows, each with its file; figures of papers come last."""
+    from camgeo.api.root import root_of
+    from camgeo.recipe.loading import load_order
+
+    pictured = {path.stem for path in (ROOT / "docs" / "gallery").glob("*.svg")}
+    paths = (path for path in sorted((ROOT / "recipes").glob("**/*.yaml")) if path.stem in pictured)
+    found = [(path, recipe) for path in paths if root_of(recipe := load_order(path)).shown is not None]
+    return sorted(found, key=lambda pair: re.match(PAPER, pair[1].about or "") is not None)
+
+
+def drawing(text: str) -> str:
+    """The cam of a recipe at the begin of its motion, as a picture by itself."""
+    return shown_of(text).still()
+
+
+def shown_of(text: str) -> Shown:
+    """The cam of a recipe as the page shows it."""
+    from camgeo.api.root import root_of
+    from camgeo.recipe.loading import load_order_text
+
+    recipe = load_order_text(text, str(ROOT / "recipes" / "recipe.yaml"))
+    shown = root_of(recipe).shown
+    if shown is None:
+        raise AssertionError(recipe)
+    return shown(recipe)
+
+
+class Card(NamedTuple):
+    """A design that opens in the page: its link, its picture's address, title and words."""
+
+    link: str
+    picture: str
+    title: str
+    words: str
+
+
+def examples(pictures: Path) -> list[Card]:
+    """The examples for a lecture, without those whose recipes are not shipped; their pictures are put into a folder."""
+    from camgeo.measures.units import UNIT_NAMES
+    from camgeo.schema.change import set_value
+    from camgeo.schema.yaml_source import Source
+
+    cards = []
+    for example in EXAMPLES:
+        path = ROOT / "recipes" / f"{example.recipe}.yaml"
+        if not path.is_file():
+            continue
+        text = other = path.read_text("utf-8")
+        for place, value in example.kept.items():
+            other = set_value(Source.of(other, example.called), place, value)
+        cams = [shown_of(one) for one in (text, other)]
+        now, kept = (cam.figures[example.figure] for cam in cams)
+        unit = UNIT_NAMES.get(now.unit, now.unit).replace("deg", "°").replace("^2", "²")
+        apart = "" if unit == "°" else " "
+        name = example.figure.replace("-", " ")
+        both = [f"{value:.3g}{apart}{unit}" for value in (now.value, kept.value)]
+        told = f"{example.see} {name.capitalize()}: {both[0]}, dashed {both[1]}."
+        picture = f"{path.stem}-example.svg"
+        (pictures / picture).write_text(cams[0].still(example.at), "utf-8")
+        link = link_to(path.stem, text, (example.called, other), example.at)
+        cards.append(Card(link, f"pictures/{picture}", example.title, told))
+    return cards
+
+
+def link_to(name: str, text: str, kept: tuple[str, str] | None = None, at: float | None = None) -> str:
+    """Address, from its own folder, at which the page shows a recipe, beside a kept one, by name and text, at a place.
+
+    `web/state.js` reads and writes such addresses.
+    """
+    held: list[object] = [name, text, tables_of(text)]
+    if kept is not None or at is not None:
+        held.append(None if kept is None else [*kept, tables_of(kept[1])])
+    if at is not None:
+        held.append(at)
+    packer = zlib.compressobj(9, zlib.DEFLATED, -15)
+    packed = packer.compress(json.dumps(held, ensure_ascii=False, separators=(",", ":")).encode()) + packer.flush()
+    letters = base64.urlsafe_b64encode(packed).decode().rstrip("=")
+    return f"index.html#r={zlib.crc32(letters.encode()):08x}{letters}"
+
+
+def card(of: Card) -> str:
+    """HTML of a card."""
+    picture = f'<img alt="" loading="lazy" src="{of.picture}">'
+    return f'<li><a href="{of.link}">{picture}<b>{escaped(of.title)}</b> {escaped(of.words)}</a></li>'
 
 
 def kinds(*contents: str) -> list[str]:
@@ -323,14 +426,16 @@ def scripts_of(names: list[str]) -> list[str]:
     return [*SCRIPTS, *(f"{name}.js" for name in names), LAST]
 
 
-def first_page(text: str) -> str:
+def judged_page(text: str) -> str:
     """The whole page of a recipe as `camgeo report` makes it."""
     import camgeo
+    from camgeo.schema.change import set_value
+    from camgeo.schema.yaml_source import Source
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{FIRST}.yaml"
-        path.write_text(text, "utf-8")
-        report = camgeo.export(path, Path(folder) / "out", only=("dxf", "html"))
+        path.write_text(set_value(Source.of(text, FIRST), "export.files", ["html"]), "utf-8")
+        report = camgeo.export(path, Path(folder) / "out")
         if report.path is None:
             raise AssertionError(report)
         return (report.path / f"{FIRST}.html").read_text("utf-8")
@@ -339,7 +444,8 @@ def first_page(text: str) -> str:
 def build(target: Path, pyodide: Path, wheel: Path) -> str:
     """Make the folder anew, and say how large it is."""
     import camgeo
-    from camgeo.report.page import looks, page
+    from camgeo.report.page import looks as looks_of_drawings
+    from camgeo.report.page import page
     from camgeo.report.page.asset import asset
 
     if target.exists() and not (target / "worker.js").is_file():
@@ -354,23 +460,29 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
     numpy, rare_of_numpy = repacked(wheel, RARE_OF_NUMPY)
     code, late = packed()
     shown = starters()
+    gallery = []
     for entry in shown:
-        (target / "pictures" / f"{entry['name']}{'-shipped' if 'shipped' in entry else ''}.svg").write_text(
-            str(entry.pop("picture")), "utf-8"
-        )
-    first = next(entry for entry in shown if entry["name"] == FIRST)
+        picture = f"pictures/{entry['name']}{'-shipped' if 'shipped' in entry else ''}.svg"
+        (target / picture).write_text(str(entry.pop("picture")), "utf-8")
+        if "shipped" in entry:
+            name, about = str(entry["name"]), str(entry["title"])
+            gallery.append(Card(link_to(name, str(entry["text"])), picture, name, about))
+    first = next(entry for entry in shown if entry["name"] == FIRST and "shipped" not in entry)
     text = str(first["text"])
-    judged = first_page(text)
+    of_kind = of_kinds()
+    cams = [text, *(str(entry["text"]) for entry in shown if entry["name"] in of_kind)]
+    looks = dict.fromkeys(shown_of(cam).looks() for cam in cams)
     scene = dict(camgeo.design(camgeo.load(text)).scene())
     scene["name"] = FIRST
     here = with_parts()
-    style = asset("drawing.css") + looks.rules() + asset("page.css") + (WEB / "tab.css").read_text("utf-8")
+    rules = asset("drawing.css") + looks_of_drawings.rules() + asset("page.css") + "".join(own for own, _ in looks)
+    style = rules + (WEB / "tab.css").read_text("utf-8")
     files = {
         "camgeo.zip": code,
         "numpy.zip": numpy,
         "later.zip": joined([others(), late, rare, rare_of_numpy]),
         "tab.css": style.encode(),
-        "page.js": asset("page.js").encode(),
+        "page.js": "".join([asset("page.js"), *(code for _, code in looks)]).encode(),
         "licences.txt": licences().encode(),
         "starters.json": json.dumps(shown, ensure_ascii=False).encode(),
         **{name: (WEB / name).read_bytes() for name in ("worker.js", *scripts_of(here))},
@@ -379,7 +491,7 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         (target / name).write_bytes(data)
     frame = asset("page.html")
     parts = {
-        "policy": policy(judged),
+        "policy": policy([judged_page(cam) for cam in cams]),
         "stage": between(frame, '<div class="left">', '<section class="checks"'),
         "parts": "".join((WEB / f"{name}.html").read_text("utf-8") for name in here),
         "scripts": "".join(f'<script src="{name}?{{{{stamp:{name}}}}}" defer></script>\n' for name in scripts_of(here)),
@@ -393,23 +505,28 @@ def build(target: Path, pyodide: Path, wheel: Path) -> str:
         **{f"stamp:{name}": hashlib.sha256(data).hexdigest()[:10] for name, data in files.items()},
     }
     (target / "index.html").write_text(filled((WEB / "index.html").read_text("utf-8"), parts), "utf-8")
+    parts |= {"examples": "\n".join(map(card, examples(target / "pictures")))}
+    parts |= {"gallery": "\n".join(map(card, gallery))}
+    (target / "examples.html").write_text(filled((WEB / "examples.html").read_text("utf-8"), parts), "utf-8")
     size = sum(path.stat().st_size for path in target.rglob("*") if path.is_file())
     return f"{target}: {size / 1e6:.1f} MB"
 
 
-def policy(page: str) -> str:
-    """What the page may load, for its content security policy: its own files, and the judged page's style and script.
+def policy(pages: list[str]) -> str:
+    """What the page may load, for its content security policy: its own files, and style and script of judged pages.
 
-    That page stands in a frame, which takes the policy over, and its style and script are the same for every recipe.
+    Such a page stands in a frame, which takes the policy over, and its style and script are the same for every recipe
+    of its kind. `pages` has one of each kind.
     """
-    scripts = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
-    styles = re.findall(r"<style>(.*?)</style>", page, re.DOTALL)
-    (script,), (style,) = scripts, styles
+    allowed = dict[str, list[str]]()
+    for name in ("script", "style"):
+        found = [re.findall(rf"<{name}>(.*?)</{name}>", page, re.DOTALL) for page in pages]
+        allowed[name] = list(dict.fromkeys(hashed(text) for (text,) in found))
     return "; ".join(
         [
             "default-src 'none'",
-            f"script-src 'self' 'wasm-unsafe-eval' {hashed(script)}",
-            f"style-src 'self' {hashed(style)}",
+            f"script-src 'self' 'wasm-unsafe-eval' {' '.join(allowed['script'])}",
+            f"style-src 'self' {' '.join(allowed['style'])}",
             "img-src 'self' data: blob:",
             "connect-src 'self'",
             "worker-src 'self'",

@@ -45,8 +45,12 @@ tab.addEventListener("plays", () => {
   if (!scene) return;
   const factor = MM[scene.unit] / MM[shown.unit];
   for (const one of [scene, shown]) room = union(room, boxOf(one).map((value) => value * MM[one.unit]));
-  shown.beside = { drawing: scene.drawing, bodies: scene.bodies, factor, room: room.map((value) => value / MM[shown.unit]) };
-  for (const plot of shown.plots) {
+  const { input } = scene;
+  const alike = input.name === shown.input.name; // a turn and a travel go by their shares
+  const reach = alike ? input.most * (input.unit === scene.unit ? factor : 1) : shown.input.most;
+  const { drawing, bodies, player } = scene;
+  shown.beside = { drawing, bodies, player, factor, reach, room: room.map((value) => value / MM[shown.unit]) };
+  for (const plot of alike ? shown.plots : []) {
     const other = scene.plots.find(({ title, unit }) => title === plot.title && inMm(unit) === inMm(plot.unit));
     if (other) plot.beside = other.series.map((series) => (other.unit === plot.unit ? series : scaled(series, factor)));
   }

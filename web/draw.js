@@ -21,6 +21,11 @@ function frame() {
   return { ...place, width, height, low, high, left, top, box };
 }
 
+// degrees, or a travel as the recipe has it
+function inputOf(angle) {
+  return `${short(angle)}${unitOf(shown.input.unit)}`;
+}
+
 function across(at, angle) {
   return at.x + (angle / shown.input.most) * at.width;
 }
@@ -41,7 +46,7 @@ function short(value) {
 // what a joint says of itself
 function said(place, level) {
   const unit = shown.plots[0].unit;
-  return `${short(place.angle)}°, ${short(level)}${unitOf(unit)}`;
+  return `${inputOf(place.angle)}, ${short(level)}${unitOf(unit)}`;
 }
 
 // takes the motion of a design; where a recipe with faults has none, that stays which was drawn into its text
@@ -75,7 +80,7 @@ function showMotion() {
 function named(segment, index) {
   const unit = unitOf(shown.plots[0].unit);
   const stroke = segment.kind in STEPPED ? ` ${short(Math.abs(segment.change))}${unit}` : "";
-  return `${index + 1}: ${segment.kind.replace("_", " and ")}${stroke} over ${short(segment.over)}°`;
+  return `${index + 1}: ${segment.kind.replace("_", " and ")}${stroke} over ${inputOf(segment.over)}`;
 }
 
 function showSegments() {
@@ -89,7 +94,9 @@ function showSegments() {
     law.replaceChildren(...field.choices.map((word) => new Option(word, word)));
     law.value = field.text;
   }
-  byId("repeat").labels[0].hidden = !motion.repeats;
+  byId("repeat").labels[0].hidden = !motion.closed;
+  const least = `${motion.step}${unitOf(shown.input.unit)}`;
+  byId("joint-keys-step").textContent = least;
   if (document.activeElement !== byId("repeat")) byId("repeat").value = motion.repeat;
   byId("delete").disabled = motion.segments.length < 2;
 }
@@ -126,7 +133,7 @@ function showHandles() {
     handles[i].dataset.joint = k;
     handles[i].className = `joint${k === chosen ? " chosen" : ""}${grip?.joint === k ? " held" : ""}`;
     handles[i].style.translate = `${across(at, places[k].angle) - REACH / 2}px ${upright(at, level) - REACH / 2}px`;
-    const ways = turns && lifts ? "" : turns ? ", in angle only" : ", in lift only";
+    const ways = turns && lifts ? "" : turns ? `, in ${shown.input.noun === "shaft" ? "angle" : "travel"} only` : ", in lift only";
     handles[i].setAttribute("aria-label", `joint ${k + 1}: ${said(places[k], level)}${ways}`);
   }
   const path = (points) => points.map(([angle, lift], i) => `${i ? "L" : "M"}${across(at, angle).toFixed(1)} ${upright(at, lift).toFixed(1)}`).join("");
@@ -153,7 +160,7 @@ function lines(segments, from, to, base) {
   });
 }
 
-// points of the motion over the turn: its repeats, or the other half, which falls as the first one rises
+// points of the motion over its whole input: its repeats, or the other half, which falls as the first one rises
 function wholeTurn(segments, base) {
   const points = lines(segments, 0, segments.length, base);
   const parts = Math.round(shown.input.most / motion.total);
@@ -211,7 +218,7 @@ function dragged(event) {
   const box = plots.getBoundingClientRect();
   const [x, y] = [event.clientX - box.left - plots.clientLeft + off[0], event.clientY - box.top - plots.clientTop + off[1]];
   const fine = event.shiftKey ? 0.1 : 1;
-  const [turn, by] = [fine, grip.step * fine];
+  const [turn, by] = [motion.step * fine, grip.step * fine];
   const angle = Math.round((((x - at.x) / at.width) * shown.input.most) / turn) * turn;
   const lift = Math.round((at.high - ((y - at.y) / at.height) * (at.high - at.low)) / by) * by;
   moveTo(angle, lift - base, by);
@@ -260,7 +267,7 @@ function pressed(event) {
   const by = hundredth(motion.segments) * fine;
   const { angle, level } = ends(motion.segments)[joint];
   grip = { joint, at: frame(), from: motion.segments, movement: `slide joint ${movements}`, handle: event.currentTarget };
-  moveTo(angle + way[0] * fine, level + way[1] * by, by);
+  moveTo(angle + way[0] * motion.step * fine, level + way[1] * by, by);
   grip = null;
   const place = ends(motion.segments)[joint];
   byId("draw-told").textContent = said(place, place.level + foot(motion.segments));

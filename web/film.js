@@ -14,6 +14,7 @@ function filmed() {
   const svg = byId("drawing");
   const parts = [...svg.querySelectorAll("path, circle, text")].filter((part) => part.getClientRects().length && getComputedStyle(part).visibility !== "hidden");
   const looks = parts.map(lookOf);
+  const outlines = parts.map((part) => part.getAttribute("d"));
   const { most, closed } = shown.input;
   const slider = byId("slider");
   const turnTo = (angle) => {
@@ -25,7 +26,11 @@ function filmed() {
     turnTo(most * (closed ? share : 1 - Math.abs(1 - 2 * share)));
     const back = svg.getScreenCTM().inverse();
     const spots = parts.map((part) => (part.tagName === "text" ? [Number(part.getAttribute("x")), Number(part.getAttribute("y"))] : null));
-    return parts.map((part, k) => ({ matrix: DOMMatrix.fromMatrix(back.multiply(part.getScreenCTM())), spot: spots[k] }));
+    return parts.map((part, k) => {
+      const drawn = part.getAttribute("d");
+      const shape = drawn === outlines[k] ? null : new Path2D(drawn); // of a part that is drawn anew at each angle
+      return { matrix: DOMMatrix.fromMatrix(back.multiply(part.getScreenCTM())), spot: spots[k], shape };
+    });
   });
   turnTo(at);
   if (playing) byId("play").click();
@@ -56,7 +61,7 @@ function paint(canvas, film, i) {
   context.fillRect(0, 0, canvas.width, canvas.height);
   Object.assign(context, { lineJoin: "round", lineCap: "round", textAlign: "center", textBaseline: "middle" });
   for (const [k, look] of film.looks.entries()) {
-    const { matrix, spot } = film.poses[i][k];
+    const { matrix, spot, shape } = film.poses[i][k];
     context.setLineDash(look.dashes);
     if (spot) {
       const at = toCanvas.multiply(matrix).transformPoint(new DOMPoint(...spot));
@@ -71,7 +76,7 @@ function paint(canvas, film, i) {
       continue;
     }
     const path = new Path2D();
-    path.addPath(look.shape, toCanvas.multiply(matrix));
+    path.addPath(shape || look.shape, toCanvas.multiply(matrix));
     context.globalAlpha = look.opacity * look.alpha;
     if (look.fill !== "none") context.fillStyle = look.fill;
     if (look.fill !== "none") context.fill(path, look.fillRule);

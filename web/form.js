@@ -310,10 +310,11 @@ function decimals(text) {
 function partner(field) {
   const place = /^(.*\bmotion)\[(\d+)\]\.(over|dwell|rise|return)$/.exec(field.path);
   if (!place) return null;
-  const [, motion, index, key] = place;
-  const numbers = recipe.fields.filter((entry) => entry.kind === "number" && entry.value !== null && entry.path.startsWith(`${motion}[`));
-  const count = 1 + Math.max(...numbers.map((entry) => Number(/\[(\d+)\]/.exec(entry.path.slice(motion.length))[1])));
-  const fieldAt = (i, keys) => numbers.find((entry) => keys.some((word) => entry.path === `${motion}[${(i + count) % count}].${word}`));
+  if (motion.behind === "nothing") return null; // a travel is as long as its segments, and ends where they do
+  const [, list, index, key] = place;
+  const numbers = recipe.fields.filter((entry) => entry.kind === "number" && entry.value !== null && entry.path.startsWith(`${list}[`));
+  const count = 1 + Math.max(...numbers.map((entry) => Number(/\[(\d+)\]/.exec(entry.path.slice(list.length))[1])));
+  const fieldAt = (i, keys) => numbers.find((entry) => keys.some((word) => entry.path === `${list}[${(i + count) % count}].${word}`));
   if (/^(over|dwell)$/.test(key) && /\b(over|dwell): *rest\b/.test(recipe.text)) return null; // that one takes what is left
   const wanted = { over: ["over", "dwell"], dwell: ["over", "dwell"], rise: ["return"], return: ["rise"] }[key];
   const way = key === "return" ? -1 : 1;

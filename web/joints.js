@@ -17,9 +17,9 @@ function ends(segments) {
   return segments.map((segment) => ({ angle: (angle += segment.over), level: (level += segment.change) }));
 }
 
-// displacement at the beginning, above the lowest place of a motion that repeats
+// displacement at the beginning, above the lowest place; where its opposite follows a motion begins where it does
 function foot(segments) {
-  if (!motion.closed) return motion.start;
+  if (motion.behind === "opposite") return motion.start;
   const least = (of) => Math.min(0, ...ends(of).map(({ level }) => level));
   return motion.start + least(motion.segments) - least(segments);
 }
@@ -50,7 +50,7 @@ function withJoint(segments, k, angle, level, by) {
   const moved = segments.map((segment) => ({ ...segment }));
   const places = ends(segments);
   if (turns) {
-    const least = Math.min(1, segments[k].over, segments[k + 1].over);
+    const least = Math.min(motion.step, segments[k].over, segments[k + 1].over);
     const begin = places[k].angle - segments[k].over;
     const wanted = Math.min(Math.max(angle, begin + least), places[k + 1].angle - least);
     moved[k + 1].over = Number((segments[k].over + segments[k + 1].over - (wanted - begin)).toFixed(9));

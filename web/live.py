@@ -24,46 +24,38 @@ from segments import changed, drawn
 
 import camgeo
 from camgeo.api.report import explanation
+from camgeo.api.root import root_by_key, root_of
 from camgeo.capabilities.follow.command import summary  # needs: follow
 from camgeo.capabilities.follow.library import READING, judged_by_recipe  # needs: follow
 from camgeo.checks.declared import declaration
 from camgeo.common.rounding import upward  # needs: follow
 from camgeo.files.errors import MissingExtraError
-from camgeo.output.dispatch import foresee
-from camgeo.output.job import Job
 from camgeo.output.pipeline import REPORT
 from camgeo.recipe.export import FileRequest
-from camgeo.recipe.extension import KEYS
-from camgeo.recipe.keys import UNITS, read_values, recipe_table
-from camgeo.recipe.recipe import of_source, root_key
+from camgeo.recipe.keys import UNITS
+from camgeo.recipe.recipe import root_key
 from camgeo.recipe.starter import starter
-from camgeo.recipe.words import words_of
-from camgeo.registry import registry
 from camgeo.registry.formats import FORMATS
 from camgeo.registry.root import CAM, reading
-from camgeo.report.page import page as pages
 from camgeo.report.page import tables
-from camgeo.report.page.content import mechanism
 from camgeo.schema.change import set_value
 from camgeo.schema.edit import number_text
 from camgeo.schema.errors import RecipeError, RecipeErrors
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.quantity import read_quantity, split_unit, units_for
-from camgeo.schema.reader import Reader
-from camgeo.schema.readers import READERS
 from camgeo.schema.scalars import Complaint, read_number
 from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, comments, entries, join, keys, scalars
-from camgeo.synthesis.design import sketched
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from camgeo.api.design import Design
     from camgeo.api.report import Report
+    from camgeo.api.shown import Shown
     from camgeo.recipe.export import Length
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.recipe import Order
     from camgeo.schema.fields import Field, FieldTable, OwnForm
+    from camgeo.schema.reader import Reader
     from camgeo.schema.yaml_source import Node
     from kin.numeric.arrays import Array
 
@@ -72,9 +64,11 @@ OUT = f"{FOLDER}/out"
 PAGE = FileRequest("html")
 ON_PAPER = 0.004  # mm: most distance of a printed contour from the exact one
 ALIKE = 1e-6  # of its size: what a recipe in another unit may differ by
+PLACES = 720  # of a motion at which it is compared
 LENGTHS = ("roller", "shoe", "width", "offset", "pivot", "arm", "x", "y", "reading", "gap")  # of a follower
 WRITTEN = {Kind.TEXT, Kind.NAME, Kind.FORMULA, Kind.RATIO}  # fields that hold a text
 NUMBERS = {Kind.LENGTH, Kind.ANGLE, Kind.NUMBER, Kind.INTEGER, Kind.STROKE}  # whose boxes stay where they hold none
+_LAST: list[Any] = []  # the recipe that was shown last, and its cam
 _WORDS: dict[OwnForm[Any], list[str]] = {}  # of forms of their own, whose schemas are large
 
 
@@ -156,11 +150,7 @@ def _fault(error: RecipeError) -> dict[str, Any]:
 
 def picture(name: str, text: str) -> dict[str, Any]:
     """What the page draws of a recipe before its cam is checked; empty for a linkage, which takes the checks."""
-    recipe = _recipe(name, text)
-    if recipe.linkage is not None:
-        return {}
-    drawn, _, relative = mechanism(recipe, sketched(recipe))
-    return pages.picture(recipe, drawn, relative, -1 if recipe.rotation == "cw" else 1)
+    return _shown(_recipe(name, text)).picture()
 
 
 def design(name: str, text: str, *, figures: bool = False) -> dict[str, Any]:
@@ -174,10 +164,10 @@ def design(name: str, text: str, *, figures: bool = False) -> dict[str, Any]:
         output["fields"] = fields(source)
         output["bare"] = bare(source)
         recipe = _recipe(name, source)
-        exact = camgeo.design(recipe)
-        scene = dict(exact.scene())
-        output["motion"] = drawn(source, exact)
-        output["figures"] = _figures(exact) if figures else []
+        shown = _shown(recipe)
+        scene = shown.scene()
+        output["motion"] = drawn(source, shown.motion())
+        output["figures"] = _figures(shown) if figures else []
     except RecipeErrors as errors:
         return {**output, "faults": [_fault(error) for error in errors.errors]}
     except camgeo.CamgeoError as error:
@@ -191,9 +181,9 @@ def design(name: str, text: str, *, figures: bool = False) -> dict[str, Any]:
         **output,
         "units": recipe.units,
         "scene": scene,
-        "ok": exact.ok,
+        "ok": not failed,
         "name": recipe.name,
-        "verdict": _verdict(exact.ok, report),
+        "verdict": _verdict(report),
         "checks": tables.checks({**report, "checks": held}),
         "failed": [_explained(check, report, recipe) for check in failed],
     }
@@ -201,14 +191,14 @@ def design(name: str, text: str, *, figures: bool = False) -> dict[str, Any]:
 
 def beside(name: str, text: str) -> dict[str, Any]:
     """What the page shows of a design that is kept beside others: its scene and its figures."""
-    exact = camgeo.design(_recipe(name, text))
-    return {"scene": dict(exact.scene()), "figures": _figures(exact)}
+    shown = _shown(_recipe(name, text))
+    return {"scene": shown.scene(), "figures": _figures(shown)}
 
 
-def _figures(exact: Design) -> list[dict[str, Any]]:
+def _figures(cam: Shown) -> list[dict[str, Any]]:
     """Figures of a design by name, each with its value, None where it is not finite, as text, and with its unit."""
     rows = []
-    for name, figure in exact.figures.items():
+    for name, figure in cam.figures.items():
         there = figure.value is not None
         value = figure.value if figure.value is not None and math.isfinite(figure.value) else None
         text = f"{value:.5g}" if value is not None else "∞" if there else "–"
@@ -216,32 +206,41 @@ def _figures(exact: Design) -> list[dict[str, Any]]:
     return rows
 
 
-def _verdict(ok: bool, report: dict[str, Any]) -> str:
+def _verdict(report: dict[str, Any]) -> str:
     """What the pill says: whether checks hold, and how many remarks there are besides."""
     count = len(report["remarks"])
     remarks = f", {count} remark{'s' if count > 1 else ''}" if count else ""
-    return f"{'every check of the design holds' if ok else tables.failing_count(report['checks'])}{remarks}"
+    holds = all(check["ok"] for check in report["checks"])
+    return f"{'every check of the design holds' if holds else tables.failing_count(report['checks'])}{remarks}"
 
 
-def _recipe(name: str, text: str | Source) -> Recipe:
-    """The recipe of one cam, whose tables are in the folder; raises RecipeErrors, for several cams too."""
+def _recipe(name: str, text: str | Source) -> Order:
+    """The recipe of a cam, whose tables are in the folder; raises RecipeErrors, and for what is not shown here."""
     path = Path(FOLDER) / f"{name}.yaml"
     source = text if isinstance(text, Source) else Source.of(text, str(path))
-    if (key := root_key(source)) != CAM and isinstance(source.root, Mapping):
-        problem = (
-            f"this page makes no {reading(key).noun}, which the command `camgeo export {name}.yaml` does on a machine"
-        )
-        remedy = (
-            f"keep the recipe beside the files that it names and give that command; here give {reading(key).instead}"
-        )
-        # its name is a key of the top level, or the kind of the cam
-        top, cam = keys(source.root), entries(source.root).get(CAM)
-        mark, place = (top[key].mark, key) if key in top else (entries(cam)["kind"].mark, f"{CAM}.kind")
-        raise RecipeErrors([RecipeError(str(path), *mark, place, problem, None, remedy)])
-    return of_source(source, path)
+    kind = reading(key := root_key(source))
+    if root_by_key(key).shown is not None or not isinstance(source.root, Mapping):
+        recipe: Order = kind.read(source, path)
+        return recipe
+    problem = f"this page makes no {kind.noun}, which the command `camgeo export {name}.yaml` does on a machine"
+    remedy = f"keep the recipe beside the files that it names and give that command; here give {kind.instead}"
+    # its name is a key of the top level, or the kind of the cam
+    top, cam = keys(source.root), entries(source.root).get(CAM)
+    mark, place = (top[key].mark, key) if key in top else (entries(cam)["kind"].mark, f"{CAM}.kind")
+    raise RecipeErrors([RecipeError(str(path), *mark, place, problem, None, remedy)])
 
 
-def _explained(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> dict[str, Any]:
+def _shown(recipe: Order) -> Shown:
+    """The cam of a recipe as the page shows it: its picture, its checks and its files are of one design."""
+    if _LAST and _LAST[0] == recipe:
+        return _LAST[1]
+    shown = root_of(recipe).shown
+    assert shown is not None  # of a recipe that `_recipe` has let pass
+    _LAST[:] = recipe, shown(recipe)
+    return _LAST[1]
+
+
+def _explained(check: dict[str, Any], report: dict[str, Any], recipe: Order) -> dict[str, Any]:
     """A check that fails in words, with the line of the recipe's field that it hangs on."""
     head, *rows = explanation(check, report, recipe).splitlines()
     parts = {name: text.strip() for name, _, text in (row.strip().partition(" ") for row in rows)}
@@ -250,7 +249,7 @@ def _explained(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) ->
     text = "; ".join(filter(None, (parts.get("found"), parts.get("remedy"))))
     declared = declaration(check["name"])
     over = "relative" if "linkage" in report and declared is not None and declared.in_frame else "shaft"
-    button = "" if check["at_deg"] is None else tables.place_button(check["at_deg"], over)
+    button = "" if check.get("at_deg", check.get("at")) is None else tables.place(check, over)
     return {"line": line, "column": column, "path": path, "head": head, "text": text, "place": button}
 
 
@@ -264,7 +263,7 @@ def fields(source: Source) -> list[dict[str, Any]]:
     """
     if not isinstance(source.root, Mapping):
         return []
-    reader = _read(source, source.root)
+    reader = _read(source)
     nodes = list(scalars(source.root))
     shared = Counter(id(node) for _, node in nodes)
     known = [
@@ -293,12 +292,9 @@ def bare(source: Source) -> str:
     return "".join(kept)
 
 
-def _read(source: Source, root: Mapping) -> Reader:
-    """A reader that has read a recipe, with all of its faults."""
-    capabilities = registry.by_words(words_of(root))
-    reader = Reader(source, READERS, recipe_table(capabilities))
-    read_values(reader, capabilities)
-    return reader
+def _read(source: Source) -> Reader:
+    """A reader that has read a recipe; that of a disc cam for a kind of recipe without fields on the page."""
+    return (reading(root_key(source)).reader or reading(CAM).reader)(source)
 
 
 def _files(reader: Reader) -> Iterator[dict[str, Any]]:
@@ -427,10 +423,8 @@ def more(name: str, text: str) -> dict[str, Any]:
     source = Source.of(text, name)
     if not isinstance(source.root, Mapping):
         return {"more": []}
-    table = recipe_table()
-    reader = Reader(source, READERS, table)
-    read_values(reader, KEYS.answering())
-    return {"more": list(_absent(reader, source.root, table))}
+    reader = _read(source)
+    return {"more": list(_absent(reader, source.root, reading(root_key(source)).table()))}
 
 
 def _absent(reader: Reader, node: Mapping, table: FieldTable, path: str = "") -> Iterator[dict[str, Any]]:
@@ -463,7 +457,7 @@ def added(name: str, text: str, path: str, value: str) -> dict[str, Any]:
 def with_segments(name: str, text: str, change: str, index: int, at: float) -> dict[str, Any]:
     """The text of a recipe with its segments changed as `segments.CHANGES` tells, and the segment chosen then."""
     source = Source.of(text, f"{FOLDER}/{name}.yaml")
-    new, chosen = changed(source, camgeo.design(_recipe(name, source)), change, index, at)
+    new, chosen = changed(source, _shown(_recipe(name, source)).motion(), change, index, at)
     return {"text": new, "chosen": chosen}
 
 
@@ -484,7 +478,7 @@ def converted(name: str, text: str, units: Length) -> dict[str, Any]:
     before = _recipe(name, text)
     source = before.source()
     assert isinstance(source.root, Mapping)
-    reader = _read(source, source.root)
+    reader = _read(source)
     factor = before.mm / UNITS[units]
     powers = {before.units: 1, f"square {before.units}": 2}
     new = text
@@ -519,19 +513,20 @@ def _brief(value: float) -> str:
     return number_text(next(number for number in (*shorter, value) if abs(number - value) <= 2e-8 * abs(value)))
 
 
-def _alike(first: Recipe, second: Recipe) -> bool:
-    """Whether two recipes make the same cam, to a millionth of its size."""
-    cam, other = camgeo.design(first), camgeo.design(second)
-    pairs = list(zip(_points(cam), _points(other), strict=True))
-    turn = np.linspace(0.0, 2.0 * np.pi, 720)
-    pairs.append((cam.motion(turn), other.motion(turn)))
-    return all(bool(np.allclose(a, b, rtol=ALIKE, atol=ALIKE * float(np.abs(a).max() + 1.0))) for a, b in pairs)
+def _alike(first: Order, second: Order) -> bool:
+    """Whether two recipes make the same cam, to a millionth of its size: by its motion and its figures."""
+    values = [_measured(recipe) for recipe in (first, second)]
+    return len(values[0]) == len(values[1]) and bool(np.allclose(*values, rtol=ALIKE, atol=ALIKE))
 
 
-def _points(cam: Design) -> list[Array]:
-    """Points of each contour of a cam, mm."""
-    runs = [(curve, np.linspace(run.low, run.high, 90)) for _, curve in cam.exact.contours for run in curve.runs]
-    return [curve.sample(along).point for curve, along in runs]
+def _measured(recipe: Order) -> Array:
+    """Figures of a cam that are lengths or angles, mm and degrees, and its motion's displacements, mm or rad."""
+    cam = _shown(recipe)
+    sizes = {"mm": 1.0, "in": UNITS["inch"], "deg": 1.0}
+    figures = [f.value * sizes[f.unit] for f in cam.figures.values() if f.value is not None and f.unit in sizes]
+    motion = cam.motion()
+    lifts = [] if isinstance(motion, str) else motion.lift(np.linspace(0.0, motion.total, PLACES))
+    return np.array([*figures, *lifts])
 
 
 # --- files ------------------------------------------------------------------------------------------------------------
@@ -568,17 +563,8 @@ def zipped(name: str, text: str, files: list[str]) -> dict[str, Any]:
 
 def paper(name: str, text: str) -> dict[str, Any]:
     """The contours of each disc of a recipe's cam, with its openings, as a PDF at true size."""
-    from camgeo.output.part_geometry import contours_of, openings_of, rim_of
-
     say("the contour")
-    recipe = _recipe(name, text)
-    job = _job(recipe)
-    drawings = []
-    for disc, single in zip(job.design.discs, job.single, strict=True):
-        with job.refusals(FileRequest("dxf")):
-            contours = single.outlines("arcs", min(recipe.export.tolerance, ON_PAPER))
-        outlines = [*contours_of(single.design, contours), *rim_of(single.body), *openings_of(single.body)]
-        drawings.append((f"{recipe.name} {disc.name}".strip(), outlines))
+    drawings = _shown(_recipe(name, text)).drawings(ON_PAPER)
     say("the sheets")
     path = Path(OUT) / f"{name}.pdf"
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -591,38 +577,23 @@ def paper(name: str, text: str) -> dict[str, Any]:
 
 def solid(name: str, text: str) -> dict[str, Any]:
     """The corners of the triangles of a recipe's solid, mm: nine numbers of single precision for each triangle."""
-    from camgeo.output.solid import cam_meshes, foresee
-
     say("the triangles")
-    job, request = _job(_recipe(name, text)), FileRequest("stl")
-    with job.refusals(request):
-        foresee(job, request)
-    corners = [np.take(disc.standing.points, disc.mesh.triangles, axis=0) for disc in cam_meshes(job, request)]
+    meshes = _shown(_recipe(name, text)).meshes(FileRequest("stl"))
+    corners = [np.take(mesh.points, mesh.triangles, axis=0) for mesh in meshes]
     path = Path(OUT) / "triangles"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(np.concatenate(corners).astype("<f4").tobytes())
     return {"files": [{"name": path.name, "path": str(path)}]}
 
 
-def _job(recipe: Recipe) -> Job:
-    """What the files of a recipe are made from; raises CallError where a failed check leaves no contour."""
-    design = camgeo.design(recipe)
-    if not design.exact.contours:
-        raise camgeo.CallError("there is no contour: a check fails")
-    return Job.of(recipe, design.exact)
-
-
 def absent(name: str, text: str) -> dict[str, Any]:
     """Formats that cannot be made here of a recipe's part, each with the package that is missing."""
-    design = camgeo.design(_recipe(name, text))
+    cam = _shown(_recipe(name, text))
     reasons: dict[str, str] = {}
-    if not design.exact.contours:
-        return {"absent": reasons}
-    job = Job.of(design.recipe, design.exact)
     for kind in FORMATS:
         with suppress(camgeo.CamgeoError):  # what else stands in its way is said when it is asked for
             try:
-                foresee(job, FileRequest(kind))
+                cam.foresee(FileRequest(kind))
             except MissingExtraError as error:
                 reasons[kind] = str(error)
     return {"absent": reasons}

@@ -102,8 +102,8 @@ def _count(length: float, room: float) -> int:
     return 1 if length <= room else math.ceil((length - OVERLAP) / (room - OVERLAP))
 
 
-def pdf(drawings: Sequence[tuple[str, Sequence[LayerOutline]]]) -> bytes:
-    """PDF of drawings, each with its title and its outlines in mm: one path for each contour, in mm.
+def pdf(drawings: Sequence[tuple[str, Sequence[LayerOutline | Array]]]) -> bytes:
+    """PDF of drawings, each with its title, its closed outlines and open lines (n, 2), mm: one path for each, in mm.
 
     Raises TooManySheetsError.
     """
@@ -116,7 +116,9 @@ def pdf(drawings: Sequence[tuple[str, Sequence[LayerOutline]]]) -> bytes:
     return _document(pages)
 
 
-def _box(layered: LayerOutline) -> tuple[float, float, float, float]:
+def _box(layered: LayerOutline | Array) -> tuple[float, float, float, float]:
+    if isinstance(layered, np.ndarray):
+        return (*layered.min(axis=0).tolist(), *layered.max(axis=0).tolist())
     if layered.circle is None:
         return layered.outline.box()
     (x, y), r = layered.circle
@@ -126,8 +128,13 @@ def _box(layered: LayerOutline) -> tuple[float, float, float, float]:
 # --- a contour --------------------------------------------------------------------------------------------------------
 
 
-def path(layered: LayerOutline) -> str:
-    """Operators of a closed path, mm: lines and cubics; raises ValueError for an outline of no known kind."""
+def path(layered: LayerOutline | Array) -> str:
+    """Operators of a closed path, or of an open line, mm: lines and cubics.
+
+    Raises ValueError for an outline of no known kind.
+    """
+    if isinstance(layered, np.ndarray):
+        return "\n".join(f"{_numbers(point)} {'l' if i else 'm'}" for i, point in enumerate(layered))
     outline = layered.outline
     if layered.circle is not None:
         (x, y), r = layered.circle

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isclose
+from math import floor, isclose, log10
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,13 +17,12 @@ from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, Source, entries
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.api.design import Design
-    from camgeo.recipe.recipe import Recipe
+    from camgeo.motions.stated import StatedMotion
     from camgeo.schema.change import Value
     from camgeo.schema.yaml_source import Node
 
 SHAPE = 24  # steps in which the page draws a segment
-PLACES = 9  # decimals of degrees and lifts: more are rounding
+PLACES = 9  # decimals of inputs and lifts: more are rounding
 SOURCES = {
     "table": "The motion is a table: its rows are changed in the file, or as text.",
     "points": "The motion is a spline through points: they are changed as text.",
@@ -36,7 +35,7 @@ OPPOSITE = {"rise": "return", "return": "rise"}
 
 
 class _Segment(NamedTuple):
-    """A segment as the recipe has it: kind, degrees, and how much higher its end lies, in the plot's unit."""
+    """A segment as the recipe has it: kind, extent, and how much higher its end lies, in the units of the plot."""
 
     kind: str
     over: float
@@ -47,35 +46,44 @@ class _Segment(NamedTuple):
 
 
 class _Motion(NamedTuple):
-    """A motion of segments over `total` degrees, which repeats if it is `closed`; else the other half turn follows."""
+    """A motion of segments over `total` of its input; `behind` says what follows, as of a `StatedMotion`.
+
+    `step` is the least extent of a segment that is drawn, and the least move of a joint along the input.
+    """
 
     path: str
     total: float
+    step: float
+    unit: str
     repeat: int
-    closed: bool
+    behind: str
     start: float
     segments: list[_Segment]
 
+    @property
+    def closed(self) -> bool:
+        """Whether it goes on as it began, so that it ends where it began."""
+        return self.behind == "same"
 
-def drawn(source: Source, exact: Design) -> dict[str, Any]:
+
+def drawn(source: Source, stated: StatedMotion | str) -> dict[str, Any]:
     """The motion as the page draws it: its segments with their shapes, or why there is nothing to drag.
 
-    Angles are in degrees, lifts in the unit of the plot; the shape of a segment goes from 0 to 1 with its lift.
+    Inputs and lifts are in the units of the plot; the shape of a segment goes from 0 to 1 with its lift.
     """
-    motion = _motion(source, exact)
+    motion = _motion(source, stated)
     if isinstance(motion, str):
         return {"why": motion}
     segments = [{**segment._asdict(), "node": None, "flow": segment.node.flow} for segment in motion.segments]
-    return {**motion._asdict(), "why": "", "segments": segments, "repeats": _may_repeat(exact.recipe)}
+    return {**motion._asdict(), "why": "", "segments": segments, "closed": motion.closed}
 
 
-def _motion(source: Source, exact: Design) -> _Motion | str:
+def _motion(source: Source, stated: StatedMotion | str) -> _Motion | str:
     """The segments of a recipe's motion, or why it has none to drag."""
-    recipe = exact.recipe
+    if isinstance(stated, str):
+        return stated
     cam = entries(source.root).get("cam") if isinstance(source.root, Mapping) else None
     node = entries(cam).get("motion") if isinstance(cam, Mapping) else None
-    if recipe.linkage is not None:
-        return "The plot shows what the linkage makes of the motion, which is changed in its boxes."
     if node is None:
         return "The recipe of this cam gives no motion over the shaft angle: change what it gives in its boxes."
     path = "cam.motion"
@@ -83,33 +91,33 @@ def _motion(source: Source, exact: Design) -> _Motion | str:
         path, node = "cam.motion.segments", entries(node)["segments"]
     if isinstance(node, Mapping):
         return next((why for key, why in SOURCES.items() if key in entries(node)), "The motion is changed as text.")
-    given = getattr(recipe.cam, "motion", None)
+    given = stated.source
     if not isinstance(given, Segments) or not isinstance(node, Sequence):
         return "The motion is changed as text."
-    span = float(np.degrees(recipe.cam.motion_span))
+    total = stated.total / stated.repeat
+    if not isclose(sum(segment.over for segment in given.segments), total):
+        return "The travel of this motion is found by sizing: give its lengths as numbers to draw it."
     ends = np.cumsum([0.0, *(segment.over for segment in given.segments)])
     places = np.linspace(0.0, 1.0, SHAPE + 1)
-    factor = 1.0 / recipe.mm if exact.unit == "mm" else 180.0 / np.pi
     segments = []
     for segment, item, first, last in zip(given.segments, node.items, ends[:-1], ends[1:], strict=True):
         if not isinstance(item, Mapping):
             return "The motion is changed as text."
-        lifts = exact.motion(first + (last - first) * np.where(places == 1.0, 1.0 - 1e-9, places)) * factor
+        inputs = first + (last - first) * np.where(places == 1.0, 1.0 - 1e-9, places)
+        lifts = stated.lift(inputs) * stated.per_lift
         change = 0.0 if segment.kind in {"dwell", "rise_fall"} else float(lifts[-1] - lifts[0])
         height = float(np.abs(lifts - lifts[0]).max()) if segment.kind == "rise_fall" else change
         shape = (lifts - lifts[0]) / height if abs(height) > 1e-12 else np.zeros_like(lifts)
         words = [one.text for key, one in entries(item).items() if key in {"over", "dwell"} and isinstance(one, Scalar)]
         free = not set(words).isdisjoint({"least", "rest"})
-        over = round(float(np.degrees(last - first)), PLACES)
+        over = round(float(last - first) * stated.per_input, PLACES)
         segments.append(_Segment(segment.kind, over, _brief(change), [round(float(s), 4) for s in shape], free, item))
-    closed = isclose(span, 360.0)
-    start = _brief(float(exact.motion(0.0)) * factor)
-    return _Motion(path, round(span / given.repeat, PLACES), given.repeat, closed, start, segments)
-
-
-def _may_repeat(recipe: Recipe) -> bool:
-    """Whether segments of this cam may fill the turn several times: those of a whole turn."""
-    return isclose(float(np.degrees(recipe.cam.motion_span)), 360.0)
+    start = _brief(float(stated.lift(np.zeros(1))[0]) * stated.per_lift)
+    extent = round(total * stated.per_input, PLACES)
+    angle = isclose(stated.per_input, float(np.degrees(1.0)))
+    step = 1.0 if angle else 10.0 ** floor(log10(extent / 50.0))
+    unit = "degrees" if angle else "units of the travel"
+    return _Motion(path, extent, step, unit, stated.repeat, stated.behind, start, segments)
 
 
 def _brief(value: float) -> float:
@@ -120,13 +128,13 @@ def _brief(value: float) -> float:
 # --- changes ----------------------------------------------------------------------------------------------------------
 
 
-def changed(source: Source, exact: Design, change: str, index: int, at: float) -> tuple[str, int]:
+def changed(source: Source, stated: StatedMotion | str, change: str, index: int, at: float) -> tuple[str, int]:
     """The text of a recipe with its segments changed, and the index of the segment that is chosen then.
 
-    `change` is a word of `CHANGES`; `at` is the angle of a new joint, degrees, or how often the motion repeats. Raises
-    CallError where that cannot be, and RecipeErrors for texts that cannot be changed without harm.
+    `change` is a word of `CHANGES`; `at` is the input of a new joint, as in the plot, or how often the motion repeats.
+    Raises CallError where that cannot be, and RecipeErrors for texts that cannot be changed without harm.
     """
-    motion = _motion(source, exact)
+    motion = _motion(source, stated)
     if isinstance(motion, str):
         raise camgeo.CallError(motion)
     if not 0 <= index < len(motion.segments):
@@ -192,11 +200,12 @@ def _plain(node: Node) -> Value:
         return node.text
 
 
-def _demand_angle(segment: _Segment) -> None:
+def _demand_room(motion: _Motion, segment: _Segment) -> None:
+    """Refuse a segment that is too short to be two."""
     if segment.free:
         raise camgeo.CallError("the angle of this segment is left open: give it a number first")
-    if segment.over < 2.0:
-        raise camgeo.CallError("this segment is shorter than 2 degrees: lengthen it first")
+    if segment.over < 2.0 * motion.step:
+        raise camgeo.CallError(f"this segment is shorter than {2.0 * motion.step:g} {motion.unit}: lengthen it first")
 
 
 def _level(motion: _Motion, index: int) -> float:
@@ -207,8 +216,9 @@ def _level(motion: _Motion, index: int) -> float:
 def _split(text: _Text, index: int, share: float) -> tuple[str, int]:
     """A joint within a segment, on its curve; each part has the law of the whole."""
     segment, motion = text.motion.segments[index], text.motion
-    _demand_angle(segment)
-    first = min(max(round(segment.over * share), 1.0), segment.over - 1.0)
+    _demand_room(motion, segment)
+    step = motion.step
+    first = min(max(round(segment.over * share / step) * step, step), segment.over - step)
     rest = segment.over - first
     if segment.kind == "displacement":
         raise camgeo.CallError("a displacement by a formula is not split: write the parts as text")
@@ -251,9 +261,10 @@ def _stated(segment: _Segment) -> float:
 
 def _add(text: _Text, _: int, at: float) -> tuple[str, int]:
     """A joint at an angle of the shaft."""
-    angle, motion = at % text.motion.total, text.motion
+    motion = text.motion
+    angle = at % motion.total if motion.closed else at
     if not motion.closed and at > motion.total:
-        raise camgeo.CallError(f"the motion is given up to {motion.total:g} degrees; what follows comes of it")
+        raise camgeo.CallError(f"the motion is given up to {motion.total:g} {motion.unit}; what follows comes of it")
     for index, segment in enumerate(motion.segments):
         if angle < segment.over or index == len(motion.segments) - 1:
             return _split(text, index, min(angle / segment.over, 1.0))
@@ -276,7 +287,7 @@ def _partner(motion: _Motion, index: int) -> int | None:
 def _copy(text: _Text, index: int, _: float) -> tuple[str, int]:
     """A segment twice, each over half of its angle; its partner moves as much as both."""
     segment, motion = text.motion.segments[index], text.motion
-    _demand_angle(segment)
+    _demand_room(motion, segment)
     if segment.kind in {"dwell", "to"}:
         return _split(text, index, 0.5)
     partner = _partner(motion, index)
@@ -340,12 +351,13 @@ def _repeat(text: _Text, index: int, times: float) -> tuple[str, int]:
     """The segments so many times a turn, each over as much less."""
     motion, count = text.motion, round(times)
     if not motion.closed:
-        raise camgeo.CallError("this cam's motion fills half a turn, and the other half follows from it")
+        half = "this cam's motion fills half a turn, and the other half follows from it"
+        raise camgeo.CallError(half if motion.behind == "opposite" else "a travel from end to end does not repeat")
     if not 1 <= count <= 100:
         raise camgeo.CallError("give a whole number from 1 to 100")
     if any(segment.free for segment in motion.segments):
         raise camgeo.CallError("an angle is left open: give it a number first")
-    left = round(360.0 / count, PLACES)  # what the last one takes, so that they fill the turn
+    left = round(motion.total * motion.repeat / count, PLACES)  # what the last one takes, so that they fill the turn
     for i, segment in enumerate(motion.segments):
         over = left if i == len(motion.segments) - 1 else round(segment.over * motion.repeat / count, PLACES)
         left -= over
@@ -375,19 +387,20 @@ def _within_repeat(source: Source, count: int) -> str:
 
 
 def _reverse(text: _Text, index: int, _: float) -> tuple[str, int]:
-    """The motion backwards: the last segment first, rises for returns; over half a turn rises stay rises."""
+    """The motion backwards: the last segment first, rises for returns; where its opposite follows rises stay rises."""
     motion = text.motion
+    flips = motion.behind != "opposite"
     for number, segment in enumerate(motion.segments, 1):
         given = entries(segment.node)
         law = given.get("law")
         own = isinstance(law, Mapping) and "uniform" in entries(law)
         mirrored = np.allclose(np.array(segment.shape) + segment.shape[::-1], 1.0, atol=2e-3)
-        turned = not (motion.closed or segment.kind in {"dwell", "rise_fall"} or mirrored)
+        turned = not (flips or segment.kind in {"dwell", "rise_fall"} or mirrored)
         if "at_end" in given or segment.kind == "displacement" or own or turned:
             raise camgeo.CallError(f"segment {number} has a law that does not run backwards: change it as text")
     new, last = text.text, len(motion.segments) - 1
     for segment in reversed(motion.segments):
-        if segment.kind in OPPOSITE and motion.closed:
+        if segment.kind in OPPOSITE and flips:
             key = next(one for one, _ in segment.node.entries if isinstance(one, Scalar) and one.text == segment.kind)
             first, end = text.source.index(key.mark), text.source.index(key.end)
             new = new[:first] + OPPOSITE[segment.kind] + new[end:]
@@ -395,7 +408,7 @@ def _reverse(text: _Text, index: int, _: float) -> tuple[str, int]:
     for i, segment in enumerate(motion.segments):
         if segment.kind == "to":
             level = _level(motion, i - 1) - _level(motion, last)
-            text.put(i, "to", level if motion.closed else -level)
+            text.put(i, "to", level if flips else -level)
     for i in range(last):
         text.take(move_item(text.source, motion.path, last, i))
     return text.text, last - index

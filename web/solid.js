@@ -108,9 +108,30 @@ view.addEventListener("webglcontextlost", () => (solid = null));
 byId("solid").addEventListener("click", async () => {
   if (!view.getContext("webgl")) {
     byId("hand-told").textContent = "This browser has no WebGL, so the solid is not shown here; its STL, saved, opens in any viewer of solids.";
+    showUnrolled();
     return;
   }
+  const late = setTimeout(showUnrolled, PATIENCE);
   const answer = await ofMade(byId("solid"), "making the solid", "solid");
-  if (answer) showSolid(new Float32Array(answer.files[0].bytes.buffer));
+  clearTimeout(late);
+  if (!answer) return;
+  byId("solid-meanwhile").hidden = true;
+  showSolid(new Float32Array(answer.files[0].bytes.buffer));
 });
-tab.addEventListener("made", () => (byId("solid-figure").hidden = true));
+tab.addEventListener("made", () => {
+  byId("solid-figure").hidden = true;
+  byId("solid-meanwhile").hidden = true;
+});
+
+// Until its mesh is there, or where none comes, a drum is shown unrolled.
+const PATIENCE = 2000; // ms
+function showUnrolled() {
+  const drawn = byId("panels").querySelector("#development");
+  if (!drawn || made?.text !== recipe.text) return;
+  const copy = drawn.cloneNode(true);
+  for (const part of [copy, ...copy.querySelectorAll("[id]")]) part.removeAttribute("id");
+  byId("solid-unrolled").replaceChildren(copy);
+  byId("solid-figure").hidden = true;
+  byId("solid-meanwhile").hidden = false;
+  byId("solid-meanwhile").scrollIntoView({ block: "nearest" });
+}

@@ -91,6 +91,7 @@ async function begin() {
   if (linked && !isWhole(hash)) return refuse();
   play(firstScene);
   const next = isWhole(hash) ? await unpacked(hash).catch(() => null) : null;
+  place = next?.at ?? null;
   if (next) own = hash;
   else if (linked) return refuse();
   if (next && !linked) history.replaceState(null, "", hash);

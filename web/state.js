@@ -169,7 +169,8 @@ function checksum(letters) {
   return (~sum >>> 0).toString(16).padStart(8, "0");
 }
 
-// what stands behind the # for a recipe: the checksum of the rest, and the rest; a design that is kept comes last
+// what stands behind the # for a recipe: the checksum of the rest, and the rest; a design that is kept comes last, but
+// for the place of the shaft or the plate, which links of the examples have
 async function packed({ name, text, tables, beside = null }) {
   const json = JSON.stringify([name, text, tables, ...(beside ? [[beside.name, beside.text, beside.tables]] : [])]);
   const bytes = await through(new TextEncoder().encode(json), new CompressionStream("deflate-raw"));
@@ -194,7 +195,7 @@ async function unpacked(hash) {
   const binary = atob(hash.slice(11).replace(/-/g, "+").replace(/_/g, "/"));
   const bytes = Uint8Array.from(binary, (letter) => letter.charCodeAt(0));
   const held = JSON.parse(new TextDecoder().decode(await through(bytes, new DecompressionStream("deflate-raw"))));
-  return { ...whole(held), beside: held[3] ? whole(held[3]) : null };
+  return { ...whole(held), beside: held[3] ? whole(held[3]) : null, ...(Number.isFinite(held[4]) ? { at: held[4] } : {}) };
 }
 
 function whole([name, text, tables]) {
@@ -213,6 +214,7 @@ let due = null; // what is written next
 let fresh = false; // whether that is a new entry
 let own = ""; // what was written last
 let writing = Promise.resolve();
+let place = null; // where the design of a link stands when it is there
 
 function noteEntry() {
   writeAddress();
@@ -248,6 +250,7 @@ async function arrived() {
   if (location.hash !== hash) return;
   due = null;
   own = hash;
+  place = next?.at ?? null;
   if (next === null) refuse();
   else if (isLast(recipe.done, next)) back(recipe.done, recipe.undone);
   else if (isLast(recipe.undone, next)) back(recipe.undone, recipe.done);

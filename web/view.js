@@ -66,8 +66,9 @@ function showUnjudged() {
 // the mechanism before its checks
 function showPicture(picture) {
   tab.classList.remove("stale");
-  const same = shown?.name === picture.name && !shown.linked;
-  play({ ...firstScene, ...shown, ...picture, marks: [], ...(same ? {} : { plots: [], rests: [], linked: false }) });
+  const same = shown?.name === picture.name && !shown.linked && shown.input.name === picture.input.name;
+  const none = { plots: [], rests: [], linked: false, panels: "" };
+  play({ ...firstScene, ...shown, player: null, ...picture, marks: [], ...(same ? {} : none) });
   countShown();
 }
 
@@ -81,13 +82,24 @@ function play(scene) {
   shown = scene;
   tab.dispatchEvent(new Event("plays"));
   tab.classList.remove("empty");
+  showPanels(scene.panels || "");
   const root = document.documentElement;
-  const begin = endPlayer
+  const begin = place !== null && scene !== firstScene ? { at: place, playing: false } : endPlayer
     ? { at: Number(root.dataset.at), playing: root.dataset.playing === "true" }
     : { at: 0, playing: !window.matchMedia("(prefers-reduced-motion: reduce)").matches };
+  if (scene !== firstScene) place = null;
   if (endPlayer) endPlayer();
   endPlayer = playScene(scene, begin);
   tab.dispatchEvent(new Event("played"));
+}
+
+// panels of a kind of cams of its own, which its player moves
+let panels = "";
+function showPanels(html) {
+  if (html === panels) return;
+  panels = html;
+  byId("panels").hidden = !html;
+  byId("panels").innerHTML = html;
 }
 
 // --- faults ---------------------------------------------------------------------------------------------------------
@@ -106,6 +118,7 @@ function showNothing() {
   tab.classList.add("empty");
   tab.classList.remove("unjudged", "stale");
   byId("stage").querySelector("figure").replaceChildren();
+  showPanels("");
   for (const id of ["checks", "failed", "faults", "form", "name"]) byId(id).replaceChildren();
   formOf = "";
   numberLines([]);

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.api.root import Root
+from camgeo.api.shown import ShownCam
 from camgeo.output import pipeline
 
 if TYPE_CHECKING:
@@ -60,4 +61,5 @@ ROOT = Root(
     show=pipeline.judge_and_show,
     explain=_explain,
     foresee=_foresee,
+    shown=ShownCam,
 )

@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
 
 from camgeo.api.root import Root
+from camgeo.api.shown import Shown
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from camgeo.api.check import Check, Figures
-    from camgeo.api.root import Designed
+    from camgeo.api.shown import Drawing
     from camgeo.checks.declaration import Entry
+    from camgeo.files.mesh import Mesh
+    from camgeo.motions.stated import StatedMotion
     from camgeo.output.extension import FileCall
     from camgeo.output.own_kind import OwnKind
     from camgeo.output.pipeline import Outcome
+    from camgeo.recipe.export import FileRequest
     from camgeo.synthesis.expected_checks import Foreseen
 
 
@@ -28,7 +33,7 @@ class Library(Protocol):
         """Field of the recipe that influences a check most, by the check's name; `cam` for one that is not named."""
         ...
 
-    def cam_of(self, recipe: Any, /) -> Designed:  # noqa: ANN401 - the kind's own recipe, as below
+    def cam_of(self, recipe: Any, /) -> KindDesign:  # noqa: ANN401 - the kind's own recipe, as below
         """Design of a recipe; raises RecipeErrors where there is none."""
         ...
 
@@ -79,7 +84,62 @@ def root_of_kind(
         explain=explain,
         foresee=lambda recipe: library().foreseen(recipe),
         show=lambda recipe, paths, *bounds: run().report_and_page(recipe, paths, bounds),
+        shown=lambda recipe: ShownKind(recipe, run(), library()),
     )
+
+
+class ShownKind(Shown):
+    """A cam of a kind of its own, as that kind answers in a run."""
+
+    def __init__(self, recipe: Any, kind: OwnKind[Any, Any], library: Library) -> None:  # noqa: ANN401
+        """`recipe` is that of the cam; `kind` and `library` answer for its kind."""
+        self.recipe, self.kind, self.library = recipe, kind, library
+
+    @cached_property
+    def _design(self) -> Any:  # noqa: ANN401
+        from camgeo.common.clock import Clock
+
+        return self.kind.designed(self.recipe, Clock())
+
+    def picture(self) -> dict[str, Any]:
+        """Data of the mechanism."""
+        return self.kind.picture(self._design)
+
+    def still(self, at: float = 0.0) -> str:
+        """The kind's bodies, drawn once."""
+        from camgeo.report.page.svg import still
+
+        step = self.kind.seen(self._design, 0).step_at(at)
+        return still(self.kind.seen(self._design, step), step, self.recipe.name)
+
+    def scene(self) -> dict[str, Any]:
+        """Data of the whole page."""
+        return self.kind.scene(self._design)
+
+    def looks(self) -> tuple[str, str]:
+        """Style and code of the kind."""
+        return self.kind.looks()
+
+    @property
+    def figures(self) -> Figures:
+        """Figures of the library's design."""
+        return self.library.cam_of(self.recipe).figures
+
+    def motion(self) -> StatedMotion | str:
+        """The motion over the kind's own input."""
+        return self.kind.motion(self._design)
+
+    def foresee(self, request: FileRequest) -> None:
+        """As a run does."""
+        self.kind.foresee(self._design, request)
+
+    def drawings(self, tolerance: float) -> list[Drawing]:
+        """Drawings of the kind."""
+        return self.kind.drawings(self._design, min(self.recipe.export.tolerance, tolerance))
+
+    def meshes(self, request: FileRequest) -> list[Mesh]:
+        """The mesh of the part."""
+        return [self.kind.mesh(self._design, request)]
 
 
 class KindDesign(ABC):

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.api.check import Check
+    from camgeo.api.shown import Shown
     from camgeo.output.extension import FileCall
     from camgeo.output.pipeline import Outcome
     from camgeo.recipe.recipe import Order
@@ -43,6 +44,7 @@ class Root(Generic[R]):
     show     report on files of any origin, and the page that shows them; None where there is no page
     explain  text of several lines on a failed check: (check, report, recipe, name of the recipe's file)
     foresee  checks that a run will make
+    shown    its cam as a page in a browser shows it; None where such a page does not take it
     """
 
     design: Callable[[R], Designed]
@@ -53,10 +55,16 @@ class Root(Generic[R]):
     explain: Callable[[dict[str, Any], dict[str, Any], R, str | None], str]
     foresee: Callable[[R], Sequence[Foreseen]]
     show: Callable[[R, list[Path], float | None, float | None, float | None], tuple[dict[str, Any], str]] | None = None
+    shown: Callable[[R], Shown] | None = None
 
 
 def root_of(recipe: R) -> Root[R]:
     """Functions of a recipe's kind."""
-    module = _OF_A_CAM if recipe.root == CAM else f"{registry.PACKAGE}.{folders()[recipe.root]}.root"
-    functions: Root[R] = import_module(module).ROOT
+    return root_by_key(recipe.root)
+
+
+def root_by_key(key: str) -> Root[Any]:
+    """Functions of a kind of recipe, by its key; raises KeyError for a key that no kind of recipe has."""
+    module = _OF_A_CAM if key == CAM else f"{registry.PACKAGE}.{folders()[key]}.root"
+    functions: Root[Any] = import_module(module).ROOT
     return functions

@@ -7,6 +7,7 @@ from collections import Counter
 from contextlib import closing, suppress
 from dataclasses import asdict
 from functools import partial
+from os.path import realpath
 from typing import TYPE_CHECKING
 
 from camgeo.cli.exit_status import SURROUNDINGS, WRONG, of_run
@@ -141,7 +142,7 @@ def folder_conflicts(recipes: Sequence[Order]) -> list[str]:
 
     Empty without such recipes.
     """
-    paths = [recipe.path.resolve() for recipe in recipes]
+    paths = [realpath(recipe.path) for recipe in recipes]
     first = {path: i for i, path in reversed(list(enumerate(paths)))}
     repeated = [recipe for i, recipe in enumerate(recipes) if first[paths[i]] != i]
     if repeated:

@@ -13,17 +13,22 @@ from camgeo.files.errors import MissingExtraError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.pipeline import REPORT, Outcome, demand_any
 from camgeo.recipe.export import FileRequest
-from camgeo.report.document import Findings, as_json, document
+from camgeo.report.document import Findings, as_json, document, finite
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from camgeo.files.layer_outline import LayerOutline
+    from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
     from camgeo.measures.rule_remark import RuleRemark
+    from camgeo.motions.stated import StatedMotion
     from camgeo.recipe.recipe import Order
+    from camgeo.report.page.scene import Scene
     from kin.law.sources.motion import Kept
+    from kin.numeric.arrays import Array
     from kin.numeric.check import Check
 
 
@@ -139,7 +144,14 @@ class OwnKind(Generic[D, V]):
     maker     function that makes and judges a file of a design: (request, path)
     judged    kin's verdict on a file
     pieces    number of pieces of a file by its verdict
-    page      HTML of the page: (design, files, report)
+    seen      bodies to be drawn, over the kind's input, and of what is drawn anew the shape at a step
+    picture   data of its script that show and move the mechanism: entries of `camgeo.report.page.page.picture`
+    script    all data of its script, of a page without files too: (design, files)
+    panels    HTML of its own panels: (design, report)
+    looks     rules of style of these panels, and the code of the players that `script` names
+    motion    the motion as the recipe states it
+    drawings  drawings at true size within a tolerance, mm: titles, with closed outlines and open lines (n, 2), mm
+    mesh      mesh of the part for a request of one; raises RecipeErrors where none can be made
     formats   words of the formats whose absence a report states
     """
 
@@ -153,7 +165,14 @@ class OwnKind(Generic[D, V]):
     maker: Callable[[D, Clock], Callable[[FileRequest, Path], Made[V]]]
     judged: Judging[D, V]
     pieces: Callable[[V], int]
-    page: Callable[[D, Sequence[Made[V]], dict[str, Any]], str]
+    seen: Callable[[D, int], Scene]
+    picture: Callable[[D], dict[str, Any]]
+    script: Callable[[D, Sequence[Made[V]]], dict[str, Any]]
+    panels: Callable[[D, dict[str, Any]], str]
+    looks: Callable[[], tuple[str, str]]
+    motion: Callable[[D], StatedMotion]
+    drawings: Callable[[D, float], list[tuple[str, Sequence[LayerOutline | Array]]]]
+    mesh: Callable[[D, FileRequest], Mesh]
     formats: tuple[str, ...]
 
     def export(
@@ -201,6 +220,22 @@ class OwnKind(Generic[D, V]):
         run = self._judged(recipe, paths, bounds)
         report = run.report
         return report, self.page(run.design, run.made, report)
+
+    def scene(self, design: D) -> dict[str, Any]:
+        """Data of the script of a page without files, with its `panels`, `checks` and `remarks`."""
+        clock = Clock()
+        checks, figures = self._examined(design, clock)
+        report = self._run(design, figures, [], checks, clock=clock).report
+        told = {key: finite(report[key]) for key in ("checks", "remarks")}
+        return {**self.script(design, ()), "panels": self.panels(design, report), **told}
+
+    def page(self, design: D, made: Sequence[Made[V]], report: dict[str, Any]) -> str:
+        """HTML of the page, from the design, the files that were made or given, and the report."""
+        from camgeo.report.page.page import filled
+
+        style, code = self.looks()
+        data, panels = self.script(design, made), self.panels(design, report)
+        return filled(design.recipe, data, report, panels=panels, style=style, code=code)
 
     def _judged(self, recipe: Order, paths: list[Path], bounds: Bounds) -> Run[D, V]:
         tolerance, units, gap = bounds

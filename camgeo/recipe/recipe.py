@@ -411,6 +411,11 @@ def _read(source: Source, capabilities: tuple[str, ...]) -> tuple[Reader, Values
     return reader, read_values(reader, capabilities)
 
 
+def reader_of(source: Source) -> Reader:
+    """Reader that has read the text of a cam, with all of its faults."""
+    return _read(source, registry.by_words(words_of(source.root)))[0]
+
+
 def file_bytes(path: str | PathLike[str]) -> bytes:
     """Bytes of a recipe's file, at most the first `MAX_BYTES` + 1, by which a larger file is known.
 
@@ -465,4 +470,4 @@ def _build(values: Values, document: Document, capabilities: tuple[str, ...]) ->
     )
 
 
-READING = Reading(table=recipe_table, read=of_source)
+READING = Reading(table=recipe_table, read=of_source, reader=reader_of)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.schema.fields import FieldTable
+    from camgeo.schema.reader import Reader
     from camgeo.schema.yaml_source import Source
 
 R = TypeVar("R")
@@ -30,12 +31,14 @@ class Reading(Generic[R]):
 
     table    table of the recipe's keys
     read     recipe of a parsed text, at a path; raises RecipeErrors with all faults
+    reader   reader that has read a parsed text: it knows the field and the unit of each value; None where none is given
     noun     what such a recipe is of, without an article: `camshaft`
     instead  the recipe to give in its place where one of a disc cam is needed: `the recipe of a lobe`
     """
 
     table: Callable[[], FieldTable]
     read: Callable[[Source, Path], R]
+    reader: Callable[[Source], Reader] | None = None
     noun: str = "disc cam"
     instead: str = ""
 

@@ -1,8 +1,7 @@
 """A roller with ends set down on triangles at given angles, on edges and on cuts at its ends.
 
 Seen along the roller's axis, the part of a triangle within the roller's length is a polygon, and the roller a circle.
-On a side of it, from (y, v) on by s (dy, dv), F = v + sqrt(R^2 - y^2) is greatest at one of its ends or where
-y = R dv/hypot(dy, dv), with the sign of dy, for a cylinder whose axis is a radius.
+On a side of it F is greatest where the roller says (`kin.cylindrical.roller`).
 """
 
 from __future__ import annotations
@@ -14,8 +13,8 @@ import numpy as np
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from kin.cylindrical.gauge import Gauge
-    from kin.numeric.arrays import Array, Indices, Mask
+    from kin.cylindrical.roller import Gauge
+    from kin.numeric.arrays import Array, Indices
 
 PAIRS = 200_000  # of a triangle and an angle at a time
 
@@ -58,7 +57,8 @@ def _gives(gauge: Gauge, corners: Array, theta: Array) -> Array:
     cuts: dict[float, list[tuple[Array, Array]]] = {gauge.inner: [], gauge.outer: []}
 
     def greatest(ends: tuple[Array, Array], shares: tuple[Array, Array]) -> Array:
-        return np.maximum(best, gauge.greatest(ends, shares, (lift, sine, cosine)))
+        most: Array = np.maximum(best, gauge.greatest(ends, shares, (lift, sine, cosine)))
+        return most
 
     for j in range(3):
         k = (j + 1) % 3
@@ -80,26 +80,6 @@ def _gives(gauge: Gauge, corners: Array, theta: Array) -> Array:
         whole = np.zeros(len(theta)), np.where(flags.any(axis=0), 1.0, -1.0)
         best = greatest((places[first, rows], places[last, rows]), whole)
     return best
-
-
-def best_share(
-    radius: float, y: tuple[Array, Array], v: tuple[Array, Array], shares: tuple[Array, Array]
-) -> tuple[Array, Mask]:
-    """Share (n,) of segments at which F is greatest, from the first to the last of two shares of each, and if any is.
-
-    A segment goes from y[0], v[0] to y[1], v[1], (n,) each.
-    """
-    dy, dv = y[1] - y[0], v[1] - v[0]
-    low, high = shares
-    with np.errstate(divide="ignore", invalid="ignore"):
-        reach = [(sense * radius - y[0]) / dy for sense in (-1.0, 1.0)]
-        flat = dy == 0.0
-        low = np.where(flat, low, np.maximum(low, np.minimum(*reach)))
-        high = np.where(flat, high, np.minimum(high, np.maximum(*reach)))
-        there = (low <= high) & (~flat | (np.abs(y[0]) <= radius))
-        best = (radius * dv * np.sign(dy) / np.hypot(dy, dv) - y[0]) / dy
-        best = np.where(flat, np.where(dv > 0.0, high, low), best)
-    return np.clip(best, low, high), there
 
 
 def spans_of(theta: Array, corners: Indices, more: float) -> tuple[Array, Array]:

@@ -1,6 +1,6 @@
 """Developments: lines of a drawing laid round a cylinder, and a roller set down on them there.
 
-A straight line of the drawing becomes a helix. Along it, in its polar angle, F of `kin.cylindrical.gauge` bends by no
+A straight line of the drawing becomes a helix. Along it, in its polar angle, F of `kin.cylindrical.roller` bends by no
 more than r^2 R^2/(R^2 - y^2)^(3/2), and in the shaft angle it is concave about its greatest value, so that points close
 to one another settle both what stands out and what holds the roller. A development says nothing of any other radius.
 """
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.intent import Developed, DrumIntent, Limits
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array
 
 CONTOUR, MOTION = "contour", "motion"

@@ -31,7 +31,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.gauge import Gauge, Worst
+    from kin.cylindrical.roller import Gauge, Worst
     from kin.numeric.arrays import Array, Indices, Mask
 
 NODES = 250_000  # points of edges at a time

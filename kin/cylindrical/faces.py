@@ -1,7 +1,7 @@
 """Which face of the intended drum each triangle belongs to, and how far it is from it.
 
 A triangle belongs to the face that it is nearest to: blank and floor are cylinders about the axis, ends are level, the
-bore is an outline drawn along z, flanks are known by the roller (`kin.cylindrical.gauge`). Corners alone do not tell:
+bore is an outline drawn along z, flanks are known by the roller (`kin.cylindrical.roller`). Corners alone do not tell:
 all three may lie on the edge between two faces, so that middles of sides and the inside count as well. Normals are not
 asked: a coarse blank has skew facets.
 """
@@ -18,8 +18,8 @@ from kin.contour.arcs import Arcs
 from kin.contour.holes import farthest
 from kin.contour.nearest import nearest
 from kin.cylindrical.edges import Edges
-from kin.cylindrical.gauge import BESIDE, Place, Worst
 from kin.cylindrical.intent import End
+from kin.cylindrical.roller import BESIDE, Place, Worst
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import paired
 from kin.numeric.records import dataclass
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.contour.holes import Hole
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.intent import DrumIntent
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices, Mask
     from kin.read.mesh.mesh import Mesh
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kin.cylindrical.follower import DrumFollower
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.intent import DrumIntent
+    from kin.cylindrical.roller import Gauge
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array
     from kin.numeric.elementary import Jet
@@ -186,8 +186,8 @@ def lost_alone(drum: DrumIntent, radius: float, theta: Array, side: Side = -1) -
 def _room(gauge: Gauge, roller: Gauge, theta: Array, across: Array, ends: tuple[float, float]) -> Array:
     """How far (n, m) a roller at angles (n,) may go, mm or rad, until it meets the exact flank of a gauge.
 
-    It does so at places across its axis (n, m), mm, and along it at the first of `ends`, mm, or where the blank ends it,
-    which has the radius that is the second; infinite where it meets nothing.
+    It does so at places across its axis (n, m), mm, and along it at the first of `ends`, mm, or on the cylinder of the
+    second, where the blank ends it; infinite where it meets nothing.
     """
     y = gauge.aside(theta)[:, None] + across
     x = np.minimum(ends[0], np.sqrt(ends[1] ** 2 - y * y))
@@ -253,10 +253,11 @@ def exact_play(drum: DrumIntent, theta: Array) -> Array:
         return np.zeros(len(theta))
     _, upper = gauges_of(drum)
     roller = replace(upper, radius=drum.follower.radius)
-    found = [
-        _least_across(lambda y, end=end: _room(upper, roller, theta, y, (end, drum.radius)), upper, theta, ROUNDS)[1]
-        for end in (drum.follower.inner, drum.follower.outer)
-    ]
+
+    def play(end: float) -> Array:
+        return _least_across(lambda y: _room(upper, roller, theta, y, (end, drum.radius)), upper, theta, ROUNDS)[1]
+
+    found = play(drum.follower.inner), play(drum.follower.outer)
     least: Array = np.minimum(*found)
     return least
 

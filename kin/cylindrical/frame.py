@@ -45,7 +45,7 @@ class Rates(NamedTuple):
 
 
 class On(NamedTuple):
-    """A flank by the side of its roller, -1 below and 1 above it, by how much that is larger, and how far beside, mm."""
+    """A flank by its side, -1 below the roller and 1 above it, by how much that is larger, and how far beside, mm."""
 
     side: Side = -1
     clearance: float = 0.0

@@ -13,7 +13,7 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.gauge import Gauge
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array
 
 FINE = 0.05  # of the tolerance: what angles between two of the grid may cost

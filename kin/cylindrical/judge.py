@@ -1,7 +1,7 @@
 """The verdict on a file of a cylindrical cam: whether it is the intended drum, and its roller moves as intended.
 
 A solid is taken as it lies on disk. The way it was made is not known here: the exact flank is what rollers leave at all
-angles (`kin.cylindrical.gauge`), the motion is that of the roller set down on the file's own triangles. Every triangle
+angles (`kin.cylindrical.roller`), the motion is that of the roller set down on the file's own triangles. Every triangle
 is measured against a face of the intended drum. Together with a closed surface and the volume that says that nothing of
 the drum is missing: a closed surface all of which is near that of the drum goes round it once, if it encloses as much.
 """
@@ -17,8 +17,9 @@ import numpy as np
 from kin.cylindrical.contact import set_down, spans_of
 from kin.cylindrical.edges import Edges, look
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, faces_of
-from kin.cylindrical.gauge import Worst, gauges_of
+from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.grid import angles_for
+from kin.cylindrical.roller import Worst
 from kin.cylindrical.split import joined
 from kin.cylindrical.torn import missing, triangles_at
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
@@ -41,9 +42,9 @@ if TYPE_CHECKING:
     from kin.cylindrical.edges import Seen
     from kin.cylindrical.faces import Faces, Stands
     from kin.cylindrical.follower import DrumFollower
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.guide import Unit
     from kin.cylindrical.intent import Developed, DrumIntent, Limits
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array
     from kin.read.mesh.checked import CheckedMesh
 
@@ -248,8 +249,8 @@ def _motion_error(seen: Seen, told: float, unit: Unit) -> MotionError:
     bound = max(seen.out.value + seen.out.remainder, -float(seen.least.min()))
     worst, at = (-least, k * seen.grid.width) if -least > most else (most, seen.out.at)
     rms = float(np.sqrt(np.mean(seen.holds**2)))
-    sizes = (told * size for size in (max(bound - worst, 0.0), least, most, rms))
-    return MotionError(told * worst, degrees(at), *sizes, unit)
+    left = told * max(bound - worst, 0.0)
+    return MotionError(told * worst, degrees(at), left, told * least, told * most, told * rms, unit)
 
 
 def _motion_check(job: _Judged, motion: MotionError, gauge: Gauge) -> Check:

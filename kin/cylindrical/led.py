@@ -16,12 +16,12 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from kin.cylindrical.gauge import BESIDE, BINS, WITHIN, Gauge, Held, Near, Place, Stand
-from kin.cylindrical.lifts import widened
+from kin.cylindrical.lifts import BINS, widened
+from kin.cylindrical.roller import BESIDE, WITHIN, Gauge, Held, Near, Place, Stand
 from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
@@ -29,9 +29,11 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.cylindrical.gauge import Worst
     from kin.cylindrical.guide import Axis, Guide, Touch
+    from kin.cylindrical.roller import Worst
     from kin.numeric.arrays import Array, Mask
+
+Along = TypeVar("Along", float, "Array")
 
 OFF = 0.1  # of the roller's radius: bounds hold for points that are no farther from the flank
 UPRIGHT = 1.5  # rad: no bound is had where normals may lean more against the roller's path
@@ -72,7 +74,7 @@ class LedGauge(Gauge):
         if self._lean >= UPRIGHT:
             raise UnsettledError("somewhere the flank's normal may be square to the roller's path")
 
-    def size(self, along: Array | float) -> Array | float:
+    def size(self, along: Along) -> Along:
         """Radius of the roller, mm, at places along it, mm."""
         return self.radius + (along - self.at) * self.growth
 
@@ -153,7 +155,7 @@ class LedGauge(Gauge):
         return self._aside + self.largest * math.sin(min(self._leaning(self.shortest)[1], 0.5 * math.pi))
 
     @cached_property
-    def _across(self) -> float:
+    def _sideways(self) -> float:
         """Upper bound of |n_y| at contact."""
         return math.sin(min(self._leaning(self.shortest)[1], 0.5 * math.pi))
 
@@ -173,8 +175,8 @@ class LedGauge(Gauge):
         sine, cosine = math.sin(self._lean), self._least_cosine
         far = max(self.outer, self.rim)
         t = (far + self.widest * self.growth * sine) / cosine
-        u = (far * self._across + self.widest * self.growth) / cosine
-        fall = t**2 / self.smallest + self.guide.bend * sine * u**2 + self.widest * self._across + far * self.growth
+        u = (far * self._sideways + self.widest * self.growth) / cosine
+        fall = t**2 / self.smallest + self.guide.bend * sine * u**2 + self.widest * self._sideways + far * self.growth
         return fall / cosine + self._bent
 
     def by_error(self, error: float) -> float:
@@ -190,7 +192,7 @@ class LedGauge(Gauge):
         return math.sqrt(max(radius**2 - self.reach**2, (FLOOR * radius) ** 2))
 
     def line_bend(self, radius: float, climb: float) -> float:
-        """How fast F may bend along a line on a cylinder, mm per rad^2 of its polar angle; it climbs `climb` per rad."""
+        """How fast F may bend along a line on a cylinder that climbs `climb` mm per rad, mm per rad^2 round it."""
         lean, across = self._leaning(self._nearest(radius))
         sine, cosine = math.sin(min(lean, UPRIGHT)), max(math.cos(min(lean, UPRIGHT)), 1e-9)
         t = u = math.hypot(radius, climb) + self.growth * radius
@@ -221,10 +223,10 @@ class LedGauge(Gauge):
         sine, cosine = math.sin(min(self._lean, UPRIGHT)), self._least_cosine
         along = np.sqrt(np.maximum(r * r - self.widest**2, 0.0))
         t = np.maximum(along * float(self._over.tz[0].min()) - self.widest * self.growth * sine, 0.0)
-        u = r * self._across + self.widest * self.growth
+        u = r * self._sideways + self.widest * self.growth
         fall = t**2 / self.size(r) - self.guide.bend * sine * u**2
         # F bends by fall/cos^3 - lost/cos of the lean, which is least without any where fall is not small
-        lost = self.widest * self._across
+        lost = self.widest * self._sideways
         least = np.where(fall > 0.0, fall, fall / cosine**3) - lost / cosine
         fall = np.where(3.0 * fall > lost, fall - lost, least)
         falling: Array = fall + along * self.growth

@@ -16,7 +16,7 @@ from kin.numeric.arrays import paired
 
 if TYPE_CHECKING:
     from kin.cylindrical.faces import Body
-    from kin.cylindrical.gauge import Gauge, Worst
+    from kin.cylindrical.roller import Gauge, Worst
     from kin.numeric.arrays import Array, Indices, Mask
 
 PARTINGS = 24

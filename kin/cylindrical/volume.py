@@ -12,8 +12,8 @@ from kin.cylindrical.intent import Groove, Rib
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.intent import DrumIntent
+    from kin.cylindrical.roller import Gauge
 
 ANGLES = 1440  # of a turn
 RADII = 16  # by Gauss' rule from the floor to the blank

@@ -13,8 +13,8 @@ import numpy as np
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from kin.cylindrical.gauge import Gauge
     from kin.cylindrical.grid import Grid
+    from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices
 
 PAIRS = 200_000  # of a triangle and an angle at a time

@@ -118,12 +118,15 @@ class Response:
         """State (2,) at the end of `count` stretches from `first` on; `state` (2,) is that before the first jump."""
         return self._run(state, first, count)[1]
 
+    @cached_property
+    def _plain_steps(self) -> list[tuple[list[float], list[float], list[float], float]]:
+        """For each stretch the rows of `_steps`, and the drive's jump."""
+        return list(zip(*(part.tolist() for part in (*self._steps, self.drive.jumps)), strict=True))
+
     def _run(self, state: Array, first: int, count: int) -> tuple[Array, Array]:
-        at_start, at_end, matrix = (part[first : first + count].tolist() for part in self._steps)
-        jumps = self.drive.jumps[first : first + count].tolist()
         z, v = float(state[0]), float(state[1])
         states = []
-        for (p0, v0), (p1, v1), (zz, zv, vz, vv), jump in zip(at_start, at_end, matrix, jumps, strict=True):
+        for (p0, v0), (p1, v1), (zz, zv, vz, vv), jump in self._plain_steps[first : first + count]:
             v -= jump
             states.append((z, v))
             z, v = z - p0, v - v0
@@ -234,6 +237,7 @@ def response(oscillator: Oscillator, drive: Drive, forcing: Forcing) -> Response
 
 
 _EYE = np.eye(DEGREE + 1)
+_INTEGRALS = np.stack([INTEGRAL, INTEGRAL @ INTEGRAL])
 
 
 def _slow(oscillator: Oscillator, g: Array, half: Array) -> tuple[Array, Array]:
@@ -251,20 +255,17 @@ def _from_rest(oscillator: Oscillator, g: Array, half: Array, owner: Indices) ->
 
     `half` (k,) are half widths, alike for the parts of one `owner` (k,), rising, whose matrix they share.
     """
-    once, twice = INTEGRAL, INTEGRAL @ INTEGRAL
     first = np.flatnonzero(np.diff(owner, prepend=-1))
     scale = half[first]
-    matrix = (
-        _EYE
-        + (2.0 * oscillator.decay * scale)[:, None, None] * once
-        + (oscillator.square * scale**2)[:, None, None] * twice
-    )
+    factors = np.stack([2.0 * oscillator.decay * scale, oscillator.square * scale**2], axis=1)
+    matrix = _EYE + (factors @ _INTEGRALS.reshape(2, -1)).reshape(-1, *_EYE.shape)
     counts = np.diff(first, append=len(owner))
     bend = np.empty_like(g)
     for count in np.unique(counts).tolist():
         alike = counts == count
         rows = first[alike, None] + np.arange(count)
         bend[rows] = np.linalg.solve(matrix[alike], g[rows].swapaxes(1, 2)).swapaxes(1, 2)
+    once, twice = _INTEGRALS
     p: Array = (bend @ twice.T) * half[:, None] ** 2
     v: Array = (bend @ once.T) * half[:, None]
     return p, v

@@ -152,10 +152,10 @@ class _Search:
             floats = crossing(force, low.rpm, high.rpm, 0.0, self.work, width=0.5 * _RESOLUTION)
             between = [looks[rpm] for rpm in sorted(looks) if low.rpm < rpm <= floats < high.rpm]
             return between or [self._look(middle)]
-        share = 0.9 * math.sqrt(max(min(low.reached, high.reached), 0.0) / part.between)
+        share = 0.9 * math.sqrt(max(min(low.least, high.least), 0.0) / part.between)
         if share > (0.0 if part.width < _CLOSE else _LEAST_SHARE):
             share = min(share, 0.5)
-            return [self._look(low.rpm + (share if low.reached < high.reached else 1.0 - share) * (high.rpm - low.rpm))]
+            return [self._look(low.rpm + (share if low.least < high.least else 1.0 - share) * (high.rpm - low.rpm))]
         if part.width > 0.5 and high.swings:
             share = high.oscillator.split / high.b
             b = 0.5 * round(2.0 * share * self.train.ratio(middle)) / share

@@ -242,15 +242,22 @@ class Look:
         return lowest
 
     @cached_property
+    def seen(self) -> float:
+        """Least contact force, N or N m, at the ends of the windows: `reached` is no greater, and hardly less."""
+        return float(self._forces.min())
+
+    @cached_property
     def least(self) -> float:
         """Least contact force over the turn, N or N m: a proved bound if above 0, else a force that is reached."""
+        if self.seen < 0.0:
+            return self.seen
         lowest = float(self.lowest.min())
         return lowest if lowest > 0.0 else self.reached
 
     @cached_property
     def reached(self) -> float:
         """Least contact force over the turn, N or N m, by samples and closer looks: a force that is reached."""
-        windows = np.flatnonzero(self.lowest.ravel() <= self._forces.min())
+        windows = np.flatnonzero(self.lowest.ravel() <= self.seen)
         return self._figure.least(self.states, self._samples(windows))
 
     def _samples(self, windows: Indices) -> ResponsePlaces:
@@ -294,6 +301,8 @@ class Range:
         """Whether contact is proved to hold at all speeds of the range, by the looks at both ends."""
         if min(self.low.least, self.high.least) > self.between or self.by_size > 0.0:
             return True
+        if not min(self.low.seen, self.high.seen) > self.between:
+            return False
         return min(self.low.reached, self.high.reached) > self.between
 
     @cached_property

@@ -26,6 +26,8 @@ from kin.numeric.extrema import Extremes, extremes
 from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from kin.contour.contour import Contour
@@ -223,7 +225,8 @@ def _judged(
     # many nodes are common to the ways: the intended rows are found at each once
     nodes = distinct(np.concatenate([way.nodes for way in every]))
     rows = intended.rows(nodes)
-    worst = [_worst(way, intended, rows[:, :, np.searchsorted(nodes, way.nodes)]) for way in every]
+    *wanted, wanted_centred = (rows[:, :, np.searchsorted(nodes, way.nodes)] for way in every)
+    worst, worst_centred = _worst(ways, intended, wanted), _worst([centred], intended, [wanted_centred])
     # errors at the given shaft angles, and the range of the output over the longest intended dwell
     angles = with_steps(shaft)
     intended_output = intended.output(angles)
@@ -232,8 +235,8 @@ def _judged(
     flat = [] if window is None else [_extremes(way, mechanism, "shaft", *window).span for way in every]
     across, along = _plays(bearing, mechanism.breadth, centred)
     return LinkageVerdict(
-        error=motion_error(max(worst), np.stack(errors), max(flat, default=None), unit),
-        centred=motion_error(worst[-1], errors[-1], flat[-1] if flat else None, unit),
+        error=motion_error(max(worst, worst_centred), np.stack(errors), max(flat, default=None), unit),
+        centred=motion_error(worst_centred, errors[-1], flat[-1] if flat else None, unit),
         limit=implied_limit(mechanism, tolerance),
         play_across=across,
         play_along=along,
@@ -242,17 +245,29 @@ def _judged(
     )
 
 
-def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float]:
-    """Greatest absolute error of the output and the shaft angle there; `rows` are the intended ones at the nodes."""
-    low, high = way.nodes[:-1], way.nodes[1:]
-    ends = np.concatenate([way.low, way.high], axis=2), np.concatenate([rows[..., :-1], rows[..., 1:]], axis=2)
-    at_low, at_high = np.split(intended.error(np.concatenate([low, high]), *ends), 2, axis=1)
+def _worst(ways: Sequence[Resting], intended: _Intended, rows: Sequence[Array]) -> tuple[float, float]:
+    """Greatest absolute error of the output in any of the ways, and the shaft angle there.
+
+    `rows` are the intended ones at the nodes of each way.
+    """
+    first = np.cumsum([0, *(len(way.nodes) - 1 for way in ways)])
+    low, high = (np.concatenate([way.nodes[part] for way in ways]) for part in (slice(-1), slice(1, None)))
+    measured = np.concatenate([*(way.low for way in ways), *(way.high for way in ways)], axis=2)
+    near = np.concatenate([*(each[..., :-1] for each in rows), *(each[..., 1:] for each in rows)], axis=2)
+    at_low, at_high = np.split(intended.error(np.concatenate([low, high]), measured, near), 2, axis=1)
 
     def error(theta: Array, interval: Indices) -> Array:
-        return intended.error(theta, way.rows(theta, interval), intended.rows(theta))
+        measured, of = np.empty((2, 3, len(theta))), np.searchsorted(first, interval, side="right") - 1
+        for k in np.flatnonzero(np.bincount(of)).tolist():
+            own = of == k
+            measured[..., own] = ways[k].rows(theta[own], interval[own] - first[k])
+        return intended.error(theta, measured, intended.rows(theta))
 
-    needed = max(resolution(intended.mechanism, way.low[1, 0]), SHARE * float(np.abs(at_low[0]).max()))
-    worst, at = extremes(low, high, at_low, at_high, error, resolution=needed).worst
+    allowed = max(resolution(intended.mechanism, way.low[1, 0]) for way in ways)
+    needed = max(allowed, SHARE * float(np.abs(at_low[0]).max()))
+    found = extremes(low, high, at_low, at_high, error, resolution=needed)
+    worst, at = found.worst
+    way = ways[int(np.searchsorted(first, found.worst_index, side="right")) - 1]
     return worst, float(way.turned(np.array([at]), 0)[0, 0])
 
 

@@ -17,7 +17,7 @@ from kin.numeric.longest_window import Window, doubled, dwells, longest_of_each
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 BLOCKS = 1024
 # Between spans that are looked at the output is replaced by a roof: it rises by ROOF ranges over a ridge between two
@@ -166,17 +166,16 @@ def _spans(output: Output, band: float) -> list[_Span]:
     # both ends of a block belong to it
     high = np.maximum(np.maximum.reduceat(value[:-1], first[:-1]), value[first[1:]])
     low = np.minimum(np.minimum.reduceat(value[:-1], first[:-1]), value[first[1:]])
-    edge = np.concatenate([x[first[:-1]] - period, x[first[:-1]], x[first] + period]).tolist()
+    edge = np.concatenate([x[first[:-1]] - period, x[first[:-1]], x[first] + period])
     # the longest run that surely stays within the band; then runs that may stay within it and are as long
-    sure = _runs(low, high, band - 2.0 * output.slack)
-    least = max(edge[count + i + n] - edge[count + i] for i, n in enumerate(sure))
+    block = count + np.arange(count)
+    least = float((edge[block + _runs(low, high, band - 2.0 * output.slack)] - edge[block]).max())
+    # a window that contains a block, but not the one before, begins in that and may end in the one after the run
+    before, end = edge[block - 1], edge[np.minimum(block + _runs(low, high, band) + 1, len(edge) - 1)]
+    long = end - before >= least
     spans: list[_Span] = []
-    for i, n in enumerate(_runs(low, high, band)):
-        # a window that contains block i, but not the one before, begins in that and may end in the one after the run
-        before = edge[count + i - 1]
-        span = _Span(before, edge[count + i], before + least, edge[min(count + i + n + 1, len(edge) - 1)])
-        if span.end - span.begin < least:
-            continue
+    for columns in zip(*(column[long].tolist() for column in (before, edge[block], before + least, end)), strict=True):
+        span = _Span(*columns)
         if spans and span.begin <= spans[-1].end:
             spans[-1] = spans[-1].joined(span)
         else:
@@ -187,8 +186,8 @@ def _spans(output: Output, band: float) -> list[_Span]:
     return spans if all(span.end - span.begin < period for span in spans) else []
 
 
-def _runs(low: Array, high: Array, band: float) -> list[int]:
-    """Per block of a ring (m,): number of blocks from it on, at most all, whose values stay within the band."""
+def _runs(low: Array, high: Array, band: float) -> Indices:
+    """Per block of a ring (m,): number (m,) of blocks from it on, at most all, whose values stay within the band."""
     count, begin = len(low), np.arange(len(low))
     lows, highs = doubled(np.tile(low, 2), np.minimum), doubled(np.tile(high, 2), np.maximum)
     runs, least, most = np.zeros(count, dtype=np.intp), np.full(count, np.inf), np.full(count, -np.inf)
@@ -198,4 +197,4 @@ def _runs(low: Array, high: Array, band: float) -> list[int]:
         longer = (runs + 2**level <= count) & (further[1] - further[0] <= band)
         least, most = np.where(longer, further[0], least), np.where(longer, further[1], most)
         runs += longer * 2**level
-    return runs.tolist()
+    return runs

@@ -28,9 +28,9 @@ _MOST_CELLS = 20000  # open at a time: with more the answer is taken to be no
 
 
 def undecided(
-    function: Stretch, begin: float, end: float, limits: Mapping[int, tuple[float, float]]
+    function: Stretch, begin: float | Array, end: float | Array, limits: Mapping[int, tuple[float, float]]
 ) -> tuple[int, float] | None:
-    """Prove that each derivative k in `limits` stays strictly between its two limits over [begin, end].
+    """Prove that each derivative k in `limits` stays strictly between its two limits over [begin, end], one or (m,).
 
     Returns None where that is proved, else (k, place) where it is false or not proved. A cell is bounded directly, and
     where that is not enough by Taylor's formula about its middle, whose error falls with the square of the width.
@@ -89,10 +89,12 @@ def unbounded(function: Stretch, begin: float, end: float, order: int) -> float 
     return _halve(settled, begin, end)
 
 
-def _halve(settled: Callable[[Array, Array], tuple[Mask, Mask]], begin: float, end: float) -> float | None:
+def _halve(
+    settled: Callable[[Array, Array], tuple[Mask, Mask]], begin: float | Array, end: float | Array
+) -> float | None:
     """Halve cells until `settled` proves all of them: None; else the middle of a cell that is false or stays open."""
     ends = np.linspace(begin, end, _CELLS + 1)
-    lower, upper = ends[:-1], ends[1:]
+    lower, upper = ends[:-1].ravel(), ends[1:].ravel()
     for _ in range(_HALVINGS):
         yes, no = settled(lower, upper)
         if yes.all():

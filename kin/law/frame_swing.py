@@ -45,9 +45,10 @@ if TYPE_CHECKING:
 
 _SAME = 1e-9  # rad: greatest error of the angle that a law covers, as of segments
 _JOIN = 1e-9  # relative difference of velocities that meet
-_ULPS = 4.0  # first step of the search for an enclosure of a shaft angle
+_ULPS = 16.0  # first step of the search for an enclosure of a shaft angle
 _DOUBLINGS = 60  # of that step: more than any stretch is long
 _TABLE = 256  # steps of a stretch, of tables that inverses begin from
+_QUARTER = 0.5 * math.pi
 _LOOKS = 64  # shaft angles at which the size of a derivative is looked at
 
 
@@ -280,13 +281,13 @@ def frame_swing(motion: Motion, ground: float, rocker: float, side: float, field
             f"rise of {rise:.9g}: half a turn of the cam against the frame, the other half is its image",
             field,
         )
-    try:
-        for function, begin, end in zip(
-            motion.motion.functions, motion.motion.knots[:-1], motion.motion.knots[1:], strict=True
-        ):
-            _demand_possible(law, function, float(begin), float(end), field)
-    except DomainError as error:
-        raise IntentError(f"the swing is not defined: {error.operation}", field) from error
+    if not _possible(law):
+        whole = motion.motion
+        try:
+            for function, begin, end in zip(whole.functions, whole.knots[:-1], whole.knots[1:], strict=True):
+                _demand_possible(law, function, float(begin), float(end), field)
+        except DomainError as error:
+            raise IntentError(f"the swing is not defined: {error.operation}", field) from error
     _demand_meeting(law, field)
     return law
 
@@ -306,22 +307,39 @@ def _too_far(law: FrameSwing) -> str:
     return f"the frame cannot swing {amount}on links of these lengths: {', or '.join(remedies)}"
 
 
-def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: float, field: str) -> None:
-    """Prove that the loop closes over a stretch and its image, and that the shaft turns on through both."""
+def _courses(law: FrameSwing, function: Stretch) -> tuple[Stretch, Stretch]:
+    """Swing psi over the shaft angle of a stretch, and the shaft angle of its image, rad."""
 
     def swing(t: Series) -> Series:
         return function(t) + law.start
-
-    def sine(t: Series) -> Series:
-        return law.lean - sin(swing(t))
 
     def later(t: Series) -> Series:
         at = swing(t)
         return t + law.image(at) - at
 
+    return swing, later
+
+
+def _possible(law: FrameSwing) -> bool:
+    """Whether all that `_demand_possible` demands is proved of all stretches at once.
+
+    Where the rate of the image's shaft angle is bounded, so is that of an arc sine: the image exists.
+    """
+    whole = law.motion.motion
+    swing, later = _courses(law, whole.on)
+    demanded = ((swing, {0: (-_QUARTER, _QUARTER), 1: (-math.inf, 1.0)}), (later, {1: (0.0, math.inf)}))
+    return all(undecided(course, whole.knots[:-1], whole.knots[1:], limits) is None for course, limits in demanded)
+
+
+def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: float, field: str) -> None:
+    """Prove that the loop closes over a stretch and its image, and that the shaft turns on through both."""
+    swing, later = _courses(law, function)
+
+    def sine(t: Series) -> Series:
+        return law.lean - sin(swing(t))
+
     # the loop closes where |psi| and |psi*| are below a quarter turn
-    quarter = 0.5 * math.pi
-    for course, limits in ((swing, {0: (-quarter, quarter)}), (sine, {0: (-1.0, 1.0)})):
+    for course, limits in ((swing, {0: (-_QUARTER, _QUARTER)}), (sine, {0: (-1.0, 1.0)})):
         doubts = undecided(course, begin, end, limits)
         if doubts is not None:
             at = math.degrees(doubts[1])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from kin.numeric import cubics, quintics
-from kin.numeric.monotone import between, cells, extremes
+from kin.numeric.monotone import between, cells, extremes_of_each
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ class JoinedRows:
         worst: tuple[Off, ...] = ()
         for first in range(0, len(places) - 1, _AT_ONCE):
             followed = cells(difference, places[first : first + _AT_ONCE + 1], resolution)
-            found = (_greatest(*extremes(followed, row)) for row in range(order + 1))
+            found = (_greatest(*pair) for pair in extremes_of_each(followed))
             worst = tuple(map(max, worst, found)) if worst else tuple(found)
         return worst
 
@@ -173,7 +173,7 @@ def peaks(motion: Callable[[Array, int], Array], end: float, breaks: Iterable[fl
     Raises RoughError where the motion changes too abruptly to be followed.
     """
     followed = cells(lambda t: motion(t, order), between(0.0, end, breaks), share=_SHARE_OF_RATES)
-    return tuple(_greatest(*extremes(followed, row)).value for row in range(1, order + 1))
+    return tuple(_greatest(*pair).value for pair in extremes_of_each(followed)[1:])
 
 
 def errors(rows: JoinedRows, motion: Callable[[Array, int], Array], breaks: list[float]) -> Errors:

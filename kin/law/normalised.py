@@ -16,7 +16,7 @@ from kin.law.piecewise import Piecewise
 from kin.law.segment import AffineStretch, Alike, Series, Stretch
 from kin.numeric.elementary import Jet, cos, sin
 from kin.numeric.errors import CamgeoError
-from kin.numeric.jet import finite, horner
+from kin.numeric.jet import chosen, finite, horner
 from kin.numeric.lengths import FIRST, Words
 from kin.numeric.records import dataclass
 from kin.numeric.taylor import sine_rows
@@ -98,17 +98,18 @@ class AcceleratedPiece(Alike):
 
     @property
     def kind(self) -> tuple[str, int]:
-        """Key of pieces whose acceleration has one shape."""
-        return self.shape, 0
+        """Key of pieces that are evaluated together: waves, or flat ones."""
+        return "flat" if self.shape == "flat" else "wave", 0
 
     @property
     def numbers(self) -> tuple[float, ...]:
-        """Numbers start, s, v, rate, and the factor of the displacement that the acceleration adds to s + v x."""
-        return self.start, self.s, self.v, self.rate, self.peak / (self.rate**2 if self.rate else 2.0)
+        """Numbers start, s, v, rate, the factor of what the acceleration adds to s + v x, and 1 for a sine, else 0."""
+        scale = self.peak / (self.rate**2 if self.rate else 2.0)
+        return self.start, self.s, self.v, self.rate, scale, float(self.shape == "sin")
 
     def together(self, rows: Array) -> Stretch:
-        """Give one function for n pieces of one shape, a column of `rows` each."""
-        return _Accelerated(self.shape, tuple(rows))
+        """Give one function for n pieces of one kind, a column of `rows` each."""
+        return _Accelerated(self.shape == "flat", tuple(rows))
 
     def __call__(self, u: Series, /) -> Series:
         """Displacement, a series of u's own kind."""
@@ -117,21 +118,26 @@ class AcceleratedPiece(Alike):
 
 @dataclass(frozen=True, eq=False)
 class _Accelerated:
-    """Displacements of pieces of one shape by their five numbers (n,), each at its own point or interval."""
+    """Displacements of pieces of one kind by their six numbers (n,), each at its own point or interval."""
 
-    shape: Literal["sin", "cos", "flat"]
+    flat: bool
     rows: tuple[Array, ...]
 
     def __call__(self, u: Series, /) -> Series:
         """Displacement of each piece, a series of u's own kind."""
-        start, s, v, rate, scale = self.rows
+        start, s, v, rate, scale, of_sine = self.rows
         if isinstance(u, Jet) and u.order and not u.c[2:].any():
             return self._at_points(u)
         x = u - start if start.any() else u
-        if self.shape == "flat":
+        if self.flat:
             return (x * scale + v) * x + s
-        angle = x * rate
-        wave = angle - sin(angle) if self.shape == "sin" else 1.0 - cos(angle)  # at rest at the start, to the last bit
+        angle, sines = x * rate, of_sine > 0.0
+        if sines.all():
+            wave = angle - sin(angle)  # at rest at the start, to the last bit
+        elif not sines.any():
+            wave = 1.0 - cos(angle)
+        else:
+            wave = chosen(sines, angle - sin(angle), 1.0 - cos(angle))
         path = wave * scale
         if v.any():
             path = path + x * v
@@ -139,28 +145,25 @@ class _Accelerated:
 
     def _at_points(self, u: Jet) -> Jet:
         """Give each displacement where u is a linear series: the same digits, by less arithmetic."""
-        start, s, v, rate, scale = self.rows
+        start, s, v, rate, scale, of_sine = self.rows
         with np.errstate(all="ignore"):
             x, slope, order = u.c[0] - start, u.c[1], u.order
             out = np.zeros_like(u.c)
-            if self.shape == "flat":
+            if self.flat:
                 path = x * scale + v
                 out[0], out[1] = path * x + s, path * slope + slope * scale * x
                 out[2:3] = slope * scale * slope
                 return finite(out, "overflow")
             # Taylor rows of the sine or cosine, times powers of the pace, then the straight run
-            angle, pace = x * rate, slope * rate
+            angle, pace, sines = x * rate, slope * rate, of_sine > 0.0
             sine, cosine = np.sin(angle), np.cos(angle)
-            out -= sine_rows(sine, cosine, order) if self.shape == "sin" else sine_rows(cosine, -sine, order)
+            out -= sine_rows(np.where(sines, sine, cosine), np.where(sines, cosine, -sine), order)
             power = pace
             for k in range(1, order + 1):
                 out[k] *= power
                 power = power * pace
-            if self.shape == "sin":
-                out[0] += angle
-                out[1] += pace
-            else:
-                out[0] += 1.0
+            out[0] += np.where(sines, angle, 1.0)
+            out[1] += np.where(sines, pace, 0.0)
             out *= scale
             out[0] += x * v
             out[0] += s

@@ -392,8 +392,11 @@ class Piecewise:
         if len(groups) == 1:
             return groups[0](t, index)
         group_of, kind, rows = owner[index], type(t), _rows(t)
+        used = np.flatnonzero(np.bincount(group_of))
+        if len(used) == 1:
+            return groups[used[0]](t, index)
         out = [np.empty_like(row) for row in rows]
-        for number in np.flatnonzero(np.bincount(group_of)):
+        for number in used:
             members = np.flatnonzero(group_of == number)
             try:
                 part = groups[number](kind(*(row[:, members] for row in rows)), index[members])

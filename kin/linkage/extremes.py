@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.monotone import between, cells, extremes, pieces
+from kin.numeric.monotone import between, cells, extremes_of_each, pieces
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -102,15 +102,16 @@ def figures(rows: Callable[[Array], Quantities], shaft: Callable[[Array], Array]
     size = max(1.0, float(np.abs(rows(0.5 * (places[:-1] + places[1:])).output).max()))
     rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Quantities._fields])
     curves = cells(lambda theta: np.stack(rows(theta)), places, rounded, share=_SHARE)
+    of = dict(zip(Quantities._fields, extremes_of_each(curves), strict=True))
     row = {name: k for k, name in enumerate(Quantities._fields)}
 
     def peak(name: str) -> tuple[float, float]:
-        least, greatest = extremes(curves, row[name])
+        least, greatest = of[name]
         return max(greatest, least, key=lambda extreme: abs(extreme[0]))
 
     def nearest_zero(name: str) -> float:
         """Relative angle, rad, at which the absolute value of a quantity is least."""
-        least, greatest = extremes(curves, row[name])
+        least, greatest = of[name]
         if least[0] >= 0:
             return least[1]
         return greatest[1] if greatest[0] <= 0 else float(pieces(curves, row[name]).crossings(0.0)[0])
@@ -125,8 +126,8 @@ def figures(rows: Callable[[Array], Quantities], shaft: Callable[[Array], Array]
     transmission = np.arctan2(np.abs(at.transmission_sine), np.abs(at.transmission_cosine)).tolist()
     force = np.arctan2(np.abs(at.force_sine), np.abs(at.force_cosine)).tolist()
     extreme = {
-        **dict(zip(("least", "greatest"), extremes(curves, row["output"]), strict=True)),
-        **dict(zip(("frame_least", "frame_greatest"), extremes(curves, row["frame"]), strict=True)),
+        **dict(zip(("least", "greatest"), of["output"], strict=True)),
+        **dict(zip(("frame_least", "frame_greatest"), of["frame"], strict=True)),
         **dict(zip(acute, zip([*transmission[:2], force[2]], acute.values(), strict=True), strict=True)),
         **{name: peak(name) for name in ("velocity", "acceleration", "velocity_relative", "acceleration_relative")},
     }

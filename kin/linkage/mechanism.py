@@ -25,7 +25,7 @@ from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet
 from kin.numeric.jet import derivatives_by
 from kin.numeric.longest_window import Window, dwells
-from kin.numeric.monotone import between, cells, extremes
+from kin.numeric.monotone import between, cells, extremes_of_each
 from kin.numeric.records import dataclass, field
 from kin.numeric.taylor import factorials
 
@@ -368,7 +368,7 @@ class Mechanism:
         places = between(0.0, math.pi, [*self.lift.breaks, *(self.lift.breaks - math.pi)])
         within, breadth = 1e-3 * _EDGE * size, 0.01 * _ROUNDED * size
         curves = cells(lifts, places, np.array([within, within, breadth]))
-        near, far, off = (extremes(curves, row) for row in range(3))
+        near, far, off = extremes_of_each(curves)
         miss, at = max(*off[::-1], key=lambda extreme: abs(extreme[0]))
         if not abs(miss) <= _ROUNDED * size:
             degrees = math.degrees(at) % 360

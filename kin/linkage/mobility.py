@@ -14,7 +14,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.numeric.angles import TURN
-from kin.numeric.monotone import SAME, Cells, MonotonePieces, RoughError, between, cells, extremes, pieces
+from kin.numeric.monotone import (
+    SAME,
+    Cells,
+    MonotonePieces,
+    RoughError,
+    between,
+    cells,
+    extremes,
+    extremes_of_each,
+    pieces,
+)
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -83,7 +93,7 @@ def mobility(
     nearest: tuple[tuple[float, ...], ...] = ()
     for loop, margin in enumerate(margins):
         curve = _all_round(margin, breaks, _RESOLUTION * breadth)
-        places = [extremes(curve, limit)[0] for limit in range(len(curve.noise))]
+        places = [least for least, _ in extremes_of_each(curve)]
         nearest += (tuple(at for _, at in places),)
         for limit, (noise, (least, at)) in enumerate(zip(curve.noise, places, strict=True)):
             if least < nearest_binding[0]:

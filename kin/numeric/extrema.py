@@ -58,6 +58,11 @@ class Extremes:
         return abs(self.greatest), self.greatest_at
 
     @property
+    def worst_index(self) -> int:
+        """Index of the interval in which the greatest absolute value is reached."""
+        return self.least_index if abs(self.least) > abs(self.greatest) else self.greatest_index
+
+    @property
     def span(self) -> float:
         """Greatest less least value."""
         return self.greatest - self.least

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
 
 
 class DomainError(CamgeoError, ArithmeticError):
@@ -273,6 +273,13 @@ class BallJet:
 
 
 Series = TypeVar("Series", Jet, BallJet)
+
+
+def chosen(first: Mask, one: Series, other: Series) -> Series:
+    """Series `one` at the points or intervals where the mask `first` (n,) is true, else `other`."""
+    if isinstance(one, Jet) and isinstance(other, Jet):
+        return Jet(np.where(first, one.c, other.c))
+    return BallJet(np.where(first, one.mid, other.mid), np.where(first, one.rad, other.rad))
 
 
 def derivatives_by(f: Series, parameter: Series) -> list[Series]:

@@ -14,6 +14,7 @@ and their ends was missed: they are halved.
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from math import comb
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from kin.numeric.arrays import Array, Indices, Mask
+
+    Extremes = tuple[tuple[float, float], tuple[float, float]]
 
 DEGREE = 10
 FIRST_CELLS = 32
@@ -310,48 +313,73 @@ class MonotonePieces:
 def pieces(cells: Cells, row: int = 0) -> MonotonePieces:
     """Cut the function of a row into pieces that are monotone and have monotone slopes."""
     least = LEAST_CELL * (cells.high[-1] - cells.low[0])
-    low, high, c, noise = _single(cells.low, cells.high, cells.coefficients[row], cells.noise[row], least)
+    of = np.full(len(cells.low), row)
+    parts = _single(_Parts(cells.low, cells.high, cells.coefficients[row], cells.noise[row], of), least)
     for order in (1, 2):
-        low, high, c, noise = _cut(low, high, c, noise, order)
-    rank = np.argsort(low)
-    return MonotonePieces(np.append(low[rank], high.max()), c[rank], noise[rank])
+        parts = _cut(parts, order)
+    parts = parts.chosen(np.argsort(parts.low))
+    return MonotonePieces(np.append(parts.low, parts.high.max()), parts.c, parts.noise)
 
 
-def extremes(cells: Cells, row: int = 0) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Least and greatest value of the function of a row, each with its x; costs less than its `pieces`.
+def extremes(cells: Cells, row: int = 0) -> Extremes:
+    """Least and greatest value of the function of a row, each with its x; costs less than its `pieces`."""
+    return extremes_of_each(Cells(cells.low, cells.high, cells.coefficients[[row]], cells.noise[[row]]))[0]
+
+
+def extremes_of_each(cells: Cells) -> list[Extremes]:
+    """Least and greatest value of each of the r functions, each with its x; costs hardly more than those of one.
 
     A polynomial lies within the hull of its coefficients, so that only cells are cut whose halves reach beyond a value
     that some cell has; of many cells those are few.
     """
-    c = cells.coefficients[row]
-    left, right = halves(c)
-    ends = np.stack([c[:, 0], left[:, -1], c[:, -1]])
-    above = np.maximum(left.max(axis=1), right.max(axis=1)) >= ends.max()
-    chosen = above | (np.minimum(left.min(axis=1), right.min(axis=1)) <= ends.min())
-    least = LEAST_CELL * (cells.high[-1] - cells.low[0])
-    part = cells.low[chosen], cells.high[chosen], c[chosen], cells.noise[row, chosen]
-    low, high, c, _ = _cut(*_single(*part, least), 1)
-    rank = np.argsort(low)
-    places, values = np.column_stack([low, high])[rank], c[rank][:, [0, -1]]
-    lowest, highest = int(values.argmin()), int(values.argmax())
-    return (
-        (float(values.flat[lowest]), float(places.flat[lowest])),
-        (float(values.flat[highest]), float(places.flat[highest])),
-    )
+    c = cells.coefficients
+    left, right = (half.reshape(c.shape) for half in halves(c.reshape(-1, c.shape[2])))
+    ends = np.stack([c[..., 0], left[..., -1], c[..., -1]])
+    least, greatest = ends.min(axis=(0, 2)), ends.max(axis=(0, 2))
+    chosen = np.maximum(left.max(axis=2), right.max(axis=2)) >= greatest[:, None]
+    chosen |= np.minimum(left.min(axis=2), right.min(axis=2)) <= least[:, None]
+    row, cell = np.nonzero(chosen)
+    parts = _Parts(cells.low[cell], cells.high[cell], c[chosen], cells.noise[chosen], row)
+    parts = _cut(_single(parts, LEAST_CELL * (cells.high[-1] - cells.low[0])), 1)
+    parts = parts.chosen(np.lexsort((parts.low, parts.row)))
+    begins = np.searchsorted(parts.row, np.arange(len(c) + 1)).tolist()
+    places, values = np.column_stack([parts.low, parts.high]), parts.c[:, [0, -1]]
+    found: list[Extremes] = []
+    for begin, end in pairwise(begins):
+        x, y = places[begin:end], values[begin:end]
+        lowest, highest = int(y.argmin()), int(y.argmax())
+        found.append(((float(y.flat[lowest]), float(x.flat[lowest])), (float(y.flat[highest]), float(x.flat[highest]))))
+    return found
 
 
-def _single(low: Array, high: Array, c: Array, noise: Array, least: float) -> tuple[Array, Array, Array, Array]:
+class _Parts(NamedTuple):
+    """Cells [low, high] (m,), each of the function `row` (m,): Bernstein coefficients (m, k + 1), and noise (m,)."""
+
+    low: Array
+    high: Array
+    c: Array
+    noise: Array
+    row: Indices
+
+    def chosen(self, which: Mask | Indices) -> _Parts:
+        return _Parts(*(column[which] for column in self))
+
+    @staticmethod
+    def joined(parts: Iterable[_Parts]) -> _Parts:
+        return _Parts(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def _single(parts: _Parts, least: float) -> _Parts:
     """Halve cells until each has at most one turning point and one of inflection, or is no wider than `least`."""
     done = []
-    while len(low):
-        single = (_changes(c, 1, noise) <= 1) & (_changes(c, 2, noise) <= 1) | (high - low <= least)
-        done.append((low[single], high[single], c[single], noise[single]))
-        low, high, c, noise = low[~single], high[~single], c[~single], np.tile(noise[~single], 2)
-        middle = 0.5 * (low + high)
-        c = np.concatenate(halves(c))
-        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
-    low, high, c, noise = (np.concatenate(list(part)) for part in zip(*done, strict=True))
-    return low, high, c, noise
+    while len(parts.low):
+        single = (_changes(parts.c, 1, parts.noise) <= 1) & (_changes(parts.c, 2, parts.noise) <= 1)
+        single |= parts.high - parts.low <= least
+        done.append(parts.chosen(single))
+        open_ = parts.chosen(~single)
+        middle, (left, right) = 0.5 * (open_.low + open_.high), halves(open_.c)
+        parts = _Parts.joined([open_._replace(high=middle, c=left), open_._replace(low=middle, c=right)])
+    return _Parts.joined(done)
 
 
 def _differences(c: Array, order: int, noise: Array) -> Array:
@@ -371,25 +399,20 @@ def _changes(c: Array, order: int, noise: Array) -> Indices:
     return changed
 
 
-def _cut(low: Array, high: Array, c: Array, noise: Array, order: int) -> tuple[Array, Array, Array, Array]:
+def _cut(parts: _Parts, order: int) -> _Parts:
     """Cells cut where the derivative of the given order changes sign, once in a cell at most."""
-    turning = np.flatnonzero(_changes(c, order, noise) == 1)
-    d = np.diff(c[turning], order, axis=1)
-    kept = _differences(c[turning], order, noise[turning])
+    turning = np.flatnonzero(_changes(parts.c, order, parts.noise) == 1)
+    of = parts.chosen(turning)
+    kept = _differences(of.c, order, of.noise)
     first = kept[np.arange(len(kept)), np.argmax(kept != 0, axis=1)]
-    t = rising_root(d * -np.sign(first)[:, None])
+    t = rising_root(np.diff(of.c, order, axis=1) * -np.sign(first)[:, None])
     inside = (t > END_MARGIN) & (t < 1.0 - END_MARGIN)
-    turning, t = turning[inside], t[inside]
-    at = low[turning] + t * (high[turning] - low[turning])
-    left, right = restrict(c[turning], np.zeros_like(t), t), restrict(c[turning], t, np.ones_like(t))
-    uncut = np.ones(len(low), dtype=np.bool_)
-    uncut[turning] = False
-    return (
-        np.concatenate([low[uncut], low[turning], at]),
-        np.concatenate([high[uncut], at, high[turning]]),
-        np.concatenate([c[uncut], left, right]),
-        np.concatenate([noise[uncut], noise[turning], noise[turning]]),
-    )
+    of, t = of.chosen(inside), t[inside]
+    at = of.low + t * (of.high - of.low)
+    left, right = restrict(of.c, np.zeros_like(t), t), restrict(of.c, t, np.ones_like(t))
+    uncut = np.ones(len(parts.low), dtype=np.bool_)
+    uncut[turning[inside]] = False
+    return _Parts.joined([parts.chosen(uncut), of._replace(high=at, c=left), of._replace(low=at, c=right)])
 
 
 def between(begin: float, end: float, breaks: Iterable[float]) -> Array:

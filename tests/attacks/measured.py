@@ -128,7 +128,7 @@ def probed(rng: Random, number: int) -> Attack:
 
     def judge(done: Done, _: Path) -> list[str]:
         # a stage that a busy machine takes long for is said too
-        lines = [line for line in done.err.splitlines() if not line.endswith(" s ...")]
+        lines = [line for line in done.err.splitlines() if not line.endswith(" ...")]
         if done.status == 2 and len(lines) != 1 and "error: argument" not in done.err:
             return [f"lines: {len(lines)} lines of complaint"]
         return []

@@ -118,7 +118,7 @@ def of_a_shaft(rng: Random, number: int) -> Attack:
     files["flat.yaml"] += rng.choice(LIMITS).encode()
 
     def judge(done: Done, _: Path) -> list[str]:
-        told = [line for line in done.err.splitlines() if not line.endswith(" s ...")]
+        told = [line for line in done.err.splitlines() if not line.endswith(" ...")]
         if done.status == 2 and len(told) != 1:
             return [f"lines: {len(told)} lines of complaint"]
         sound = not harm and not late and columns in SOUND and not options

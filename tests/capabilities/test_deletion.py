@@ -68,7 +68,10 @@ def words_of(name: str) -> set[str]:
 
 def chosen_tests(name: str) -> list[str]:
     """Tests that name a capability though it is gone: a mark was forgotten, or a word means another thing."""
-    named = re.compile(rf"\b(?:{'|'.join(map(re.escape, sorted(words_of(name))))})\b")
+    words = "|".join(map(re.escape, sorted(words_of(name))))
+    named = re.compile(
+        rf"\b(?:{words}): *[{{\[\w]|(?<=['\"`/.])(?:{words})(?=['\"`/.:])"
+    )  # a key, or in quotes: no English word
     paths = [path for path in files_of_tests() if ROOT / "tests" / "capabilities" / name not in path.parents]
     left = {path: without_marked(path.read_text(encoding="utf-8"), name) for path in paths}
     naming = [str(path.relative_to(ROOT)) for path, text in left.items() if named.search(text)]

@@ -423,7 +423,7 @@ def test_runs_of_blocks_within_a_band_are_those_of_a_count_one_by_one(count, ban
         [np.ptp(np.r_[low[ring[i : i + n]], high[ring[i : i + n]]]) <= band for n in range(1, count + 1)]
         for i in range(count)
     ]
-    assert _runs(low, high, band) == [sum(np.cumprod(row)) for row in fits]
+    assert _runs(low, high, band).tolist() == [sum(np.cumprod(row)) for row in fits]
 
 
 @pytest.mark.slow

@@ -81,3 +81,12 @@ def test_cells_of_a_cubic_are_halved_several_times_at_once():
     cells = cubic_cells(SimpleNamespace(enclosure=enclosure), np.zeros(0), 1e-9)
     assert cells == pytest.approx(np.linspace(0.0, TURN, 257), abs=1e-12)
     assert asked == [16, 128, 256]
+
+
+def test_several_stretches_are_decided_together():
+    """t^2 stays below 4 on [0, 1] and [1, 1.9], and does not on [1, 2.1]; its slope 2 t is below 4 on the same."""
+    begin = np.array([0.0, 1.0])
+    assert undecided(lambda t: t * t, begin, np.array([1.0, 1.9]), {0: (-1.0, 4.0), 1: (-1.0, 4.0)}) is None
+    blame, at = undecided(lambda t: t * t, begin, np.array([1.0, 2.1]), {0: (-1.0, 4.0)})
+    assert blame == 0
+    assert 1.9 < at <= 2.1

@@ -272,3 +272,30 @@ def test_pieces_of_one_shape_together_are_what_each_is_alone(shape):
         below, above = member(BallJet.variable(t[owner == k], t[owner == k], 4)).bounds()
         assert (below <= alone + 1e-13).all()
         assert (alone - 1e-13 <= above).all()
+
+
+def test_sine_and_cosine_runs_are_evaluated_together_along_any_curve_and_over_intervals():
+    """s + v x + p/r^2 (r x - sin r x) and s + v x + p/r^2 (1 - cos r x), composed with 0.2 + h + h^2/3, by mpmath."""
+    runs = [AcceleratedPiece(0.0, 0.0, 0.0, 2.0, 3.0, "sin"), AcceleratedPiece(0.25, 0.1, 0.4, 2.0, 5.0, "cos")]
+    motion = Piecewise(np.array([0.0, 0.25, 1.0]), tuple(runs))
+    places, order = np.array([0.2, 0.6, 0.05, 0.9]), 4
+    curve = np.zeros((order + 1, len(places)))
+    curve[0], curve[1], curve[2] = places, 1.0, 1.0 / 3.0
+    expected = np.empty_like(curve)
+    with mp.workdps(40):
+        for i, place in enumerate(places.tolist()):
+            run = runs[int(place > 0.25)]
+            rate, scale = mp.mpf(run.rate), mp.mpf(run.peak) / run.rate**2
+
+            def path(h, place=place, run=run, rate=rate, scale=scale):
+                x = place + h + h * h * mp.mpf(1.0 / 3.0) - run.start
+                wave = rate * x - mp.sin(rate * x) if run.shape == "sin" else 1 - mp.cos(rate * x)
+                return run.s + run.v * x + scale * wave
+
+            expected[:, i] = [float(c) for c in mp.taylor(path, 0, order)]
+    assert motion.on(Jet(curve)).c == pytest.approx(expected, rel=1e-13, abs=1e-15)
+    low, high = motion.on(BallJet.variable(places - 1e-3, places + 1e-3, order)).bounds()
+    inside = motion.derivatives(np.linspace(places - 1e-3, places + 1e-3, 21).ravel(), order).reshape(order + 1, 21, -1)
+    assert (low[:, None] <= inside).all()
+    assert (inside <= high[:, None]).all()
+    assert (high - low <= 0.5 * np.abs(inside).max() + 1e-3).all()

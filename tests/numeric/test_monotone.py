@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kin.numeric.monotone import RoughError, between, cells, extremes, pieces
+from kin.numeric.monotone import RoughError, between, cells, extremes, extremes_of_each, pieces
 
 TURN = 2 * math.pi
 
@@ -163,3 +163,20 @@ def test_all_functions_at_places_and_where_the_first_has_values():
 
 def test_places_are_ends_and_the_breaks_between():
     assert between(0.0, 2.0, [1.5, -1.0, 0.5, 2.0, 0.5]).tolist() == [0.0, 0.5, 1.5, 2.0]
+
+
+def test_extremes_of_several_functions_are_those_of_each():
+    """a sin t + b sin 3 t: extremes where a cos t + 3 b cos 3 t vanishes, 4 cos^2 t = 3 - a/(3 b), or cos t = 0."""
+    factors = [(1.0, 0.0), (1.0, 0.3), (-2.0, 1.0), (0.0, 1e-3)]
+    curves = cells(
+        lambda t: np.stack([a * np.sin(t) + b * np.sin(3.0 * t) for a, b in factors]), between(0.0, TURN, [])
+    )
+    for row, ((a, b), found) in enumerate(zip(factors, extremes_of_each(curves), strict=True)):
+        assert found == extremes(curves, row)
+        square = (3.0 - a / (3.0 * b)) / 4.0 if b else 2.0
+        cosines = [0.0, *([math.sqrt(square)] if 0.0 <= square <= 1.0 else [])]
+        sines = [math.sqrt(1.0 - cosine**2) for cosine in cosines]  # sin 3 t = 3 s - 4 s^3
+        greatest = max(abs(a * s + b * (3.0 * s - 4.0 * s**3)) for s in sines)
+        for sign, (value, at) in zip((-1.0, 1.0), found, strict=True):
+            assert value == pytest.approx(sign * greatest, rel=1e-13)
+            assert a * math.sin(at) + b * math.sin(3.0 * at) == pytest.approx(value, rel=1e-13)

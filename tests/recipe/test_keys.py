@@ -70,8 +70,8 @@ def test_recipes_of_any_keys_have_the_keys_of_all_capabilities() -> None:
     ("wrong", "name"),
     [
         pytest.param(wrong, name, marks=() if name in QUICK and wrong == "@nought" else pytest.mark.slow)
-        for wrong in ("@nought", [], None, {"x": "y"}, -1)
-        for name in BASES
+        for number, name in enumerate(BASES)
+        for wrong in ("@nought", ([], None, {"x": "y"}, -1)[number % 4])
     ],
 )
 def test_a_sound_recipe_with_one_wrong_value_has_faults_and_no_more(name: str, wrong: Any) -> None:

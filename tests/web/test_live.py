@@ -127,15 +127,6 @@ def test_a_camshaft_is_made_by_the_command_which_is_named(call: str) -> None:
     assert "here give the recipe of a lobe" in fault["text"]
 
 
-# needs: linear
-@pytest.mark.parametrize("call", ["picture", "design", "make", "absent"])
-def test_a_linear_cam_is_made_by_the_command_too(call: str) -> None:
-    text = (RECIPES / "linear" / "plate-feed.yaml").read_text("utf-8")
-    (fault,) = json.loads(live.answer(call, json.dumps({"name": "feed", "text": text})))["faults"]
-    assert (fault["line"], fault["path"]) == (3, "cam.kind")
-    assert "this page makes no linear cam, which the command `camgeo export feed.yaml` does" in fault["text"]
-
-
 def test_a_fault_of_its_own_is_told_and_not_raised() -> None:
     answer = json.loads(live.answer("design", json.dumps({"name": "x"})))
     assert answer["faults"][0]["text"] == "camgeo has failed"
@@ -186,7 +177,7 @@ def test_fields_that_are_not_there_are_offered_and_added() -> None:
 @pytest.mark.parametrize("name", ["disc-roller", "four-bar", "disc-groove", "double-roller"])
 def test_the_policy_lets_every_judged_page_in(name: str) -> None:
     build = script("build")
-    policies = {build.policy(build.first_page(TEXTS[one])) for one in (name, "support")}
+    policies = {build.policy([build.judged_page(TEXTS[one])]) for one in (name, "support")}
     assert len(policies) == 1
 
 

@@ -231,13 +231,13 @@ FREE = DISC.replace("over: 110,", "over: least,").replace("dwell: 80", "dwell: r
 
 
 def test_an_angle_that_is_left_open_is_drawn_and_stays_open() -> None:
-    source, exact = Source.of(FREE, "x"), camgeo.design(camgeo.load(FREE))
-    motion = live.drawn(source, exact)
+    source, stated = Source.of(FREE, "x"), live._shown(camgeo.load(FREE)).motion()
+    motion = live.drawn(source, stated)
     assert [one["free"] for one in motion["segments"]] == [True, False, False, True]
     assert sum(one["over"] for one in motion["segments"]) == pytest.approx(360.0, abs=1e-6)
     for change, told in (("split", "the angle of this segment is left open"), ("repeat", "an angle is left open")):
         with pytest.raises(camgeo.CallError, match=told):
-            live.changed(source, exact, change, 0, 2.0)
+            live.changed(source, stated, change, 0, 2.0)
 
 
 @pytest.mark.parametrize(

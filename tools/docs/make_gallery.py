@@ -35,7 +35,8 @@ HEAD = """\
 
 To choose a recipe to begin with. Every shipped recipe with the shaft turned by 60 degrees, the cam as its first file
 draws it. Drawn and written by `python tools/docs/make_gallery.py`; a page that moves comes from
-`camgeo report RECIPE` ([page.md](page.md)).
+`camgeo report RECIPE` ([page.md](page.md)), and all of them stand as cards that open in
+[the page in a browser](tab.md), on its examples.
 """
 
 

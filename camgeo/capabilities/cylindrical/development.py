@@ -89,6 +89,25 @@ def drawn(design: DrumDesign, line: Developed, tolerance: float) -> Line:
     return Line(line, points, off)
 
 
+def unrolled(design: DrumDesign, tolerance: float) -> list[Array]:
+    """Lines (n, 2), mm, of the flanks on the blank, with the blank's ends and the marks of the overlap."""
+    recipe = design.recipe
+    lines = [drawn(design, Developed("", recipe.radius, name), tolerance).points for name in design.flanks]  # type: ignore[arg-type]
+    begin, end = _reach(design, recipe.radius, 0.0), _reach(design, recipe.radius, TURN + OVERLAP)
+    edges = [np.array([[begin, z], [end, z]]) for z in (0.0, recipe.height)]
+    return [*lines, *edges, *(_mark(design, recipe.radius, at) for at in (0.0, TURN, TURN + OVERLAP))]
+
+
+def _reach(design: DrumDesign, radius: float, at: float) -> float:
+    """Place of a polar angle, rad, on a development, mm."""
+    return (radius if design.recipe.rotation == "cw" else -radius) * at
+
+
+def _mark(design: DrumDesign, radius: float, at: float) -> Array:
+    x = _reach(design, radius, at)
+    return np.array([[x, 0.0], [x, design.recipe.height]])
+
+
 def _pitch(design: DrumDesign, radius: float, theta: Array) -> Array:
     """Where the roller's axis, or the middle between two, meets the cylinder."""
     y, z = design.recipe.guide.place(design.law.derivatives(theta, 0))
@@ -163,9 +182,7 @@ def write_development(
         boxes = [_draw(space, line.of.layer, COLOURS[line.of.flank], line.points / mm) for line in lines]
         for radius in dict.fromkeys(line.of.radius for line in lines):
             layer = f"R{radius / mm:.9g}_{MARKS}"
-            for at in (TURN, TURN + OVERLAP):
-                x = (radius if recipe.rotation == "cw" else -radius) * at
-                boxes.append(_draw(space, layer, 8, np.array([[x, 0.0], [x, recipe.height]]) / mm))
+            boxes += [_draw(space, layer, 8, _mark(design, radius, at) / mm) for at in (TURN, TURN + OVERLAP)]
         corners = np.array(boxes)
         return (*corners[:, :2].min(axis=0).tolist(), *corners[:, 2:].max(axis=0).tolist())
 

@@ -1,8 +1,9 @@
-"use strict";
-// what turns with the page's player: the drum, its lines of contact, the roller on the development, the map's cursor
-function playDrum(data) {
-  const root = document.documentElement;
-  const drum = document.querySelector("#drawing .drum");
+// What turns with the page's player: the drum, its lines of contact, the roller on the development, the map's cursor.
+// It returns what shows them at a share of the turn. Of a drum that is kept beside another, whose drawing is in `kept`,
+// that is what stands on the blank.
+function playDrum(data, kept = null) {
+  const drum = (kept || document).querySelector("#drawing .drum");
+  if (kept) for (const path of drum.querySelectorAll("path:not(.metal)")) path.remove();
   const paths = [...drum.querySelectorAll("path")];
   const arcs = [...document.querySelectorAll("#drawing .contacts path")];
   const developed = document.querySelectorAll("#development .roller-at");
@@ -68,8 +69,12 @@ function playDrum(data) {
     });
   }
 
-  function show() {
-    const share = (Number(root.dataset.at) || 0) / 360;
+  function showKept(share) {
+    paths[0].setAttribute("d", closed(near(shells.at(-1), data.sense * share * TURN)));
+  }
+  if (kept) return showKept;
+
+  function show(share) {
     const turn = data.sense * share * TURN;
     const n = shells.length;
     shells.forEach((shell, k) => {
@@ -92,7 +97,7 @@ function playDrum(data) {
       const x = left + width * (at + data.sense * roller.beside(share) + (i % 3) - 1);
       group.setAttribute("transform", `translate(${x.toFixed(2)} ${(top + height - scale * roller.z(share)).toFixed(2)})`);
     });
-    cursor.setAttribute("transform", `translate(${(data.map[0] + data.map[1] * share).toFixed(2)} 0)`);
+    cursor?.setAttribute("transform", `translate(${(data.map[0] + data.map[1] * share).toFixed(2)} 0)`);
   }
 
   // the drum is dragged round as its near side goes
@@ -105,14 +110,12 @@ function playDrum(data) {
   drum.addEventListener("pointermove", (event) => {
     if (grip === null) return;
     const radius = shells.at(-1).radius * drum.getScreenCTM().a;
-    const next = Number(root.dataset.at) - (data.sense * (event.clientX - grip) * 180) / (Math.PI * radius);
+    const next = Number(document.documentElement.dataset.at) - (data.sense * (event.clientX - grip) * 180) / (Math.PI * radius);
     grip = event.clientX;
     const slider = document.getElementById("slider");
     slider.value = ((next % 360) + 360) % 360;
     slider.dispatchEvent(new Event("input"));
   });
   for (const name of ["pointerup", "pointercancel"]) drum.addEventListener(name, () => (grip = null));
-
-  new MutationObserver(show).observe(root, { attributes: true, attributeFilter: ["data-at"] });
-  show();
+  return show;
 }

@@ -1,8 +1,9 @@
-"""The page of a cylindrical cam: the drum turns under its follower, development, pressure angles, curves and checks."""
+"""The page of a cylindrical cam: the drum turns under its follower, development, pressure angles, curves, figures."""
 
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +25,7 @@ from camgeo.capabilities.cylindrical.shells import FACE, PLACES, RIM, shells
 from camgeo.capabilities.cylindrical.turning import LINES, rollers, scene, sense, touched
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.report.page import tables
-from camgeo.report.page.page import filled, pack_numbers, picture, plotted, script_json
+from camgeo.report.page.page import pack_numbers, picture, plotted
 from camgeo.report.page.scene import STEPS
 from camgeo.report.plot import Plot, Series
 
@@ -32,15 +33,33 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.output.own_kind import Made
-    from kin.cylindrical.verdict import DrumVerdict
+    from camgeo.capabilities.cylindrical.shells import Shell
 
 
-def page(design: DrumDesign, _made: Sequence[Made[DrumVerdict]], report: dict[str, Any]) -> str:
-    """Return the HTML of the page, from the design, the files that were made or given, and the report."""
+def looks() -> tuple[str, str]:
+    """Return the rules of the charts, and the player that turns the drum."""
+    return _asset("drum.css"), _asset("drum.js")
+
+
+def panels(design: DrumDesign, report: dict[str, Any]) -> str:
+    """Return the HTML of development, map and figures."""
+    return f'<div class="charts-and-figures">{_charts(design)}{_figures(report)}</div>'
+
+
+@lru_cache(maxsize=1)
+def drawn(design: DrumDesign) -> dict[str, Any]:
+    """Data of the page's script that show the drum and its follower, and turn them; the last are kept."""
+    of = shells(design)
+    seen = scene(design, of=of)
     turn = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
-    data = {
-        **picture(design.recipe, scene(design), turn, -1 if design.recipe.rotation == "cw" else 1),
+    shown = picture(design.recipe, seen, turn, -1 if design.recipe.rotation == "cw" else 1)
+    return {**shown, "player": {"name": "playDrum", "data": _played(design, of, seen.digits)}}
+
+
+def script(design: DrumDesign) -> dict[str, Any]:
+    """All data of the page's script."""
+    return {
+        **drawn(design),
         "marks": [],
         "plots": [plotted(plot) for plot in _plots(design)],
         "rests": [
@@ -50,8 +69,6 @@ def page(design: DrumDesign, _made: Sequence[Made[DrumVerdict]], report: dict[st
         "contours": {},
         "errors": [],
     }
-    panels = f'<div class="charts-and-figures">{_charts(design)}{_figures(report)}</div>{_script(design)}'
-    return filled(design.recipe, data, report, panels=panels, style=_asset("drum.css"))
 
 
 def _asset(name: str) -> str:
@@ -71,14 +88,14 @@ def _charts(design: DrumDesign) -> str:
     )
 
 
-def _script(design: DrumDesign) -> str:
-    """Return the script that turns the drum with the page's player, and its data in the recipe's unit."""
+def _played(design: DrumDesign, of: Sequence[Shell], digits: int) -> dict[str, Any]:
+    """Return the data of the drum's player in the recipe's unit; `digits` are those of the drawing's coordinates."""
     recipe = design.recipe
     mm = recipe.mm
     theta = np.linspace(0.0, 2.0 * math.pi, LINES + 1)
-    data = {
+    return {
         "sense": sense(design),
-        "digits": scene(design).digits,
+        "digits": digits,
         "places": PLACES,
         "parts": LINES,
         "face": FACE,
@@ -89,7 +106,7 @@ def _script(design: DrumDesign) -> str:
                 "radius": each.radius / mm,
                 "bands": [[pack_numbers(z / mm, recipe.height / mm) for z in band] for band in each.bands],
             }
-            for each in shells(design)
+            for each in of
         ],
         "lines": [
             {
@@ -107,10 +124,6 @@ def _script(design: DrumDesign) -> str:
         "flat": [flat_scale(design) * mm, FIELD, flat_scale(design) * recipe.height, LEFT, TOP],
         "map": [LEFT, FIELD],
     }
-    return (
-        f'<script type="application/json" id="drum-data">{script_json(data)}</script>\n<script>\n{_asset("drum.js")}'
-        'playDrum(JSON.parse(document.getElementById("drum-data").textContent));\n</script>'
-    )
 
 
 def _figures(report: dict[str, Any]) -> str:

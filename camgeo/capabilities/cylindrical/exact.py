@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from camgeo.capabilities.cylindrical.design import DrumDesign, in_recipe
 from camgeo.capabilities.cylindrical.refused import demand_sound
 from kin.law.normalised import IntentError
@@ -12,6 +14,8 @@ from kin.law.normalised import IntentError
 if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.keys import DrumRecipe
     from camgeo.common.clock import Clock
+    from camgeo.motions.stated import StatedMotion
+    from kin.numeric.arrays import Array
 
 TURN = 2.0 * math.pi
 
@@ -28,3 +32,16 @@ def designed(recipe: DrumRecipe, clock: Clock) -> DrumDesign:
     with clock.stage("undercut"):
         demand_sound(design)
     return design
+
+
+def stated_motion(design: DrumDesign) -> StatedMotion:
+    """The motion over the shaft angle, as the recipe states it."""
+    from camgeo.motions.stated import StatedMotion
+
+    recipe = design.recipe
+
+    def lift(theta: Array) -> Array:
+        flat = np.asarray(theta, dtype=np.float64).ravel()
+        return np.asarray(design.law.derivatives(flat, 0)[0].reshape(np.shape(theta)))
+
+    return StatedMotion(recipe.motion, TURN, recipe.motion.repeats, "same", lift, math.degrees(1.0), 1.0 / recipe.mm)

@@ -6,13 +6,18 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.cylindrical.checks_of import design_checks, limits_held, remarks_on
-from camgeo.capabilities.cylindrical.exact import designed
+from camgeo.capabilities.cylindrical.design import in_recipe
+from camgeo.capabilities.cylindrical.exact import designed, stated_motion
 from camgeo.capabilities.cylindrical.figures import figures_of
 from camgeo.capabilities.cylindrical.making import foresee, make
 from camgeo.capabilities.cylindrical.section import drum_section
+from camgeo.capabilities.cylindrical.solid import drum_mesh
 from camgeo.capabilities.cylindrical.verdicts import file_rows, judged_file
-from camgeo.measures.units import report_unit
+from camgeo.measures.units import UNIT_NAMES, report_unit
+from camgeo.output.extension import numbers_of
 from camgeo.output.own_kind import OwnKind, Told
+from camgeo.output.refusals import refusals
+from camgeo.recipe.export import FileRequest
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -20,10 +25,13 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.common.clock import Clock
+    from camgeo.files.layer_outline import LayerOutline
+    from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
     from camgeo.output.own_kind import Made
-    from camgeo.recipe.export import FileRequest
+    from camgeo.report.page.scene import Scene
     from kin.cylindrical.verdict import DrumVerdict
+    from kin.numeric.arrays import Array
     from kin.numeric.check import Check
 
 
@@ -53,10 +61,50 @@ def _pieces(verdict: DrumVerdict) -> int:
     return sum(flank.triangles or 0 for flank in verdict.flanks)
 
 
-def _page(design: DrumDesign, made: Sequence[Made[DrumVerdict]], report: dict[str, Any]) -> str:
-    from camgeo.capabilities.cylindrical.drum_page import page
+def _seen(design: DrumDesign, step: int) -> Scene:
+    from camgeo.capabilities.cylindrical.turning import scene
 
-    return page(design, made, report)
+    return scene(design, step)
+
+
+def _picture(design: DrumDesign) -> dict[str, Any]:
+    from camgeo.capabilities.cylindrical.drum_page import drawn
+
+    return drawn(design)
+
+
+def _script(design: DrumDesign, _: Sequence[Made[DrumVerdict]]) -> dict[str, Any]:
+    from camgeo.capabilities.cylindrical.drum_page import script
+
+    return script(design)
+
+
+def _panels(design: DrumDesign, report: dict[str, Any]) -> str:
+    from camgeo.capabilities.cylindrical.drum_page import panels
+
+    return panels(design, report)
+
+
+def _looks() -> tuple[str, str]:
+    from camgeo.capabilities.cylindrical.drum_page import looks
+
+    return looks()
+
+
+def _drawings(design: DrumDesign, tolerance: float) -> list[tuple[str, Sequence[LayerOutline | Array]]]:
+    """The flanks unrolled at the blank's radius, to be wrapped about it."""
+    from camgeo.capabilities.cylindrical.development import unrolled
+
+    recipe = design.recipe
+    radius = f"{recipe.radius / recipe.mm:.6g} {UNIT_NAMES[recipe.units]}"
+    with refusals(recipe, FileRequest("dxf"), partial(in_recipe, recipe)):
+        return [(f"{recipe.name}, unrolled at a radius of {radius}", unrolled(design, tolerance))]
+
+
+def _mesh(design: DrumDesign, request: FileRequest) -> Mesh:
+    tolerance = request.tolerance or design.recipe.export.tolerance
+    with refusals(design.recipe, request, partial(in_recipe, design.recipe)):
+        return drum_mesh(design, tolerance, numbers_of(request.kind, 1.0))[0]
 
 
 DRUMS = OwnKind(
@@ -70,6 +118,13 @@ DRUMS = OwnKind(
     maker=_maker,
     judged=judged_file,
     pieces=_pieces,
-    page=_page,
+    seen=_seen,
+    picture=_picture,
+    script=_script,
+    panels=_panels,
+    looks=_looks,
+    motion=stated_motion,
+    drawings=_drawings,
+    mesh=_mesh,
     formats=("stl", "ply", "3mf", "dxf"),
 )

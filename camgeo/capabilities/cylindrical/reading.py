@@ -54,8 +54,8 @@ REFUSE = "undercut: refuse, as a cut ends in a sharp edge"
 NOTHING = 1e-9  # mm: a length below it is none
 
 
-def read_cylindrical(source: Source, path: Path) -> DrumRecipe:
-    """Read the recipe of a cylindrical cam; raises RecipeErrors with all its faults."""
+def reader_of(source: Source) -> tuple[Reader, Values]:
+    """Reader that has read the text of a cylindrical cam, but for faults between its keys; and its values."""
     reader = reader_of_kind(source, "cylindrical")
     read_units(reader)
     root = source.root
@@ -63,7 +63,12 @@ def read_cylindrical(source: Source, path: Path) -> DrumRecipe:
     follower = entries(cam).get("follower") if isinstance(cam, Mapping) else None
     if isinstance(follower, Mapping) and "arm" in entries(follower):
         reader.angular |= {Kind.STROKE, Kind.ERROR, Kind.MOTION}
-    values = reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
+    return reader, reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
+
+
+def read_cylindrical(source: Source, path: Path) -> DrumRecipe:
+    """Read the recipe of a cylindrical cam; raises RecipeErrors with all its faults."""
+    reader, values = reader_of(source)
     name_by_stem(values, reader, path)
     reader.errors = [_not_yet(error) for error in reader.errors]
     if not reader.errors:

@@ -31,12 +31,15 @@ def sense(design: DrumDesign) -> float:
     return 1.0 if design.recipe.rotation == "cw" else -1.0
 
 
-def scene(design: DrumDesign, step: int = 0) -> Scene:
-    """The drum as it stands at a step of the turn, and its follower over the turn, in the recipe's unit."""
+def scene(design: DrumDesign, step: int = 0, of: list[Shell] | None = None) -> Scene:
+    """The drum as it stands at a step of the turn, and its follower over the turn, in the recipe's unit.
+
+    `of` are its shells, by default as they are made here.
+    """
     recipe = design.recipe
     theta = np.linspace(0.0, 2.0 * math.pi, STEPS + 1)
     size = JOINT * (2.0 * recipe.radius + recipe.height)
-    shapes = drum_shapes(design, shells(design), sense(design) * float(theta[step]))
+    shapes = drum_shapes(design, of or shells(design), sense(design) * float(theta[step]))
     guide = recipe.guide
     follower = _arm(design, guide, theta, size) if isinstance(guide, Arm) else _carriage(design, theta, size)
     bodies = [MovingBody("drum", DRUM, tuple(shapes), still()), *follower]

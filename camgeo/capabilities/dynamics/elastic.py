@@ -7,13 +7,15 @@ the follower swings.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.dynamics.declared import FLOAT, LEAST_BACKLASH
 from camgeo.capabilities.dynamics.keys import Dynamics
 from camgeo.checks.declared import STANDS
 from kin.numeric.angles import degrees
 from kin.numeric.check import Check, about, failed
+from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +28,6 @@ if TYPE_CHECKING:
     from kin.dynamics.excitation import Faces
     from kin.dynamics.impacts import Course
     from kin.dynamics.train import Running, Steady, Train
-    from kin.follower.drive import Excitation
     from kin.numeric.arrays import Array
 
 TURNS = 20  # turns that are followed from rest, fewer where one repeats the turn before it
@@ -50,7 +51,8 @@ class _Purse:
         self._places, self._searches = max(0, self._places - places), self._searches - 1
 
 
-class _Scene(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class _Scene:
     """Data that all runs of a recipe share.
 
     `floats` and `courses` are the budgets of searches for float and of courses from rest; `rests` has begin and end of
@@ -58,6 +60,7 @@ class _Scene(NamedTuple):
     """
 
     recipe: Recipe
+    design: Design
     dynamics: Dynamics
     train: Train
     floats: _Purse
@@ -65,6 +68,14 @@ class _Scene(NamedTuple):
     rests: tuple[tuple[float, float], ...]
     unit: float
     unit_name: str
+
+    @cached_property
+    def lowest(self) -> float:
+        """Least position of the intended motion, m or rad."""
+        from kin.dynamics.drive import drives, lowest
+
+        (drive,) = drives([_faces(self, None).lower])
+        return lowest(drive.knots, [drive.position], lambda row: row[0])[0]
 
 
 def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> tuple[dict[str, Any], list[Check]]:
@@ -90,7 +101,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> 
     checks: list[Check] = []
     for file in sources:  # faults of the train or of the intended motion are the recipe's, others fail a file's check
         try:
-            entry, check = _run(scene, design, file)
+            entry, check = _run(scene, file)
         except DynamicsError as error:
             raise recipe.error("dynamics", str(error)) from error
         except (ContactError, DriveError) as error:
@@ -126,7 +137,7 @@ def steady_force(recipe: Recipe, design: Design, dynamics: Dynamics, shaft: Arra
 
     scene = _scene(recipe, dynamics, design, 1)
     try:
-        state = steady(scene.train, _drives(scene, design, None)[0], dynamics.rpm)
+        state = steady(scene.train, _drives(scene, None)[0], dynamics.rpm)
     except (DynamicsError, DriveError) as error:
         raise recipe.error("dynamics", str(error)) from error
     running = scene.train.at(dynamics.rpm)
@@ -160,20 +171,28 @@ def _scene(recipe: Recipe, dynamics: Dynamics, design: Design, runs: int) -> _Sc
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
     return _Scene(
-        recipe, dynamics, train, floats=_Purse(runs), courses=_Purse(runs), rests=dwells, unit=unit, unit_name=name
+        recipe,
+        design,
+        dynamics,
+        train,
+        floats=_Purse(runs),
+        courses=_Purse(runs),
+        rests=dwells,
+        unit=unit,
+        unit_name=name,
     )
 
 
-def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
+def _faces(scene: _Scene, file: FileResult | None) -> Faces:
     """Excitation of the follower by its lower face, and with backlash the upper one: intended, or by a file's contour.
 
     Raises ContactError where the follower finds no contact on the contour.
     """
     from kin.dynamics.excitation import Faces, OfMechanism, intended_faces, measured_faces
 
-    if design.driven is not None:
-        return Faces(OfMechanism(design.driven.mechanism), None)
-    follower = design.exact.gauge
+    if scene.design.driven is not None:
+        return Faces(OfMechanism(scene.design.driven.mechanism), None)
+    follower = scene.design.exact.gauge
     play = scene.dynamics.backlash
     if play is not None:  # the recipe gives it at the contact, mm; on an arm it is the turn that closes it, rad
         play = follower.moved_by(play)
@@ -182,36 +201,28 @@ def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
     return measured_faces(follower, file.contour, play)
 
 
-def _run(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[str, Any], Check]:
+def _run(scene: _Scene, file: FileResult | None) -> tuple[dict[str, Any], Check]:
     """Entry of the report for a run of the train, as intended or with a file's cam, and its check."""
-    drives = _drives(scene, design, file)
+    drives = _drives(scene, file)
     entry: dict[str, Any] = {"from": "intended" if file is None else file.path.name}
     if len(drives) > 1:
         return _with_backlash(scene, entry, drives[0], drives[1])
     return _with_spring(scene, entry, drives[0])
 
 
-def _drives(scene: _Scene, design: Design, file: FileResult | None) -> list[Drive]:
+def _drives(scene: _Scene, file: FileResult | None) -> list[Drive]:
     """Excitation of the follower by each face, the lower one first; dwells are cut at their ends."""
     from kin.dynamics.drive import drives
     from kin.dynamics.excitation import Faces
     from kin.follower.drive import Shifted
 
-    faces = _faces(scene, design, file)
+    faces = _faces(scene, file)
     # a spring's force is given at the lowest place of the intended motion, from which positions count then; with a rate
     # there is no backlash, so no upper face
     if scene.dynamics.rate:
-        faces = Faces(Shifted(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
+        faces = Faces(Shifted(faces.lower, 1.0, -scene.lowest), None)
     ends = [end for rest in scene.rests for end in rest]
     return drives([face for face in faces if face is not None], ends)
-
-
-def _lowest(motion: Excitation) -> float:
-    """Least position of a motion, m or rad."""
-    from kin.dynamics.drive import drives, lowest
-
-    (drive,) = drives([motion])
-    return lowest(drive.knots, [drive.position], lambda row: row[0])[0]
 
 
 def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[dict[str, Any], Check]:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.linear.path import Guide
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve, Frame
+    from camgeo.motions.stated import StatedMotion
     from camgeo.schema.errors import RecipeErrors
     from kin.law.sources.motion import Motion
     from kin.numeric.arrays import Array, Indices
@@ -337,6 +338,27 @@ def designed(recipe: LinearRecipe, clock: Clock) -> LinearDesign:
     with clock.stage("profile"):
         _ = design.outline if recipe.groove is None else design.groove  # raises where its ends cannot be made
     return design
+
+
+def stated_motion(design: LinearDesign) -> StatedMotion:
+    """The motion over the travel, as the recipe states it; where that is sized, as it was found."""
+    from camgeo.motions.stated import StatedMotion
+
+    recipe = design.recipe
+
+    def lift(u: Array) -> Array:
+        flat = np.asarray(u, dtype=np.float64).ravel()
+        return np.asarray(design.path.law.derivatives(flat, 0, design.sides(flat))[0].reshape(np.shape(u)))
+
+    return StatedMotion(
+        recipe.motion,
+        design.length,
+        recipe.periods,
+        "same" if recipe.endless else "nothing",
+        lift,
+        1.0 / recipe.mm,
+        math.degrees(1.0) if recipe.swings else 1.0 / recipe.mm,
+    )
 
 
 def _at(u: float) -> str:

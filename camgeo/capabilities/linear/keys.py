@@ -266,7 +266,9 @@ def _motion() -> Field:
     form = _PLAIN.form
     if form is None:
         raise AssertionError
-    own: OwnForm[Reader] = OwnForm(form.noun, form.wanted, _read_motion, _motion_schema, instead=form.instead)
+    others = form.instead.fields if form.instead else ()
+    instead = FieldTable((*_PERIODS.fields, *others))
+    own: OwnForm[Reader] = OwnForm(form.noun, form.wanted, _read_motion, _motion_schema, instead=instead)
     return replace(_PLAIN, form=own)
 
 

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 REFERENCE_STEPS = 240  # of the path of the follower's centre in a drawing
 COLOUR = "#5f8dd3"
+LAYERS = ("CUT", GROOVE_LAYER)  # of the fitted outlines, the outermost first
 POSES = 60  # of a plate that slides, in a viewer
 
 
@@ -118,8 +119,7 @@ def _drawing(job: Job, request: FileRequest, path: Path) -> Made[PlateVerdict]:
         if outline.bound.worst + shift > tolerance and 4.0 * shift < tolerance:
             outline = fits.within(form, tolerance - 2.0 * shift)
         outlines.append(as_drawn(design, outline))
-    layers = ["CUT", GROOVE_LAYER]
-    layered = [LayerOutline(layer, outline) for layer, outline in zip(layers, outlines, strict=False)]
+    layered = [LayerOutline(layer, outline) for layer, outline in zip(LAYERS, outlines, strict=False)]
     cut = [_narrowed(opening, out) for opening in openings(recipe, drawn=True)]
     layered += [LayerOutline(opening.layer, opening.outline, opening.circle) for opening in cut]
     notes = remarks(body_of(design, None), mm)
@@ -184,6 +184,14 @@ def _narrowed(opening: Opening, out: float) -> Opening:
     return narrowed(opening, out) if out else opening
 
 
+def cut_outlines(job: Job, tolerance: float) -> list[LayerOutline]:
+    """The plate's outline, its groove and its openings in arcs and lines within a tolerance, mm, as drawn."""
+    outlines = [as_drawn(job.design, job.fits(name).within("arcs", tolerance)) for name in job.names]
+    layered = [LayerOutline(layer, outline) for layer, outline in zip(LAYERS, outlines, strict=False)]
+    cut = openings(job.design.recipe, drawn=True)
+    return layered + [LayerOutline(opening.layer, opening.outline, opening.circle) for opening in cut]
+
+
 def _groove_chords(job: Job, tolerance: float) -> ArcSpline | None:
     """The outline of the groove as straight pieces, as drawn; None without one."""
     if job.design.recipe.groove is None:
@@ -194,7 +202,7 @@ def _groove_chords(job: Job, tolerance: float) -> ArcSpline | None:
     return ArcSpline(outline.vertices, np.zeros(len(outline.vertices)), outline.bound)
 
 
-def _solid_mesh(job: Job, request: FileRequest, kind: str, mm: float) -> tuple[Mesh, MeshFacts]:
+def solid_mesh(job: Job, request: FileRequest, kind: str, mm: float) -> tuple[Mesh, MeshFacts]:
     """Mesh of the plate and facts on it, in the precision of a kind of file in a unit of `mm` mm."""
     recipe, tolerance = job.design.recipe, job.tolerance(request)
     if recipe.plate.thickness is None:
@@ -223,7 +231,7 @@ def _mesh(job: Job, request: FileRequest, path: Path) -> Made[PlateVerdict]:
     recipe, mm, write = job.design.recipe, _unit(job, request), MAKING[request.kind].write
     if write is None:
         raise ValueError(f"{request.kind} holds no mesh")
-    mesh, facts = _solid_mesh(job, request, request.kind, mm)
+    mesh, facts = solid_mesh(job, request, request.kind, mm)
     with job.clock.stage(f"write {request.kind}"):
         write(path, [Item("plate", mesh)], recipe.name, mm, recipe.about)
     return _judged(job, request, path, (facts.vertices, facts.bound))
@@ -234,7 +242,7 @@ def _glb(job: Job, request: FileRequest, path: Path) -> Made[PlateVerdict]:
     from camgeo.formats.glb import Actor, write_glb
 
     design = job.design
-    mesh, _ = _solid_mesh(job, request, "stl", 1.0)
+    mesh, _ = solid_mesh(job, request, "stl", 1.0)
     turn = 2.0 * math.pi * np.arange(POSES + 1) / POSES
     far = 0.5 * design.total * (1.0 - np.cos(turn)) if not design.recipe.endless else design.total * turn / turn[-1]
     x = far if design.recipe.travel == "right" else -far

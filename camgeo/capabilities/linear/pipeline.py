@@ -5,25 +5,29 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.capabilities.linear.checks_of import design_checks, limits_held, remarks_on
-from camgeo.capabilities.linear.design import designed
+from camgeo.capabilities.linear.design import designed, stated_motion
 from camgeo.capabilities.linear.figures import figures_of
 from camgeo.capabilities.linear.job import Job
-from camgeo.capabilities.linear.making import foresee, make
+from camgeo.capabilities.linear.making import cut_outlines, foresee, make, solid_mesh
 from camgeo.capabilities.linear.section import plate_section
 from camgeo.capabilities.linear.verdicts import file_rows, judged_file
-from camgeo.measures.units import report_unit
+from camgeo.common.clock import Clock
+from camgeo.measures.units import UNIT_NAMES, report_unit
 from camgeo.output.own_kind import OwnKind, Told
+from camgeo.recipe.export import FileRequest
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from camgeo.capabilities.linear.design import LinearDesign
-    from camgeo.common.clock import Clock
+    from camgeo.files.layer_outline import LayerOutline
+    from camgeo.files.mesh import Mesh
     from camgeo.measures.placed import Figure
     from camgeo.output.own_kind import Made
-    from camgeo.recipe.export import FileRequest
+    from camgeo.report.page.scene import Scene
     from kin.linear.verdict import PlateVerdict
+    from kin.numeric.arrays import Array
     from kin.numeric.check import Check
 
 
@@ -58,10 +62,42 @@ def _pieces(verdict: PlateVerdict) -> int:
     return sum(flank.pieces or 0 for flank in verdict.flanks)
 
 
-def _page(design: LinearDesign, made: Sequence[Made[PlateVerdict]], report: dict[str, Any]) -> str:
-    from camgeo.capabilities.linear.plate_page import page
+def _seen(design: LinearDesign, _: int) -> Scene:
+    from camgeo.capabilities.linear.plate_page import scene
 
-    return page(design, made, report)
+    return scene(design)
+
+
+def _picture(design: LinearDesign) -> dict[str, Any]:
+    from camgeo.capabilities.linear.plate_page import drawn
+
+    return drawn(design)
+
+
+def _script(design: LinearDesign, made: Sequence[Made[PlateVerdict]]) -> dict[str, Any]:
+    from camgeo.capabilities.linear.plate_page import script
+
+    return script(design, made)
+
+
+def _panels(_: LinearDesign, report: dict[str, Any]) -> str:
+    from camgeo.report.page.tables import figures
+
+    return figures(report["plate"]["figures"], "at", f" {UNIT_NAMES[report['units']]}")
+
+
+def _drawings(design: LinearDesign, tolerance: float) -> list[tuple[str, Sequence[LayerOutline | Array]]]:
+    """The plate, as it is cut."""
+    job, request = Job(design, Clock()), FileRequest("dxf")
+    with job.refusals(request):
+        return [(design.recipe.name, cut_outlines(job, tolerance))]
+
+
+def _mesh(design: LinearDesign, request: FileRequest) -> Mesh:
+    job = Job(design, Clock())
+    with job.refusals(request):
+        foresee(design, request)
+        return solid_mesh(job, request, request.kind, 1.0)[0]
 
 
 PLATES = OwnKind(
@@ -75,6 +111,13 @@ PLATES = OwnKind(
     maker=_maker,
     judged=judged_file,
     pieces=_pieces,
-    page=_page,
+    seen=_seen,
+    picture=_picture,
+    script=_script,
+    panels=_panels,
+    looks=lambda: ("", ""),
+    motion=stated_motion,
+    drawings=_drawings,
+    mesh=_mesh,
     formats=("dxf", "svg", "stl", "ply", "3mf", "step"),
 )

@@ -14,10 +14,10 @@ from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import ArcSpline
 from camgeo.measures.units import UNIT_NAMES
 from camgeo.recipe.figures import PRESSURE_ANGLE
-from camgeo.report.page import svg, tables
+from camgeo.report.page import svg
 from camgeo.report.page.followers import contact
 from camgeo.report.page.guided import HALF_STEM, WIDTH, Touch, knife_edge, roller, shoe
-from camgeo.report.page.page import filled, picture, plotted
+from camgeo.report.page.page import picture, plotted
 from camgeo.report.page.scene import STEPS, FilledShape, MovingBody, Scene, SceneInput, pivot, poses, still
 from camgeo.report.plot import Plot, Series
 from kin.numeric.records import replace
@@ -37,10 +37,15 @@ RUN = 4.5  # sizes of a joint: length of the guide of a stem
 MARGIN = 0.05  # of the travel: the plate's guide reaches beyond it
 
 
-def page(design: LinearDesign, made: Sequence[Made[PlateVerdict]], report: dict[str, Any]) -> str:
-    """Return the HTML of the page, from the design, the files that were made or given, and the report."""
-    data = {
-        **picture(design.recipe, scene(design), np.linspace(0.0, 2.0 * math.pi, STEPS + 1), 1),
+def drawn(design: LinearDesign) -> dict[str, Any]:
+    """Data of the page's script that show and move the plate and its follower."""
+    return picture(design.recipe, scene(design), np.linspace(0.0, 2.0 * math.pi, STEPS + 1), 1)
+
+
+def script(design: LinearDesign, made: Sequence[Made[PlateVerdict]]) -> dict[str, Any]:
+    """All data of the page's script, from the design and the files that were made or given."""
+    return {
+        **drawn(design),
         "marks": [],
         "plots": [plotted(plot) for plot in (*_plots(design), *_errors(design, made))],
         "rests": _rests(design),
@@ -48,12 +53,6 @@ def page(design: LinearDesign, made: Sequence[Made[PlateVerdict]], report: dict[
         "contours": {},
         "errors": [],
     }
-    return filled(
-        design.recipe,
-        data,
-        report,
-        panels=tables.figures(report["plate"]["figures"], "at", f" {UNIT_NAMES[report['units']]}"),
-    )
 
 
 def _rests(design: LinearDesign) -> list[list[object]]:

@@ -43,8 +43,8 @@ PROGRAM_NEEDS = ("cutter", "feed", "plunge", "spindle", "depth_of_cut", "safe_he
 ANGLES = 1  # what a disc would be judged at: a plate is judged at all places
 
 
-def read_linear(source: Source, path: Path) -> LinearRecipe:
-    """Read the recipe of a linear cam; raises RecipeErrors with all its faults."""
+def reader_of(source: Source) -> tuple[Reader, Values]:
+    """Reader that has read the text of a linear cam, but for faults between its keys; and its values."""
     reader = reader_of_kind(source, "linear")
     read_units(reader)
     root = source.root
@@ -52,7 +52,12 @@ def read_linear(source: Source, path: Path) -> LinearRecipe:
     follower = entries(cam).get("follower") if isinstance(cam, Mapping) else None
     if isinstance(follower, Mapping) and "arm" in entries(follower):
         reader.angular |= {Kind.STROKE, Kind.ERROR, Kind.MOTION}
-    values = reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
+    return reader, reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
+
+
+def read_linear(source: Source, path: Path) -> LinearRecipe:
+    """Read the recipe of a linear cam; raises RecipeErrors with all its faults."""
+    reader, values = reader_of(source)
     name_by_stem(values, reader, path)
     if not reader.errors:
         _check(values, reader)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from camgeo.capabilities.linear.keys import LinearRecipe
     from camgeo.output.own_kind import OwnKind
     from camgeo.schema.fields import FieldTable
+    from camgeo.schema.reader import Reader
     from camgeo.schema.yaml_source import Source
 
 
@@ -29,6 +30,12 @@ def _read(source: Source, path: Path) -> LinearRecipe:
     return read_linear(source, path)
 
 
+def _reader(source: Source) -> Reader:
+    from camgeo.capabilities.linear.reading import reader_of
+
+    return reader_of(source)[0]
+
+
 def _run() -> OwnKind[Any, Any]:
     from camgeo.capabilities.linear.pipeline import PLATES
 
@@ -41,5 +48,5 @@ def _library() -> Library:
     return library
 
 
-READING = Reading(table=_table, read=_read, noun="linear cam", instead="the recipe of a disc cam")
+READING = Reading(table=_table, read=_read, reader=_reader, noun="linear cam", instead="the recipe of a disc cam")
 ROOT = root_of_kind(_run, _library, "linear", "a drawing or a solid of the plate")

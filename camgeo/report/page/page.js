@@ -80,12 +80,21 @@ function playScene(data, begin = null) {
     made("title", {}, mark).textContent = text;
     return mark;
   });
+  let px = 1; // units of the drawing that one px of the screen is
+  let at = 0; // of the input
+  let phase = 0; // of a cycle, in the same unit
+  let playing = false;
+  let last = 0;
+  let frame = 0; // that is asked for
+  const followers = []; // what else moves with the angle
   // another design that is kept beside this one: outlines that move along, in the same scale
   const kept = data.beside ? keptBodies(data.beside) : [];
-  function keptBodies({ drawing: other, bodies: rows, factor, room: [x0, y0, x1, y1] }) {
+  function keptBodies({ drawing: other, bodies: rows, factor, reach, player, room: [x0, y0, x1, y1] }) {
     drawing.setAttribute("viewBox", [scale * (x0 - left), scale * (top - y1), scale * (x1 - x0), scale * (y1 - y0)].join(" "));
     const held = document.createElement("template");
     held.innerHTML = other;
+    const share = () => (closed ? at % reach : Math.min(at, reach)) / reach; // of its own turn or travel
+    if (player) followers.push(played(player, held.content, share));
     const outlines = made("g", { class: "kept", "aria-hidden": "true" });
     drawing.querySelector("g").append(outlines);
     return rows.flatMap((row, i) => {
@@ -95,15 +104,15 @@ function playScene(data, begin = null) {
       group.removeAttribute("id");
       group.setAttribute("class", "");
       outlines.append(group);
-      return [{ group, factor, x: curve(row[0]), y: curve(row[1]), angle: curve(row[2]) }];
+      return [{ group, factor, share, x: curve(row[0]), y: curve(row[1]), angle: curve(row[2]) }];
     });
   }
-  let px = 1; // units of the drawing that one px of the screen is
-  let at = 0; // of the input
-  let phase = 0; // of a cycle, in the same unit
-  let playing = false;
-  let last = 0;
-  const followers = []; // what else moves with the angle
+  // what a function of another script moves besides, by the share of the turn or of the travel
+  function played({ name, data: given }, among, share) {
+    const move = globalThis[name](given, among);
+    return () => move(share());
+  }
+  if (data.player) followers.push(played(data.player, null, () => at / M));
 
   function show() {
     const x = (at / M) * N;
@@ -115,6 +124,7 @@ function playScene(data, begin = null) {
       }
     }
     for (const body of kept) {
+      const x = body.share() * N;
       const place = `translate(${(body.factor * body.x(x)).toFixed(6)} ${(body.factor * body.y(x)).toFixed(6)})`;
       body.group.setAttribute("transform", `${place} rotate(${body.angle(x).toFixed(5)}) scale(${body.factor})`);
     }
@@ -139,13 +149,22 @@ function playScene(data, begin = null) {
     show();
   }
 
+  // a page that nobody sees stands still
+  function next() {
+    cancelAnimationFrame(frame);
+    if (!playing || document.hidden) return;
+    last = performance.now();
+    frame = requestAnimationFrame(tick);
+  }
+  document.addEventListener("visibilitychange", next, until);
+
   function tick(now) {
-    if (!playing) return;
+    if (!playing || document.hidden) return;
     const rpm = Number(find("speed").value);
     phase = (phase + (Math.min(now - last, 100) * rpm * cycle) / 60000) % cycle;
     turnTo(phase > M ? cycle - phase : phase);
     last = now;
-    requestAnimationFrame(tick);
+    frame = requestAnimationFrame(tick);
   }
 
   function play(on) {
@@ -154,12 +173,12 @@ function playScene(data, begin = null) {
     const button = find("play");
     button.textContent = on ? "Pause" : "Play";
     button.setAttribute("aria-pressed", String(on));
-    if (on) {
-      phase = at;
-      last = performance.now();
-      requestAnimationFrame(tick);
-    }
+    phase = at;
+    next();
   }
+
+  const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
+  calm.addEventListener("change", () => calm.matches && playing && play(false), until);
 
   // the address follows the angle at rest, so that it can be kept or passed on; browsers allow a few changes a second
   let later = 0;
@@ -263,7 +282,8 @@ function playScene(data, begin = null) {
         values: unpacked(series) || Array(series.high ? N : N + 1).fill(series.c),
         high: series.high && (unpacked(series.high) || Array(N).fill(series.high.c)),
       }));
-      this.kept = (plot.beside || []).filter((series) => !series.high).map((series) => unpacked(series) || Array(N + 1).fill(series.c));
+      const kept = (plot.beside || []).filter((series) => !series.high);
+      this.kept = kept.map((series) => (unpacked(series) || Array(N + 1).fill(series.c)).filter((_, i) => (i * data.beside.reach) / N <= M));
       this.range();
       this.figure = html("figure", "plot", find("plots"));
       const caption = html("figcaption", "", this.figure);
@@ -367,7 +387,7 @@ function playScene(data, begin = null) {
         const place = { x: this.width - RIGHT - 2, y: this.y(value) + (below ? 11 : -4), "text-anchor": "end" };
         if (name) names.push([{ class: "named", ...place }, name]);
       }
-      for (const values of this.kept) made("path", { class: "line kept", d: this.path(values) }, this.svg);
+      for (const values of this.kept) made("path", { class: "line kept", d: this.path(values, data.beside.reach) }, this.svg);
       this.rows.forEach((row, i) => {
         const d = row.high ? this.band(row) : this.path(row.values);
         made("path", { class: `${row.high ? "band" : "line"}${i ? " second" : ""}`, d }, this.svg);
@@ -377,7 +397,7 @@ function playScene(data, begin = null) {
       this.dots = this.rows.map((row, i) => made("circle", { class: `dot${i ? " second" : ""}`, r: 3.5 }, this.svg));
     }
 
-    path(values) {
+    path(values, reach = M) {
       let text = "";
       let pen = "M";
       values.forEach((value, i) => {
@@ -385,7 +405,7 @@ function playScene(data, begin = null) {
           pen = "M";
           return;
         }
-        text += `${pen}${this.x((M * i) / N).toFixed(1)} ${this.y(value).toFixed(1)}`;
+        text += `${pen}${this.x((reach * i) / N).toFixed(1)} ${this.y(value).toFixed(1)}`;
         pen = "L";
       });
       return text;
@@ -680,7 +700,7 @@ function playScene(data, begin = null) {
   } else {
     window.addEventListener("hashchange", addressed, until);
   }
-  if (!begin && !addressed()) play(!window.matchMedia("(prefers-reduced-motion: reduce)").matches);
+  if (!begin && !addressed()) play(!calm.matches);
   root.dataset.ready = "true";
 
   return () => {

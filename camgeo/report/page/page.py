@@ -37,9 +37,19 @@ def page(recipe: Recipe, content: Content, report: dict[str, Any]) -> str:
 
 
 def filled(
-    recipe: Order, data: dict[str, Any], report: dict[str, Any], *, linkage: str = "", panels: str = "", style: str = ""
+    recipe: Order,
+    data: dict[str, Any],
+    report: dict[str, Any],
+    *,
+    linkage: str = "",
+    panels: str = "",
+    style: str = "",
+    code: str = "",
 ) -> str:
-    """Return the HTML of a page with the data of its script, as `scene` gives them, with further panels and rules."""
+    """Return the HTML of a page with the data of its script, as `scene` gives them, and with further panels.
+
+    `style` has further rules, `code` the functions of players that the data name.
+    """
     parts = {
         "note": escape(data.pop("note")),
         "facts": tables.facts(report, recipe.input_words),
@@ -50,7 +60,7 @@ def filled(
         "panels": panels,
         "skipped": tables.skipped_list(report),
         "recipe": escape(recipe.text),
-        "script": asset("page.js"),
+        "script": asset("page.js") + code,
         "data": script_json(data),
     }
     return head(recipe, report, style) + _fill("page.html", parts)

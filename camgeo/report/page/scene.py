@@ -100,6 +100,10 @@ class Scene:
     note: str = ""
     input_: SceneInput = SHAFT
 
+    def step_at(self, at: float) -> int:
+        """Return the step nearest to a place of the input, in its unit."""
+        return round(at / self.input_.most * STEPS)
+
     def scaled(self, factor: float) -> Scene:
         """Return the scene with all lengths times `factor`, for another unit."""
         return replace(self, bodies=tuple(_enlarged(body, factor) for body in self.bodies))

@@ -83,7 +83,7 @@ def _row(state: tuple[str, str], check: dict[str, Any], limit: str, over: str, t
         f'<th scope="row">{escape(title(check))}{detail}</th>'
         f'<td class="number">{value}</td>'
         f"<td>{beside(figures['unit'], check['value'], check['unit'])}</td>{_cell(limit, 'number')}"
-        f"{_cell(_place(check, over))}"
+        f"{_cell(place(check, over))}"
         f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
     )
 
@@ -244,7 +244,7 @@ def _with_hint(short: str, value: float) -> str:
     return short if short == f"{value:.6g}" and float(short) == value else f'<span title="{value!r}">{short}</span>'
 
 
-def _place(entry: dict[str, Any], over: str) -> str:
+def place(entry: dict[str, Any], over: str) -> str:
     """Return a button that moves the mechanism to the place of a check or a remark; a dash without one."""
     if "at" not in entry:
         return place_button(entry["at_deg"], over)

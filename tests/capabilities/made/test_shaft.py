@@ -443,7 +443,7 @@ def test_points_that_are_not_of_this_shaft_are_told_what_they_look_like(wrong, c
     rows = [wrong(*row) for row in shaft_points(recipe, count=120)]
     file = written(tmp_path / "points.csv", rows, columns)
     assert main(["verify", str(recipe), str(file)]) == 2
-    (line,) = (line for line in capsys.readouterr().err.splitlines() if not line.endswith(" s ..."))
+    (line,) = (line for line in capsys.readouterr().err.splitlines() if not line.endswith(" ..."))
     assert re.search(message, line)
 
 

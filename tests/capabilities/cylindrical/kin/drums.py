@@ -359,10 +359,11 @@ def sought(function, at, width, best, rounds=7):
     return np.take_along_axis(value, best(value, axis=1)[:, None], axis=1)[:, 0]
 
 
-def distances(drum, points, flank):
+def distances(drum, points, flank, *, highest=False):
     """Distance (n,) of points (n, 3) from an exact flank, above 0 within the metal, and the height over it, (n,).
 
-    Positions alone: the least distance from all axes of the roller, and how far it has to give way to the point.
+    Positions alone: the least distance from all axes of the roller, and how far it has to give way to the point. With
+    `highest`, side times the height (n,) of the flank itself.
     """
     _, side, roller, level = flank
     if drum.mirrored:
@@ -381,8 +382,15 @@ def distances(drum, points, flank):
     def gives(theta):
         return drum.gives(theta, (*along(theta), points[:, [2]]), roller, side, level)
 
+    def heights(theta):
+        (x, y), (y0, z0) = along(theta), drum.axis(theta, level)
+        with np.errstate(invalid="ignore"):
+            return np.nan_to_num(side * z0 + np.sqrt(drum.size(roller, x) ** 2 - (y - y0) ** 2), nan=-np.inf)
+
     at = phi[:, None] + reach[:, None] * np.linspace(-1.0, 1.0, 201)
     width = reach[:, None] / 100.0
+    if highest:
+        return sought(heights, at, width, np.argmax)
     return sought(away, at, width, np.argmin), sought(gives, at, width, np.argmax)
 
 
@@ -395,7 +403,7 @@ def enveloped(drum):
         points = np.stack([far * np.cos(phi), far * np.sin(phi), np.zeros_like(far)], axis=-1)
         height = np.concatenate(
             [
-                distances(replace(drum, mirrored=False), part, flank)[1]
+                distances(replace(drum, mirrored=False), part, flank, highest=True)
                 for part in np.array_split(points, 1 + len(points) // 4000)
             ]
         )

@@ -18,6 +18,7 @@ from capabilities.cylindrical.kin.drums import (
     Rib,
     Steps,
     distances,
+    enveloped,
     on_triangles,
     random_led,
     replace,
@@ -26,6 +27,7 @@ from capabilities.cylindrical.kin.drums import (
 
 from kin.cylindrical.development import judged_line
 from kin.cylindrical.figures import exact_play, forces, pressure_angles, rib_thickness, undercut
+from kin.cylindrical.frame import flank_points
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Developed, Limits
 from kin.cylindrical.judge import judge_mesh, positions
@@ -102,6 +104,44 @@ def test_random_led_drums(number):
         assert abs(held[-1]) == pytest.approx(unit * motion.max, abs=2.0 * near)
 
 
+def sharp(stroke):
+    return Motion(((stroke, 62.0, "cycloidal"), (0.0, 110.0, ""), (-stroke, 70.0, "cycloidal"), (0.0, 118.0, "")))
+
+
+CUT = Drum(sharp(15.2), 12.0, 26.0, 40.0, 27.0, Groove(16.0, 0.05), 40.0, 70.0, 10.0, shortened=True)
+
+
+@pytest.mark.slow  # flanks by brute force, and peaks that are sought by cells
+@pytest.mark.parametrize(
+    "drum",
+    [
+        replace(CUT, taper=math.radians(5.0), at=33.0),
+        replace(CUT, motion=sharp(15.2 / 70.0), arm=Arm(70.0, 69.7, 34.6, 1)),
+    ],
+    ids=["cone", "arm"],
+)
+def test_an_undercut_that_is_cut_off(drum):
+    found = undercut(drum.intent())
+    assert drum.floor < found.below < drum.inner + 2.0
+    # by positions: nearer to the axis what is touched stands in the way of other rollers
+    theta = found.at + np.linspace(-0.2, 0.2, 101)
+    stands = []
+    for rho in (found.below + 0.05, found.below - 0.5):
+        points = flank_points(drum.intent().follower, theta, rho)
+        stands.append(-distances(drum, points, drum.flanks[0])[0].min())
+    assert stands[0] < 1e-9
+    assert stands[1] > 1e-6
+    made = Made(drum, Steps(360, 8, 10, 8, 4), enveloped(drum))
+    verdict = judge_mesh(read(made), drum.intent(), Limits(0.5))
+    assert verdict.ok, refused(verdict)
+    # the outer part of the line carries the roller all round
+    assert all(flank.motion.max < 0.02 for flank in verdict.flanks)
+    for flank, own in zip(verdict.flanks, drum.flanks, strict=True):
+        edges, within = on_triangles(made, flank.name, np.random.default_rng(0), 500)
+        off = np.abs(distances(drum, np.concatenate([edges[::9], within]), own)[0])
+        assert off.max() <= flank.measured_error + 0.05
+
+
 STEPS, LIMITS = Steps(400, 5, 20, 12, 1), Limits(0.0125)
 
 
@@ -135,7 +175,8 @@ PLANTED = {
 @pytest.mark.parametrize("fault", PLANTED)
 def test_faults_in_the_metal(made, name, fault):
     plant, wanted = PLANTED[fault]
-    assert wanted <= refused(judged(*plant(made[name]), DRUMS[name].intent(), LIMITS))
+    places, corners = plant(made[name])
+    assert wanted <= refused(judged(places, corners, DRUMS[name].intent(), LIMITS))
 
 
 def on_arm(**more):

@@ -1,0 +1,262 @@
+"""Linear and cylindrical cams on the page in a browser: they move, are drawn by hand, compared, filmed and made."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from PIL import Image, ImageSequence
+from support import tab
+from support.pages import wait
+from support.places import RECIPES
+
+from camgeo.api.root import root_of
+from camgeo.recipe.loading import load_order_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(tab.why_not()), reason=tab.why_not())]
+
+
+def shipped(name: str) -> str:
+    return (RECIPES / f"{name}.yaml").read_text("utf-8")
+
+
+@pytest.fixture
+def desk(other_page: tab.Tab) -> Iterator[tab.Tab]:
+    """The page with a cam that stands still, wide again afterwards."""
+    page = other_page
+    page.ask("document.documentElement.dataset.playing === 'true' && byId('play').click()")
+    yield page
+    page.ask("recipe.beside = null")
+    page.browser.size(1280, 800)
+    page.browser.call("Emulation.setTouchEmulationEnabled", enabled=False)
+
+
+def turn_to(page: tab.Tab, at: float) -> None:
+    page.ask(f"byId('slider').value = {at}; byId('slider').dispatchEvent(new Event('input'))")
+
+
+def place(page: tab.Tab, body: str) -> list[float]:
+    """Place and angle of a body, as it is drawn."""
+    told = page.ask(f"document.querySelector('#drawing {body}').getAttribute('transform')")
+    return [float(part) for part in re.findall(r"-?[\d.]+", told)]
+
+
+def numbers(path: str) -> Any:
+    return np.array(re.findall(r"-?[\d.]+", path), dtype=float).reshape(-1, 2)
+
+
+# needs: linear
+@pytest.mark.parametrize("width", [390, 1280])
+def test_a_plate_slides_and_its_joint_is_moved_by_a_finger(desk: tab.Tab, width: int) -> None:
+    desk.browser.size(width, 844)
+    desk.load("feed", shipped("linear/plate-feed"))
+    assert desk.text_of("verdict") == "every check of the design holds"
+    turn_to(desk, 100.0)
+    assert place(desk, ".cam")[:2] == pytest.approx([-100.0, 0.0])
+    assert "lift 20.00 mm" in desk.text_of("now")
+    desk.browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
+    handle = "document.querySelector('[data-joint=\"1\"]')"
+    desk.ask(f"{handle}.scrollIntoView({{ block: 'center', behavior: 'instant' }})")
+    x, y = desk.ask(f"(({{x, y, width, height}}) => [x + width / 2, y + height / 2])({handle}.getBoundingClientRect())")
+    across = desk.ask("frame().width") / 200.0
+    desk.browser.touch([(x, y), (x + 4 * across, y), (x + 10 * across, y)])
+    desk.settle()
+    over, rest, lift = desk.ask("[motion.segments[1].over, motion.segments[2].over, motion.segments[1].change]")
+    assert over == pytest.approx(70.0, abs=2.0)
+    assert over + rest == 100.0
+    assert lift == pytest.approx(20.0, abs=0.4)  # a finger is not as still
+    assert over == round(over)
+    desk.ask(f"{handle}.focus()")
+    desk.browser.key("ArrowRight")
+    desk.settle()
+    assert f"rise: {lift:g}, over: {over + 1:g}" in desk.text
+    assert f"{15 + over + 1:g} mm, {lift:g} mm" in desk.ask(f"{handle}.getAttribute('aria-label')")
+    assert desk.ask("document.documentElement.scrollWidth") <= width
+    desk.press("undo")
+    desk.press("undo")
+    assert desk.text == shipped("linear/plate-feed")
+    desk.slide("cam.motion[2].dwell", 45.0)  # a travel has no partner that gives it
+    assert desk.text == shipped("linear/plate-feed").replace("dwell: 40", "dwell: 45")
+    assert desk.ask("shown.input.most") == 205
+    assert desk.browser.problems == []
+
+
+# needs: cylindrical
+def test_a_drum_turns_and_is_unrolled_beside(desk: tab.Tab) -> None:
+    text = shipped("cylindrical/drum-groove")
+    desk.load("drum", text)
+    turn_to(desk, 75.0)
+    blank = desk.ask("[...document.querySelectorAll('#drawing .drum path')].at(-1).getAttribute('d')")
+    still = root_of(recipe := load_order_text(text, "drum.yaml")).shown(recipe).still(75.0)
+    (drawn,) = re.findall(r'd="([^"]+)"><title>blank</title>', still)
+    np.testing.assert_allclose(numbers(blank), numbers(drawn), atol=0.02)
+    rolled = desk.ask("document.querySelectorAll('#development .roller-at')[1].getAttribute('transform')")
+    x, y = (float(part) for part in re.findall(r"[\d.]+", rolled))
+    scale = 364.0 / (100.0 * math.pi)
+    lift = 40.0 * (75.0 / 120.0 - math.sin(math.radians(225.0)) / (2.0 * math.pi))
+    assert (x, y) == pytest.approx((46.0 + 364.0 * 75.0 / 360.0, 8.0 + scale * (80.0 - lift)), abs=0.02)
+    for width in (390, 1280):
+        desk.browser.size(width, 844)
+        assert desk.ask("document.documentElement.scrollWidth") <= width
+    desk.load("toy", shipped("disc-roller"))
+    assert desk.ask("byId('panels').hidden && byId('panels').children.length === 0")
+    assert desk.browser.problems == []
+
+
+# needs: cylindrical
+def test_a_drum_is_made_judged_and_its_solid_shown_where_it_is_late_unrolled(desk: tab.Tab, tmp_path: Path) -> None:
+    desk.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
+    desk.load("drum", shipped("cylindrical/drum-end"))
+    desk.judged("make")
+    assert "ok" in desk.text_of("outcome")
+    files = desk.ask("[...document.querySelectorAll('#files a')].map((one) => one.download)")
+    assert {"drum.stl", "drum.3mf", "drum.dxf", "drum.csv", "report.json"} <= {*files}
+    desk.ask("""work.ask = ((ask) => async function (call, ...rest) {
+      if (call === "solid") await new Promise((done) => setTimeout(done, 2600));
+      return ask.call(this, call, ...rest);
+    })(work.ask)""")
+    desk.click("solid")
+    desk.wait("!byId('solid-meanwhile').hidden")
+    assert desk.ask("byId('solid-unrolled').querySelectorAll('.line').length") >= 2
+    assert desk.ask("document.querySelectorAll('#development').length") == 1
+    desk.wait("!byId('solid-figure').hidden")
+    assert desk.ask("byId('solid-meanwhile').hidden")
+    assert desk.text_of("solid-size").startswith("80 × 80 × ")
+    desk.ask("delete work.ask")
+    desk.click("pdf")
+    wait((tmp_path / "drum.pdf").is_file)
+    assert b"unrolled at a radius of 40 mm" in (tmp_path / "drum.pdf").read_bytes()
+    assert desk.browser.problems == []
+
+
+# needs: linear
+def test_a_plate_is_made_and_its_judged_page_is_let_in(desk: tab.Tab) -> None:
+    desk.load("groove", shipped("linear/plate-groove").replace("files: [dxf, stl, html]", "files: [dxf, stl]"))
+    desk.judged("make")
+    assert "groove.stl cannot be made in a browser" in desk.text_of("outcome")
+    desk.click("solid")
+    desk.wait("byId('hand-told').textContent")
+    assert "manifold3d" in desk.text_of("hand-told")  # cuts the groove
+    desk.load(
+        "rack",
+        shipped("linear/plate-endless").replace(
+            "  holes: [{at: [12.5, 6], diameter: 4.3}, {at: [62.5, 6], diameter: 4.3}]\n", ""
+        ),
+    )
+    desk.judged("make")
+    desk.click("solid")
+    desk.wait("!byId('solid-figure').hidden")
+    assert desk.text_of("solid-size").startswith("75 × 18 × 8 mm")  # three waves, 15 and 3 high
+    assert desk.browser.problems == []
+
+
+# needs: cylindrical
+def test_a_kept_drum_turns_along_in_its_own_size(desk: tab.Tab) -> None:
+    text = shipped("cylindrical/drum-end")
+    desk.load("drum", text)
+    desk.press("keep")
+    desk.wait("document.querySelector('#drawing .kept .metal') !== null")
+    desk.enter("cam.radius", "44")
+    wide = "document.querySelector('#drawing {} .metal').getBBox().width"
+    assert desk.ask(wide.format(".kept")) == pytest.approx(80.0, abs=0.01)
+    assert desk.ask(wide.format(".drum")) == pytest.approx(88.0, abs=0.01)
+    before = desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')")
+    turn_to(desk, 45.0)
+    assert desk.ask("document.querySelector('#drawing .kept .metal').getAttribute('d')") != before
+    assert desk.ask("document.querySelectorAll('.plot .line.kept').length") >= 4
+
+
+# needs: linear
+def test_a_kept_plate_stands_at_the_same_travel_and_its_curves_too(desk: tab.Tab) -> None:
+    text = shipped("linear/plate-feed")
+    desk.load("feed", text)
+    desk.press("keep")
+    desk.wait("document.querySelector('#drawing .kept') !== null")
+    desk.enter("cam.motion[0].dwell", "115")
+    assert desk.ask("shown.input.most") == 300
+    turn_to(desk, 150.0)
+    plates = desk.ask(
+        "[...document.querySelectorAll('#drawing .kept > g')].map((one) => one.getAttribute('transform'))"
+    )
+    assert sum(one.startswith("translate(-150.000000 ") for one in plates if one) == 1
+    kept = numbers(desk.ask("document.querySelector('.plot .line.kept').getAttribute('d')"))
+    now = numbers(desk.ask("document.querySelector('.plot .line:not(.kept)').getAttribute('d')"))
+    left, right = now[0, 0], now[-1, 0]
+    assert kept[-1, 0] == pytest.approx(left + (right - left) * 200.0 / 300.0, abs=0.2)
+    desk.load("disc", shipped("disc-roller"))  # a turn is compared by its share, and has no common axis
+    assert desk.ask("document.querySelectorAll('.plot .line.kept').length") == 0
+    desk.press("unkeep")
+
+
+# needs: cylindrical
+def test_a_film_of_a_drum_turns_it(desk: tab.Tab, tmp_path: Path) -> None:
+    desk.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
+    text = shipped("cylindrical/drum-end").replace("[stl, 3mf, ", "[").replace(", {csv: {as: flank}}", "")
+    desk.load("film", text)
+    desk.judged("make")
+    desk.click("gif")
+    wait((tmp_path / "film.gif").is_file)
+    film = Image.open(io.BytesIO((tmp_path / "film.gif").read_bytes()))
+    pictures = [np.asarray(one.convert("RGB")).astype(int) for one in ImageSequence.Iterator(film)]
+    metal = "getComputedStyle(document.querySelector('#drawing .drum .metal')).fill"
+    colour = [int(part) for part in re.findall(r"\d+", desk.ask(metal))]
+    blank = [(np.abs(picture - colour).sum(axis=2) < 3) for picture in pictures]
+    beside = pictures[0].shape[1] // 4  # of the roller and its carriage
+    tops = [one[:, beside].argmax() for one in blank]  # where the metal begins: the end face rises and falls
+    assert len({*tops}) > 5
+    assert np.corrcoef(tops[:36], tops[36:])[0, 1] > 0.95  # twice a turn
+
+
+def test_what_is_not_seen_or_shall_not_move_stands_still(desk: tab.Tab) -> None:
+    desk.load("disc", shipped("disc-roller"))
+    desk.click("play")
+    at = "Number(document.documentElement.dataset.at)"
+    rest = "new Promise((done) => setTimeout(done, 400))"
+    desk.ask("Object.defineProperty(document, 'hidden', { value: true, configurable: true })")
+    desk.ask("document.dispatchEvent(new Event('visibilitychange'))")
+    before = desk.ask(at)
+    desk.ask(rest)
+    assert desk.ask(at) == before
+    assert desk.text_of("play") == "Pause"  # it goes on as soon as it is seen
+    desk.ask("delete document.hidden")
+    desk.ask("document.dispatchEvent(new Event('visibilitychange'))")
+    desk.wait(f"{at} !== {before}")
+    began = desk.ask(f"[performance.now(), {at}]")
+    desk.ask("new Promise((done) => setTimeout(done, 1500))")
+    ended = desk.ask(f"[performance.now(), {at}]")
+    turned = (ended[1] - began[1]) % 360
+    assert turned <= 1.3 * 36.0 * (ended[0] - began[0]) / 1000.0  # 6 turns a minute, and not twice that
+    calm = [{"name": "prefers-reduced-motion", "value": "reduce"}]
+    desk.browser.call("Emulation.setEmulatedMedia", features=calm)
+    desk.wait("byId('play').textContent === 'Play'")
+    before = desk.ask(at)
+    desk.ask(rest)
+    assert desk.ask(at) == before
+    desk.browser.call("Emulation.setEmulatedMedia", features=[])
+
+
+def test_a_kind_is_chosen_among_the_starters(desk: tab.Tab) -> None:
+    desk.ask("byId('begin').open = true")
+    desk.wait("document.querySelectorAll('#shipped li').length > 0")
+    names = desk.ask("[...document.querySelectorAll('.starters li')].map((one) => one.dataset.name)")
+    assert {"linear", "linear-groove", "plate-feed"} <= {*names}  # needs: linear
+    assert {"cylindrical", "cylindrical-end", "drum-rib"} <= {*names}  # needs: cylindrical
+    loose = desk.ask("[...document.querySelectorAll('.starters img')].map((one) => one.getAttribute('src'))")
+    assert len({*loose}) == len(loose)
+
+
+def test_every_shipped_kind_has_its_style_and_player_on_the_page(site: Path) -> None:
+    code, style = ((site / name).read_text("utf-8") for name in ("page.js", "tab.css"))
+    for path in [*RECIPES.glob("linear/*.yaml"), *RECIPES.glob("cylindrical/*.yaml")]:
+        recipe = load_order_text(path.read_text("utf-8"), str(path))
+        rules, player = root_of(recipe).shown(recipe).looks()
+        assert rules in style
+        assert player in code
