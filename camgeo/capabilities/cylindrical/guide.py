@@ -73,7 +73,7 @@ class Arm:
     length: float
     y: float
     z: float
-    side: int
+    side: Literal[-1, 1]
     start: float
     unit: ClassVar[Literal["mm", "deg"]] = "deg"
     radial: ClassVar[bool] = False

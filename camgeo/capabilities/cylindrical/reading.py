@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from camgeo.capabilities.cylindrical.guide import Arm, Carriage
 from camgeo.capabilities.cylindrical.keys import (
@@ -257,7 +257,7 @@ def _built(values: Values, document: Document, mm: float) -> DrumRecipe:
     if arm is None:
         guide: Guide = Carriage(level, cam["follower"].get("offset", 0.0))
     else:
-        side = -1 if arm.get("side") == "leading" else 1
+        side: Literal[-1, 1] = -1 if arm.get("side") == "leading" else 1
         start = math.asin((level - arm["pivot"]) / arm["length"])
         guide = Arm(arm["length"], arm["offset"], arm["pivot"], side, start)
     keyway = KEYWAY.build(part)
