@@ -8,39 +8,26 @@ from camgeo.capabilities.axis.keys import DEFAULT, FILES, RECIPE, ROTARY, AxisRe
 from camgeo.formats.tables.controller import OPTIONS, check_options
 from camgeo.formats.tables.tabled import check_step
 from camgeo.motions.motion import check_filled
-from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export, check_files
-from camgeo.recipe.keys import read_units
-from camgeo.recipe.recipe import Verify, name_by_stem, reader_of_kind
-from camgeo.schema.errors import RecipeErrors
+from camgeo.recipe.own_kind import begin, entry_at, finish
+from camgeo.recipe.recipe import Verify
 from camgeo.schema.fields import Kind
-from camgeo.schema.yaml_source import Mapping, Scalar, entries
+from camgeo.schema.yaml_source import Scalar
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from camgeo.recipe.document import Document
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Source
 
 
 def read_axis(source: Source, path: Path) -> AxisRecipe:
     """Read the recipe of an axis; raises RecipeErrors with all its faults."""
-    reader = reader_of_kind(source, "axis")
-    read_units(reader)
-    root = source.root
-    axis = entries(root).get("axis") if isinstance(root, Mapping) else None
-    kind = entries(axis).get("kind") if isinstance(axis, Mapping) else None
-    if isinstance(kind, Scalar) and kind.text == ROTARY:
-        reader.angular |= {Kind.STROKE, Kind.ERROR, Kind.MOTION}
-    values = reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
-    name_by_stem(values, reader, path)
-    if not reader.errors:
-        _check(values, reader)
-    if reader.errors:
-        raise RecipeErrors(reader.errors)
-    document = Document(path=path, text=source.text, marks=reader.marks, kinds=reader.kinds)
-    return _built(values, document, reader)
+    kind = entry_at(source.root, "axis", "kind")
+    swings = isinstance(kind, Scalar) and kind.text == ROTARY
+    return finish(*begin(source, "axis", RECIPE, swings=swings), path, _check, _built)
 
 
 def _check(values: Values, reader: Reader) -> None:

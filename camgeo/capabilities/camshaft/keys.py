@@ -9,19 +9,17 @@ from camgeo.capabilities.camshaft.extension import writers
 from camgeo.formats.tables.tabled import check_step
 from camgeo.motions.lift_table import read_path
 from camgeo.part.bore import LEAST_SIZE
-from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export, export_of
-from camgeo.recipe.keys import CORE, UNITS, read_units, recipe_table
+from camgeo.recipe.keys import CORE, UNITS, recipe_table
 from camgeo.recipe.machining import COARSEST, FINEST
+from camgeo.recipe.own_kind import begin, finish
 from camgeo.recipe.recipe import (
     ANGLES,
     Order,
     ShaftOrder,
     Verify,
     file_bytes,
-    name_by_stem,
     of_source,
-    reader_of_kind,
 )
 from camgeo.registry.formats import FORMATS
 from camgeo.schema.errors import RecipeErrors, quote, suggestion
@@ -36,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
+    from camgeo.recipe.document import Document
     from camgeo.recipe.export import Length
     from camgeo.recipe.recipe import Recipe
     from camgeo.registry.formats import Format
@@ -274,16 +273,7 @@ def read_camshaft(source: Source, path: Path) -> CamshaftRecipe:
     Raises RecipeErrors with all faults of the camshaft's own fields, else of the first lobe's recipe that has any, and
     for lobes or journals that overlap or reach beyond the shaft.
     """
-    reader = reader_of_kind(source, "camshaft")
-    root = source.root
-    read_units(reader)
-    values = reader.table(SHAFT, root, "") if isinstance(root, Mapping) else {}
-    name_by_stem(values, reader, path)
-    if not reader.errors:
-        _check(values, reader)
-    if reader.errors:
-        raise RecipeErrors(reader.errors)
-    return _built(values, Document(path=path, text=source.text, marks=reader.marks, kinds=reader.kinds))
+    return finish(*begin(source, "camshaft", SHAFT, swings=False), path, _check, _built)
 
 
 def _check(values: Values, reader: Reader) -> None:
@@ -336,9 +326,9 @@ def _check(values: Values, reader: Reader) -> None:
             reader.fault_at(f"camshaft.journals[{i}].diameter", "not above the shaft's", None, remedy)
 
 
-def _built(values: Values, document: Document) -> CamshaftRecipe:
+def _built(values: Values, document: Document, reader: Reader) -> CamshaftRecipe:
     """Make the recipe of values in which there is no fault; the lobes' recipes are read here."""
-    camshaft, mm = values["camshaft"], UNITS[values.get("units", "mm")]
+    camshaft, mm = values["camshaft"], reader.mm
     shaft, rotation = camshaft["shaft"], values.get("rotation", "cw")
     rows, bars = camshaft["lobes"], camshaft.get("journals", [])
     low, high = shaft.get("from", 0.0), shaft["to"]

@@ -23,14 +23,11 @@ from camgeo.motions.motion import check_filled
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
 from camgeo.part.part import Part
-from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export, check_files
 from camgeo.recipe.figure_bounds import build_bounds, check_bounds
-from camgeo.recipe.keys import read_units
-from camgeo.recipe.recipe import Verify, name_by_stem, reader_of_kind
-from camgeo.schema.errors import RecipeErrors
-from camgeo.schema.fields import Kind, either
-from camgeo.schema.yaml_source import Mapping, entries
+from camgeo.recipe.own_kind import begin, entry_at, finish
+from camgeo.recipe.recipe import Verify
+from camgeo.schema.fields import either
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -38,6 +35,7 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.guide import Guide
     from camgeo.capabilities.cylindrical.keys import Track
+    from camgeo.recipe.document import Document
     from camgeo.schema.errors import RecipeError
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Source
@@ -61,27 +59,15 @@ NOTHING = 1e-9  # mm: a length below it is none
 
 def reader_of(source: Source) -> tuple[Reader, Values]:
     """Reader that has read the text of a cylindrical cam, but for faults between its keys; and its values."""
-    reader = reader_of_kind(source, "cylindrical")
-    read_units(reader)
-    root = source.root
-    cam = entries(root).get("cam") if isinstance(root, Mapping) else None
-    follower = entries(cam).get("follower") if isinstance(cam, Mapping) else None
-    if isinstance(follower, Mapping) and "arm" in entries(follower):
-        reader.angular |= {Kind.STROKE, Kind.ERROR, Kind.MOTION}
-    return reader, reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
+    swings = entry_at(source.root, "cam", "follower", "arm") is not None
+    reader, values = begin(source, "cylindrical", RECIPE, swings=swings)
+    reader.errors = [_not_yet(error) for error in reader.errors]
+    return reader, values
 
 
 def read_cylindrical(source: Source, path: Path) -> DrumRecipe:
     """Read the recipe of a cylindrical cam; raises RecipeErrors with all its faults."""
-    reader, values = reader_of(source)
-    name_by_stem(values, reader, path)
-    reader.errors = [_not_yet(error) for error in reader.errors]
-    if not reader.errors:
-        _check(values, reader)
-    if reader.errors:
-        raise RecipeErrors(reader.errors)
-    document = Document(path=path, text=source.text, marks=reader.marks, kinds=reader.kinds)
-    return _built(values, document, reader.mm)
+    return finish(*reader_of(source), path, _check, _built)
 
 
 def _not_yet(error: RecipeError) -> RecipeError:
@@ -297,7 +283,7 @@ def _track(cam: Values) -> Track:
     return End(track, cam["radius"] - cam["follower"]["from"] + FLOOR_GAP)
 
 
-def _built(values: Values, document: Document, mm: float) -> DrumRecipe:
+def _built(values: Values, document: Document, reader: Reader) -> DrumRecipe:
     """Make the recipe of values in which there is no fault."""
     cam, part = values["cam"], values["part"]
     track, level, arm = _track(cam), cam["pitch_height"], cam["follower"].get("arm")
@@ -312,7 +298,7 @@ def _built(values: Values, document: Document, mm: float) -> DrumRecipe:
         name=values["name"],
         about=values.get("about", ""),
         units=values.get("units", "mm"),
-        mm=mm,
+        mm=reader.mm,
         rotation=values.get("rotation", "cw"),
         export=build_export(values.get("export", {}), FILES, "stl"),
         verify=Verify(angles=ANGLES, **values.get("verify", {})),

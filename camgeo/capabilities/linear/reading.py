@@ -21,21 +21,18 @@ from camgeo.capabilities.linear.keys import (
     Slot,
 )
 from camgeo.part.mark import Mark
-from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export, check_files
 from camgeo.recipe.figure_bounds import build_bounds, check_bounds
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
-from camgeo.recipe.keys import read_units
 from camgeo.recipe.machining import build_manufacture
-from camgeo.recipe.recipe import Verify, name_by_stem, reader_of_kind
+from camgeo.recipe.own_kind import begin, entry_at, finish
+from camgeo.recipe.recipe import Verify
 from camgeo.registry.formats import FORMATS
-from camgeo.schema.errors import RecipeErrors
-from camgeo.schema.fields import Kind
-from camgeo.schema.yaml_source import Mapping, entries
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from camgeo.recipe.document import Document
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Source
 
@@ -45,26 +42,12 @@ ANGLES = 1  # what a disc would be judged at: a plate is judged at all places
 
 def reader_of(source: Source) -> tuple[Reader, Values]:
     """Reader that has read the text of a linear cam, but for faults between its keys; and its values."""
-    reader = reader_of_kind(source, "linear")
-    read_units(reader)
-    root = source.root
-    cam = entries(root).get("cam") if isinstance(root, Mapping) else None
-    follower = entries(cam).get("follower") if isinstance(cam, Mapping) else None
-    if isinstance(follower, Mapping) and "arm" in entries(follower):
-        reader.angular |= {Kind.STROKE, Kind.ERROR, Kind.MOTION}
-    return reader, reader.table(RECIPE, root, "") if isinstance(root, Mapping) else {}
+    return begin(source, "linear", RECIPE, swings=entry_at(source.root, "cam", "follower", "arm") is not None)
 
 
 def read_linear(source: Source, path: Path) -> LinearRecipe:
     """Read the recipe of a linear cam; raises RecipeErrors with all its faults."""
-    reader, values = reader_of(source)
-    name_by_stem(values, reader, path)
-    if not reader.errors:
-        _check(values, reader)
-    if reader.errors:
-        raise RecipeErrors(reader.errors)
-    document = Document(path=path, text=source.text, marks=reader.marks, kinds=reader.kinds)
-    return _built(values, document, reader.mm)
+    return finish(*reader_of(source), path, _check, _built)
 
 
 def _check(values: Values, reader: Reader) -> None:
@@ -231,7 +214,7 @@ def _check_limits(values: Values, reader: Reader) -> None:
     check_bounds(values.get("limits", {}), there, reader)
 
 
-def _built(values: Values, document: Document, mm: float) -> LinearRecipe:
+def _built(values: Values, document: Document, reader: Reader) -> LinearRecipe:
     """Make the recipe of values in which there is no fault."""
     cam, part = values["cam"], values.get("part", {})
     source, periods = cam["motion"]
@@ -252,7 +235,7 @@ def _built(values: Values, document: Document, mm: float) -> LinearRecipe:
         name=values["name"],
         about=values.get("about", ""),
         units=values.get("units", "mm"),
-        mm=mm,
+        mm=reader.mm,
         export=build_export(values.get("export", {})),
         verify=Verify(angles=ANGLES, **values.get("verify", {})),
         base=cam["base"],
