@@ -245,6 +245,7 @@ def test_what_is_refused_says_what_to_give(
     assert exported(tmp_path, changed(text, remedy)).ok
 
 
+@pytest.mark.costly("a program is made, and judged twice")
 def test_a_program_is_read_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert exported(tmp_path, program()).ok
     path, recipe = tmp_path / "other.nc", str(tmp_path / "drum.yaml")
