@@ -351,9 +351,73 @@ def test_a_figure_that_a_recipe_has_not() -> None:
         assert all(loaded(recipe, f"{{{figure}: {{at_most: 1}}}}") for figure in figures)
 
 
-def test_bounds_the_wrong_way_round_and_none() -> None:
-    assert "below at_least, so nothing is accepted; exchange them" in told(FLAT, "{size: {at_least: 2, at_most: 1}}")[0]
-    assert "no bound; give at_least, at_most or both" in told(FLAT, "{size: {}}")[0]
+def test_all_that_a_recipe_has_not_is_told_at_once() -> None:
+    """What each figure needs, in one reading; exactly those that the recipe offers are taken."""
+    said = told(FLAT, "{" + ", ".join(f"{name}: {{at_most: 1}}" for name in FIGURES) + "}")
+    words = dict(re.findall(r": limits\.(\S+): (.*); the figures of this recipe are", "\n".join(said)))
+    offered = re.split(r", | and ", said[0].partition("recipe are ")[2])
+    assert {*words} | {*offered} == set(FIGURES)
+    assert not {*words} & {*offered}
+    assert {*offered} >= {name for name, recipe in HAVE.items() if recipe == FLAT}
+    for name, need in {
+        "dwell": "dwell.band",
+        "pressure-angle-rise": "a cam of kind disc or constant-diameter",
+        "velocity-ratio": "a cam of kind double-roller or flat-pair",
+        "law-error": "cam.delta.law",
+        "face-width": "a flat face on a stem",
+        "roller-speed": "a roller that a cam of kind disc or constant-diameter turns",
+        "pivot-clearance": "an arm that a cam of kind disc works",
+        "preload-force-least": "cam.preload.stiffness",
+        "transmission-angle": "a linkage",
+        "hollow-radius": "a cam for rollers",
+        "mass": "part.density, and in a sweep no linkage",
+        "lobe-centre": "a stem that a cam of kind disc works",
+        "output-error": "a linkage",
+    }.items():
+        assert words[name] == f"{name} needs {need}"
+
+
+def test_bounds_that_contradict_each_other() -> None:
+    for text, limits, words in (
+        (FLAT, "3", ": limits: not a mapping, given 3; give a mapping from figures to bounds"),
+        (FLAT, "{size: {at_least: 2, at_most: 1}}", ".size.at_most: below at_least, so nothing is accepted; exchange"),
+        (FLAT, "{size: {}}", ": limits.size: no bound; give at_least, at_most or both"),
+        (FLAT, "{pressure-angle: {on_return: 40}}", ".on_return: on_return needs a cam of kind disc or constant-diam"),
+        (
+            STEM,
+            "{pressure-angle: {at_least: 1, at_most: 30, on_return: 40}}",
+            ".pressure-angle.at_least: cannot be combined with on_return; leave one of the two out",
+        ),
+        (
+            STEM,
+            "{pressure-angle: {on_return: 40}, pressure-angle-return: {at_most: 45}}",
+            ".pressure-angle-return: limits.pressure-angle with on_return bounds it too; leave one of the two out",
+        ),
+        (
+            LOBE,
+            "{duration: [{at_most: 90}, {at_most: 80, at_lift: 1.27}]}",
+            ".duration[1]: limits.duration[0] at the same lift bounds it too; leave one of the two out",
+        ),
+    ):
+        (one,) = told(text, limits)
+        assert words in one, one
+    assert len(loaded(FLAT, "{size: {at_least: 2, at_most: 2}}").limits) == 1
+    lifts = loaded(LOBE, "{duration: [{at_most: 90}, {at_least: 80, at_lift: 2}]}").limits
+    assert [(one.lift, one.field("at_most")) for one in lifts] == [
+        (1.27, "limits.duration[0].at_most"),
+        (2.0, "limits.duration[1].at_most"),
+    ]
+    rise, back = loaded(STEM, "{pressure-angle: {at_most: 30, on_return: 40}}").limits
+    assert (rise.figure, rise.at_most, rise.field("at_most")) == (
+        "pressure-angle-rise",
+        30.0,
+        "limits.pressure-angle.at_most",
+    )
+    assert (back.figure, back.at_most, back.field("at_most")) == (
+        "pressure-angle-return",
+        40.0,
+        "limits.pressure-angle.on_return",
+    )
 
 
 # --- failures in words ------------------------------------------------------------------------------------------------
