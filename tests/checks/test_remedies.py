@@ -541,7 +541,12 @@ def test_what_a_failed_check_is_told() -> None:
         (remedies.smaller_wheel, failed(20.0), cam, "a manufacture.wheel of 40 mm or less"),
         (remedies.smaller_wheel, failed(0.0), cam, ""),
         (remedies.wider_face, failed(12.0), cam, "a follower.width of 12 mm or more"),
-        (remedies.wider_face, failed(12.0), carded, "a follower.width of 12 mm or more, or cam.motion.lobe.least: face"),
+        (
+            remedies.wider_face,
+            failed(12.0),
+            carded,
+            "a follower.width of 12 mm or more, or cam.motion.lobe.least: face",
+        ),
         (remedies.wider_face, failed(12.0), faced, "a follower.width of 12 mm or more"),
         (remedies.smaller_bore, failed(2.0, 5.0), bored, "a bore smaller by more than 6 mm"),
         (remedies.smaller_bore, failed(-17.4, 5.0), bored, "a bore smaller by more than 44.8 mm"),
