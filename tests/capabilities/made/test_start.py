@@ -11,8 +11,8 @@ import pytest
 from support.measured import ARM, MOTION, RECIPES, SWING, bump, disc, measured, nothing, points, surfaces, table, turned
 
 import camgeo
-from camgeo.cli import progress
 from camgeo.capabilities.made.start import _verified
+from camgeo.cli import progress
 from camgeo.cli.main import main
 from camgeo.common.errors import CallError
 from kin.law.sources.laws import NAMES

@@ -556,7 +556,7 @@ def test_an_angle_may_be_many_turns() -> None:
     parser = argparse.ArgumentParser(exit_on_error=False)
     add_arguments(parser)
     assert parser.parse_args(["a.yaml", "--at=-1e6"]).at == -1e6
-    with pytest.raises(argparse.ArgumentError, match="a shaft angle is a number of degrees, not 1000000.1"):
+    with pytest.raises(argparse.ArgumentError, match=r"a shaft angle is a number of degrees, not 1000000\.1"):
         parser.parse_args(["a.yaml", "--at", "1000000.1"])
 
 
