@@ -525,6 +525,7 @@ def test_what_a_failed_check_is_told() -> None:
     bored, cam = (load_text(support("p: 25", more), "plate.yaml") for more in (BORED.format(45.0), ""))
     lone = load_text(disc(80.0, "kind: roller, radius: 8", track="track: internal, "), "ring.yaml")
     asked = load_text(support("p: 25", LIMITED), "asked.yaml")
+    inches = load_text(f"units: inch\n{support('p: 1', BORED.format(0.4).replace('5', '0.2'))}", "plate.yaml")
     pair_of_faces = load_text(needle(1500.0).replace("export", "verify: {motion_error: 0.5}\nexport"), "asked.yaml")
     card = "{lobe: {lift: 9, nose: 180, duration: [{at_lift: 1, degrees: 240}, {at_lift: 5, degrees: 120}]}}"
     lobe = f"cam: {{kind: disc, base_radius: 18, follower: {{kind: flat}}, motion: {card}}}"
@@ -552,6 +553,8 @@ def test_what_a_failed_check_is_told() -> None:
         (remedies.smaller_bore, failed(-17.4, 5.0), bored, "a bore smaller by more than 44.8 mm"),
         (remedies.smaller_bore, failed(-17.5, 5.0), bored, ""),  # the whole bore
         (remedies.smaller_bore, failed(None, 5.0), bored, ""),
+        (remedies.smaller_bore, failed(0.1, 0.2, unit="in"), inches, "a bore smaller by more than 0.2 in"),
+        (remedies.smaller_bore, failed(0.1, 0.31, unit="in"), inches, ""),
         (remedies.smaller_bore, failed(2.0, 5.0), cam, ""),
         (remedies.smaller_bore, failed(2.0, 5.0), ring, ""),
         (remedies.smaller_bore, failed(2.0, 5.0), lone, "a part.outer larger by more than 6 mm"),

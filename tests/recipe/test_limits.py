@@ -701,6 +701,7 @@ ROUND = SIZED.replace("roller, radius: 9", "flat").replace(
 )
 RING = SIZED.replace("  motion", "  track: internal\n  motion").replace("bore: 20", "outer: 400")
 INCHES = "units: inch\n" + YOKE.replace("40", "2").replace("20", "1", 1)
+IN_INCHES = "units: inch\ncam: {kind: support, p: 1 + cos(2*t)/10}\npart: {thickness: 0.3, bore: 0.4}\n"
 SEGMENTED = DRIVEN.replace("roller, radius: 9", "flat")
 SWING = "a smaller swing, or the same over a wider angle"
 STROKE = "a smaller stroke, or the same over a wider angle"
@@ -760,6 +761,9 @@ SAID = [
     (FLAT, "swing", 1 / 3, 1, "limits.swing.at_least of 0.333333"),
     (FLAT, "swing", -1 / 3, 1, "limits.swing.at_least of -0.333334"),
     (FLAT, "swing", -1 / 3, -1, "limits.swing.at_most of -0.333333"),
+    # 0.1 in of a wall, and a little more than 0.2, which is the whole bore
+    (IN_INCHES, "wall", 17.78, 20.32, "a bore smaller by more than 0.2 in"),
+    (IN_INCHES, "wall", 17.78, 22.9, "limits.wall.at_least of 0.7"),
     (YOKE, "radius-of-curvature", 43, 45, "a base radius larger by more than 2 mm"),
     (YOKE, "peak-acceleration", 25, 20, SWING),
     (INCHES, "radius-of-curvature", 38.1, 50.8, "a base radius larger by more than 0.5 in"),
