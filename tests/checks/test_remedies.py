@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from camgeo.checks import remedies
 from camgeo.output.pipeline import check
 from camgeo.recipe.loading import load_text
 from camgeo.report.document import summary
@@ -512,6 +513,83 @@ WITH_FILES: list[tuple[str, str, Follow]] = [
 @pytest.mark.parametrize(("text", "pattern", "follow"), WITH_FILES, ids=[pattern for _, pattern, _ in WITH_FILES])
 def test_files_of_a_recipe_that_is_changed_as_told_pass(text: str, pattern: str, follow: Follow) -> None:
     assert not said_of_files(follow(figure(said_of_files(text), pattern)))
+
+
+def failed(value: float | None, limit: float | None = 0.0, **more: object) -> dict[str, object]:
+    return {"name": "tried", "value": value, "limit": limit, "unit": "mm", "file": "tried.dxf", **more}
+
+
+def test_what_a_failed_check_is_told() -> None:
+    """Of the check and the recipe alone; nothing where nothing is known."""
+    ring = load_text(ringed(150.0, 10.0), "ring.yaml")
+    bored, cam = (load_text(support("p: 25", more), "plate.yaml") for more in (BORED.format(45.0), ""))
+    lone = load_text(disc(80.0, "kind: roller, radius: 8", track="track: internal, "), "ring.yaml")
+    asked = load_text(support("p: 25", LIMITED), "asked.yaml")
+    inches = load_text(f"units: inch\n{support('p: 1', BORED.format(0.4).replace('5', '0.2'))}", "plate.yaml")
+    pair_of_faces = load_text(needle(1500.0).replace("export", "verify: {motion_error: 0.5}\nexport"), "asked.yaml")
+    card = "{lobe: {lift: 9, nose: 180, duration: [{at_lift: 1, degrees: 240}, {at_lift: 5, degrees: 120}]}}"
+    lobe = f"cam: {{kind: disc, base_radius: 18, follower: {{kind: flat}}, motion: {card}}}"
+    carded = load_text(lobe, "card.yaml")
+    faced = load_text(lobe.replace("lift: 9", "lift: 9, least: face"), "card.yaml")
+    report = {"files": [{"path": "tried.dxf", "tolerance": 0.002}], "checks": [{"name": "tried", "value": 40.0}]}
+    unknown = {**report, "checks": [*report["checks"], {"name": "tried", "value": None}]}
+    shorter = {**report, "checks": [*report["checks"], {"name": "tried", "value": 30.0}, {"name": "x", "value": 1.0}]}
+    less = "opening and outline: 2 mm"
+    for what, check_made, recipe, words in (
+        (remedies.rounder, failed(-3.0), cam, "a p larger by more than 3 mm"),
+        (remedies.rounder, failed(None), cam, ""),
+        (remedies.rounder, failed(1.0, None), cam, ""),
+        (remedies.smaller_wheel, failed(20.0), cam, "a manufacture.wheel of 40 mm or less"),
+        (remedies.smaller_wheel, failed(0.0), cam, ""),
+        (remedies.wider_face, failed(12.0), cam, "a follower.width of 12 mm or more"),
+        (
+            remedies.wider_face,
+            failed(12.0),
+            carded,
+            "a follower.width of 12 mm or more, or cam.motion.lobe.least: face",
+        ),
+        (remedies.wider_face, failed(12.0), faced, "a follower.width of 12 mm or more"),
+        (remedies.smaller_bore, failed(2.0, 5.0), bored, "a bore smaller by more than 6 mm"),
+        (remedies.smaller_bore, failed(-17.4, 5.0), bored, "a bore smaller by more than 44.8 mm"),
+        (remedies.smaller_bore, failed(-17.5, 5.0), bored, ""),  # the whole bore
+        (remedies.smaller_bore, failed(None, 5.0), bored, ""),
+        (remedies.smaller_bore, failed(0.1, 0.2, unit="in"), inches, "a bore smaller by more than 0.2 in"),
+        (remedies.smaller_bore, failed(0.1, 0.31, unit="in"), inches, ""),
+        (remedies.smaller_bore, failed(2.0, 5.0), cam, ""),
+        (remedies.smaller_bore, failed(2.0, 5.0), ring, ""),
+        (remedies.smaller_bore, failed(2.0, 5.0), lone, "a part.outer larger by more than 6 mm"),
+        (remedies.smaller_bore, failed(2.0, 5.0, detail=less), ring, "a part.outer larger by more than 6 mm"),
+        (remedies.smaller_bore, failed(2.0, 5.0, detail=f"{less}; more would do"), ring, ""),
+        (remedies.nearer, failed(0.001, 0.0005), asked, "a tolerance of 0.0005, or verify.motion_error above 0.001"),
+        (remedies.nearer, failed(0.001, 0.0005), cam, ""),
+        (remedies.nearer, failed(0.0, 0.0005), asked, ""),
+        (remedies.nearer, failed(None, 0.0005), asked, ""),
+        # the error of a swing varies with the place: about as the tolerance
+        (
+            remedies.nearer,
+            failed(0.8, 0.5),
+            pair_of_faces,
+            "a tolerance of about 0.0013, or verify.motion_error above 0.8",
+        ),
+        (
+            remedies.nearer,
+            failed(0.8, 0.5, file="other.dxf"),
+            pair_of_faces,
+            "verify.motion_error above 0.8",
+        ),
+        (remedies.looser, failed(0.004, 0.001), asked, "verify.motion_error above 0.002"),  # four times what it is
+        (remedies.looser, failed(0.8, 0.5), pair_of_faces, "verify.motion_error above 0.8"),  # degrees
+        (remedies.looser, failed(0.004, 0.0), asked, ""),
+        (remedies.looser, failed(0.004, 0.001), cam, ""),
+    ):
+        assert what(check_made, report, recipe) == words, (what.__name__, check_made)
+    for all_checks, words in (
+        (report, "a dwell.at_least of 40 or less, or a wider dwell.band"),
+        (shorter, "a dwell.at_least of 30 or less, or a wider dwell.band"),
+        (unknown, ""),
+        ({"checks": [{"name": "tried", "value": 0.0}]}, ""),
+    ):
+        assert remedies.shorter_dwell(failed(1.0), all_checks, cam) == words
 
 
 @pytest.mark.slow

@@ -12,12 +12,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from camgeo.measures.figures import design_figures
+from camgeo.measures.figures import _play, design_figures
 from camgeo.measures.limits import limit_checks
 from camgeo.measures.remarks import remarks_of
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
+from kin.follower.motion_error import Play
 
 if TYPE_CHECKING:
     from camgeo.cams.disc_cams import DiscCam
@@ -457,3 +458,16 @@ sweep:
         found = figures(text.replace("base_radius: 36", f"base_radius: {base}"), *names)
         for name in names:
             assert columns[name][i] == pytest.approx(found[name].value, rel=1e-12), name
+
+
+def test_the_play_of_a_file_is_its_greatest_either_way() -> None:
+    """Interference counts as play; where both are as great, the play is told."""
+    for least, most, wanted in (
+        (-0.3, 0.2, (0.3, 40.0)),
+        (-0.2, 0.3, (0.3, 90.0)),
+        (-0.2, 0.2, (0.2, 90.0)),
+        (0.1, 0.3, (0.3, 90.0)),
+        (-0.3, -0.1, (0.3, 40.0)),
+    ):
+        found = _play(Play(least=least, least_at_deg=40.0, most=most, most_at_deg=90.0, unit="mm"))
+        assert (found.value, found.at) == wanted

@@ -202,10 +202,42 @@ def failure(text: str) -> str:
     return "\n".join(str(check) for check in camgeo.design(camgeo.load(text)).checks if not check.ok)
 
 
+def test_why_no_size_is_found_is_told() -> None:
+    """All before a size is looked for, or after the least one; none makes a design."""
+    flat = BOUND.replace("roller, radius: 8, offset: 0", "flat")
+    for text, words in (
+        (BOUND.replace("pressure-angle: {at_most: 30}", ""), ".sizing: no limit is given; give pressure-angle, "),
+        (ARM.replace("219.9,", "219.9, pivot: 200,"), ".pivot: the pivot is found with the pressure angle; leave it "),
+        (re.sub("pressure-angle: {.*?}, ", "", ARM), ".sizing: without a pressure angle the pivot must be given; "),
+        (flat, ".sizing.pressure-angle: the pressure angle of a flat face is its tilt, whatever the size; give base"),
+        (
+            # with any roller from the prime circle on; 20 mm in 90 degrees are steeper than none
+            BOUND.replace("radius: 8", "radius: 90").replace("at_most: 30", "at_most: 80"),
+            " mm, lies within the roller: a smaller one would do; give base_radius instead",
+        ),
+        (
+            RING.replace("pressure-angle: {at_most: 30}", "radius-of-curvature: {at_least: 10}"),
+            ".sizing.radius-of-curvature: does not size a ring; give pressure-angle alone, or base_radius in place of ",
+        ),
+    ):
+        assert words in fault(text)
+
+
+def test_what_bounds_a_size_is_said() -> None:
+    """The size and what bounds it where, in mm or inches, and the size for a gentler limit of the return."""
+    cam: Any = camgeo.load(BOUND).cam
+    exact = cam.exact()
+    told = cam.advice.chosen_size(exact, 1.0)
+    assert told == "base radius 48.77, bound by pressure-angle-return at 151.8 deg; 22.00 with on_return: 45"
+    assert cam.advice.chosen_size(exact, 25.4).startswith(f"base radius {48.77017484 / 25.4:#.4g}, bound by ")
+    # at the angle named the return is as steep as its limit: tan 30 times the height above the shaft
+    (place,) = re.findall(r"at (\S+) deg", told)
+    height, slope = exact.law.derivatives(np.array([math.radians(float(place))]), 1)[:, 0]
+    assert -slope == pytest.approx(math.tan(math.pi / 6) * (48.77017484 + 8.0 + height), rel=1e-5)
+
+
 @pytest.mark.slow
 def test_the_remark_says_what_bounds_the_size() -> None:
-    told = remark(BOUND, "sizing")
-    assert told == "base radius 48.77, bound by pressure-angle-return at 151.8 deg; 22.00 with on_return: 45"
     wider = BOUND.replace("at_most: 30", "at_most: 30, on_return: 45")
     assert remark(wider, "sizing") == "base radius 22.00, bound by pressure-angle-rise at 38.9 deg"
     assert re.fullmatch(

@@ -11,8 +11,10 @@ import pytest
 from support.measured import ARM, MOTION, RECIPES, SWING, bump, disc, measured, nothing, points, surfaces, table, turned
 
 import camgeo
+from camgeo.capabilities.made.start import _verified
 from camgeo.cli import progress
 from camgeo.cli.main import main
+from camgeo.common.errors import CallError
 from kin.law.sources.laws import NAMES
 
 KINDS = [
@@ -453,3 +455,9 @@ def test_what_takes_long_is_said(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(progress, "LONG", 0.01)
     assert start(tmp_path, RECIPES["flat"]) == 0
     assert capsys.readouterr().err == "new.yaml: make the recipe ...\n"
+
+
+def test_a_cam_that_fails_is_not_made_of_points():
+    text = "cam: {kind: support, p: 30}\npart: {bore: 58, wall: 5}\n"  # it has a contour
+    with pytest.raises(CallError, match="the cam of these points cannot be made: wall: "):
+        _verified(text, {}, "cam.yaml", [])

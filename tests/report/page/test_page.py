@@ -7,6 +7,7 @@ camgeo.report.page.linked.
 
 from __future__ import annotations
 
+import argparse
 import copy
 import json
 import math
@@ -27,6 +28,7 @@ from support.cases import few
 from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, unpacked, wait
 
 from camgeo.cli.main import main
+from camgeo.cli.report import add_arguments
 from camgeo.cli.watch import watch
 from camgeo.curve.ring import Ring, disc
 from camgeo.measures.file_result import FileResult
@@ -349,9 +351,11 @@ def test_dyads_hang_together(tmp_path: Path) -> None:
     assert made.plot("Output") == pytest.approx((sx - 150.0) * c + (sy - 20.0) * s, abs=5e-3)
 
 
-def test_lengths_are_in_the_recipes_unit() -> None:
+def test_lengths_are_in_the_recipes_unit_and_angles_in_degrees() -> None:
     made = of("slider-crank")
     mechanism = designed(made.recipe).driven.mechanism
+    told = made.outcome.report["linkage"]["force_angle"]
+    assert told["min"] == pytest.approx(math.degrees(designed(made.recipe).driven.figures.force_least.value), rel=1e-12)
     output = mechanism.at(mechanism.relative(SHAFT), 0).output[0] / 25.4
     x, y, _ = made.pose("slide")
     assert np.abs(x - output).max() < 1e-4 * np.ptp(output)
@@ -546,6 +550,14 @@ def test_a_wrong_angle_is_a_wrong_call(angle: str, capsys: pytest.CaptureFixture
         main(["report", "a.yaml", "--at", angle])
     assert ended.value.code == 2
     assert "a number of degrees" in capsys.readouterr().err
+
+
+def test_an_angle_may_be_many_turns() -> None:
+    parser = argparse.ArgumentParser(exit_on_error=False)
+    add_arguments(parser)
+    assert parser.parse_args(["a.yaml", "--at=-1e6"]).at == -1e6
+    with pytest.raises(argparse.ArgumentError, match=r"a shaft angle is a number of degrees, not 1000000\.1"):
+        parser.parse_args(["a.yaml", "--at", "1000000.1"])
 
 
 def test_a_wrong_recipe_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -140,3 +140,11 @@ def test_samples_are_in_order_and_as_close_as_what_rings_asks_for(r, zeta):
             begins = starts[:, i] - np.array([found.ends[0][i, 0], found.ends[0][i, 1]])
             left = abs(moved(found.oscillator, begins, lasting[i])[0])
             assert lasting[i] == width or left <= 2e-11 * (1e-3 + np.abs(found.p).sum(axis=1).max())
+
+
+def test_what_does_not_move_is_at_rest_at_once():
+    (drive,) = drives([Harmonic(3, 0.0)])
+    for zeta in (0.0, 0.1):
+        found = response(oscillator(1e4 + 0.3, zeta), drive, Forcing())
+        every = np.arange(len(found))
+        assert (found.lasting(np.zeros(len(found)), every) == 0.0).all()
