@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeVar, overlo
 from camgeo.common.arguments import demand_type
 from camgeo.common.errors import CallError
 from camgeo.part.part import build_part
-from camgeo.recipe.cam import build_cam
+from camgeo.recipe.cam import CAMS, build_cam
 from camgeo.recipe.document import Document
 from camgeo.recipe.export import build_export
 from camgeo.recipe.extension import KEYS
@@ -28,7 +28,7 @@ from camgeo.registry import registry
 from camgeo.registry import root as roots
 from camgeo.registry.formats import FORMATS
 from camgeo.registry.root import CAM, Reading
-from camgeo.schema.errors import RecipeError, RecipeErrors, suggestion
+from camgeo.schema.errors import RecipeError, RecipeErrors, nearest_word, suggestion
 from camgeo.schema.file_bytes import read_bytes
 from camgeo.schema.reader import Others, Reader
 from camgeo.schema.readers import READERS
@@ -334,13 +334,16 @@ def without_places(name: str) -> Iterator[None]:
 def root_key(source: Source) -> str:
     """Key of the kind of a recipe: a key of its top level, or its `cam.kind`; `cam` for a disc cam.
 
-    A word that stands for a kind is that kind, whose own reading refuses the word.
+    A word that stands for a kind, or is near to one, is that kind, whose own reading refuses the word: of a slip in
+    the kind all other keys are not at fault.
     """
     top = entries(source.root) if isinstance(source.root, Mapping) else {}
     cam = top.get(CAM)
     kind = entries(cam).get("kind") if isinstance(cam, Mapping) else None
     word = kind.text if isinstance(kind, Scalar) else ""
     own = word if word in roots.kinds() else roots.slips().get(word, CAM)
+    if own == CAM and word not in CAMS and (near := nearest_word(word, (*CAMS, *roots.kinds()))) in roots.kinds():
+        own = near
     return next((key for key in roots.top_keys() if key in top), own)
 
 
@@ -380,7 +383,9 @@ def _of_another_kind(source: Source, path: str | PathLike[str], key: str) -> Rec
     """Fault of a text that is a recipe of another kind than a disc cam."""
     top, other = keys(source.root) if isinstance(source.root, Mapping) else {}, roots.reading(key)
     field, mark = (key, top[key].mark) if key in top else (f"{CAM}.kind", top[CAM].mark)
-    remedy = f"export, check and verify take it; give any other command {other.instead}"
+    remedy = (
+        f"export, check and verify take it; its page is html in export.files; give any other command {other.instead}"
+    )
     return RecipeError(str(path), *mark, field, f"a {other.noun} is no disc cam", None, remedy)
 
 

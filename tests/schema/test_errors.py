@@ -735,8 +735,8 @@ def test_a_camshaft_is_no_cam() -> None:
     """Where one cam is wanted, such as by `study`; what reads camshafts is named."""
     (message,) = told("camshaft: {lobes: [{recipe: intake.yaml, at: 234, z: 0}]}\n")
     assert message == (
-        "c.yaml:1:1: camshaft: a camshaft is no disc cam; export, check and verify take it; "
-        "give any other command the recipe of a lobe"
+        "c.yaml:1:1: camshaft: a camshaft is no disc cam; export, check and verify take it; its page is html in "
+        "export.files; give any other command the recipe of a lobe"
     )
 
 

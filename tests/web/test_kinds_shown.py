@@ -110,6 +110,9 @@ def test_a_drum_turns_and_is_unrolled_beside(desk: tab.Tab) -> None:
     for width in (390, 1280):
         desk.browser.size(width, 844)
         assert desk.ask("document.documentElement.scrollWidth") <= width
+    desk.ask("byId('development').scrollIntoView({block: 'center'})")  # the desk stays in view, and covers nothing
+    right = desk.ask("document.querySelector('.desk').getBoundingClientRect().right")
+    assert 0.0 < right <= desk.ask("byId('development').getBoundingClientRect().left")
     desk.load("toy", shipped("disc-roller"))
     assert desk.ask("byId('panels').hidden && byId('panels').children.length === 0")
     assert desk.browser.problems == []

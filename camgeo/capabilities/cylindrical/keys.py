@@ -364,7 +364,12 @@ def _read_radii(reader: Reader, field: Field, node: Node, path: str) -> tuple[st
         if isinstance(item, Scalar) and item.text in {OUTER, PITCH}:
             found.append(item.text)
             continue
+        told = len(reader.errors)
         value = read_numeric(reader, length("at", field.about), item, join(path, i))
+        if len(reader.errors) > told:
+            last = reader.errors[-1]
+            remedy = f"{last.remedy}, {OUTER} for the blank, or {PITCH} for the path of the roller's axis"
+            reader.errors[-1] = replace(last, remedy=remedy)
         if value is not None and value not in found:
             found.append(value)
         elif value is not None:

@@ -125,7 +125,7 @@ def _planned(design: DrumDesign, request: FileRequest, within: float) -> _Plan:
             finish.append((name, way, floor))
         left, deep = max(left, off.left), max(deep, off.deep)
         if max(off.left, off.deep) > SETTING * within:
-            raise _refused(design, field, flank, way, max(off.left, off.deep) / (SETTING * within))
+            raise _refused(design, request, flank, way, max(off.left, off.deep) / (SETTING * within))
     steps = _rough(design, own, flanks, cutter, beside) if "allowance" in own else []
     if steps:
         steps += [Step(way, z, f"{name}, last") for name, way, z in finish]
@@ -161,21 +161,27 @@ def _demand_known(design: DrumDesign, flanks: list[tuple[str, Flank]], cutter: f
     raise design.error(field, f"with {why}, only a cutter as large as the roller leaves the flank", size)
 
 
-def _refused(design: DrumDesign, field: str, flank: Flank, way: Way, over: float) -> RecipeErrors:
+def _refused(design: DrumDesign, request: FileRequest, flank: Flank, way: Way, over: float) -> RecipeErrors:
     """Error of a cutter so much smaller than the roller that it is off by `over` times what it may."""
     recipe = design.recipe
     least = flank.radius - 0.95 * (flank.radius - way.cutter) / over
     remedies = [] if way.beside else ["let the machine move across the drum: axes: [X, Y, A]"]
     if least <= recipe.roller.radius:
         remedies.append(f"give a cutter of at least {upward(2.0 * least / recipe.mm, 5)} {recipe.units}")
-    remedies.append("give a greater tolerance")
+    tolerance = (request.tolerance or recipe.export.tolerance) * over / 0.95 / recipe.mm
+    remedies.append(
+        "give a greater tolerance"  # with more depths the error falls, by no share that is known before
+        if way.beside
+        else f"give a tolerance of at least {upward(tolerance, 3)} {recipe.units}"
+    )
     problem = (
         "in as many depths as are made it still leaves more than the tolerance"
         if way.beside
         else "with its axis through the drum's it is right at one radius alone, and cuts too deep above that"
     )
     value = f"{2.0 * way.cutter / recipe.mm:.9g} {recipe.units}"
-    return recipe.error(f"{field}.cutter", problem, value, ", or ".join(remedies))
+    field = f"{recipe.field_of(request)}.{request.kind}.cutter"
+    return recipe.error(field, problem, value, ", or ".join(remedies))
 
 
 def _rough(

@@ -105,6 +105,11 @@ REFUSED = [
     (GROOVE, ("return: 40", "return: 39"), "the motion does not join"),
     (GROOVE, ("[stl]", "[{dxf: {at: [36]}}]"), "no flank there, given 36 mm; give one from 37.5 mm to 50 mm"),
     (GROOVE, ("[stl]", "[{dxf: {at: [50]}}]"), None),
+    (
+        GROOVE,
+        ("[stl]", "[{dxf: {at: [outr, pitch]}}]"),
+        "at[0]: not a number, given 'outr'; give a length above 0 in mm, outer for the blank, or pitch for the path",
+    ),
     (GROOVE, ("[stl]", "[{dxf: {at: [outer, 40, 40]}}]"), "the same radius twice"),
     (GROOVE, ("[stl]", "[{csv: {as: flank, step: 1e-9}}]"), "step: below 0.001, given 1e-9; give an angle from 0.001"),
     (GROOVE, ("[stl]", "[{csv: {as: flank, step: 0.001}}]"), None),
@@ -197,6 +202,14 @@ def test_defaults_and_units() -> None:
 def test_a_drum_is_no_disc() -> None:
     with pytest.raises(RecipeErrors, match="a cylindrical cam is no disc cam; export, check and verify take it"):
         load_text(GROOVE, "drum.yaml")
+
+
+def test_of_a_slip_in_the_kind_no_other_key_is_at_fault() -> None:
+    for word, instead in (("cylindricl", "did you mean cylindrical?"), ("drum", "give cylindrical")):
+        with pytest.raises(RecipeErrors) as told:
+            recipe_of(changed(GROOVE, ("kind: cylindrical", f"kind: {word}")))
+        (fault,) = told.value.errors
+        assert f"cam.kind: not one of the choices, given {word!r}; {instead}" in str(fault)
 
 
 def test_walls_of_every_track() -> None:

@@ -201,6 +201,11 @@ def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None
         ([("cutter: 20", "cutter: 16")], "it is right at one radius alone", ("[X, A]", "[X, Y, A]")),
         ([("cutter: 20", "cutter: 16")], "give a cutter of at least 19.7", ("16", "19.78")),
         (
+            [("cutter: 20", "cutter: 16")],
+            "or give a tolerance of at least 0.355 mm",
+            ("tolerance: 0.02", "tolerance: 0.355"),
+        ),
+        (
             [("cutter: 20", "cutter: 20, decimals: 2"), ("0.02", "0.002")],
             "give at least 3",
             ("decimals: 2", "decimals: 3"),
