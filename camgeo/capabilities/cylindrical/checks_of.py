@@ -15,7 +15,7 @@ from camgeo.measures.placed import Figure, figure_check, greatest_of, limit_chec
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
-from kin.numeric.check import Check
+from kin.numeric.check import Check, failed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,7 +35,11 @@ def design_checks(design: DrumDesign, figures: Sequence[Figure]) -> list[Check]:
     checks = [figure_check(PRESSURE_ANGLE, known[PRESSURE_ANGLE], None, "at_most", at_unit="deg")]
     length = figure_check(LENGTH, known[LENGTH], 0.0, "at_least", at_unit="deg")
     cut = "shortened by undercut" if any(design.tips.values()) else ""
-    checks.append(Check(**{**vars(length), "ok": known[LENGTH].value > 0.0, "detail": cut}))
+    if known[LENGTH].value > 0.0:
+        checks.append(Check(**{**vars(length), "detail": cut}))
+    else:
+        why = "the flank ends at the blank before the roller begins: give a smaller offset, or a smaller from"
+        checks.append(Check(**{**vars(failed(LENGTH, why, unit="mm", limit=0.0)), "at": length.at}))
     if RIB in known:
         check = figure_check(RIB, known[RIB], 0.0, "at_least", at_unit="deg")
         checks.append(Check(**{**vars(check), "ok": known[RIB].value > 0.0}))

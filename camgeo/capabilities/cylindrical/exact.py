@@ -25,7 +25,7 @@ def designed(recipe: DrumRecipe, clock: Clock) -> DrumDesign:
     with clock.stage("motion"):
         try:
             motion = recipe.motion.motion(TURN, "cam.motion", 1)
-            law = motion.periodic("cam.motion")
+            law = motion.periodic("cam.motion", "rad" if recipe.swings else "mm")
         except IntentError as error:
             raise recipe.error(recipe.stated(error.field), in_recipe(recipe, error.message)) from error
         design = DrumDesign(recipe, motion, law)

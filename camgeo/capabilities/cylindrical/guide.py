@@ -92,11 +92,11 @@ class Arm:
         turn = math.atan2(distance, self.length)
         return replace(self, length=math.hypot(self.length, distance), start=self.start + turn)
 
-    def middle(self, low: float, high: float) -> float:
-        """Y of the pivot, mm, for which the roller leaves the radius the least between two lifts, rad."""
-        ends = [math.cos(self.start + lift) for lift in (low, high)]
-        most = 1.0 if (self.start + low) * (self.start + high) < 0.0 else max(ends)
-        return 0.5 * self.side * self.length * (min(ends) + most)
+    def across(self, low: float, high: float) -> tuple[float, float]:
+        """Least and greatest distance of the roller from its pivot, across the drum's axis, between two lifts, mm."""
+        ends = [self.length * math.cos(self.start + lift) for lift in (low, high)]
+        most = self.length if (self.start + low) * (self.start + high) < 0.0 else max(ends)
+        return min(ends), most
 
     def place(self, rows: Rows) -> tuple[list[Rows], list[Rows]]:
         """Y and z, mm, and derivatives by the shaft angle, from as many rows, up to 4, of S, rad."""

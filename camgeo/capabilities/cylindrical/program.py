@@ -83,6 +83,12 @@ def write_program(
     chords = CHORDS * (within - plan.off.worst)
     passes = [(step, *_points(design, step.way, chords)) for step in plan.steps]
     lines = [*_head(design, request, tolerance, mm), *written.begun()]
+    high = (design.recipe.radius + own["safe_height"]) / mm
+    if high > LARGEST:
+        most = downward((LARGEST * mm - design.recipe.radius) / design.recipe.mm, 4)
+        field = f"{design.recipe.field_of(request)}.{request.kind}.safe_height"
+        why = "lies higher than a program tells"
+        raise design.recipe.error(field, why, None, f"give at most {most} {design.recipe.units}")
     for k, (step, points, _) in enumerate(passes, start=1):
         lines.append(f"({comment(f'{step.name}, pass {k} of {len(passes)}')})")
         lines += written.cut(step, points)

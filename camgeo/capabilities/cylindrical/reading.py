@@ -149,6 +149,11 @@ def _check_track(cam: Values, reader: Reader) -> None:
         problem = f"the cone ends in its apex before the floor, {_shown(floor, reader)} from the axis"
         reader.fault_at(f"{path}.taper", problem, None, "give a smaller taper, axis, or a larger radius")
         return
+    if made.taper and not floor > least:
+        smaller = f"give at more than {_shown(made.radius, reader)}" if made.apex else "give a smaller taper"
+        problem = f"at the floor, {_shown(floor, reader)} from the axis, the radius of the cone is no less than that"
+        reader.fault_at(f"{path}.taper", problem, None, f"{smaller}, or a smaller roller")
+        return
     if not floor > least:
         at = f"{path}.from" if kind == "end" else f"cam.track.{kind}.depth"
         most = radius - roller["radius"]

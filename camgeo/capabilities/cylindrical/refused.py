@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.capabilities.cylindrical.guide import Arm
-from camgeo.capabilities.cylindrical.keys import End
+from camgeo.capabilities.cylindrical.keys import End, Rib
 from camgeo.capabilities.cylindrical.undercut import CutError, tips
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import CurveError
@@ -116,6 +116,7 @@ def _demand_near(design: DrumDesign) -> None:
                 problem = f"the arm swings to {max(ends):.6g} degrees off the plane across the drum's axis"
                 remedy = (
                     f"keep it within {MOST_SWING:g}: a smaller swing, or a pivot nearer to the middle of the stroke"
+                    + (", or a smaller distance" if isinstance(recipe.track, Rib) else "")
                 )
                 raise design.error("cam.motion", problem, remedy)
         off, at = greatest_of(lambda theta, flank=flank: np.abs(flank.pose(theta).y), TURN)  # type: ignore[misc]
@@ -124,8 +125,7 @@ def _demand_near(design: DrumDesign) -> None:
             problem = f"the roller's axis stands {off / mm:.6g} {units} off a radius of the drum, past the floor's edge"
             field, remedy = "cam.follower.offset", f"give less than {downward(room / mm, 5)} {units}"
             if isinstance(flank.guide, Arm):
-                y = flank.guide.middle(low, high)
-                field, remedy = "cam.follower.arm.offset", f"give {y / mm:.6g} {units}, or a longer arm"
+                field, remedy = "cam.follower.arm.offset", _nearer(design, low, high)
             raise design.error(field, f"{problem}, near {math.degrees(at):.6g} degrees", remedy)
         least = math.sqrt(recipe.floor**2 - (off + float(flank.size(recipe.floor))) ** 2)
         if not float(flank.size(least)) > 0.0:
@@ -135,6 +135,17 @@ def _demand_near(design: DrumDesign) -> None:
         if not back < least:
             problem = f"the arm takes its roller back faster than the floor turns, near {math.degrees(at):.6g} degrees"
             raise design.error("cam.motion", problem, "give a longer motion, or an arm that stands less aslant")
+
+
+def _nearer(design: DrumDesign, low: float, high: float) -> str:
+    """Remedy for an arm that leads its roller, or one of two, too far off a radius between two lifts, rad."""
+    recipe = design.recipe
+    arms = [(flank, flank.guide) for flank in design.flanks.values() if isinstance(flank.guide, Arm)]
+    least, most = zip(*(arm.across(low, high) for _, arm in arms), strict=True)
+    room = min(recipe.floor - float(flank.size(recipe.floor)) for flank, _ in arms)
+    if 0.5 * (max(most) - min(least)) < room:
+        return f"give {0.5 * arms[0][1].side * (min(least) + max(most)) / recipe.mm:.6g} {recipe.units}"
+    return "no offset serves: give a smaller swing, or a shorter arm that is level in the middle of it"
 
 
 def _demand_core(design: DrumDesign) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+import numpy as np
+
 from camgeo.common.errors import CallError
 from camgeo.common.rounding import upward
 from camgeo.common.terminal import escaped
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 
 MOST_LISTED = 20  # bodies in a message
 LEAST_SEVERAL = 2
+NEAR = 1e-3  # of the way from a section to the nearest face, at which its contour is looked at again
+STEEPEST = 0.5  # greatest draft of a disc's walls, a length by one of height
 MOST_NAMED = 3  # holes that a message offers for the shaft
 DEEPEST = {"external": MOST_CONTOURS, "internal": 1, "groove": MOST_CONTOURS}  # what is drawn in a bore is passed over
 
@@ -224,10 +228,29 @@ def _read_section(path: Path, asked: Reading) -> _Found:
         if error.reason != "several" or asked.body is not None or len(bodies := separate_bodies(path)) < LEAST_SEVERAL:
             raise
         raise _unchosen(path, bodies, mm, "give body, the number or the name of one") from error
+    _demand_plain(path, solid, partial(read, deepest=deepest))
     if asked.track == "groove" and len(solid.faces) > 1:
         height = 0.5 * (solid.faces[-1] + solid.faces[-2])
         return _Found(scaled(read((height,), deepest=deepest).section(height).chains, mm))
     return _Found(scaled(solid.chains, mm))
+
+
+def _demand_plain(path: Path, solid: ReadSolid, read: Callable[[Sequence[float]], ReadSolid]) -> None:
+    """Raise CallError for a solid whose outermost contour is another just above or below its section, as of a drum.
+
+    A wall that is drafted, or a chamfer, moves it by less than half of the difference in height.
+    """
+    rows, height = solid.leaning, solid.height
+    if not ((rows[:, 0] < height) & (rows[:, 1] > height)).any():
+        return
+    step = NEAR * min(abs(face - height) for face in (solid.z_min, solid.z_max, *solid.faces))
+    own = solid.chains[0].contour
+    beside = [cut.chains[0].contour for cut in read((height - step, height + step)).sections]
+    moved = max(float(np.abs(other.distance(own.vertices)).max()) for other in beside)
+    if moved > STEEPEST * step:
+        name = escaped(str(path))
+        remedy = f"judge a cylindrical cam by its recipe: camgeo verify RECIPE {name}"
+        raise CallError(f"{name}: no disc, its contour changes with the height of the section; {remedy}")
 
 
 def _body_of(path: Path, body: int | str, mm: float) -> Callable[..., ReadSolid]:

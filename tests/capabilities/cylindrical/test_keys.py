@@ -26,7 +26,8 @@ from capabilities.cylindrical.made_drums import (
 )
 
 import camgeo
-from camgeo.capabilities.cylindrical.checks_of import walls
+from camgeo.capabilities.cylindrical.checks_of import design_checks, walls
+from camgeo.capabilities.cylindrical.figures import figures_of
 from camgeo.recipe.recipe import load_text
 from camgeo.recipe.starter import starter
 from camgeo.schema.errors import RecipeErrors
@@ -65,8 +66,24 @@ REFUSED = [
         "does not reach pitch_height at lift 0, given 100 mm; give a pivot between -60.7",
     ),
     (ARM, ("pivot: 40", "pivot: 98.5"), "cam.motion: the arm swings to 81.9"),
-    (ARM, ("offset: 78", "offset: 38"), "past the floor's edge, near 60 degrees; give 78.637 mm, or a longer arm"),
+    (ARM, ("offset: 78", "offset: 38"), "past the floor's edge, near 60 degrees; give 78.637 mm"),
     (ARM, ("offset: 78", "offset: 78.637"), None),
+    (
+        ARM,
+        ("length: 80, offset: 78", "length: 3000, offset: 2950"),
+        "no offset serves: give a smaller swing, or",
+    ),
+    (ARM, ("return: 30", "return: 31"), "S jumps from 0 to 1 deg at 0 degrees; let the motion end where it begins"),
+    (RIB_ON_ARM, ("distance: 36", "distance: 500"), "or a smaller distance"),
+    (RIB_ON_ARM, ("offset: 78", "offset: 0"), "give 77.3077 mm"),
+    (RIB_ON_ARM, ("offset: 78", "offset: 77.3077"), None),
+    (CONE, ("at: 44", "at: 1"), "of the cone is no less than that; give at more than 10 mm, or a smaller roller"),
+    (CONE, ("at: 44", "at: 10.5"), None),
+    (
+        GROOVE,
+        ("radius: 10,", "radius: 10, taper: 60, at: 10,"),
+        "of the cone is no less than that; give a smaller taper, or a smaller roller",
+    ),
     (
         ASLANT,
         ("over: 60,", "over: 60,"),
@@ -222,3 +239,13 @@ def test_walls_of_every_track() -> None:
     )
     assert min(walls(design_of(BOTTOM)))[0] == pytest.approx(10.0)
     assert {b: a for a, b in walls(design_of(TOP))}["between the flank and the lower face"] == pytest.approx(10.0)
+
+
+def test_a_roller_beside_the_blank_carries_nothing() -> None:
+    """A contact that would begin beyond the blank is told, and what brings it back."""
+    text = changed(GROOVE, ("radius: 10, from: 38", "radius: 6, offset: 30, from: 41"))
+    for change, carries in ((("offset: 30", "offset: 30"), False), (("offset: 30", "offset: 12"), True)):
+        design = design_of(changed(text, change))
+        (length,) = [each for each in design_checks(design, figures_of(design)) if each.name == "contact-length"]
+        assert length.ok is carries
+        assert ("give a smaller offset, or a smaller from" in length.detail) is not carries

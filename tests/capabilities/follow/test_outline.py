@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from support.drawn import circle
 from support.heavy import ezdxf
@@ -67,3 +70,47 @@ def test_a_contour_within_a_round_outline_is_no_outer_one(tmp_path: Path) -> Non
     with pytest.raises(camgeo.CallError, match=r"lies within another contour: of a ring's opening give track internal"):
         camgeo.follow(tmp_path / "ring.dxf", roller=3.0)
     assert camgeo.follow(tmp_path / "ring.dxf", roller=3.0, track="internal").lift == pytest.approx(10.0)
+
+
+def turned_solid(path: Path, rows: list[tuple[float, float, float]], eccentric: float) -> Path:
+    """An STL of rows (radius, height, its swing round the axis), rising, about a centre that stands off the shaft."""
+    phi = np.linspace(0.0, 2.0 * math.pi, 241)[:-1]
+    rings = [
+        np.stack([eccentric + r * np.cos(phi), r * np.sin(phi), z + swing * np.sin(phi)], axis=1)
+        for r, z, swing in [(1e-9, rows[0][1], 0.0), *rows, (1e-9, rows[-1][1], 0.0)]
+    ]
+    rings[0], rings[-1] = (np.broadcast_to(ring.mean(axis=0), ring.shape) for ring in (rings[0], rings[-1]))
+    corners = []
+    for low, high in pairwise(rings):
+        for a, b, c, d in zip(low, np.roll(low, -1, axis=0), high, np.roll(high, -1, axis=0), strict=True):
+            corners += [(a, b, d), (a, d, c)]
+    facets = [
+        "outer loop " + " ".join(f"vertex {x!r} {y!r} {z!r}" for x, y, z in np.array(t).tolist())
+        for t in corners
+        if len({tuple(p) for p in np.array(t).tolist()}) == 3
+    ]
+    text = "".join(f"facet normal 0 0 0 {facet} endloop endfacet\n" for facet in facets)
+    path.write_text(f"solid it\n{text}endsolid\n", encoding="ascii")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("rows", "disc"),
+    [
+        ([(20.0, 0.0, 0.0), (20.0, 10.0, 0.0)], True),
+        # with a draft of 8.5 degrees, and with chamfers
+        ([(20.0, 0.0, 0.0), (18.5, 10.0, 0.0)], True),
+        ([(19.0, 0.0, 0.0), (20.0, 1.0, 0.0), (20.0, 9.0, 0.0), (19.0, 10.0, 0.0)], True),
+        # the face of an end cam, which rises from one side to the other
+        ([(20.0, 0.0, 0.0), (20.0, 4.5, 2.0), (15.0, 5.0, 2.0), (15.0, 10.0, 0.0)], False),
+    ],
+    ids=["upright", "drafted", "chamfered", "drum"],
+)
+def test_a_drum_is_no_disc(rows: list[tuple[float, float, float]], *, disc: bool, tmp_path: Path) -> None:
+    """A contour that is another one just above its section is that of no disc; a drafted one is."""
+    path = turned_solid(tmp_path / "it.stl", rows, 5.0)
+    if disc:
+        assert camgeo.follow(path, flat=True).lift == pytest.approx(10.0, abs=1e-2)
+        return
+    with pytest.raises(camgeo.CallError, match=r"no disc, its contour changes .*: camgeo verify RECIPE .*it\.stl$"):
+        camgeo.follow(path, flat=True)
