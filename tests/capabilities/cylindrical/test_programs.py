@@ -216,6 +216,11 @@ def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None
             "a program needs its machine and cutter; give axes, cutter, feed",
             ("[gcode]", f"[{{gcode: {{{OPTIONS}}}}}]"),
         ),
+        (
+            [("safe_height: 5", "safe_height: 1e6")],
+            "safe_height: lies higher than a program tells; give at most 9.999e+05 mm",
+            ("1e6", "9.999e+05"),
+        ),
         ([("[X, A]", "[X, B]")], "not the axes of such a machine", ("[X, B]", "[X, Z, A]")),
         (
             [("cutter: 20", "cutter: 20, allowance: 0.2"), ("[X, A]", "[X, Y, A]")],
