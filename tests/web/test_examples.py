@@ -44,6 +44,7 @@ def test_ten_shipped_recipes_are_shown_of_papers_and_of_trades() -> None:
     assert len(there) >= 6
     assert len(there) == 10  # needs: dynamics, valve, milling, linear, cylindrical
     assert sum(re.search(r"\b(19|20)\d\d\b", one.see) is not None for one in EXAMPLES) >= 3
+    # needs: dynamics, valve, milling, linear, cylindrical
     assert {one.recipe.split("/")[0] for one in EXAMPLES} >= {"linear", "cylindrical", "valve-lobe", "disc-packaging"}
 
 
