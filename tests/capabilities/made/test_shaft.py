@@ -148,7 +148,7 @@ def lift_table(recipe, file, late=0.0, *, alone=(0.0, 0.0, 0.0), step=1.0, facto
 def test_lifts_from_any_zero_are_told_and_judged_as_one(late, alone, tmp_path, capsys):
     """One zero for all tables: the shaft is turned as one, and a lobe that stands off the others is told as that."""
     recipe = camshaft(tmp_path, limits=LIMITS)
-    file = lift_table(recipe, tmp_path / "lift.csv", late, alone=alone)
+    file = lift_table(recipe, tmp_path / "lift.csv", late, alone=alone, step=2.0)
     assert main(["verify", str(recipe), str(file)]) == 2
     assert f"the shaft looks turned by {late:.3g} degrees: `--align rotation`" in capsys.readouterr().err
     made = camgeo.verify(recipe, file, align="rotation", probe_error=0.001)["made"]
