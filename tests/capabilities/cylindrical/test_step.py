@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from kin.cylindrical.verdict import DrumVerdict
 
 TURN = 2.0 * math.pi
-FINE = 0.006  # mm
+FINE = 0.003  # mm
 ROWS = [("rise", 40.0, 120.0, "cycloidal"), ("dwell", 0.0, 60.0, ""), ("return", 40.0, 120.0, "polynomial-345")]
 LIFT = Lift([*ROWS, ("dwell", 0.0, 60.0, "")])
 STEP = changed(GROOVE, ("12.5}", "12.5, clearance: 0.03}"), ("[stl]", "[step]"))
