@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import functools
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +14,7 @@ from camgeo.capabilities.cylindrical.exact import designed
 from camgeo.capabilities.cylindrical.reading import read_cylindrical
 from camgeo.common.clock import Clock
 from camgeo.schema.yaml_source import read_source
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from random import Random
@@ -89,6 +92,19 @@ def recipe_of(text: str, name: str = "drum.yaml") -> DrumRecipe:
 def design_of(text: str) -> DrumDesign:
     """Exact drum of a text."""
     return designed(recipe_of(text), Clock())
+
+
+@functools.cache
+def shared_design(text: str) -> DrumDesign:
+    """Exact drum of a text, made once in a process: for tests that leave it as it is."""
+    return design_of(text)
+
+
+def cut_short(recipe: DrumRecipe) -> DrumDesign:
+    """The drum of UNDERCUT, whose cuts are sought once in a process, with the files that a recipe asks for."""
+    design = copy.copy(shared_design(UNDERCUT))
+    design.__dict__["recipe"] = replace(design.recipe, export=recipe.export)
+    return design
 
 
 LED = ("carriage", "beside", "cone", "apex", "trailing", "leading", "cone on an arm")

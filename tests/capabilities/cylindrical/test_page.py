@@ -21,6 +21,7 @@ from capabilities.cylindrical.made_drums import (
     UNDERCUT,
     changed,
     design_of,
+    shared_design,
 )
 from capabilities.cylindrical.positions import Lift, envelope
 from support.browser import Browser, executable
@@ -79,7 +80,7 @@ def test_the_drum_is_seen_turned(text: str, sign: float) -> None:
 
 @pytest.mark.costly("what is cut away of a drum is sought on many cylinders")
 def test_a_drum_is_shown_without_what_is_cut_away() -> None:
-    design = design_of(UNDERCUT)
+    design = shared_design(UNDERCUT)
     x, z = edges(design, 22.0, 0.9)
     phi = 0.9 + np.arcsin(np.clip(x / 22.0, -1.0, 1.0))
     wanted = 25.0 + envelope(SMALL, -1, 12.0, np.full_like(x, 22.0), phi)[0]

@@ -7,22 +7,29 @@ camgeo.capabilities.cylindrical.angles, camgeo.capabilities.cylindrical.bends.
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from capabilities.cylindrical.made_drums import GROOVE, RIB, TOP, UNDERCUT, changed, design_of
+from capabilities.cylindrical.made_drums import GROOVE, RIB, TOP, UNDERCUT, changed, cut_short, design_of, recipe_of
 from capabilities.cylindrical.positions import Lift, envelope
 
 import camgeo
 from camgeo.api.root import root_of
+from camgeo.capabilities.cylindrical.making import make
 from camgeo.capabilities.cylindrical.ways import Way, radially_off, set_beside, set_radially
 from camgeo.cli.main import main
+from camgeo.common.clock import Clock
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
+
+    from camgeo.output.own_kind import Made
+    from kin.cylindrical.verdict import DrumVerdict
 
 OPTIONS = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, depth_of_cut: 7, safe_height: 5"
 RISE, RETURN = ("rise", 40.0, 120.0, "cycloidal"), ("return", 40.0, 120.0, "polynomial-345")
@@ -38,6 +45,18 @@ def program(text: str = GROOVE, *pairs: tuple[str, str]) -> str:
 def exported(folder: Path, text: str) -> camgeo.Report:
     (folder / "drum.yaml").write_text(text, encoding="utf-8")
     return camgeo.export(folder / "drum.yaml", folder / "out")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Path, camgeo.Report]]:
+    """Exports a text once for all tests that look at what comes of it: the folder, and the report."""
+
+    @functools.cache
+    def of(text: str) -> tuple[Path, camgeo.Report]:
+        folder = tmp_path_factory.mktemp("made")
+        return folder, exported(folder, text)
+
+    return of
 
 
 def words(folder: Path) -> str:
@@ -77,20 +96,22 @@ CASES = {
 @pytest.mark.costly("brute force over the positions of a cutter")
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("case", CASES)
-def test_the_cutter_leaves_the_flanks_that_rollers_leave(tmp_path: Path, case: str) -> None:
+def test_the_cutter_leaves_the_flanks_that_rollers_leave(
+    made: Callable[[str], tuple[Path, camgeo.Report]], case: str
+) -> None:
     """At random places of each flank no position of the cutter takes metal, and one takes all in front of it."""
     text = CASES[case]
-    report = exported(tmp_path, text)
+    folder, report = made(text)
     assert report.ok, [str(check) for check in report.checks if not check.ok]
     cutter = 0.5 * float(re.findall(r"cutter: ([\d.]+)", text)[0])
-    runs = positions(words(tmp_path))
+    runs = positions(words(folder))
     share = np.linspace(0.0, 1.0, 120, endpoint=False)
     rows = np.concatenate(
         [(run[:-1, None] + share[:, None] * np.diff(run, axis=0)[:, None]).reshape(-1, 4) for run in runs]
     )
     rng = np.random.default_rng(5)
     for name, side, roller, level in flanks_of(text):
-        r, phi = rng.uniform(39.0, 50.0, 25), rng.uniform(0.0, 2.0 * math.pi, 25)
+        r, phi = rng.uniform(39.0, 50.0, 12), rng.uniform(0.0, 2.0 * math.pi, 12)
         z, _ = envelope(LIFT, side, roller, r, phi)
         for radius, angle, height in zip(r, phi, z + level, strict=True):
             turn = angle - np.radians(rows[:, 3])
@@ -107,10 +128,10 @@ def flanks_of(text: str) -> list[tuple[str, int, float, float]]:
     return [("lower", -1, 10.0, 20.0), ("upper", 1, 10.04 if "clearance" in text else 10.0, 20.0)]
 
 
-def test_a_program_says_how_it_is_meant(tmp_path: Path) -> None:
-    report = exported(tmp_path, program())
+def test_a_program_says_how_it_is_meant(made: Callable[[str], tuple[Path, camgeo.Report]]) -> None:
+    folder, report = made(program())
     assert report.ok
-    lines = words(tmp_path).splitlines()
+    lines = words(folder).splitlines()
     for told in (
         "(cutter: diameter 20, its axis square to the drum's)",
         "(X zero: the lower face; X grows along the drum's axis, towards the upper face)",
@@ -123,20 +144,20 @@ def test_a_program_says_how_it_is_meant(tmp_path: Path) -> None:
     assert lines[lines.index("G21") + 1] == "G17 G90 G93"
     assert not any("Y" in line for line in lines if line.startswith("G1"))
     # every block takes its length at the blank over 300 mm a minute
-    for run in positions(words(tmp_path)):
+    for run in positions(words(folder)):
         assert run[:, 0].min() > 19.99
         assert np.diff(run[1:, 3]).min() > 0.0
     feeds = [float(f) for f in re.findall(r"^G1 X\S+ A\S+ F(\S+)$", "\n".join(lines), re.MULTILINE)]
-    (first, *_) = positions(words(tmp_path))
+    (first, *_) = positions(words(folder))
     far = np.hypot(np.diff(first[1:, 0]), 50.0 * np.radians(np.diff(first[1:, 3])))
     np.testing.assert_allclose(feeds[: len(far)] * far, 300.0, rtol=1e-5)
-    recipe = camgeo.load(tmp_path / "drum.yaml")
+    recipe = camgeo.load(folder / "drum.yaml")
     found = {(check.name, check.file) for check in report.checks}
     assert {(each.name, each.file) for each in root_of(recipe).foresee(recipe)} <= found
 
 
 def test_a_drum_that_turns_the_other_way_has_the_mirrored_program(tmp_path: Path) -> None:
-    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18"))
+    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18"), ("0.02", "0.1"))
     plain, mirrored = tmp_path / "a", tmp_path / "b"
     for folder, own in ((plain, text), (mirrored, "rotation: ccw\n" + text)):
         folder.mkdir()
@@ -166,7 +187,7 @@ def test_inches_and_a_feed_by_the_minute(tmp_path: Path) -> None:
 
 
 def test_an_allowance_is_left_by_all_but_the_last_pass(tmp_path: Path) -> None:
-    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18, allowance: 0.3"))
+    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18, allowance: 0.3"), ("0.02", "0.1"))
     assert exported(tmp_path, text).ok
     lines = words(tmp_path).splitlines()
     assert [line for line in lines if " pass " in line] == [
@@ -186,15 +207,17 @@ def test_an_allowance_is_left_by_all_but_the_last_pass(tmp_path: Path) -> None:
 
 @pytest.mark.costly("the one drum that is undercut, whose cuts take as long to find as all else")
 def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None:
-    text = program(UNDERCUT, ("cutter: 20", "cutter: 24"))
-    assert exported(tmp_path, text).ok
-    (tmp_path / "drum.yaml").write_text(changed(text, ("cutter: 24", "cutter: 23")), encoding="utf-8")
+    def program_of(cutter: str) -> Made[DrumVerdict]:
+        recipe = recipe_of(program(UNDERCUT, ("cutter: 20", f"cutter: {cutter}")))
+        return make(cut_short(recipe), Clock(), recipe.export.files[0], tmp_path / "drum.ngc")
+
+    assert program_of("24").verdict.ok
     with pytest.raises(camgeo.RecipeErrors, match="with an undercut, only a cutter as large as the roller"):
-        camgeo.export(tmp_path / "drum.yaml", tmp_path / "out")
+        program_of("23")
 
 
 @pytest.mark.parametrize(
-    ("pairs", "problem", "remedy"),
+    "row",
     [
         ([("cutter: 20", "cutter: 20.5")], "a cutter wider than the roller cuts the flanks away", ("20.5", "20")),
         ([("cutter: 20", "cutter: 9")], "does not clear the groove", ("[X, A], cutter: 9", "[X, Y, A], cutter: 10.02")),
@@ -239,35 +262,40 @@ def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None
         ),
         ([("depth_of_cut: 7", "depth_of_cut: 0.001")], "makes more than 2000 passes", ("0.001", "6")),
     ],
+    ids=lambda row: row[1],
 )
 def test_what_is_refused_says_what_to_give(
+    row: tuple[list[tuple[str, str]], str, tuple[str, str]],
     tmp_path: Path,
-    pairs: list[tuple[str, str]],
-    problem: str,
-    remedy: tuple[str, str],
+    made: Callable[[str], tuple[Path, camgeo.Report]],
     capsys: pytest.CaptureFixture[str],
 ) -> None:
+    pairs, problem, remedy = row
     text = program(GROOVE, *pairs)
     (tmp_path / "drum.yaml").write_text(text, encoding="utf-8")
     assert main(["export", str(tmp_path / "drum.yaml"), "--out", str(tmp_path / "out")]) == 2
     assert problem in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
-    assert exported(tmp_path, changed(text, remedy)).ok
+    _, report = made(changed(text, remedy))
+    assert report.ok
 
 
 @pytest.mark.costly("a program is made, and judged twice")
-def test_a_program_is_read_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert exported(tmp_path, program()).ok
-    path, recipe = tmp_path / "other.nc", str(tmp_path / "drum.yaml")
-    path.write_text(words(tmp_path), "ascii")
+def test_a_program_is_read_again(
+    made: Callable[[str], tuple[Path, camgeo.Report]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, report = made(program())
+    assert report.ok
+    path, recipe = tmp_path / "other.nc", str(folder / "drum.yaml")
+    path.write_text(words(folder), "ascii")
     assert main(["verify", recipe, str(path)]) == 0
-    path.write_text(words(tmp_path).replace("X20.000", "X20.200"), "ascii")
+    path.write_text(words(folder).replace("X20.000", "X20.200"), "ascii")
     assert main(["verify", recipe, str(path)]) == 1
     assert "contour" in capsys.readouterr().out
-    path.write_text(words(tmp_path).replace("M30", "G2 X1"), "ascii")
+    path.write_text(words(folder).replace("M30", "G2 X1"), "ascii")
     assert main(["verify", recipe, str(path)]) == 1
     (tmp_path / "drum.yaml").write_text(GROOVE, encoding="utf-8")
-    assert main(["verify", recipe, str(path)]) == 2
+    assert main(["verify", str(tmp_path / "drum.yaml"), str(path)]) == 2
     assert "no program is asked for" in capsys.readouterr().err
 
 

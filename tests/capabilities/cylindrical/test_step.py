@@ -12,7 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from capabilities.cylindrical.made_drums import BOTTOM, GROOVE, RIB, TOP, UNDERCUT, changed, design_of, recipe_of
+from capabilities.cylindrical.made_drums import (
+    BOTTOM,
+    GROOVE,
+    RIB,
+    TOP,
+    UNDERCUT,
+    changed,
+    cut_short,
+    design_of,
+    recipe_of,
+)
 from capabilities.cylindrical.positions import Lift, envelope
 from capabilities.cylindrical.test_files import demand_foreseen, exported
 from support.kernel import kernel
@@ -46,7 +56,7 @@ FINE = 0.003  # mm
 ROWS = [("rise", 40.0, 120.0, "cycloidal"), ("dwell", 0.0, 60.0, ""), ("return", 40.0, 120.0, "polynomial-345")]
 LIFT = Lift([*ROWS, ("dwell", 0.0, 60.0, "")])
 STEP = changed(GROOVE, ("12.5}", "12.5, clearance: 0.03}"), ("[stl]", "[step]"))
-C01 = changed(STEP, ("tolerance: 0.02", "tolerance: 0.001"))
+C01 = changed(STEP, ("tolerance: 0.02", "tolerance: 0.003"))
 
 
 # --- splines ----------------------------------------------------------------------------------------------------------
@@ -146,7 +156,7 @@ def test_a_flank_of_another_form_is_refused(more: str) -> None:
 def test_a_shortened_flank_is_refused() -> None:
     recipe = recipe_of(changed(UNDERCUT, ("[stl]", "[step]")))
     with pytest.raises(RecipeErrors, match=r"export.files\[0\]: a flank that an undercut shortens") as caught:
-        foresee(designed(recipe, Clock()), recipe.export.files[0])
+        foresee(cut_short(recipe), recipe.export.files[0])
     assert "give stl, 3mf or ply" in str(caught.value)
 
 
@@ -221,7 +231,7 @@ TRACKS = {
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("track", TRACKS)
 def test_another_kernel_takes_the_solid_and_kin_both_files(tmp_path: Path, track: str) -> None:
-    tolerance = 0.05 if track == "groove" else 0.005
+    tolerance = 0.05 if track == "groove" else 0.008
     path, design, off = written(tmp_path, TRACKS[track], tolerance)
     sound, measured = solids_of(path)
     assert sound
@@ -245,7 +255,7 @@ def test_a_recipe_with_a_step_file(tmp_path: Path) -> None:
     found: Any = dict(report)
     (file,) = found["files"]
     assert file["pieces"] > 100
-    assert file["geometry_error"] <= 0.001
+    assert file["geometry_error"] <= 0.003
     assert max(surface["measured_error"] for surface in file["surfaces"]) <= file["geometry_error"]
     (play,) = file["play"]
     # the clearance over cos a at the outer end, where S' is 38.2 at most

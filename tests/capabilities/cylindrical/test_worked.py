@@ -29,6 +29,7 @@ from capabilities.cylindrical.made_drums import (
     UNDERCUT,
     changed,
     design_of,
+    shared_design,
 )
 from capabilities.cylindrical.positions import Lift, envelope, law_at
 from support.heavy import optimize
@@ -373,10 +374,10 @@ def test_places_in_no_table() -> None:
 @pytest.mark.costly("a flank's cut is found along its envelope")
 def test_undercut_at_the_inner_end_alone() -> None:
     """The rule of the development, a radius of curvature above the roller's, would say 28.8626."""
-    design = design_of(UNDERCUT)
-    lower = design.flanks["lower"]
+    design = shared_design(UNDERCUT)
+    lower, figures = design.flanks["lower"], {each.name: each.value for each in figures_of(design)}
     close(below(lower, 20.0, 40.0)[0], 29.100516094)
-    close(figure(UNDERCUT, "undercut-radius"), 29.100516094)
+    close(figures["undercut-radius"], 29.100516094)
     for rho, at, wanted in (
         (40, 47.70907, 17.8819315878),
         (30, 48.30676, 1.63176748872),
@@ -386,8 +387,8 @@ def test_undercut_at_the_inner_end_alone() -> None:
         theta = np.radians(np.linspace(at - 0.01, at + 0.01, 401))
         assert lower.along(theta, np.full_like(theta, rho)).regular.min() == pytest.approx(wanted, abs=1e-9)
     # what carries at 50 degrees begins where the cut ends, and loses nothing
-    assert figure(UNDERCUT, "contact-length") == pytest.approx(40.0 - 29.2, abs=0.1)
-    assert 0.5 < figure(UNDERCUT, "carrying-share") < 0.6
+    assert figures["contact-length"] == pytest.approx(40.0 - 29.2, abs=0.1)
+    assert 0.5 < figures["carrying-share"] < 0.6
 
 
 @pytest.mark.slow

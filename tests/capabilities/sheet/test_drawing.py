@@ -211,22 +211,22 @@ def test_of_a_shaft_that_turns_the_other_way(drawn: list[drawing.Pages], tmp_pat
     assert any("counter-clockwise" in text for text in texts)
 
 
-def test_without_a_tolerance_the_drawing_says_so(drawn: list[drawing.Pages], tmp_path: Path) -> None:
-    exported(CAM.replace("{sheet: {profile: 0.04}}", "sheet"), tmp_path)
-    assert "contour: no profile tolerance is stated" in [text.text for text in drawn[0].annotated[0].texts]
-
-
-def test_without_a_thickness_the_face_alone_is_drawn(drawn: list[drawing.Pages], tmp_path: Path) -> None:
-    exported(CAM.replace("thickness: 12, ", ""), tmp_path)
+def test_without_a_tolerance_or_a_thickness_the_face_alone_is_drawn_and_it_says_so(
+    drawn: list[drawing.Pages], tmp_path: Path
+) -> None:
+    exported(CAM.replace("thickness: 12, ", "").replace("{sheet: {profile: 0.04}}", "sheet"), tmp_path)
     texts = [text.text for text in drawn[0].annotated[0].texts]
+    assert "contour: no profile tolerance is stated" in texts
     assert "A-A" not in texts
     assert texts[texts.index("Ø16") + 1] == "bore"
     demand_clear(drawn[0])
 
 
-def test_a_slot_has_its_sizes_and_its_circle(drawn: list[drawing.Pages], tmp_path: Path) -> None:
-    exported(CAM.replace("bore: 16}", "bore: 16, slot: {length: 12.3, width: 5.1, circle: 52, at: 40}}"), tmp_path)
+def test_a_bore_has_its_fit_and_a_slot_its_sizes_and_its_circle(drawn: list[drawing.Pages], tmp_path: Path) -> None:
+    part = "bore: {diameter: 16, fit: H7}, slot: {length: 12.3, width: 5.1, circle: 52, at: 40}}"
+    exported(CAM.replace("bore: 16}", part), tmp_path)
     texts = [text.text for text in drawn[0].annotated[0].texts]
+    assert "Ø16 H7 (+0.018/0)" in texts
     assert texts[texts.index("slot 5.1 × 12.3") + 1] == "across 40°"
     assert texts[texts.index("Ø52") + 1] == "slot circle"
     demand_clear(drawn[0])
@@ -429,11 +429,6 @@ def test_a_budget_states_the_tolerance(drawn: list[drawing.Pages], tmp_path: Pat
 def test_a_made_part_states_the_tolerance(drawn: list[drawing.Pages], tmp_path: Path) -> None:
     exported(f"{CAM.replace('{sheet: {profile: 0.04}}', 'sheet')}made: {{profile: 0.05}}\n", tmp_path)
     assert "0.05" in [text.text for text in drawn[0].annotated[0].texts]
-
-
-def test_a_bore_has_its_fit(drawn: list[drawing.Pages], tmp_path: Path) -> None:
-    exported(CAM.replace("bore: 16", "bore: {diameter: 16, fit: H7}"), tmp_path)
-    assert "Ø16 H7 (+0.018/0)" in [text.text for text in drawn[0].annotated[0].texts]
 
 
 # needs: camshaft

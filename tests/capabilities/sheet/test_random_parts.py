@@ -5,6 +5,8 @@ Holds: camgeo.capabilities.sheet.callouts.
 
 from __future__ import annotations
 
+import functools
+import tempfile
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,8 +20,6 @@ from camgeo.capabilities.sheet import drawing, views
 from camgeo.recipe.recipe import load_text
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from camgeo.capabilities.sheet.part import DrawnDisc
     from camgeo.capabilities.sheet.views import Layout
 
@@ -34,7 +34,8 @@ class Made(NamedTuple):
     layout: Layout
 
 
-def made(seed: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Made:
+@functools.cache
+def made(seed: int) -> Made:
     """The drawing of the first part of a seed that is made."""
     seen: dict[str, Any] = {}
     lay_out, pages = views.lay_out, drawing._pages
@@ -47,16 +48,17 @@ def made(seed: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Made:
         seen["pages"] = pages(*arguments, **options)
         return seen["pages"]
 
-    monkeypatch.setattr(drawing, "lay_out", kept)
-    monkeypatch.setattr(drawing, "_pages", paged)
-    for attempt in range(TRIES):
-        text = random_part(seed, attempt)
-        try:
-            camgeo.export(load_text(text, folder / f"p{attempt}.yaml"), folder)
-        except camgeo.RecipeErrors:
-            continue
-        if seen:
-            return Made(seen["pages"], seen["drawn"], seen["layout"])
+    with pytest.MonkeyPatch.context() as patch, tempfile.TemporaryDirectory() as folder:
+        patch.setattr(drawing, "lay_out", kept)
+        patch.setattr(drawing, "_pages", paged)
+        for attempt in range(TRIES):
+            text = random_part(seed, attempt)
+            try:
+                camgeo.export(load_text(text, f"p{attempt}.yaml"), folder)
+            except camgeo.RecipeErrors:
+                continue
+            if seen:
+                return Made(seen["pages"], seen["drawn"], seen["layout"])
     raise AssertionError(f"no part of seed {seed} is made")
 
 
@@ -83,19 +85,19 @@ def demand_sound(made: Made) -> None:
 
 @pytest.mark.costly("a property over parts by chance: three of them")
 @pytest.mark.parametrize("seed", range(3))
-def test_of_a_part_by_chance(seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    demand_sound(made(seed, tmp_path, monkeypatch))
+def test_of_a_part_by_chance(seed: int) -> None:
+    demand_sound(made(seed))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3, 23))
-def test_of_many_parts_by_chance(seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    demand_sound(made(seed, tmp_path, monkeypatch))
+def test_of_many_parts_by_chance(seed: int) -> None:
+    demand_sound(made(seed))
 
 
 @pytest.mark.costly("the first part by chance that is made")
-def test_a_planted_leader_through_an_opening_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = made(0, tmp_path, monkeypatch)
+def test_a_planted_leader_through_an_opening_is_seen() -> None:
+    found = made(0)
     callouts = found.layout.callouts
     x = found.layout.scale * found.drawn.reach
     planted = [callouts[0]._replace(leader=np.array([(-x, 0.0), (x, 0.01)])), *callouts[1:]]

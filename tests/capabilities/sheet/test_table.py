@@ -5,6 +5,7 @@ Holds: camgeo.capabilities.sheet.pages.
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from typing import TYPE_CHECKING
@@ -47,8 +48,11 @@ def table(text: str, permitted: float, step: float | None = None) -> SheetTable:
     return contour_table(contours, step, Zone(permitted, stated=True), ccw="ccw" in text)
 
 
-def radii(angles: np.ndarray) -> np.ndarray:
-    """Distances of the contour of CAM from the shaft, mm: 9 mm within the pitch curve, along its normal."""
+@functools.cache
+def places() -> tuple[np.ndarray, np.ndarray]:
+    """Polar angles of the contour of CAM over three turns, and distances from the shaft, mm: 9 mm within the pitch
+    curve, along its normal.
+    """
     t = np.linspace(0.0, 2.0 * np.pi, 400_001)[:-1]
     x, u = t / np.radians(100.0), (t - np.radians(160.0)) / np.radians(140.0)
     rise, back = x < 1.0, (u > 0.0) & (u < 1.0)
@@ -64,8 +68,12 @@ def radii(angles: np.ndarray) -> np.ndarray:
     along = (speed + 1j * (49.0 + lift)) * np.exp(1j * t)
     contour = pitch + 9.0j * along / np.abs(along)
     polar = np.unwrap(np.angle(contour))
-    turns = np.concatenate([polar - 2.0 * np.pi, polar, polar + 2.0 * np.pi])
-    found: np.ndarray = np.interp(angles, turns, np.tile(np.abs(contour), 3))
+    return np.concatenate([polar - 2.0 * np.pi, polar, polar + 2.0 * np.pi]), np.tile(np.abs(contour), 3)
+
+
+def radii(angles: np.ndarray) -> np.ndarray:
+    """Distances of the contour of CAM from the shaft at polar angles, mm."""
+    found: np.ndarray = np.interp(angles, *places())
     return found
 
 
