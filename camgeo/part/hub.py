@@ -49,7 +49,7 @@ def _walls(hub: Hub, body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible
     circle = boss.circle
     yield to_surface(circle, body, surfaces)
     for opening in body.openings:
-        within = opening.name == "bore" or (opening.depth is None and boss.holds(opening.middle))
+        within = opening.name == "bore" or boss.holds(opening)
         gap = (inside_gap if within else outside_gap)(opening.chain, circle.chain)
         yield known(opening.name, boss.name, gap)
 

@@ -63,7 +63,7 @@ def _walls(screw: SetScrew, body: Body, _surfaces: Sequence[Looks]) -> Iterator[
     radius = 0.5 * screw.diameter
     along = Opening(hole.name, "HOLES", strip(0.5 * boss.diameter, screw.diameter, screw.at))
     for opening in body.openings:
-        if opening.name != "bore" and opening.depth is None and boss.holds(opening.middle):
+        if opening.name != "bore" and boss.holds(opening):
             yield known(hole.name, opening.name, outside_gap(opening.chain, along.chain))
     yield known(hole.name, "the disc's face", Gap(beyond - radius, NOWHERE))
     yield known(hole.name, "the hub's face", Gap((boss.above or boss.below) - beyond - radius, NOWHERE))
