@@ -28,7 +28,7 @@ class Hub:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    bore, diameter = diameter_of(part), part.get("hub", {}).get("diameter")
+    bore, diameter = diameter_of(part), part["hub"].get("diameter")
     if bore is None or diameter is None or diameter > bore + 2.0 * LEAST_SIZE:
         return
     problem = "not above the bore" if diameter <= bore else "no wall round the bore"

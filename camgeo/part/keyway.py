@@ -77,7 +77,7 @@ FORM = OwnForm(
 
 
 def _check(part: Values, reader: Reader) -> None:
-    keyway, bore = part.get("keyway", {}), diameter_of(part)
+    keyway, bore = part["keyway"], diameter_of(part)
     if bore is None:
         return
     if "standard" in keyway and key_for(bore) is None:

@@ -30,7 +30,7 @@ class Lightening:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    lightening = part.get("lightening", {})
+    lightening = part["lightening"]
     if "largest" in lightening and "start" in lightening:
         reader.fault_at("part.lightening.start", "needs a ring", None, "leave it out")
 

@@ -37,7 +37,7 @@ class Mark:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    mark = part.get("mark", {})
+    mark = part["mark"]
     if "thickness" in part:
         check_below(reader, "part.mark.depth", mark.get("depth"), part["thickness"], "the thickness")
     if "length" in mark:

@@ -33,7 +33,7 @@ class SetScrew:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    screw, hub, path = part.get("set_screw", {}), part.get("hub", {}), "part.set_screw.diameter"
+    screw, hub, path = part["set_screw"], part.get("hub", {}), "part.set_screw.diameter"
     width, word = width_of(part)
     if width is not None:
         check_below(reader, path, screw.get("diameter"), width, f"the bore's {word}")
