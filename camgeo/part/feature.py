@@ -198,7 +198,7 @@ class Feature(Generic[T]):
     holes: bool = False
     walled: bool = False
     check: Callable[[Values, Reader], None] = NO_CHECK
-    make: Callable[[Any, Values], T | None] | None = None
+    make: Callable[[Any, Values], T] | None = None
     bore: Callable[[T, float], ArcSpline] | None = None
     openings: Callable[[T], Sequence[Opening]] | None = None
     place: Callable[[T, Site], Placed] | None = None
