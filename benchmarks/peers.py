@@ -140,7 +140,7 @@ def of_ours(cam: str, folder: Path) -> list[Point]:
             own.write_text(yaml.safe_dump(bare | {"export": export}), encoding="utf-8")
             cold = timed([sys.executable, "-m", "camgeo", "export", str(own), "--out", str(folder / "out")], folder)
             size = (folder / "out" / "own" / f"own.{kind}").stat().st_size
-            found.append(Point(tool, f".{kind}", rung.geometry_error, warm, cold, rung.pieces or 0, size))
+            found.append(Point(tool, f".{kind}", rung.geometry_error, warm, cold, rung.pieces, size))
             if SMALL:
                 break
     return found

@@ -107,4 +107,4 @@ if not TYPE_CHECKING:  # a type checker then knows the names above, and no other
 
     def __dir__() -> list[str]:
         """Names of the library in alphabetical order, imported or not."""
-        return sorted({*globals(), "__version__", *_homes()})
+        return sorted({*globals(), *_homes()})

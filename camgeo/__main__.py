@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")  # of numpy's BLAS
 _COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
-_INTERRUPTED = "camgeo: interrupted\n"
 _IMPATIENT = 1.0  # seconds after which a second interrupt is a new one: a launcher may pass the same one on twice
 
 
@@ -66,7 +65,11 @@ class _Interrupts:
         """Print that the run was interrupted, once: a swallowed interrupt may be raised again meanwhile."""
         if not self._reported:
             self._reported = True
-            _say(_INTERRUPTED)
+            try:
+                sys.stderr.write("camgeo: interrupted\n")
+                sys.stderr.flush()
+            except (OSError, ValueError, AttributeError, RuntimeError):
+                return  # there is nobody to tell, or an interrupt came while it was told
 
     def _swallowed(self, unraisable: sys.UnraisableHookArgs) -> None:
         """Hook for exceptions that cannot be raised: repeat an interrupt that fell into such a callback."""
@@ -130,14 +133,6 @@ def _status() -> int:
         return run()
     except SystemExit as end:  # of argparse
         return end.code if isinstance(end.code, int) else 0 if end.code is None else 1
-
-
-def _say(text: str) -> None:
-    try:
-        sys.stderr.write(text)
-        sys.stderr.flush()
-    except (OSError, ValueError, AttributeError, RuntimeError):
-        return  # there is nobody to tell, or an interrupt came while it was told
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ import os
 import shlex
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import pytest
 
@@ -179,8 +179,9 @@ class Recipes:
         folder = self.config.invocation_params.dir
         ignored = {Path(folder, name) for name in self.config.getoption("ignore") or ()}
         patterns = [str(Path(folder, name)) for name in self.config.getoption("ignore_glob") or ()]
-        if any(path in ignored or any(fnmatch.fnmatch(str(path), p) for p in patterns) for path in _upward(run.path)):
-            return False
+        for path in (run.path, *run.path.parents):
+            if path in ignored or any(fnmatch.fnmatch(str(path), pattern) for pattern in patterns):
+                return False
         return "[" not in run.shown and "::" not in run.shown
 
 
@@ -201,7 +202,7 @@ class RecipeRun:
     path: Path
     shown: str
     out: Path | None
-    options: dict[str, Any] = field(default_factory=dict)
+    options: dict[str, Any]
     recipe: Order | None = None
     fault: str = ""
     certain: bool = False
@@ -360,12 +361,10 @@ class VerifyItem(RecipeItem):
 
         if self.run.recipe is None:
             _fail(self.run.fault)
-            return
         try:
             report: Entry = dict(verify(self.run.recipe, *self.files, **self.options))
         except CallError as error:
             _fail(str(error))
-            return
         self._hold(report["checks"], report)
 
 
@@ -396,7 +395,6 @@ class CheckItem(RecipeItem):
     def _whole(self, report: Entry | None) -> None:
         if report is None:
             _fail(self.run.fault)
-            return
         unforeseen = [check for check in report["checks"] if (check["name"], check.get("file")) not in self.known]
         self._hold(unforeseen, report)
 
@@ -406,10 +404,10 @@ class CheckItem(RecipeItem):
             place = ("at_deg",) if "at_deg" in checks[0] else ("at", "at_unit")
             self.user_properties += [(key, checks[0][key]) for key in ("value", "limit", "unit", *place)]
             self._hold(checks, report)
-            return
-        self._missing(foreseen, report)
+        else:
+            self._missing(foreseen, report)
 
-    def _missing(self, foreseen: Foreseen, report: Entry) -> None:
+    def _missing(self, foreseen: Foreseen, report: Entry) -> NoReturn:
         """Fail with the reason why an expected check was not made."""
         from camgeo.checks.declared import CHECKS, MOTION
         from camgeo.report.failure import headline
@@ -423,7 +421,6 @@ class CheckItem(RecipeItem):
         cause = [check for check in report["checks"] if not check["ok"] and check.get("file") in (None, foreseen.file)]
         if cause:
             self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))
-            return
         if recipe.trims and (
             foreseen.name == MOTION.name or (foreseen.name in CHECKS and CHECKS[foreseen.name].backlash)
         ):
@@ -436,7 +433,7 @@ class CheckItem(RecipeItem):
             pytest.skip(f"{self.run.shown}: {why}")
         _fail(f"{foreseen} is not among the checks that were made")
 
-    def _not_judged(self, cause: str, told_by: str | None) -> None:
+    def _not_judged(self, cause: str, told_by: str | None) -> NoReturn:
         """Skip where another item of this session is certain to fail for the same cause, else fail.
 
         `told_by` is the name of the check of that item; None for a cause that may be absent in the process in which the
@@ -449,7 +446,7 @@ class CheckItem(RecipeItem):
         _fail(f"{self.name}: not judged: {cause}")
 
 
-def _fail(text: str) -> None:
+def _fail(text: str) -> NoReturn:
     pytest.fail(text, pytrace=False)
 
 
@@ -459,7 +456,3 @@ def _relative(path: Path, folder: Path) -> str:
         return os.path.relpath(path, folder)
     except ValueError:
         return str(path)
-
-
-def _upward(path: Path) -> tuple[Path, ...]:
-    return (path, *path.parents)

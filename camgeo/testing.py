@@ -31,6 +31,7 @@ from camgeo.recipe.keys import MOST_ANGLES
 from kin.numeric.errors import CamgeoError
 from kin.numeric.places import place_text
 from kin.numeric.records import dataclass, replace
+from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -42,8 +43,6 @@ if TYPE_CHECKING:
     from camgeo.checks.declaration import Entry
     from camgeo.recipe.recipe import Order
     from kin.contour.contour import Contour
-    from kin.read.drawing.drawing import Drawing
-    from kin.read.formats import AnySolid
 
     AnyPath: TypeAlias = str | PathLike[str]
 
@@ -102,13 +101,15 @@ R = TypeVar("R")
 
 
 def _ends_traceback(assertion: Callable[P, R]) -> Callable[P, R]:
-    """Decorator by which the traceback of a failure ends at the line of the test."""
+    """Decorator by which a file that cannot be read fails, and a failure's traceback ends at the line of the test."""
 
     @wraps(assertion)
     def asserted(*arguments: P.args, **named: P.kwargs) -> R:
         __tracebackhide__ = True
         try:
             return assertion(*arguments, **named)
+        except ReadError as error:
+            raise AssertionError(str(error)) from None
         except (AssertionError, CamgeoError, OSError, TypeError) as error:
             raise error.with_traceback(None) from None
 
@@ -126,11 +127,13 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
     watertight, and its gap is 0. Raises CallError for a file that is neither a drawing nor a solid, and for a gap below
     0.
     """
+    from kin.read.files import read_drawing
+
     path = path_of("path", path)
     if _is_solid(path):
         assert_watertight(path)
         return 0.0
-    drawing = _drawing(path, _length("gap", gap))
+    drawing = read_drawing(path, _length("gap", gap))
     faults = [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)} mm" for fault in drawing.faults]
     _no_faults(path, faults + _crossings(drawing.contour))
     return drawing.widest_gap
@@ -142,13 +145,14 @@ def assert_watertight(path: AnyPath) -> float:
 
     Returns the enclosed volume, mm^3. Raises CallError for a file that is no solid.
     """
+    from kin.read.files import read_solid
+    from kin.read.formats import FORMATS
+
     path = path_of("path", path)
     if not _is_solid(path):
-        from kin.read.formats import FORMATS
-
         solids = [record.suffixes[0] for record in FORMATS.values() if record.contents == "solid"]
         raise CallError(f"{path.name}: not a {', '.join(solids[:-1])} or {solids[-1]} file")
-    solid = _solid(path)
+    solid = read_solid(path)
     _no_faults(path, [*(f"{fault}, none allowed" for fault in solid.faults), *_crossings(solid.contour)])
     return solid.volume
 
@@ -392,34 +396,16 @@ def _crossings(contour: Contour) -> list[str]:
 
 def _contour(path: Path, mm: float | None) -> Contour:
     """Outer contour of a file, mm."""
+    from kin.read.files import read_drawing, read_solid
+
     if _is_solid(path):
-        return _solid(path).contour
-    drawing = _drawing(path, GAP)
+        return read_solid(path).contour
+    drawing = read_drawing(path, GAP)
     if drawing.units_mm is not None:
         return drawing.contour
     if mm is None:
         raise AssertionError(f"{path}: the drawing states no unit; give mm=, the length of a drawing unit in mm")
     return drawing.contour.scaled(mm)
-
-
-def _drawing(path: Path, gap: float) -> Drawing:
-    from kin.read.errors import ReadError
-    from kin.read.files import read_drawing
-
-    try:
-        return read_drawing(path, gap)
-    except ReadError as error:
-        raise AssertionError(str(error)) from None
-
-
-def _solid(path: Path) -> AnySolid:
-    from kin.read.errors import ReadError
-    from kin.read.files import read_solid
-
-    try:
-        return read_solid(path)
-    except ReadError as error:
-        raise AssertionError(str(error)) from None
 
 
 def _is_solid(path: Path) -> bool:

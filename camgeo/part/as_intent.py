@@ -34,9 +34,8 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
         floor = thickness - body.pocket
         heights.add(floor)
     heights |= {thickness - opening.depth for opening in body.openings if opening.depth is not None}
-    rising = sorted(heights)
     layers = []
-    for low, high in pairwise(rising):
+    for low, high in pairwise(sorted(heights)):
         shallow = tuple(
             _hole(opening)
             for opening in body.openings
@@ -49,9 +48,7 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
     boss = body.boss
     if boss is not None:
         outline = round_hole(boss.name, "hub", (0.0, 0.0), boss.diameter)
-        inside = tuple(
-            _hole(opening) for opening in body.openings if opening.depth is None and boss.holds(opening.middle)
-        )
+        inside = tuple(_hole(opening) for opening in body.openings if boss.holds(opening))
         if body.bottom < 0.0:
             layers.insert(0, Layer(body.bottom, 0.0, inside, outline))
         if body.top > thickness:

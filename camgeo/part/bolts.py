@@ -29,7 +29,7 @@ class Bolts:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    bolts = part.get("bolts", {})
+    bolts = part["bolts"]
     if bolts.keys() >= {"count", "circle", "hole"} and bolts["count"] > 1:
         apart = bolts["circle"] * math.sin(math.pi / bolts["count"])
         check_below(reader, "part.bolts.hole", bolts["hole"], apart, "the distance between two of them")

@@ -46,7 +46,7 @@ def _check_contour(chamfer: Chamfer, contour: Curve, shaft_deg: Callable[[float]
 
 def _check(part: Values, reader: Reader) -> None:
     if "thickness" in part:
-        check_below(reader, "part.chamfer", part.get("chamfer"), 0.5 * part["thickness"], "half the thickness")
+        check_below(reader, "part.chamfer", part["chamfer"], 0.5 * part["thickness"], "half the thickness")
 
 
 def _remedy(check: dict[str, Any]) -> str:

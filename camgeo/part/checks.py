@@ -30,12 +30,9 @@ from kin.numeric.check import Check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
-    from typing import TypeAlias
 
     from camgeo.part.body import Body
     from camgeo.part.shapes import Opening
-
-    Circle: TypeAlias = tuple[tuple[float, float], float]
 
 MOST_NAMED = 6  # pairs named in a message
 ROUND = {"bore": "part.bore", **dict(feature.round for feature in FEATURES if feature.round is not None)}
@@ -104,8 +101,8 @@ def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
             outer = max(outer, lack)
             continue
         circles = [cut.circle for cut in body.openings if cut.circle is not None and cut.name in pair[:2]]
-        if len(circles) == 2 and _one_in_another(*circles):
-            return ""  # one lies within the other, and a smaller one still does
+        if len(circles) == 2 and math.dist(*(centre for centre, _ in circles)) <= max(radius for _, radius in circles):
+            return ""  # the middle of one lies within the other, and that of a smaller one still does
         if pair.gap.wall < 0.0 and any(cut.circle is None and cut.name in pair[:2] for cut in body.openings):
             return ""  # how far a hole and a shape with corners overlap is no diameter
         keys = {name: key for name in (pair.one, pair.other) for word, key in ROUND.items() if name.startswith(word)}
@@ -125,11 +122,6 @@ def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
     if outer:
         remedies.append(f"a part.outer larger by more than {upward(outer)} mm")
     return f"; {' and '.join(remedies)} would do"
-
-
-def _one_in_another(one: Circle, other: Circle) -> bool:
-    """Whether the middle of one of two circles lies within the other: a smaller one of them does not part them."""
-    return math.dist(one[0], other[0]) <= max(one[1], other[1])
 
 
 def _holds(wall: float, least: float | None) -> bool:
@@ -179,13 +171,13 @@ def _outside(opening: Opening, other: Opening) -> Pair:
 
 def _outline_walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
     """Walls between the round outline and the surfaces, then the openings; none for a disc without such an outline."""
-    if body.outer is None or body.rim is None:
+    rim = body.rim
+    if rim is None:
         return
-    radius = 0.5 * body.outer
     for looks in surfaces:
         far = farthest(looks.contour)
         x, y = looks.contour.sample(np.array([far.at])).point[0].tolist()
-        gap = Gap(radius - far.value - far.slack, (x, y), far.at)
+        gap = Gap(rim.radius - far.value - far.slack, (x, y), far.at)
         yield known(f"{looks.name} {OPENING}".strip(), OUTLINE, gap)
     for opening in body.openings:
-        yield known(opening.name, OUTLINE, inside_gap(opening.chain, body.rim.chain))
+        yield known(opening.name, OUTLINE, inside_gap(opening.chain, rim.chain))

@@ -67,10 +67,10 @@ class Boss(NamedTuple):
 
         return disc(self.name, "HOLES", (0.0, 0.0), 0.5 * self.diameter)
 
-    def holds(self, point: tuple[float, float]) -> bool:
-        """Whether a point (x, y) of the disc's face, mm, lies within it."""
-        x, y = point
-        return x * x + y * y < 0.25 * self.diameter * self.diameter
+    def holds(self, opening: Opening) -> bool:
+        """Whether an opening goes through disc and boss, as its middle lies within the boss."""
+        x, y = opening.middle
+        return opening.depth is None and x * x + y * y < 0.25 * self.diameter * self.diameter
 
 
 class Refusal(NamedTuple):
@@ -198,7 +198,7 @@ class Feature(Generic[T]):
     holes: bool = False
     walled: bool = False
     check: Callable[[Values, Reader], None] = NO_CHECK
-    make: Callable[[Any, Values], T | None] | None = None
+    make: Callable[[Any, Values], T] | None = None
     bore: Callable[[T, float], ArcSpline] | None = None
     openings: Callable[[T], Sequence[Opening]] | None = None
     place: Callable[[T, Site], Placed] | None = None

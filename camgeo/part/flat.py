@@ -23,7 +23,7 @@ class Flat:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    across, bore = part.get("flat", {}).get("across"), diameter_of(part)
+    across, bore = part["flat"].get("across"), diameter_of(part)
     if across is None or bore is None:
         return
     check_below(reader, "part.flat.across", across, bore, "the bore's diameter")

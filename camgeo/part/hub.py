@@ -28,7 +28,7 @@ class Hub:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    bore, diameter = diameter_of(part), part.get("hub", {}).get("diameter")
+    bore, diameter = diameter_of(part), part["hub"].get("diameter")
     if bore is None or diameter is None or diameter > bore + 2.0 * LEAST_SIZE:
         return
     problem = "not above the bore" if diameter <= bore else "no wall round the bore"
@@ -49,7 +49,7 @@ def _walls(hub: Hub, body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible
     circle = boss.circle
     yield to_surface(circle, body, surfaces)
     for opening in body.openings:
-        within = opening.name == "bore" or (opening.depth is None and boss.holds(opening.middle))
+        within = opening.name == "bore" or boss.holds(opening)
         gap = (inside_gap if within else outside_gap)(opening.chain, circle.chain)
         yield known(opening.name, boss.name, gap)
 

@@ -15,17 +15,12 @@ if TYPE_CHECKING:
 UPPER_ENDS = (3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0)  # of the ranges of sizes, inclusive, mm
 MICROMETRE = 1e-3  # in mm
 
-
-def _mirrored(*limits: float) -> tuple[tuple[float, float], ...]:
-    return tuple((-limit, limit) for limit in limits)
-
-
 # in each range, micrometres
 HOLES: Mapping[str, tuple[tuple[float, float], ...]] = {
     "H7": ((0, 10), (0, 12), (0, 15), (0, 18), (0, 21), (0, 25), (0, 30), (0, 35)),
 }
 KEYWAYS: Mapping[str, tuple[tuple[float, float], ...]] = {
-    "JS9": _mirrored(12.5, 15, 18, 21.5, 26, 31, 37, 43.5),
+    "JS9": ((-12.5, 12.5), (-15, 15), (-18, 18), (-21.5, 21.5), (-26, 26), (-31, 31), (-37, 37), (-43.5, 43.5)),
     "P9": ((-31, -6), (-42, -12), (-51, -15), (-61, -18), (-74, -22), (-88, -26), (-106, -32), (-124, -37)),
 }
 

@@ -77,7 +77,7 @@ FORM = OwnForm(
 
 
 def _check(part: Values, reader: Reader) -> None:
-    keyway, bore = part.get("keyway", {}), diameter_of(part)
+    keyway, bore = part["keyway"], diameter_of(part)
     if bore is None:
         return
     if "standard" in keyway and key_for(bore) is None:
@@ -87,13 +87,12 @@ def _check(part: Values, reader: Reader) -> None:
     check_below(reader, "part.keyway.width", keyway.get("width"), bore, "the bore's diameter")
 
 
-def _make(values: Values, part: Values) -> Keyway | None:
+def _make(values: Values, part: Values) -> Keyway:
     if "width" in values:
         return Keyway(**values)
     bore = diameter_of(part)
     row = None if bore is None else key_for(bore)
-    if row is None:
-        return None
+    assert row is not None  # else the recipe has a fault
     fit = values.get("fit", "")
     return Keyway(row.width, row.hub, values.get("at", 0.0), standard=True, fit=fit, deeper=row.deeper if fit else 0.0)
 

@@ -115,7 +115,7 @@ def largest(space: Space, count: int, least: float) -> Circles:
         centre = (round(best[0] / CENTRE) * CENTRE, round(best[1] / CENTRE) * CENTRE)
         centre = (round(centre[0], 9), round(centre[1], 9))
         diameter = _down(2.0 * space.exactly(centre), DIAMETER)
-        if diameter < least or diameter <= 0.0:
+        if diameter < least:
             break
         circles.append((centre, diameter))
         space.fill(centre, diameter)
@@ -170,6 +170,6 @@ def ring(space: Space, count: int, start: float, least: float) -> Circles:
     centres = [(radius * float(x), radius * float(y)) for x, y in u]
     fits = min([*(space.exactly(centre) for centre in centres), radius * between - 0.5 * space.wall])
     diameter = _down(2.0 * fits, DIAMETER)
-    if diameter < least or diameter <= 0.0:
+    if diameter < least:
         return []
     return [(centre, diameter) for centre in centres]

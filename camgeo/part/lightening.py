@@ -30,7 +30,7 @@ class Lightening:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    lightening = part.get("lightening", {})
+    lightening = part["lightening"]
     if "largest" in lightening and "start" in lightening:
         reader.fault_at("part.lightening.start", "needs a ring", None, "leave it out")
 
@@ -45,9 +45,11 @@ def _place(lightening: Lightening, site: Site) -> Placed:
     space = Space(site.looks, site.openings, lightening.wall, site.edge)
     least = 2.0 * lightening.wall if lightening.least is None else lightening.least
     if lightening.ring is not None:
-        circles, wanted = ring(space, lightening.ring, lightening.start, least), lightening.ring
+        wanted = enough = lightening.ring
+        circles = ring(space, wanted, lightening.start, least)
     else:
-        circles, wanted = largest(space, lightening.largest or 0, least), lightening.largest or 0
+        wanted, enough = lightening.largest or 0, 1
+        circles = largest(space, wanted, least)
     holes = [disc(f"lightening hole {k + 1}", "HOLES", centre, 0.5 * d) for k, (centre, d) in enumerate(circles)]
     across = [diameter for _, diameter in circles]
     sizes = f", {length_words(min(across))} to {length_words(max(across))} {UNIT} across" if across else ""
@@ -56,7 +58,6 @@ def _place(lightening: Lightening, site: Site) -> Placed:
         f"{len(holes)} of {wanted} holes{sizes}, {length_words(lightening.wall)} {UNIT} from every edge, "
         f"{length_words(area, '.4g', 2)} {UNIT}^2"
     )
-    enough = wanted if lightening.ring is not None else 1
     ok = len(holes) >= enough
     return Placed(holes, Check(FEATURE.name, ok, len(holes), enough, "holes", None, "at_least", detail=detail))
 

@@ -37,7 +37,7 @@ class Mark:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    mark = part.get("mark", {})
+    mark = part["mark"]
     if "thickness" in part:
         check_below(reader, "part.mark.depth", mark.get("depth"), part["thickness"], "the thickness")
     if "length" in mark:
@@ -94,9 +94,6 @@ def _opening(mark: Mark, site: Site, wall: float | None) -> Opening | None:
     def ending(outer: float) -> Opening:
         return Opening("mark", layer, slot(outer - mark.length, outer, mark.width), depth=depth)
 
-    def lacking(outer: float) -> float:
-        return least - MARGIN - contour_gap(site.looks, ending(outer).chain).wall
-
     if mark.width >= mark.length:
         return None  # no slot
     if mark.radius is not None:
@@ -111,7 +108,8 @@ def _opening(mark: Mark, site: Site, wall: float | None) -> Opening | None:
         if outer <= 0.0:
             return None  # nowhere on the ray
     outer = STEP * math.floor(outer / STEP)
-    while (lack := lacking(outer)) > 0.0:  # its sides are nearer than its end
+    # its sides are nearer than its end
+    while (lack := least - MARGIN - contour_gap(site.looks, ending(outer).chain).wall) > 0.0:
         if outer <= mark.length:
             return None
         outer = STEP * round(outer / STEP - max(1.0, math.floor(lack / STEP)))

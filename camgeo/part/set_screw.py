@@ -33,7 +33,7 @@ class SetScrew:
 
 
 def _check(part: Values, reader: Reader) -> None:
-    screw, hub, path = part.get("set_screw", {}), part.get("hub", {}), "part.set_screw.diameter"
+    screw, hub, path = part["set_screw"], part.get("hub", {}), "part.set_screw.diameter"
     width, word = width_of(part)
     if width is not None:
         check_below(reader, path, screw.get("diameter"), width, f"the bore's {word}")
@@ -63,7 +63,7 @@ def _walls(screw: SetScrew, body: Body, _surfaces: Sequence[Looks]) -> Iterator[
     radius = 0.5 * screw.diameter
     along = Opening(hole.name, "HOLES", strip(0.5 * boss.diameter, screw.diameter, screw.at))
     for opening in body.openings:
-        if opening.name != "bore" and opening.depth is None and boss.holds(opening.middle):
+        if opening.name != "bore" and boss.holds(opening):
             yield known(hole.name, opening.name, outside_gap(opening.chain, along.chain))
     yield known(hole.name, "the disc's face", Gap(beyond - radius, NOWHERE))
     yield known(hole.name, "the hub's face", Gap((boss.above or boss.below) - beyond - radius, NOWHERE))

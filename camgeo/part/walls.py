@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.curve.curvature import roots
-from kin.contour.arcs import dot
+from kin.contour.arcs import cross, dot
 from kin.contour.nearest import feet, signed_distance
 from kin.numeric.lengths import UNIT, length_words, place_words
 
@@ -243,13 +243,10 @@ def _from_chain(chain: Arcs, point: Array, tangent: Array) -> Array:
 def winds(ring: Array) -> bool:
     """Whether a closed ring of points (n, 2) runs round the origin."""
     around = np.append(ring, ring[:1], axis=0)
-    turned = np.arctan2(
-        around[:-1, 0] * around[1:, 1] - around[:-1, 1] * around[1:, 0], np.sum(around[:-1] * around[1:], axis=1)
-    )
+    turned = np.arctan2(cross(around[:-1], around[1:]), dot(around[:-1], around[1:]))
     return abs(float(turned.sum())) > np.pi
 
 
 def _outward(frame: Frame, origin: Array) -> Array:
     """Distance from the origin times the rate at which it grows along the curve (n,)."""
-    product: Array = np.sum((frame.point - origin) * frame.tangent, axis=1)
-    return product
+    return dot(frame.point - origin, frame.tangent)

@@ -60,7 +60,7 @@ def _row(recipe: Recipe, rung: Rung) -> Entry:
         "form": rung.form,
         "tolerance": rung.tolerance / mm,
         "geometry_error": None if rung.geometry_error is None else rung.geometry_error / mm,
-        "proved": None if rung.proved is None else rung.proved / mm,
+        "proved": rung.proved / mm,
         "motion_error": motion,
         "motion_unit": unit,
         "seconds": rung.seconds,
@@ -102,10 +102,9 @@ def table(study: Entry) -> str:
         if linkage:
             errors.append(_with_unit(row.get("output_error"), row.get("output_unit", "")))
         times = [f"{1e3 * row['stages'][stage]:.2f}" for stage in ("fit", "write", "judge")]
-        least = "" if row["least_pieces"] is None else f"{row['least_pieces']:.1f}"
-        ratio = "" if row["ratio"] is None else f"{row['ratio']:.3f}"
+        pieces = [str(row["pieces"]), f"{row['least_pieces']:.1f}", f"{row['ratio']:.3f}"]
         failed = "" if row["ok"] else f"FAILED {', '.join(row['failed'])}"
-        rows.append([row["form"], *errors, *times, str(row["pieces"]), least, ratio, str(row["bytes"]), failed])
+        rows.append([row["form"], *errors, *times, *pieces, str(row["bytes"]), failed])
     text = align(rows)
     if study["surfaces"]:
         text += f"\n\nerrors are the greatest, pieces, bytes and seconds the sums of {' and '.join(study['surfaces'])}"

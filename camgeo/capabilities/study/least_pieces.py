@@ -23,11 +23,9 @@ FREE_ARCS = 124.7  # tangent-continuous arcs with joints off the curve: the inte
 def least_pieces(form: str, curve: Curve, tolerance: float) -> float:
     """Least number of pieces within `tolerance` mm, to leading order: edges, arcs or cubic spans by the form.
 
-    At least one is counted for each smooth stretch, as the arcs' integral vanishes on a dwell. Raises ValueError for an
-    unknown form.
+    At least one arc or span is counted for each smooth stretch, as the arcs' integral vanishes on a dwell. Raises
+    KeyError for an unknown form.
     """
-    if form not in COUNTS:
-        raise ValueError(f"unknown form: {form}")
     return COUNTS[form](curve, tolerance)
 
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from camgeo.checks.declared import PRESSURE, REVERSAL, WALL
 from kin.numeric.records import dataclass
@@ -15,7 +14,6 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 SMALL = 1e-7  # mm: an error of the profile small enough that its effect is linear
-EPS = float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True)
@@ -96,6 +94,6 @@ def _error_factors(recipe: Recipe, design: Design) -> list[FailureMargin]:
         what = f"{name} error of the follower by that of the profile".strip()
         factors.append(FailureMargin("motion-condition", gauge.motion_limit(SMALL) / SMALL, unit, what, True))
     size = max(contour.size for _, contour in design.contours)
-    precision = recipe.export.tolerance / (EPS * size)
+    precision = recipe.export.tolerance / (sys.float_info.epsilon * size)
     what = "tolerance over the rounding of the contour's coordinates; 64 at least"
     return [*factors, FailureMargin("precision", precision, "", what)]

@@ -59,10 +59,9 @@ def picture(study: Entry) -> bytes:
 
 
 def _draw_slope(axes: Axes, rows: list[Entry], order: int, colour: str) -> None:
-    """Draw error ~ pieces^-order through the last row's error, at theory's count of pieces or else at its own."""
+    """Draw error ~ pieces^-order through the last row's error at theory's count of pieces."""
     last = rows[-1]
-    count = last["least_pieces"] or last["pieces"]
-    fewest = max(min(row["pieces"] for row in rows), 2)
-    ends = [fewest, count]
+    count = last["least_pieces"]
+    ends = [max(min(row["pieces"] for row in rows), 2), count]
     errors = [last["geometry_error"] * (count / n) ** order for n in ends]
     axes.plot(ends, errors, "--", color=colour, linewidth=0.8, alpha=0.7)

@@ -37,27 +37,28 @@ SLOW = 2.0
 class Rung:
     """Figures of one form at one tolerance; lengths in mm.
 
-    geometry_error  two-sided distance of the file's contour from the exact one, as the judge measured it
-    proved          bound of that distance which the fit proved; None where a file has none
+    geometry_error  two-sided distance of the file's contour from the exact one, as the judge measured it; None for a
+                    file that cannot be read
+    proved          bound of that distance which the fit proved
     motion_error    greatest error of the follower by contact, in `motion_unit`
     output_error    greatest error of a linkage's output, in `output_unit`; None without one
     seconds         sum of `stages`, the seconds of fit, write and judge, each the median of the repeats
-    least_pieces    least number of pieces by theory; None without a contour
+    least_pieces    least number of pieces by theory
     failed          names of the checks on the file that fail
     """
 
     form: str
     tolerance: float
     geometry_error: float | None
-    proved: float | None
+    proved: float
     motion_error: float | None
     motion_unit: str
     output_error: float | None
     output_unit: str
     seconds: float
     stages: dict[str, float]
-    pieces: int | None
-    least_pieces: float | None
+    pieces: int
+    least_pieces: float
     bytes: int
     failed: tuple[str, ...]
 
@@ -67,9 +68,9 @@ class Rung:
         return not self.failed
 
     @property
-    def ratio(self) -> float | None:
-        """Pieces over the least number by theory; None without both."""
-        return None if not self.least_pieces or self.pieces is None else self.pieces / self.least_pieces
+    def ratio(self) -> float:
+        """Pieces over the least number by theory."""
+        return self.pieces / self.least_pieces
 
 
 @dataclass(frozen=True)
@@ -93,8 +94,8 @@ def climb(
     """Rungs of one form from a tenth of the recipe's unit downward, then the end of the ladder.
 
     Files are written into `folder`, one over the other; `patience` is the longest run in seconds; `listener` is called
-    with the form and tolerance of each rung before it begins. Iterating raises ValueError for an unknown form, and for
-    a design without a contour.
+    with the form and tolerance of each rung before it begins. Iterating raises KeyError for an unknown form, ValueError
+    for a design without a contour.
     """
     # each rung a power of ten lower, until a file is refused or a run takes too long
     for exponent in range(FIRST_EXPONENT, LAST_EXPONENT - 1, -1):
@@ -114,17 +115,9 @@ def climb(
     yield End(form, 10.0 ** (LAST_EXPONENT - 1) * recipe.mm, "the ladder's last rung")
 
 
-def file_request(form: str, tolerance: float) -> FileRequest:
-    """Request for a file of a form within a tolerance, mm; raises ValueError for an unknown form."""
-    if form == "stl":
-        return FileRequest("stl", tolerance=tolerance)
-    if form in {"polyline", "arcs", "spline"}:
-        return FileRequest("dxf", as_=form, tolerance=tolerance)
-    raise ValueError(f"unknown form: {form}")
-
-
 def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: Path) -> Rung:
-    request = file_request(form, tolerance)
+    kind, word = ("stl", None) if form == "stl" else ("dxf", form)
+    request = FileRequest(kind, as_=word, tolerance=tolerance)
     path = folder / f"{form}.{request.kind}"
     begun = time.perf_counter()
     files, _, failed = _run_once(recipe, design, request, path)
@@ -136,21 +129,19 @@ def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: P
     motion = max((file.motion for file in files if file.motion is not None), key=lambda error: error.max, default=None)
     output = next((file.linkage.error for file in files if file.linkage is not None), None)
     measured = [file.measured_error for file in files if file.measured_error is not None]
-    counts = [file.pieces for file in files if file.pieces is not None]
-    proved = [file.bound.worst for file in files if file.bound is not None]
     return Rung(
         form=form,
         tolerance=tolerance,
         geometry_error=max(measured, default=None),
-        proved=max(proved) if len(proved) == len(files) else None,
+        proved=max(file.bound.worst for file in files if file.bound is not None),
         motion_error=None if motion is None else motion.max,
         motion_unit="" if motion is None else motion.unit,
         output_error=None if output is None else output.max,
         output_unit="" if output is None else output.unit,
         seconds=math.fsum(medians.values()),
         stages=medians,
-        pieces=sum(counts) if len(counts) == len(files) else None,
-        least_pieces=sum(least_pieces(form, contour, tolerance) for _, contour in design.contours) or None,
+        pieces=sum(file.pieces or 0 for file in files),
+        least_pieces=sum(least_pieces(form, contour, tolerance) for _, contour in design.contours),
         bytes=sum(file.path.stat().st_size for file in files),
         failed=failed,
     )
@@ -160,8 +151,6 @@ def _run_once(
     recipe: Recipe, design: Design, request: FileRequest, path: Path
 ) -> tuple[tuple[FileResult, ...], dict[str, float], tuple[str, ...]]:
     """Fit, write and judge once: a result for each file, the seconds of each stage, names of the checks that fail."""
-    if not design.contours:
-        raise ValueError(f"{recipe.name}: there is no contour to be drawn")
     recipe = replace(recipe, export=replace(recipe.export, files=(request,)))
     job = Job.of(recipe, design)
     files, checks = make(job, request, path)
