@@ -179,7 +179,8 @@ def complaint(words, capsys, *, prose=False):
 
 def test_every_command_of_camgeo_is_known(capsys):
     seen = set()
-    for page, (first, *words) in spoken():
+    said = {tuple(words): page for page, words in spoken()}  # once, however many pages say it
+    for (first, *words), page in said.items():
         if Path(first).name != "camgeo":
             continue
         assert complaint(words, capsys, prose=True) == "", f"{page}: camgeo {shlex.join(words)}"

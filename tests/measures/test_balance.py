@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-import trimesh
+from support.heavy import trimesh
 
 from camgeo.cli.main import main
 from camgeo.curve.measures import moments_of_chain

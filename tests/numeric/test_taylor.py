@@ -114,11 +114,13 @@ def test_polynomials_over_intervals(count: int) -> None:
     with mp.workdps(60):
         for column in range(low.size):
             begin, end = mp.mpf(low[column]), mp.mpf(high[column])
+            exact = [mp.mpf(float(a)) for a in numbers[:, column]]
             for share in (mp.mpf(0), mp.mpf(float(rng.uniform())), mp.mpf(1)):
                 at = begin + share * (end - begin)
-                exact = [mp.mpf(float(a)) for a in numbers[:, column]]
+                powers = [at**j for j in range(count)]
                 for k in range(min(5, count)):
-                    value = mp.fsum(mp.binomial(j, k) * exact[j] * at ** (j - k) for j in range(k, count))
+                    choices = [math.comb(j, k) for j in range(k, count)]
+                    value = mp.fdot(zip(map(mp.fmul, exact[k:], choices), powers, strict=False))
                     assert least[k, column] <= value <= most[k, column]
 
 

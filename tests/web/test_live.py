@@ -12,7 +12,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from zipfile import ZipFile
 
 import ezdxf
@@ -26,16 +26,21 @@ import camgeo
 from camgeo.recipe.starter import starter
 from camgeo.schema.yaml_source import Source, scalars
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 live = script("live")
 TEXTS = {name: starter(name) for name in OF_CAMS} | {f"{path.stem}.yaml": path.read_text("utf-8") for path in SHIPPED}
 
 
 @pytest.fixture(autouse=True)
-def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def folders(tmp_path: Path) -> Iterator[None]:
     """Of each test its own: in a browser nobody else is there."""
-    for name in ("FOLDER", "OUT"):
-        (tmp_path / name).mkdir()
-        monkeypatch.setattr(live, name, str(tmp_path / name))
+    with pytest.MonkeyPatch.context() as patch:  # designs stay shared: what is patched makes none
+        for name in ("FOLDER", "OUT"):
+            (tmp_path / name).mkdir()
+            patch.setattr(live, name, str(tmp_path / name))
+        yield
 
 
 def part(text: str, field: dict[str, Any]) -> str:

@@ -7,7 +7,7 @@ import math
 import re
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -16,6 +16,9 @@ from support.places import script
 import camgeo
 from camgeo.recipe.starter import starter
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 live = script("live")
 paper = script("paper")
 LARGE = starter("disc-roller").replace("base_radius: 36", "base_radius: 170")
@@ -23,10 +26,12 @@ MM = 25.4 / 72.0
 
 
 @pytest.fixture(autouse=True)
-def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("FOLDER", "OUT"):
-        (tmp_path / name).mkdir()
-        monkeypatch.setattr(live, name, str(tmp_path / name))
+def folders(tmp_path: Path) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:  # designs stay shared: what is patched makes none
+        for name in ("FOLDER", "OUT"):
+            (tmp_path / name).mkdir()
+            patch.setattr(live, name, str(tmp_path / name))
+        yield
 
 
 def printed(text: str) -> list[dict[str, Any]]:

@@ -15,6 +15,7 @@ from camgeo.recipe.starter import starter
 from camgeo.schema.yaml_source import Source
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 live = script("live")
@@ -46,9 +47,11 @@ cam:
 
 
 @pytest.fixture(autouse=True)
-def folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def folders(tmp_path: Path) -> Iterator[None]:
     """Of each test its own: in a browser nobody else is there."""
-    monkeypatch.setattr(live, "FOLDER", str(tmp_path))
+    with pytest.MonkeyPatch.context() as patch:  # designs stay shared: what is patched makes none
+        patch.setattr(live, "FOLDER", str(tmp_path))
+        yield
 
 
 def changed(text: str, change: str, index: int = 0, at: float = 0.0) -> dict[str, Any]:
@@ -69,7 +72,8 @@ def lifts(text: str) -> Any:
 
 
 def segments(text: str) -> list[tuple[str, float, float]]:
-    motion = live.design("x", text)["motion"]
+    """As the page is told, without the checks and the scene of `live.design`, which has them too."""
+    motion = live.drawn(Source.of(text, "x"), live._shown(live._recipe("x", text)).motion())
     assert motion["why"] == ""
     return [(one["kind"], one["over"], one["change"]) for one in motion["segments"]]
 

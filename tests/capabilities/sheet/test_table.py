@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import ezdxf
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
+from support.heavy import interpolate
 
 import camgeo
 from camgeo.capabilities.sheet.marks import LineMark
@@ -83,7 +83,7 @@ def spline_error(count: int) -> float:
     rows = np.round(radii(angles), 4)
     rows[-1] = rows[0]
     fine = np.linspace(0.0, 2.0 * np.pi, 50_001)
-    return float(np.abs(CubicSpline(angles, rows, bc_type="periodic")(fine) - radii(fine)).max())
+    return float(np.abs(interpolate.CubicSpline(angles, rows, bc_type="periodic")(fine) - radii(fine)).max())
 
 
 @pytest.mark.parametrize(("permitted", "count"), [(0.004, 36), (0.001, 60), (0.0005, 72), (8e-5, 180)])
