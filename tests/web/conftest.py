@@ -24,16 +24,35 @@ def address(site: Path) -> Iterator[str]:
         yield there
 
 
+OPEN: list[tab.Tab] = []  # pages that stay open for the files of tests to come
+PRESS = "byId('play').click()"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def playing_here_alone() -> Iterator[None]:
+    """Open pages play while tests of the page run: else a browser takes a core from all tests that come after."""
+    for one in [*OPEN]:
+        one.ask(f"window.stopped && (window.stopped = false, {PRESS})")
+    yield
+    for one in [*OPEN]:
+        one.ask(f"(window.stopped = document.documentElement.dataset.playing === 'true') && {PRESS}")
+
+
+def opened(address: str, profile: Path) -> Iterator[tab.Tab]:
+    with Browser(profile) as browser:
+        browser.size(1280, 800)
+        one = tab.Tab(browser, address).open()
+        OPEN.append(one)
+        yield one
+        OPEN.remove(one)
+
+
 @pytest.fixture(scope="package")
 def page(address: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tab.Tab]:
-    with Browser(tmp_path_factory.mktemp("profile")) as browser:
-        browser.size(1280, 800)
-        yield tab.Tab(browser, address).open()
+    yield from opened(address, tmp_path_factory.mktemp("profile"))
 
 
 @pytest.fixture(scope="package")
 def other_page(address: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tab.Tab]:
     """The page in another browser, for tests that take many steps: the history of one keeps fifty."""
-    with Browser(tmp_path_factory.mktemp("profile")) as browser:
-        browser.size(1280, 800)
-        yield tab.Tab(browser, address).open()
+    yield from opened(address, tmp_path_factory.mktemp("profile"))

@@ -303,6 +303,7 @@ def test_the_command_simulates_a_file(
     assert "none.dxf" in capsys.readouterr().err
 
 
+@pytest.mark.costly("budgets of a file, which is read and judged")
 def test_what_no_file_can_show_is_said(made: Callable[[str], list[Path]], tmp_path: Path) -> None:
     pair, design = of_recipe("conjugate-stem"), design_of("conjugate-stem")
     discs = made("conjugate-stem")

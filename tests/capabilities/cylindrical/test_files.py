@@ -274,7 +274,7 @@ class Along(Flank):
 @pytest.mark.parametrize("wrong", [Radial, Mean, Offset, Along])
 def test_wrong_walls_are_refused(wrong: type[Flank], drum: tuple[Path, Mesh]) -> None:
     design = design_of(GROOVE)
-    flanks = {name: wrong(*vars(flank).values()) for name, flank in design.flanks.items()}
+    flanks = {name: wrong(each.law, each.guide, each.radius, each.side) for name, each in design.flanks.items()}
     design.__dict__["flanks"] = flanks
     mesh, _ = drum_mesh(design, TOLERANCE, numbers_of("stl", 1.0))
     report = verdict(drum, mesh)
