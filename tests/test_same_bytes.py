@@ -71,8 +71,8 @@ def test_a_planted_change_is_found(recipe, tmp_path):
 def test_a_hundred_random_recipes_have_everything(tools):
     random_recipes, _ = tools
     made = [random_recipes.made(0, slot) for slot in range(100)]
-    assert made[::2] == [random_recipes.made(0, slot) for slot in range(0, 100, 2)]
-    assert all(made[slot] != random_recipes.made(1, slot) for slot in range(5))
+    assert made == [random_recipes.made(0, slot) for slot in range(100)]
+    assert made != [random_recipes.made(1, slot) for slot in range(100)]
     assert len({each.text for each in made}) == 100
     families, topics = Counter(each.family for each in made), Counter(each.topic for each in made)
     assert set(families) == set(random_recipes.FAMILIES)

@@ -22,7 +22,7 @@ cam:
   track: {groove: {clearance: 0.04, depth: 6}}
   motion: [{rise: 12, over: 180, law: cycloidal}, {return: 12, over: 180, law: cycloidal}]
 part: {bore: 14, thickness: 11, outer: 124PART}
-export: {tolerance: 0.01, files: [KIND]}
+export: {tolerance: 0.002, files: [KIND]}
 verify: {angles: 90}
 """
 

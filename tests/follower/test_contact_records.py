@@ -89,7 +89,7 @@ def held(name: str) -> tuple[Any, ...]:
     design = designed(read(RECIPES[name].encode(), Path("c.yaml")))
     surfaces = {}
     for surface, contour in design.contours:
-        arcs = fit_arcs(contour, 1e-5)
+        arcs = fit_arcs(contour, 1e-6)
         surfaces[surface.name] = surface.side, Contour.from_bulges(arcs.points, arcs.bulges)
     assert surfaces
     return design.follower.contacts, design.exact.judged_law, surfaces

@@ -125,7 +125,7 @@ def test_a_plain_disc_in_each_form(tmp_path, form):
 
 @kernel
 def test_every_feature_is_exact_and_is_found(tmp_path):
-    design, path = made(step_recipe(FULL, tolerance=0.01), tmp_path)  # what is asked of it follows from no tolerance
+    design, path = made(step_recipe(FULL), tmp_path)
     solid = read_step(path)
     assert solid.faults == ()
     assert not solid.prism
@@ -168,7 +168,7 @@ def test_inches_are_written_as_millimetres(tmp_path):
 @pytest.mark.parametrize("form", few(["arcs", "spline"], 2))
 def test_a_contour_with_corners(tmp_path, form):
     cam = "cam: {kind: support, p: 20 + 7.5*cos(2*t), undercut: trim}\n"
-    recipe = step_recipe("{thickness: 5, bore: 8}", f"{{step: {{as: {form}}}}}", cam=cam, tolerance=0.01)
+    recipe = step_recipe("{thickness: 5, bore: 8}", f"{{step: {{as: {form}}}}}", cam=cam)
     assert designed(recipe).trimmed
     _, path = made(recipe, tmp_path)
     assert read_step(path).faults == ()
@@ -210,11 +210,10 @@ def test_names_and_header_and_the_same_bytes(tmp_path):
 def test_settings_of_the_kernel_are_as_they_were(tmp_path):
     from OCP.Interface import Interface_Static
 
-    recipe = step_recipe("{thickness: 8}", tolerance=0.1)
-    made(recipe, tmp_path)
+    made(step_recipe("{thickness: 8}"), tmp_path)
     Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
     Interface_Static.SetIVal_s("write.surfacecurve.mode", 1)
-    made(recipe, tmp_path)
+    made(step_recipe("{thickness: 8}"), tmp_path)
     assert Interface_Static.CVal_s("write.step.schema") == "AP242DIS"
     assert Interface_Static.IVal_s("write.surfacecurve.mode") == 1
     Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
@@ -428,7 +427,7 @@ def test_another_version_of_the_kernel_is_told(monkeypatch):
 @kernel
 def test_the_command_verifies_a_file_of_another_name(tmp_path, capsys):
     recipe = tmp_path / "cam.yaml"
-    recipe.write_text(f"{CAM}part: {{thickness: 8, bore: 12}}\nexport: {{tolerance: 0.1, files: [step]}}\n")
+    recipe.write_text(f"{CAM}part: {{thickness: 8, bore: 12}}\nexport: {{files: [step]}}\n")
     assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 0
     (made_file,) = (tmp_path / "out").rglob("*.step")
     other = tmp_path / "returned.STP"

@@ -147,7 +147,7 @@ def test_lift_of_a_roller_on_the_same_metal(tmp_path) -> None:
     ["mirrored", "spoilt", "spoilt outward", *(pytest.param(name, marks=pytest.mark.slow) for name in FAULTS)],
 )
 def test_planted_faults_are_caught(fault, tmp_path, capsys) -> None:
-    text = FLAT % (0.0005, GRINDING % "")
+    text = FLAT % (0.0001, GRINDING % "")
     path, table, _ = made(
         tmp_path, text.replace(re.search(r"\{lobe.*", text)[0], UNEVEN).replace("18", "30").replace("400", "60")
     )
@@ -171,9 +171,9 @@ def test_planted_faults_are_caught(fault, tmp_path, capsys) -> None:
         case "open":
             rows = rows[:-1]
         case "spoilt":  # one row, where the cam dwells, by twice the tolerance
-            rows[len(rows) - 40, 1] -= 1e-3
+            rows[len(rows) - 40, 1] -= 2e-4
         case "spoilt outward":
-            rows[np.argmax(np.abs(np.diff(rows[:, 1]))), 1] += 1e-3
+            rows[np.argmax(np.abs(np.diff(rows[:, 1]))), 1] += 2e-4
         case "radians":
             rows[:, 0] = np.radians(rows[:, 0])
         case "lift":

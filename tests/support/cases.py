@@ -12,11 +12,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 
-SIGNS = "".join(map(chr, range(0x3000))) + "\uff11\ufffd\uffff\U0001d7d9\U0001f600\U0010ffff"
-"""Alphabet of any text: all scripts with digits and spaces of their own, and ends of planes.
-
-Strategies without one first sort all of Unicode, which takes seconds in each new clone.
-"""
 FULL = 100  # examples of a property test that names no number, in a full run
 
 

@@ -11,8 +11,8 @@ from support.parts import CAM, files_of
 kernel = pytest.mark.skipif(importlib.util.find_spec("OCP") is None, reason="needs Open CASCADE: pip install '.[step]'")
 
 
-def step_recipe(part, files="step", more="", cam=CAM, tolerance=0.001):
-    export = f"export: {{tolerance: {tolerance}, files: [{files}]}}\nverify: {{angles: 36}}\n"
+def step_recipe(part, files="step", more="", cam=CAM):
+    export = f"export: {{tolerance: 0.001, files: [{files}]}}\nverify: {{angles: 36}}\n"
     return read(f"{cam}part: {part}\n{export}{more}".encode(), Path("part.yaml"))
 
 

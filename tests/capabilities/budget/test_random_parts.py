@@ -327,7 +327,7 @@ def test_what_no_file_can_show_is_said(made: Callable[[str], list[Path]], tmp_pa
 @pytest.mark.parametrize("name", ["disc-trim", "trimmed-roller", "trimmed-frame"])
 def test_parts_of_a_trimmed_contour_begin_with_the_motion_that_is_lost(name: str, tmp_path: Path) -> None:
     recipe, design = of_recipe(name), design_of(name)
-    stated, shaft = Budget(1.0, (("profile", 0.01),)), np.radians(np.arange(0.5, 360.0, 6.0))
+    stated, shaft = Budget(1.0, (("profile", 0.01),)), np.radians(np.arange(0.5, 360.0, 3.0))
     lost = errors_by_contact(recipe, design, stated, shaft)(Stepped("", 0.0))
     assert np.abs(lost).max() > 1e-3
     camgeo.export(recipe, tmp_path, only=["dxf"])

@@ -147,7 +147,7 @@ def test_more_followers(name: str, tmp_path: Path) -> None:
 
 def judge_led(text: str, folder: Path) -> None:
     """Demand a solid and developments that are judged right, in the follower's unit."""
-    text = changed(text, ("tolerance: 0.02", "tolerance: 0.4"), ("[stl]", "[stl, {dxf: {at: [pitch, 40]}}]"))
+    text = changed(text, ("tolerance: 0.02", "tolerance: 0.4"), ("[stl]", "[stl, {dxf: {at: [outer, pitch, 40]}}]"))
     report = exported(folder, text)
     assert report.ok, [str(check) for check in report.checks if not check.ok]
     demand_foreseen(folder, report)

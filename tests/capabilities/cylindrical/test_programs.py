@@ -111,7 +111,7 @@ def test_the_cutter_leaves_the_flanks_that_rollers_leave(
     )
     rng = np.random.default_rng(5)
     for name, side, roller, level in flanks_of(text):
-        r, phi = rng.uniform(39.0, 50.0, 12), rng.uniform(0.0, 2.0 * math.pi, 12)
+        r, phi = rng.uniform(39.0, 50.0, 25), rng.uniform(0.0, 2.0 * math.pi, 25)
         z, _ = envelope(LIFT, side, roller, r, phi)
         for radius, angle, height in zip(r, phi, z + level, strict=True):
             turn = angle - np.radians(rows[:, 3])
@@ -157,7 +157,7 @@ def test_a_program_says_how_it_is_meant(made: Callable[[str], tuple[Path, camgeo
 
 
 def test_a_drum_that_turns_the_other_way_has_the_mirrored_program(tmp_path: Path) -> None:
-    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18"), ("0.02", "0.1"))
+    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18"))
     plain, mirrored = tmp_path / "a", tmp_path / "b"
     for folder, own in ((plain, text), (mirrored, "rotation: ccw\n" + text)):
         folder.mkdir()
@@ -187,7 +187,7 @@ def test_inches_and_a_feed_by_the_minute(tmp_path: Path) -> None:
 
 
 def test_an_allowance_is_left_by_all_but_the_last_pass(tmp_path: Path) -> None:
-    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18, allowance: 0.3"), ("0.02", "0.1"))
+    text = program(GROOVE, ("[X, A]", "[X, Y, A]"), ("cutter: 20", "cutter: 18, allowance: 0.3"))
     assert exported(tmp_path, text).ok
     lines = words(tmp_path).splitlines()
     assert [line for line in lines if " pass " in line] == [

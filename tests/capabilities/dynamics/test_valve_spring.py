@@ -96,11 +96,9 @@ def test_the_force_at_the_tappet_is_that_of_the_energy(written: str, rows: Any) 
     train = running(text(written))
     t = np.array([0.5, 1.1, 1.9, 2.6, 3.1, 4.4, 5.7])
     state = train.state(t)
-    wanted = [force(mp.mpf(at)) for at in t.tolist()]
-    assert state.normal[0] == pytest.approx([float(value) for value in wanted], rel=1e-9)
+    assert state.normal[0] == pytest.approx([float(force(mp.mpf(at))) for at in t.tolist()], rel=1e-9)
     # torque is force times the tappet's velocity
-    torques = [float(value * 4 * mp.sin(at)) / 1e3 for value, at in zip(wanted, t.tolist(), strict=True)]
-    assert state.torque == pytest.approx(torques)
+    assert state.torque == pytest.approx([float(force(mp.mpf(at)) * 4 * mp.sin(at)) / 1e3 for at in t.tolist()])
     # in the lash and on the seat the tappet alone is moved: 0.05 kg
     shut = np.array([0.0, 0.2, 2.0 * math.pi - 0.1])
     assert train.state(shut).normal[0] == pytest.approx(
@@ -126,7 +124,7 @@ def min_max(force: Any, opens: Any) -> tuple[Any, Any]:
         if 0 < k < 24:
             low, high = places[k - 1], places[k + 1]
             golden = (mp.sqrt(5) - 1) / 2
-            for _ in range(24):  # to 3e-6 rad of an extremum, whose value is off by the square of that
+            for _ in range(40):
                 a, b = high - golden * (high - low), low + golden * (high - low)
                 low, high = (low, b) if sign * force(a) > sign * force(b) else (a, high)
             found.append(force((low + high) / 2))

@@ -129,8 +129,8 @@ def test_a_plate_of_inches_is_one(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "volume"),
     [
-        (changed(FURNISHED, ("[dxf]", "[stl]")), 5.0),
-        (changed(GROOVE, ("[dxf]", "[stl]")), 5.0),
+        (changed(FURNISHED, ("[dxf]", "[stl, ply, 3mf]")), 5.0),
+        (changed(GROOVE, ("[dxf]", "[stl, ply, 3mf]")), 5.0),
         (changed(ENDLESS + "export: {files: [stl]}\n", ("over: 40}", "over: 40}\n")), None),
     ],
 )
@@ -265,8 +265,7 @@ def test_a_plate_that_reverses_while_its_follower_moves_is_remarked(tmp_path: Pa
     ],
 )
 def test_checks_are_foreseen(text: str, tmp_path: Path) -> None:
-    coarse = changed(text, ("export: {", "export: {tolerance: 0.02, "))
-    (tmp_path / "plate.yaml").write_text(coarse, encoding="utf-8")
+    (tmp_path / "plate.yaml").write_text(text, encoding="utf-8")
     report = camgeo.check(tmp_path / "plate.yaml")
     made = {(check.name, check.file) for check in report.checks}
     assert {(each.name, each.file) for each in root_of(report.recipe).foresee(report.recipe)} == made

@@ -138,7 +138,7 @@ def test_lifts_of_an_indicator(tmp_path):
     """Its zero is free; a roller of another radius is told by --probe-radius."""
     recipe, _ = measured(tmp_path, limited(ROLLER, profile=1.0, motion=1.0))
     ((_, _, surface),) = surfaces(ROLLER)
-    shaft = np.radians(np.arange(0.0, 360.0, 1.0))
+    shaft = np.radians(np.arange(0.0, 360.0, 0.5))
     fault = 0.02 * np.exp(-0.5 * ((shaft - np.radians(50.0)) / np.radians(6.0)) ** 2)
     file = tmp_path / "lift.csv"
 

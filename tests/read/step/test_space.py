@@ -210,7 +210,7 @@ def test_assemblies_written_by_the_kernel(tmp_path):
 
 @kernel
 def test_a_file_that_is_moved_or_turned_does_not_pass(tmp_path):
-    recipe = step_recipe("{thickness: 8, bore: 10}", tolerance=0.01)
+    recipe = step_recipe("{thickness: 8, bore: 10}")
     design, path = made(recipe, tmp_path)
     text = path.read_text()
     assert failures(path, recipe, design) == set()

@@ -153,7 +153,7 @@ def test_a_cut_flank_is_judged_by_the_path(tmp_path):
     a, x = way()
     verdict = judged(tmp_path, text_of(a, x), replace(DRUM, shortened=True))
     assert verdict.ok, verdict.checks
-    fine = np.linspace(0.0, TURN, 200_001)
+    fine = np.linspace(0.0, TURN, 1_000_001)
     wanted = float(np.abs(np.interp(fine, a, np.round(x, 5)) - 20.0 - DRUM.motion(fine)).max())
     assert verdict.flanks[0].motion.max == pytest.approx(wanted, abs=2e-8)
     shifted = judged(tmp_path, text_of(a, x + 0.01), replace(DRUM, shortened=True))
@@ -166,7 +166,7 @@ def test_a_path_s_extremes_are_between_its_points():
     """Two chords over a rise: the difference is greatest where the slopes are one, found here on a fine grid."""
     a, x = np.array([0.1, 0.9, 1.7, 1.7]), np.array([0.3, 11.0, 33.0, 34.0])
     found = off_path(Pass(1, 40.0, a, x, np.zeros(4)), Lifts(DRUM.motion.law), 0.0)
-    fine = np.linspace(0.1, 1.7, 200_001)
+    fine = np.linspace(0.1, 1.7, 2_000_001)
     off = np.interp(fine, a[:3], x[:3]) - DRUM.motion(fine)
     assert found.least == pytest.approx(off.min(), abs=1e-9)
     assert found.most == pytest.approx(max(off.max(), 34.0 - float(DRUM.motion(np.array([1.7]))[0])), abs=1e-9)
