@@ -24,7 +24,7 @@ from itertools import count as count_from
 from itertools import islice
 from pathlib import Path
 from statistics import geometric_mean, median, quantiles
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import yaml
 from peer import COLLECT_AFTER
@@ -43,6 +43,7 @@ WORKER = f"""
 import gc, json, sys, tempfile, time
 from pathlib import Path
 from types import SimpleNamespace
+from camgeo import CamgeoError
 from camgeo.api.loading import load
 from camgeo.common import clock
 from camgeo.output.pipeline import export
@@ -62,7 +63,7 @@ for line in sys.stdin:
         for stage in report["stages"]:
             stages[stage["name"]] = stages.get(stage["name"], 0.0) + stage["seconds"]
         said = [spent, stages]
-    except Exception as error:
+    except (CamgeoError, OSError) as error:  # a nudged number may leave no cam: said, and left out in both
         said = [None, type(error).__name__]
     print(json.dumps(said), flush=True)
 """
@@ -134,11 +135,11 @@ def steps(key: str) -> list[str | int]:
     return [int(name) if name.isdigit() else name for name in key.split(".")]
 
 
-def number_in(recipe: object, key: str) -> float | None:
+def number_in(recipe: Any, key: str) -> float | None:
     """The number at a path, if there is one."""
     for name in steps(key):
         try:
-            recipe = recipe[name]  # type: ignore[index]
+            recipe = recipe[name]
         except (KeyError, IndexError, TypeError):
             return None
     return float(recipe) if isinstance(recipe, (int, float)) and not isinstance(recipe, bool) else None

@@ -130,7 +130,7 @@ class ShownKind(Shown):
         return self.kind.motion(self._design)
 
     def foresee(self, request: FileRequest) -> None:
-        """As a run does."""
+        """Refuse a file that a run would refuse, by the rules of the kind."""
         self.kind.foresee(self._design, request)
 
     def drawings(self, tolerance: float) -> list[Drawing]:

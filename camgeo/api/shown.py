@@ -1,4 +1,4 @@
-"""What programs that show designs ask of a recipe's cam, such as the page in a browser."""
+"""A recipe's cam for programs that show it, such as the page in a browser: scene, figures, drawings, meshes."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ class ShownCam(Shown):
         recipe, exact = self.recipe, self._design
         if recipe.linkage is not None:
             return "The plot shows what the linkage makes of the motion, which is changed in its boxes."
-        source = getattr(recipe.cam, "motion", None)
+        source = recipe.cam.stated_motion
         total = recipe.cam.motion_span
         return StatedMotion(
             source,
@@ -141,7 +141,7 @@ class ShownCam(Shown):
         return Job.of(self.recipe, self._design.exact)
 
     def foresee(self, request: FileRequest) -> None:
-        """As a run does."""
+        """Refuse a file that a run would refuse, by the dispatch of formats."""
         from camgeo.output.dispatch import foresee
 
         foresee(self._job(), request)

@@ -59,6 +59,11 @@ class DiscCam(GuidedCam):
         """Angles that the motion leaves open; None where all are given."""
         return self.motion.open
 
+    @property
+    def stated_motion(self) -> MotionSource:
+        """Motion as the recipe has it."""
+        return self.motion
+
     def with_motion(self, motion: MotionSource) -> DiscCam:
         """The cam of the same size and follower for another motion."""
         return replace(self, motion=motion)

@@ -419,6 +419,11 @@ class Cam(ABC):
         return None
 
     @property
+    def stated_motion(self) -> MotionSource | None:
+        """Motion as the recipe has it over `motion_span`; None where the recipe gives none."""
+        return None
+
+    @property
     def motion_span(self) -> float:
         """Shaft angle, rad, over which a recipe gives the motion; the rest of the turn follows from it."""
         return TURN

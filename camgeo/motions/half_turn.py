@@ -43,6 +43,11 @@ class HalfTurnCam:
     motion: MotionSource
 
     @property
+    def stated_motion(self) -> MotionSource:
+        """Motion as the recipe has it."""
+        return self.motion
+
+    @property
     def motion_span(self) -> float:
         """Shaft angle over which the recipe gives the motion: half a turn, rad."""
         return math.pi

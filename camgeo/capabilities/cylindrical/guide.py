@@ -1,4 +1,4 @@
-"""What leads the roller of a cylindrical cam: a carriage along the axis, or an arm that swings beside the drum.
+"""Guide of the roller of a cylindrical cam: a carriage along the axis, or an arm that swings beside the drum.
 
 The roller's axis is parallel to e_r(theta), at places (y, z) along e_t and the cam's axis. With an arm, whose pivot's
 axis is parallel to it as well,
@@ -46,7 +46,7 @@ class Carriage:
         return self.level + lift
 
     def beside(self, distance: float) -> Carriage:
-        """The same carriage with a roller so much higher, mm."""
+        """Carriage with its roller higher by `distance`, mm."""
         return replace(self, level=self.level + distance)
 
     def place(self, rows: Rows) -> tuple[list[Rows], list[Rows]]:
@@ -88,7 +88,7 @@ class Arm:
         return self.z + self.length * math.sin(self.start + lift)
 
     def beside(self, distance: float) -> Arm:
-        """The same arm with a roller so far to its upper side, square to it, mm."""
+        """Arm whose roller lies `distance`, mm, square to it on its upper side."""
         turn = math.atan2(distance, self.length)
         return replace(self, length=math.hypot(self.length, distance), start=self.start + turn)
 

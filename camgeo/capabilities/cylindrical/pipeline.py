@@ -1,4 +1,4 @@
-"""What cylindrical cams answer in a run, from a recipe to files on disk and a verdict on them."""
+"""A run of cylindrical cams: from a recipe to files on disk and a verdict on them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What kin judges the files of a cylindrical cam by, and its verdicts in the report's terms."""
+"""Intents by which kin judges the files of a cylindrical cam, and its verdicts in the report's terms."""
 
 from __future__ import annotations
 
