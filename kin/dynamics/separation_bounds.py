@@ -249,8 +249,6 @@ class Look:
     @cached_property
     def least(self) -> float:
         """Least contact force over the turn, N or N m: a proved bound if above 0, else a force that is reached."""
-        if self.seen < 0.0:
-            return self.seen
         lowest = float(self.lowest.min())
         return lowest if lowest > 0.0 else self.reached
 

@@ -1,4 +1,7 @@
-"""Linear and cylindrical cams as the page's worker answers for them: fields, curves, segments, solids, developments."""
+"""Linear and cylindrical cams as the page's worker answers for them: fields, curves, segments, solids, developments.
+
+Holds: camgeo.api.shown.
+"""
 
 from __future__ import annotations
 
