@@ -234,8 +234,9 @@ function writeAddress() {
   const { entry, ...state } = due;
   due = null;
   writing = writing.then(async () => {
+    const there = location.hash;
     const address = await packed(state);
-    if (address === own) return;
+    if (address === own || location.hash !== there) return; // what was gone back to meanwhile stays
     own = address;
     history[entry ? "pushState" : "replaceState"](null, "", address);
     if (recipe.done.length) keep(address); // a design of this tab's own, no link that was only looked at
@@ -246,6 +247,8 @@ function writeAddress() {
 async function arrived() {
   const hash = location.hash;
   if (hash === own || !holdsRecipe(hash)) return;
+  clearTimeout(later); // an address of the design that is left would take the place of this one
+  due = null;
   const next = isWhole(hash) ? await unpacked(hash).catch(() => null) : null;
   if (location.hash !== hash) return;
   due = null;

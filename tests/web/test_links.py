@@ -126,6 +126,19 @@ def test_a_finished_step_is_one_entry_and_going_back_undoes_it(page: tab.Tab) ->
     assert "bore: 13" in page.text
 
 
+def test_going_back_is_not_undone_by_an_address_that_is_still_to_be_written(page: tab.Tab) -> None:
+    page.load("disc-roller", TEXT)
+    for value in ("12", "13"):
+        page.enter("part.bore", value)
+        page.ask("writeAddress()")
+        page.ask("writing")
+    page.ask("recipe.name = 'other'; remember(); writeAddress(); history.back()")
+    page.ask("writing")
+    page.wait("recipe.text.includes('bore: 12')")
+    page.settle()
+    assert "bore: 12" in page.text
+
+
 def test_the_last_design_stays_in_this_browser_until_it_is_forgotten(page: tab.Tab) -> None:
     page.load("kept", TEXT.replace("bore: 10", "bore: 11"))
     page.ask("writeAddress()")
