@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from kin.cylindrical.guide import Slide, Swing
 from kin.law.bounds import cubic_cells
+from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
 if TYPE_CHECKING:
@@ -49,10 +50,11 @@ class DrumFollower:
 
     inner, outer  where the roller begins and ends along its axis, mm from the cam's axis
     level         height of the roller's axis at lift 0, mm; with a rib of the middle between both rollers
-    law           intended lift, mm, or rad of an arm, over the shaft angle, rad, with the period 2 pi
+    law           intended lift, mm, or rad of an arm, over the shaft angle, rad, with the period of all `turns`
     offset        y of the roller's axis on a slide, mm
     taper         half angle of a conical roller, rad: it grows outwards, and has its `radius` at the place `at`, mm
     arm           on which the roller swings; its angle is psi0 + S, where sin psi0 = (level - pivot)/length
+    turns         of the drum after which the motion repeats
     """
 
     radius: float
@@ -64,6 +66,12 @@ class DrumFollower:
     taper: float = 0.0
     at: float | None = None
     arm: Arm | None = None
+    turns: int = 1
+
+    @property
+    def period(self) -> float:
+        """Shaft angle, rad, after which the motion repeats."""
+        return TURN * self.turns
 
     @cached_property
     def cells(self) -> Array:

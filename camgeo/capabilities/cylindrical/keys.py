@@ -116,7 +116,7 @@ class DrumRecipe(ShaftOrder):
     """A recipe of a cylindrical cam; lengths in mm, angles in rad.
 
     `radius` is the blank's; `guide` leads the roller's axis, or the middle between the rollers of a rib, over the lower
-    face, z = 0. The thickness of `part` is the drum's length.
+    face, z = 0. The thickness of `part` is the drum's length. The motion repeats after so many `turns`.
     """
 
     root: ClassVar[str] = "cylindrical"
@@ -130,6 +130,7 @@ class DrumRecipe(ShaftOrder):
     undercut: Literal["refuse", "shorten"] = "refuse"
     drive: Drive = Drive()
     limits: tuple[Bound, ...] = ()
+    turns: int = 1
 
     __repr__ = ShaftOrder.__repr__
 
