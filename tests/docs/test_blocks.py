@@ -226,9 +226,9 @@ def test_the_starters_that_pages_name_are_written(capsys):
 
 def test_the_readme_prints_what_its_recipe_gives(tmp_path, capsys):
     recipe = next(b.text for b in blocks() if b.page == "README.md" and b.language == "yaml")
-    (tmp_path / "shu-wu.yaml").write_text(recipe, encoding="utf-8")
-    assert main(["check", str(tmp_path / "shu-wu.yaml")]) == 0
-    (shown,) = [b.text for b in blocks() if b.page == "README.md" and b.text.startswith("shu-wu: ")]
+    (tmp_path / "lifter.yaml").write_text(recipe, encoding="utf-8")
+    assert main(["check", str(tmp_path / "lifter.yaml")]) == 0
+    (shown,) = [b.text for b in blocks() if b.page == "README.md" and b.text.startswith("lifter: ")]
     assert capsys.readouterr().out == shown
 
 
