@@ -13,6 +13,7 @@ import sys
 import tomllib
 from dataclasses import replace
 from functools import cache
+from itertools import takewhile
 from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple, get_args
@@ -127,12 +128,12 @@ def test_a_camshaft_is_read_beside_its_lobes(tmp_path):
 
 
 def commands(text):
-    """Commands of lines of a shell: without comments, each of those joined by `&&` for itself."""
+    """Commands of lines of a shell: without comments and files for output, each of those joined by `&&` for itself."""
     for line in text.replace("\\\n", " ").splitlines():
         words = shlex.split(line, comments=True)
         while words:
             end = words.index("&&") if "&&" in words else len(words)
-            yield words[:end]
+            yield list(takewhile(lambda word: word != ">", words[:end]))
             words = words[end + 1 :]
 
 
