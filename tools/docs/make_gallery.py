@@ -34,8 +34,8 @@ HEAD = """\
 # Gallery
 
 Choose a recipe to begin with. These are all shipped recipes, with the shaft turned by 60 degrees. To see one move, use
-`camgeo report RECIPE` ([page.md](page.md)), or open it from the examples of [the page in a browser](tab.md). AS, SW and W
-are [papers](validation.md). `python tools/docs/make_gallery.py` writes this page.
+`camgeo report RECIPE` ([page.md](page.md)), or open it from the examples of [the page in a browser](tab.md). AS, SW
+and W are [papers](validation.md). `python tools/docs/make_gallery.py` writes this page.
 """
 
 
