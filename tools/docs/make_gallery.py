@@ -33,10 +33,9 @@ COLUMNS = 3
 HEAD = """\
 # Gallery
 
-To choose a recipe to begin with. Every shipped recipe with the shaft turned by 60 degrees, the cam as its first file
-draws it. Drawn and written by `python tools/docs/make_gallery.py`; a page that moves comes from
-`camgeo report RECIPE` ([page.md](page.md)), and all of them stand as cards that open in
-[the page in a browser](tab.md), on its examples.
+Choose a recipe to begin with. These are all shipped recipes, with the shaft turned by 60 degrees. To see one move, use
+`camgeo report RECIPE` ([page.md](page.md)), or open it from the examples of [the page in a browser](tab.md). AS, SW
+and W are [papers](validation.md). `python tools/docs/make_gallery.py` writes this page.
 """
 
 
