@@ -25,7 +25,6 @@ import numpy as np
 
 from kin.cylindrical.grid import FINE, Grid
 from kin.cylindrical.within import holding
-from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
 
@@ -118,8 +117,8 @@ def look(gauge: Gauge, edges: Edges, tolerance: float, angles: int) -> Seen:
 class _Best:
     """A greatest value so far, its angle, and the greatest bound of all that is settled."""
 
-    def __init__(self) -> None:
-        self.value, self.at, self.bound = -math.inf, math.nan, -math.inf
+    def __init__(self, period: float) -> None:
+        self.period, self.value, self.at, self.bound = period, -math.inf, math.nan, -math.inf
 
     def reached(self, values: Array, theta: Array) -> None:
         """Take in values (n,) that are reached at angles (n,)."""
@@ -135,24 +134,24 @@ class _Best:
     @property
     def peak(self) -> Peak:
         """The value with what the bounds leave open."""
-        return Peak(self.value, self.at % TURN, max(self.bound - self.value, 0.0))
+        return Peak(self.value, self.at % self.period, max(self.bound - self.value, 0.0))
 
 
 class _Look:
     """A look at edges: corners first, then points along them, block by block, then the parts that are left open."""
 
     def __init__(self, gauge: Gauge, edges: Edges, tolerance: float, angles: int) -> None:
-        self.gauge, self.near = gauge, FINE * tolerance
+        self.gauge, self.near, period = gauge, FINE * tolerance, gauge.lifts.period
         self.tear = TORN * tolerance
         self.grid = Grid.of(gauge, angles)
         self.holds, self.least = (np.full(len(self.grid), -np.inf) for _ in range(2))
-        self.out, self.proud, self.bare = _Best(), _Best(), _Best()
+        self.out, self.proud, self.bare = (_Best(period) for _ in range(3))
         self.open: list[_Parts] = []
         self.torn = np.zeros(len(edges.a), dtype=np.bool_)
 
         self.points, self.worst, a, b = edges.points, edges.worst, edges.a, edges.b
         turned = self.worst.theta[b] - self.worst.theta[a]
-        turned -= TURN * np.round(turned / TURN)
+        turned -= period * np.round(turned / period)
         back = turned < 0.0
         self.a, self.b, self.turned = np.where(back, b, a), np.where(back, a, b), np.abs(turned)
         self.flank, self.reached, self.corners = edges.flank, edges.reached, edges.corners
@@ -223,7 +222,7 @@ class _Look:
         hard = np.flatnonzero((more > 0.1 * self.near) & (flank[own] | (reached[own] & ~needed)))
         if len(hard):
             places = np.stack([column[hard] for column in points], axis=1)
-            solved = gauge.worst(places)
+            solved = gauge.worst(places, theta[hard])
             tears = flank[own[hard]] & ~(solved.height <= height[hard] + self.tear)
             self.torn[rows.start + own[hard[tears]]] = True
             height[hard], distance[hard], more[hard] = solved.height, solved.distance, 0.0
@@ -369,7 +368,7 @@ class _Look:
     def _at_most(self, points: Array, theta: Array, heights: Array, limits: tuple[Array, Array]) -> Array:
         """Greatest F (n,) of points at angles with |y| between limits (n,), by that at any angle; -inf for none."""
         least, most = limits
-        r, phi = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
+        r, phi = np.hypot(points[:, 0], points[:, 1]), self.gauge.polar(points, theta)
         y = points[:, 1] * np.cos(theta) - points[:, 0] * np.sin(theta)
         # nan: nothing of it is within the roller's length; nor is what is too far across
         there = (most >= 0.0) & (least < self.gauge.reach)
@@ -421,7 +420,7 @@ class _Look:
             if len(parts.out) > MOST_OPEN:
                 break
             middle = parts.ends.mean(axis=1)
-            worst = self.gauge.worst(middle)
+            worst = self.gauge.worst(middle, parts.theta[:, 0])
             counts = parts.out > -np.inf, parts.proud > -np.inf
             self.out.reached(self._inside(middle, worst)[counts[0]], worst.theta[counts[0]])
             self.proud.reached(-worst.distance[counts[1]], worst.theta[counts[1]])
