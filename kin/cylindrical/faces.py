@@ -22,7 +22,7 @@ from kin.cylindrical.intent import End
 from kin.cylindrical.roller import BESIDE, Place, Worst
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import paired
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -164,6 +164,11 @@ class Stands:
     flank: Mask
     beside: Mask
 
+    def among(self, walls: Mask) -> Stands:
+        """The same where the marked triangles (t,) are walls of all turns of a groove."""
+        within = np.maximum.reduce(self.body.each(self.body.r)) >= self.gauge.inner
+        return replace(self, across=self.across & (within | walls), beside=self.beside & walls & ~self.flank)
+
     def edges(self) -> Edges:
         """Edges that the roller may touch, that are of its flank, or beside it."""
         a, b, (flank, reached, beside) = self.body.edges_of(self.flank, self.touched, self.beside)
@@ -196,11 +201,9 @@ def faces_of(body: Body, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance:
         chosen = rest[which[first]]
         own.flank[chosen] = True
         kind[base[chosen]], free[base[chosen]] = number, False
-    if drum.follower.turns > 1:
-        walls = (kind >= len(names))[base]
-        for number, own in enumerate(stands):
-            below, mixed = own.touched | own.beside, own.across | own.flank
-            stands[number] = replace(own, beside=walls & own.beside & ~own.flank)
+    # beside one turn of a groove the walls of its others leave its roller room down to the floor
+    walls = (kind >= len(names))[base] & (drum.follower.turns > 1)
+    stands = [own.among(walls) for own in stands]
     found = {name: _farthest(body, drum, (name, tolerance), kind == k, offs[k]) for k, name in enumerate(names)}
     return Faces((*names, *(gauge.name for gauge in gauges)), kind, found, tuple(stands))
 

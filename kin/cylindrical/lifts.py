@@ -38,9 +38,7 @@ class Lifts:
 
     def degrees(self, angle: float) -> float:
         """An angle, rad, as degrees of the period, from 0 up to 360 for each of its turns."""
-        whole = 360.0 * self.turns
-        turned = math.degrees(angle) % whole
-        return 0.0 if turned >= whole else turned
+        return degrees_over(angle, self.turns)
 
     @property
     def parts(self) -> int:
@@ -59,7 +57,7 @@ class Lifts:
     @cached_property
     def nodes(self) -> Array:
         """Angles (m + 1,), rad, over the period from 0, between which the law is all but a cubic."""
-        return cubic_cells(self.law, self.law.breaks, NEAR)
+        return cubic_cells(self.law, self.law.breaks, NEAR, (0.0, self.period))
 
     @cached_property
     def _cubics(self) -> Array:
@@ -135,6 +133,13 @@ class Lifts:
         for step in range(int((last - first).max()) + 1):
             np.maximum.at(bins, np.minimum(first + step, last), row)
         return bins
+
+
+def degrees_over(angle: float, turns: int) -> float:
+    """An angle, rad, as degrees from 0 up to 360 for each of so many turns."""
+    whole = 360.0 * turns
+    turned = math.degrees(angle) % whole
+    return 0.0 if turned >= whole else turned
 
 
 def widened(bins: Array, reach: float) -> Array:

@@ -1,0 +1,93 @@
+"""Meshes of grooves of several turns that cross: a blank less what the roller takes, by manifold3d.
+
+The way of the roller is cut into pieces of less than a turn, each a row of sections between exact flanks.
+"""
+
+import math
+
+import manifold3d
+import numpy as np
+from capabilities.cylindrical.kin.drums import TURN, Drum, Groove, Motion, between, polar
+
+OUT_AND_BACK = Motion(((60.0, 1080.0, "cv-blended"), (-60.0, 1080.0, "cv-blended")))
+TWO_AND_ONE = Motion(((36.0, 720.0, "cv-blended"), (-36.0, 360.0, "cv-blended")))
+PIECES = 2  # of a turn
+ABOVE = 1.0  # mm over the blank, where a piece ends
+
+
+def screw(motion=OUT_AND_BACK, **more):
+    """A drum of 30 mm with a groove for a pin of 5 mm, a little over c14's size, and a shoe of 60 mm."""
+    stroke = float(motion(np.linspace(0.0, motion.turns * TURN, 4001)).max())
+    given = {
+        "roller": 5.0, "inner": 23.0, "outer": 30.0, "level": 12.0, "track": Groove(7.5), "radius": 30.0,
+        "length": 24.0 + stroke, "bore": 8.0, "shoe": 60.0,
+    }  # fmt: skip
+    return Drum(motion, **{**given, **more})
+
+
+def piece(drum, low, high, steps, touched=None):
+    """What the roller takes from one angle to another: points (n, 3) and triangles (t, 3)."""
+    columns, rows, across = steps
+    # pieces meet in the same section, the last and the first one too
+    theta = np.mod(np.linspace(low, high, columns + 1), drum.motion.turns * TURN)
+    inward = np.append(drum.radius + ABOVE, np.linspace(drum.radius, drum.floor, rows + 1))
+    sides = [(touched or drum.touched)(theta, inward, side, roller, level) for _, side, roller, level in drum.flanks]
+    lower, upper = (polar(phi, inward, z) for phi, z in sides)
+
+    def joined(k, way, r):
+        phi, z = (between(one[:, [k]], other[:, [k]], across)[:, :-1] for one, other in zip(*way, strict=True))
+        return polar(phi, r, z)
+
+    floor, top = joined(-1, sides, inward[-1]), joined(0, sides[::-1], inward[0])
+    rings = np.concatenate([lower, floor, upper[:, ::-1], top], axis=1)
+    n, m = rings.shape[:2]
+    k, i = (x.ravel() for x in np.meshgrid(np.arange(n - 1), np.arange(m), indexing="ij"))
+    up = (i + 1) % m
+    a, b, c, d = k * m + i, (k + 1) * m + i, (k + 1) * m + up, k * m + up
+    walls = np.concatenate([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)])
+    height, width = lower.shape[1], floor.shape[1]
+    left, right = np.arange(height), (2 * height + width - 1) - np.arange(height)
+    cap = []
+    for j in range(height - 1):
+        cap += [(left[j], left[j + 1], right[j + 1]), (left[j], right[j + 1], right[j])]
+    bottom = np.arange(height - 1, height + width + 1)
+    cap += [(bottom[0], bottom[j], bottom[j + 1]) for j in range(1, len(bottom) - 1)]
+    lid = np.append(np.arange(2 * height + width - 1, m), 0)
+    cap += [(lid[0], lid[j], lid[j + 1]) for j in range(1, len(lid) - 1)]
+    cap = np.array(cap)
+    triangles = np.concatenate([walls, cap, cap[:, ::-1] + (n - 1) * m])
+    return rings.reshape(-1, 3), triangles
+
+
+def solid(points, triangles):
+    """A manifold; triangles may look inwards."""
+    a, b, c = (points[triangles[:, j]] for j in range(3))
+    if np.einsum("nk,nk->", a, np.cross(b, c)) < 0.0:
+        triangles = triangles[:, ::-1]
+    mesh = manifold3d.Mesh64(points, triangles.astype(np.uint64))
+    made = manifold3d.Manifold(mesh)
+    assert made.status() == manifold3d.Error.NoError, made.status()
+    return made
+
+
+def ring(drum, columns):
+    """The blank with its bore."""
+    flat = [
+        r * np.stack([np.cos(a), np.sin(a)], axis=-1)
+        for r, a in ((drum.radius, np.arange(columns) * (TURN / columns)), (drum.bore, -np.arange(columns) * (TURN / columns)))
+    ]
+    return manifold3d.Manifold.extrude(manifold3d.CrossSection(flat), drum.length)
+
+
+def cut(drum, columns=360, rows=4, across=6, *, touched=None, pieces=None, blank=None):
+    """Places (v, 3) and triangles (t, 3) of a drum, of so many columns a turn.
+
+    `pieces` chooses from what is taken away, by number; `touched` gives other walls, `blank` another blank.
+    """
+    count = PIECES * drum.motion.turns
+    ends = np.linspace(0.0, TURN * drum.motion.turns, count + 1)
+    steps = columns // PIECES, rows, across
+    taken = [solid(*piece(drum, ends[k], ends[k + 1], steps, touched)) for k in pieces or range(count)]
+    body = (blank or ring(drum, columns)) - manifold3d.Manifold.batch_boolean(taken, manifold3d.OpType.Add)
+    mesh = body.to_mesh64()
+    return np.asarray(mesh.vert_properties[:, :3], dtype=float), np.asarray(mesh.tri_verts, dtype=np.intp)
