@@ -21,8 +21,8 @@ def set_down(gauge: Gauge, corners: Array, spans: tuple[Array, Array], theta: Ar
     """How far triangles keep a roller from its intended place, mm along z, (n,) at angles theta (n,), rad.
 
     `corners` (t, 3, 3); `spans` are the least and the greatest angle (t,), rad, at which each triangle counts, the
-    greatest above the least by less than the period. The roller stands above 0 where the metal does; -inf where it touches
-    nothing.
+    greatest above the least by less than the period. The roller stands above 0 where the metal does; -inf where it
+    touches nothing.
     """
     period = gauge.lifts.period
     order = np.argsort(theta % period)

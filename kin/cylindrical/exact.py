@@ -13,6 +13,7 @@ import numpy as np
 
 from kin.contour.arcs import Arcs
 from kin.contour.holes import farthest
+from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.edges import Peak
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP, Body, Faces, Stands
 from kin.cylindrical.figures import exact_play
@@ -24,6 +25,7 @@ from kin.cylindrical.judge import (
     WATERTIGHT,
     Judged,
     contour_check,
+    led_checks,
     motion_check,
     plain_checks,
     play_check,
@@ -108,8 +110,10 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
         both = [each for each, flank in zip(seen, verdicts, strict=True) if each is not None and flank.motion]
         if len(both) > 1:
             pinched = both[0].holds + both[1].holds
-            play, check = play_check(job, pinched, _own_play(drum, ANGLES) - pinched, np.arange(ANGLES) * (TURN / ANGLES))
+            free = _own_play(drum, ANGLES) - pinched
+            play, check = play_check(job, pinched, free, np.arange(ANGLES) * np.float64(TURN / ANGLES))
             checks.append(check)
+        checks += led_checks(Crossings(drum, gauges, limits.tolerance))
         checks.append(volume_check(drum, gauges, (shell.volume, shell.area), limits.tolerance))
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))

@@ -143,7 +143,6 @@ class Faces:
         return np.asarray(self.kind == self.kinds.index(name))
 
 
-
 @dataclass(frozen=True, eq=False)
 class Stands:
     """How a body stands to a gauge.
@@ -209,7 +208,7 @@ def faces_of(body: Body, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance:
 
 
 def _aways(stands: Stands, rest: Indices, bent: Indices) -> Array:
-    """Distance (n,), mm, of triangles by their numbers (n,) from a flank; of those that are `bent` their inside counts."""
+    """Distance (n,), mm, of triangles by their numbers (n,) from a flank, with their inside if they are `bent`."""
     body, gauge = stands.body, stands.gauge
     corners, off = body.corners[rest], _off_flank(gauge, stands.worst)
     away: Array = np.maximum.reduce([off[column] for column in corners.T])

@@ -49,7 +49,7 @@ class Grid:
 
 
 def angles_for(gauges: Sequence[Gauge], tolerance: float) -> int:
-    """How many angles the grid needs over the period: between two of them a point holds a roller to a share of the tolerance, mm."""
+    """How many angles the grid needs: between two of them a point holds a roller to a share of the tolerance, mm."""
     count = LEAST
     for gauge in gauges:
         count = max(count, math.ceil(TURN / math.sqrt(8.0 * FINE * tolerance / gauge.fastest)))

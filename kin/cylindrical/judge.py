@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.cylindrical.contact import set_down, spans_of
-from kin.cylindrical.crossings import Gap, carried, gaps
+from kin.cylindrical.crossings import Crossings, Gap
 from kin.cylindrical.edges import look
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FLOOR, TOP, Body, faces_of
 from kin.cylindrical.gauge import gauges_of
@@ -26,7 +26,7 @@ from kin.cylindrical.shoe import shoe_interference
 from kin.cylindrical.split import joined
 from kin.cylindrical.torn import missing, triangles_at
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
-from kin.cylindrical.volume import exact_volume
+from kin.cylindrical.volume import exact_volume, volume_remainder
 from kin.numeric.angles import degrees
 from kin.numeric.check import ROUNDING, Check, about, at_most, failed
 from kin.numeric.errors import UnsettledError
@@ -53,7 +53,6 @@ if TYPE_CHECKING:
 
 WATERTIGHT, MOTION, PLAY, CONTOUR, ENDS, VOLUME = "watertight", "motion", "form-closure", "contour", "ends", "volume"
 CROSSINGS, SHOE = "crossings", "shoe"
-GAP_LOOKS = 720  # angles of a turn, between which crossings are looked for
 OPEN = 0.25  # of the tolerance: what the proof may leave open, and is told
 SLACK = 1e-6  # of a limit that follows from the steepest slope
 
@@ -148,7 +147,8 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
         job = Judged(body, faces, drum, limits, slack)
         checks += plain_checks(job)
         angles = angles_for(gauges, limits.tolerance)
-        held = [carried(drum, gauges, gauge, angles, limits.tolerance + slack) for gauge in gauges]
+        crossings = Crossings(drum, gauges, limits.tolerance + slack)
+        held = [crossings.carried(gauge, angles) for gauge in gauges]
         for stands, own_held in zip(faces.stands, held, strict=True):
             flank, found, own = _flank(job, stands, own_held)
             verdicts.append(flank)
@@ -158,7 +158,7 @@ def judge_mesh(read: CheckedMesh, drum: DrumIntent, limits: Limits, kind: str = 
         if len(both) > 1 and np.logical_and(*held).any():
             play, check = _play(job, both, np.logical_and(*held))
             checks.append(check)
-        checks += led_checks(drum, gauges, limits.tolerance + slack)
+        checks += led_checks(crossings)
         area = 0.5 * float(np.sqrt(sum(part * part for part in read.mesh.area_vectors)).sum())
         checks.append(volume_check(drum, gauges, (read.mesh.volume, area), limits.tolerance))
     except UnsettledError as error:
@@ -209,7 +209,7 @@ def plain_checks(job: Judged) -> list[Check]:
 
 
 def _flank(job: Judged, stands: Stands, held: Mask) -> tuple[FlankVerdict, Seen | None, list[Check]]:
-    """Verdict on one flank by the angles of a grid, of which it is to carry the roller at some, what was seen, checks."""
+    """Verdict on one flank, to carry the roller at some angles of a grid (n,), what was seen of it, and its checks."""
     body, gauge, tolerance = stands.body, stands.gauge, job.limits.tolerance
     count = int(np.count_nonzero(stands.flank))
     if not count:
@@ -284,9 +284,7 @@ def _motion_error(seen: Seen, held: Mask, job: Judged, gauge: Gauge) -> MotionEr
     return MotionError(told * worst, place, left, told * least, told * most, told * rms, job.unit)
 
 
-def motion_check(
-    job: Judged, motion: MotionError, gauge: Gauge, free: tuple[tuple[float, float], ...] = ()
-) -> Check:
+def motion_check(job: Judged, motion: MotionError, gauge: Gauge, free: tuple[tuple[float, float], ...] = ()) -> Check:
     """Check of the motion on a flank, in the unit of positions, beside stretches, degrees, where it carries nothing."""
     told, tolerance, given = job.told, job.limits.tolerance, _given(job, job.limits.motion)
     limit, room = limit_of(lambda e: told * _implied(gauge, e), given, tolerance, job.slack)
@@ -354,7 +352,7 @@ def _play(job: Judged, both: Sequence[Seen], held: Mask) -> tuple[Play, Check]:
     """Play at the angles of the grid (n,) at which both flanks are to carry the roller."""
     stands = job.faces.stands
     own = [_held(job, one, found)[held] for one, found in zip(stands, both, strict=True)]
-    theta = np.flatnonzero(held) * both[0].grid.width
+    theta = np.flatnonzero(held) * np.float64(both[0].grid.width)
     return play_check(job, (both[0].holds + both[1].holds)[held], -(own[0] + own[1]), theta)
 
 
@@ -381,13 +379,13 @@ def play_check(job: Judged, pinched: Array, own: Array, theta: Array) -> tuple[P
     return play, placed(check, float(theta[k]), job.drum.follower.turns)
 
 
-def led_checks(drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance: float) -> list[Check]:
+def led_checks(crossings: Crossings) -> list[Check]:
     """Checks of what leads the follower where its groove crosses itself, and of a shoe in bends."""
-    follower, checks = drum.follower, []
+    drum, checks = crossings.drum, []
+    follower = drum.follower
     if follower.turns > 1:
-        count = GAP_LOOKS * follower.turns
         ends = follower.inner, min(follower.outer, drum.radius)
-        found = [gap for gauge in gauges for rho in ends for gap in gaps(drum, gauges, gauge, count, tolerance, rho)]
+        found = [gap for gauge in crossings.gauges for rho in ends for gap in crossings.gaps(gauge, rho)]
         longest = max(found, key=lambda gap: gap.length, default=Gap(0.0, 0.0, 0.0))
         if follower.shoe is None:
             told = "without a shoe the roller drops into the groove that it crosses"
@@ -399,7 +397,7 @@ def led_checks(drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance: float) ->
     if follower.shoe is not None:
         interferes, at = shoe_interference(follower)
         told = "tips beyond the walls of the sharpest bend, in the development"
-        checks.append(placed(at_most(SHOE, interferes, tolerance, "mm", detail=told), at, follower.turns))
+        checks.append(placed(at_most(SHOE, interferes, crossings.tolerance, "mm", detail=told), at, follower.turns))
     return checks
 
 
@@ -413,4 +411,8 @@ def volume_check(drum: DrumIntent, gauges: tuple[Gauge, ...], measured: tuple[fl
     """Check of a solid's volume, mm^3, by that of its surface within a tolerance, mm; `measured` is with its area."""
     expected, (volume, area) = exact_volume(drum, gauges), measured
     detail = f"{length_words(volume, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
-    return at_most(VOLUME, abs(volume - expected), tolerance * area, "mm^3", detail=detail, slack=ROUNDING * expected)
+    remainder = volume_remainder(drum, gauges)
+    if remainder:
+        detail += f", known within {length_words(remainder, '.2g', 3)} {UNIT}^3"
+    off = abs(volume - expected) + remainder
+    return at_most(VOLUME, off, tolerance * area, "mm^3", detail=detail, slack=ROUNDING * expected)

@@ -1,4 +1,4 @@
-"""The intended lift over its period as a row of cubics, for many angles at a time, and proved bounds of its derivatives."""
+"""The intended lift over its period as a row of cubics, for many angles at once; proved bounds of its derivatives."""
 
 from __future__ import annotations
 

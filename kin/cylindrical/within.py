@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-
 if TYPE_CHECKING:
     from kin.cylindrical.grid import Grid
     from kin.cylindrical.roller import Gauge

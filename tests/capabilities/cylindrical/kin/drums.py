@@ -22,7 +22,8 @@ _CV = 1.0 - BLEND
 
 
 def _blend(u):
-    return (0.5 * u - 0.5 * BLEND * np.sin(math.pi * u / BLEND) / math.pi) / _CV
+    wave = np.where(u < BLEND, u - BLEND * np.sin(math.pi * u / BLEND) / math.pi, 2.0 * u - BLEND)
+    return 0.5 * wave / _CV
 
 
 def _ramp(u):
@@ -50,7 +51,7 @@ FORMULAS = {
         lambda u: 420.0 * u**2 * (1.0 - u) ** 2 * (1.0 - 2.0 * u),
     ),
     "cv-blended": (
-        lambda u: np.where(u < BLEND, _blend(u), np.where(u > 1.0 - BLEND, 1.0 - _blend(1.0 - u), (u - 0.5 * BLEND) / _CV)),
+        lambda u: np.where(u < 0.5, _blend(u), 1.0 - _blend(1.0 - u)),
         lambda u: _ramp(np.minimum(u, 1.0 - u)),
         lambda u: np.where(u < 0.5, 1.0, -1.0) * _steep(np.minimum(u, 1.0 - u)),
     ),

@@ -3,8 +3,6 @@
 The way of the roller is cut into pieces of less than a turn, each a row of sections between exact flanks.
 """
 
-import math
-
 import manifold3d
 import numpy as np
 from capabilities.cylindrical.kin.drums import TURN, Drum, Groove, Motion, between, polar
@@ -48,9 +46,9 @@ def piece(drum, low, high, steps, touched=None):
     height, width = lower.shape[1], floor.shape[1]
     left, right = np.arange(height), (2 * height + width - 1) - np.arange(height)
     cap = []
-    for j in range(height - 1):
+    for j in range(height - 2):
         cap += [(left[j], left[j + 1], right[j + 1]), (left[j], right[j + 1], right[j])]
-    bottom = np.arange(height - 1, height + width + 1)
+    bottom = np.arange(height - 2, height + width + 2)  # the floor bulges into the cap
     cap += [(bottom[0], bottom[j], bottom[j + 1]) for j in range(1, len(bottom) - 1)]
     lid = np.append(np.arange(2 * height + width - 1, m), 0)
     cap += [(lid[0], lid[j], lid[j + 1]) for j in range(1, len(lid) - 1)]
@@ -72,14 +70,13 @@ def solid(points, triangles):
 
 def ring(drum, columns):
     """The blank with its bore."""
-    flat = [
-        r * np.stack([np.cos(a), np.sin(a)], axis=-1)
-        for r, a in ((drum.radius, np.arange(columns) * (TURN / columns)), (drum.bore, -np.arange(columns) * (TURN / columns)))
-    ]
+    phi = np.arange(columns) * (TURN / columns)
+    rings = (drum.radius, phi), (drum.bore, -phi)
+    flat = [r * np.stack([np.cos(a), np.sin(a)], axis=-1) for r, a in rings]
     return manifold3d.Manifold.extrude(manifold3d.CrossSection(flat), drum.length)
 
 
-def cut(drum, columns=360, rows=4, across=6, *, touched=None, pieces=None, blank=None):
+def cut(drum, columns=360, rows=4, across=10, *, touched=None, pieces=None, blank=None):
     """Places (v, 3) and triangles (t, 3) of a drum, of so many columns a turn.
 
     `pieces` chooses from what is taken away, by number; `touched` gives other walls, `blank` another blank.
