@@ -35,7 +35,7 @@ OWN = 1e-6  # mm: a point so far within its own turn lies on an undercut
 PLACES = 3  # along the roller
 LOOKS, LINE_LOOKS = 720, 4096  # angles of a turn, between which gaps, and places of a line, are looked for
 ROOM = 1.1  # of the roller's radius, within which others are looked for
-HALVINGS = 40  # of a step, in which a gap begins or ends
+HALVINGS = 20  # of a step, in which a gap begins or ends
 PARTS = 64  # of a gap, over which its length is summed
 
 
@@ -72,7 +72,7 @@ class Crossings:
     def gaps(self, gauge: Gauge, rho: float) -> list[Gap]:
         """Stretches in which a flank has no wall at the place rho, mm, along the roller.
 
-        What lies within the tolerance of another turn counts as gone. Ends are met as closely as rounding lets them.
+        What lies within the tolerance of another turn counts as gone. Ends are met to a millionth of the step.
         """
         lifts = gauge.lifts
         if lifts.turns == 1:
@@ -93,7 +93,8 @@ class Crossings:
             return []
         last = last[(np.searchsorted(last, first, side="right")) % len(last)]
         low, high = theta[first], theta[last] + np.where(last <= first, lifts.period, 0.0)
-        low, high = _met(stands, low, low + width), _met(stands, high, high - width)
+        ends = _met(stands, np.concatenate([low, high]), np.concatenate([low + width, high - width]))
+        low, high = ends[: len(low)], ends[len(low) :]
         shares = (np.arange(PARTS) + 0.5) / PARTS
         at = low[:, None] + (high - low)[:, None] * shares
         speed = np.hypot(rho, gauge.lever * lifts.at(at.ravel())[1]).reshape(at.shape)

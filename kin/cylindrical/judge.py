@@ -26,7 +26,7 @@ from kin.cylindrical.shoe import shoe_interference
 from kin.cylindrical.split import joined
 from kin.cylindrical.torn import missing, triangles_at
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError, Play
-from kin.cylindrical.volume import exact_volume, volume_remainder
+from kin.cylindrical.volume import volume_within
 from kin.numeric.angles import degrees
 from kin.numeric.check import ROUNDING, Check, about, at_most, failed
 from kin.numeric.errors import UnsettledError
@@ -409,9 +409,8 @@ def _between(play: Play) -> str:
 
 def volume_check(drum: DrumIntent, gauges: tuple[Gauge, ...], measured: tuple[float, float], tolerance: float) -> Check:
     """Check of a solid's volume, mm^3, by that of its surface within a tolerance, mm; `measured` is with its area."""
-    expected, (volume, area) = exact_volume(drum, gauges), measured
+    (expected, remainder), (volume, area) = volume_within(drum, gauges), measured
     detail = f"{length_words(volume, '.9g', 3)} {UNIT}^3, by the intent {length_words(expected, '.9g', 3)}"
-    remainder = volume_remainder(drum, gauges)
     if remainder:
         detail += f", known within {length_words(remainder, '.2g', 3)} {UNIT}^3"
     off = abs(volume - expected) + remainder

@@ -5,16 +5,18 @@ The way of the roller is cut into pieces of less than a turn, each a row of sect
 
 import manifold3d
 import numpy as np
-from capabilities.cylindrical.kin.drums import TURN, Drum, Groove, Motion, between, polar
+from capabilities.cylindrical.kin.drums import TURN, Drum, Groove, Motion, between, polar, sought
 
-OUT_AND_BACK = Motion(((60.0, 1080.0, "cv-blended"), (-60.0, 1080.0, "cv-blended")))
+# of the pitch 20 at constant velocity, as c14 is
+OUT_AND_BACK = Motion(((55.0, 1080.0, "cv-blended"), (-55.0, 1080.0, "cv-blended")))
 TWO_AND_ONE = Motion(((36.0, 720.0, "cv-blended"), (-36.0, 360.0, "cv-blended")))
 PIECES = 2  # of a turn
+FINE = 2e-5  # mm: what is smaller is none in a file of single precision
 ABOVE = 1.0  # mm over the blank, where a piece ends
 
 
 def screw(motion=OUT_AND_BACK, **more):
-    """A drum of 30 mm with a groove for a pin of 5 mm, a little over c14's size, and a shoe of 60 mm."""
+    """A drum of 30 mm with a groove for a pin of 5 mm, c14 to begin with, and a shoe of 60 mm."""
     stroke = float(motion(np.linspace(0.0, motion.turns * TURN, 4001)).max())
     given = {
         "roller": 5.0, "inner": 23.0, "outer": 30.0, "level": 12.0, "track": Groove(7.5), "radius": 30.0,
@@ -81,10 +83,55 @@ def cut(drum, columns=360, rows=4, across=10, *, touched=None, pieces=None, blan
 
     `pieces` chooses from what is taken away, by number; `touched` gives other walls, `blank` another blank.
     """
+    taken = taken_away(drum, columns, rows, across, touched=touched, pieces=pieces)
+    return plain((blank or ring(drum, columns)) - union(taken))
+
+
+def taken_away(drum, columns=360, rows=4, across=10, *, touched=None, pieces=None):
+    """Pieces of what the roller takes, PIECES a turn."""
     count = PIECES * drum.motion.turns
     ends = np.linspace(0.0, TURN * drum.motion.turns, count + 1)
     steps = columns // PIECES, rows, across
-    taken = [solid(*piece(drum, ends[k], ends[k + 1], steps, touched)) for k in pieces or range(count)]
-    body = (blank or ring(drum, columns)) - manifold3d.Manifold.batch_boolean(taken, manifold3d.OpType.Add)
-    mesh = body.to_mesh64()
-    return np.asarray(mesh.vert_properties[:, :3], dtype=float), np.asarray(mesh.tri_verts, dtype=np.intp)
+    return [solid(*piece(drum, ends[k], ends[k + 1], steps, touched)) for k in pieces or range(count)]
+
+
+def union(bodies):
+    """All of some manifolds."""
+    return manifold3d.Manifold.batch_boolean(bodies, manifold3d.OpType.Add)
+
+
+def plain(body):
+    """Places (v, 3) and triangles (t, 3) of a manifold as a file of single precision can have them.
+
+    Corners that are one there are one.
+    """
+    mesh = body.simplify(FINE).to_mesh64()
+    places = np.asarray(mesh.vert_properties[:, :3]).astype(np.float32)
+    places, number = np.unique(places, axis=0, return_inverse=True)
+    corners = number.reshape(-1)[np.asarray(mesh.tri_verts, dtype=np.intp)]
+    distinct = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+    return places.astype(float), corners[distinct]
+
+
+def outside(drum, points, turns=None):
+    """Least distance (n,) of points (n, 3) from what the roller takes at all angles of some turns, below 0 within it.
+
+    Positions alone: the least of all distances from its axis, sought in each turn about the point.
+    """
+    phi, r = np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1])
+    reach = np.arcsin(np.minimum(1.0, 1.02 * drum.roller / r))[:, None]
+
+    def away(theta):
+        _, z = drum.axis(theta, drum.level)
+        return np.hypot(r[:, None] * np.sin(phi[:, None] - theta), points[:, [2]] - z) - drum.roller
+
+    spread = reach * np.linspace(-1.0, 1.0, 41)
+    every = range(drum.motion.turns) if turns is None else turns
+    return np.min([sought(away, phi[:, None] + TURN * k + spread, reach / 20.0, np.argmin) for k in every], axis=0)
+
+
+def line(drum, theta, rho, side):
+    """Points (n, 3) that the pin touches at angles (n,) and the place rho along it."""
+    a = np.arctan2(drum.motion(theta, 1), rho)
+    y, z = -side * drum.roller * np.sin(a), drum.level + drum.motion(theta) + side * drum.roller * np.cos(a)
+    return np.stack([rho * np.cos(theta) - y * np.sin(theta), rho * np.sin(theta) + y * np.cos(theta), z], axis=-1)
