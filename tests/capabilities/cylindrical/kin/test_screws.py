@@ -23,9 +23,10 @@ from capabilities.cylindrical.kin.screws import (
 )
 
 from kin.cylindrical.crossings import Crossings
+from kin.cylindrical.development import judged_line
 from kin.cylindrical.exact import judge_shell
 from kin.cylindrical.gauge import gauges_of
-from kin.cylindrical.intent import Limits
+from kin.cylindrical.intent import Developed, Limits
 from kin.cylindrical.judge import judge_mesh, positions
 from kin.cylindrical.shoe import shoe_interference
 from kin.cylindrical.volume import volume_within
@@ -183,7 +184,7 @@ def test_a_corner_that_was_moved(sound):
 def test_the_whole_at_another_place_size_or_sense(spiral):
     places, corners = spiral
     assert refused(judged((places * [1.0, -1.0, 1.0], corners[:, ::-1]), SPIRAL)) >= CONTACTS
-    assert refused(judged((places + [0.0, 0.0, 0.05], corners), SPIRAL)) >= CONTACTS
+    assert refused(judged((places + np.array([0.0, 0.0, 0.05]), corners), SPIRAL)) >= CONTACTS
     assert refused(judged(spiral, replace(SPIRAL, roller=5.02))) >= CONTACTS
     other = Motion(((36.1, 720.0, "cv-blended"), (-36.1, 360.0, "cv-blended")))
     assert {("contour", "lower"), ("contour", "upper")} <= refused(judged(spiral, replace(SPIRAL, motion=other)))
@@ -241,10 +242,53 @@ def test_a_wall_missing_outside_the_crossings():
     assert any("touches nothing" in check.detail for check in verdict.checks)
 
 
+# --- developments -----------------------------------------------------------------------------------------------------
+
+
+def unrolled(name, drum=SCREW, radius=30.0):
+    """Points (n, 2) of a line of a development over all turns, and (n,) how far they lie outside the other turns."""
+    theta = np.linspace(-0.1, drum.motion.turns * TURN + 0.1, 4001)
+    if name == "pitch":
+        return np.stack([radius * theta, drum.level + drum.motion(theta)], axis=-1), theta
+    (flank,) = (own for own in drum.flanks if own[0] == name)
+    phi, z = (rows[:, 0] for rows in drum.touched(theta, np.array([radius]), *flank[1:]))
+    points = np.stack([radius * np.cos(phi), radius * np.sin(phi), z], axis=-1)
+    return np.stack([radius * phi, z], axis=-1), other_turns(points, phi, drum)
+
+
+def developed(parts, name, drum=SCREW):
+    flank, checks = judged_line(parts, drum.intent(), Developed("L", 30.0, name), Limits(TOLERANCE))
+    return flank, {check.name: check for check in checks}
+
+
+@pytest.mark.parametrize("name", ["lower", "pitch"])
+def test_a_line_of_a_development_over_all_turns(name):
+    points, room = unrolled(name)
+    flank, checks = developed([points], name)
+    assert all(check.ok for check in checks.values()), checks
+    assert flank.measured_error < 1e-4
+    _, checks = developed([points * [1.0, 1.001]], name)
+    assert not checks["contour"].ok
+    # a turn is missing
+    gone = (points[:, 0] < 2.0 * TURN * 30.0) | (points[:, 0] > 3.0 * TURN * 30.0)
+    parts = [points[:1600][gone[:1600]], points[1600:][gone[1600:]]]
+    assert "the line is missing at x" in developed(parts, name)[1]["contour"].detail
+    runs = np.split(np.arange(len(points)), np.flatnonzero(np.diff(room > 0.0)) + 1)
+    if name == "pitch":
+        assert "missing" in developed([points[:1800], points[1820:]], name)[1]["contour"].detail
+        return
+    # it may end at crossings, and no earlier
+    kept = [points[run] for run in runs if room[run[0]] > 0.0]
+    assert len(kept) >= 10
+    assert all(check.ok for check in developed(kept, name)[1].values())
+    short = [*kept[:4], kept[4][:-5], *kept[5:]]
+    assert "missing" in developed(short, name)[1]["contour"].detail
+
+
 # --- a shoe, the volume, what is not judged ---------------------------------------------------------------------------
 
 
-def lens(length, radius, count=400):
+def lens(length, radius, count=101):
     """Points (n, 2) of the outline of a shoe that lies along x."""
     arc = (0.25 * length**2 + radius**2) / (2.0 * radius)
     x = np.linspace(-0.5 * length, 0.5 * length, count)
@@ -259,10 +303,10 @@ def test_a_shoe_in_a_bend(stroke, length):
     drum = Drum(motion, roller=5.0, inner=23.0, outer=30.0, track=Groove(7.5), radius=30.0, shoe=length)
     found, at = shoe_interference(drum.intent().follower)
     assert min(at % np.pi, np.pi - at % np.pi) < 0.02  # the sharpest bends of a harmonic are its ends
-    theta = np.linspace(-2.5, 2.5, 20_001)
+    theta = np.linspace(-2.0, 2.0, 4001)
     path = np.stack([23.0 * theta, motion(theta)], axis=-1)
     bent = np.inf
-    for tilt in np.linspace(-0.05, 0.05, 11):
+    for tilt in np.linspace(-0.04, 0.04, 5):
         turn = np.array([[np.cos(tilt), np.sin(tilt)], [-np.sin(tilt), np.cos(tilt)]])
         outline = lens(length, 5.0) @ turn
         far = max(np.hypot(*(path - point).T).min() for point in outline)
@@ -270,7 +314,7 @@ def test_a_shoe_in_a_bend(stroke, length):
     assert bent <= found + 1e-3
     assert (bent > 0.01) == (found > 0.01) or found < 0.3
     if found > 1.0:
-        assert bent > 0.6 * found  # along the shoe the bend grows less sharp
+        assert bent > 0.5 * found  # along the shoe the bend grows less sharp
 
 
 def test_a_shoe_that_does_not_pass_a_bend_is_refused(spiral):
