@@ -25,11 +25,12 @@ def screw(motion=OUT_AND_BACK, **more):
     return Drum(motion, **{**given, **more})
 
 
-def piece(drum, low, high, steps, touched=None):
-    """What the roller takes from one angle to another: points (n, 3) and triangles (t, 3)."""
+def piece(drum, number, steps, touched=None):
+    """What the roller takes in one piece of the way, by number: points (n, 3) and triangles (t, 3)."""
     columns, rows, across = steps
-    # pieces meet in the same section, the last and the first one too
-    theta = np.mod(np.linspace(low, high, columns + 1), drum.motion.turns * TURN)
+    # pieces go on over a column of the next, with the same corners: faces that look at one another make booleans frail
+    each = columns // PIECES
+    theta = (np.arange(each * number, each * (number + 1) + 2) % (columns * drum.motion.turns)) * (TURN / columns)
     inward = np.append(drum.radius + ABOVE, np.linspace(drum.radius, drum.floor, rows + 1))
     sides = [(touched or drum.touched)(theta, inward, side, roller, level) for _, side, roller, level in drum.flanks]
     lower, upper = (polar(phi, inward, z) for phi, z in sides)
@@ -47,16 +48,16 @@ def piece(drum, low, high, steps, touched=None):
     walls = np.concatenate([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)])
     height, width = lower.shape[1], floor.shape[1]
     left, right = np.arange(height), (2 * height + width - 1) - np.arange(height)
-    cap = []
+    faces = []
     for j in range(height - 2):
-        cap += [(left[j], left[j + 1], right[j + 1]), (left[j], right[j + 1], right[j])]
+        faces += [(left[j], left[j + 1], right[j + 1]), (left[j], right[j + 1], right[j])]
     bottom = np.arange(height - 2, height + width + 2)  # the floor bulges into the cap
-    cap += [(bottom[0], bottom[j], bottom[j + 1]) for j in range(1, len(bottom) - 1)]
+    faces += [(bottom[0], bottom[j], bottom[j + 1]) for j in range(1, len(bottom) - 1)]
     lid = np.append(np.arange(2 * height + width - 1, m), 0)
-    cap += [(lid[0], lid[j], lid[j + 1]) for j in range(1, len(lid) - 1)]
-    cap = np.array(cap)
+    faces += [(lid[0], lid[j], lid[j + 1]) for j in range(1, len(lid) - 1)]
+    cap = np.array(faces)
     triangles = np.concatenate([walls, cap, cap[:, ::-1] + (n - 1) * m])
-    return rings.reshape(-1, 3), triangles
+    return np.round(rings.reshape(-1, 3), 9), triangles  # alike to the last bit in both pieces
 
 
 def solid(points, triangles):
@@ -90,9 +91,7 @@ def cut(drum, columns=360, rows=4, across=10, *, touched=None, pieces=None, blan
 def taken_away(drum, columns=360, rows=4, across=10, *, touched=None, pieces=None):
     """Pieces of what the roller takes, PIECES a turn."""
     count = PIECES * drum.motion.turns
-    ends = np.linspace(0.0, TURN * drum.motion.turns, count + 1)
-    steps = columns // PIECES, rows, across
-    return [solid(*piece(drum, ends[k], ends[k + 1], steps, touched)) for k in pieces or range(count)]
+    return [solid(*piece(drum, k, (columns, rows, across), touched)) for k in pieces or range(count)]
 
 
 def union(bodies):
