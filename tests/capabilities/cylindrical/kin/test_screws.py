@@ -279,7 +279,7 @@ def test_a_line_of_a_development_over_all_turns(name):
         assert "missing" in developed([points[:1800], points[1820:]], name)[1]["contour"].detail
         return
     # it may end at crossings, and no earlier
-    kept = [points[run] for run in runs if room[run[0]] > 0.0]
+    kept = [points[max(run[0] - 1, 0) : run[-1] + 2] for run in runs if room[run[0]] > 0.0]
     assert len(kept) >= 10
     assert all(check.ok for check in developed(kept, name)[1].values())
     short = [*kept[:4], kept[4][:-5], *kept[5:]]
