@@ -6,7 +6,8 @@ in the other turns (`kin.cylindrical.roller`): in the metal, or in the open. At 
 the metal. There no file can carry the roller, and the motion is judged beside these stretches.
 
 A line counts as carried where some of its points lie MARGIN tolerances outside all other turns: within that distance
-nothing but this flank bounds the metal, so that a surface within the tolerance cannot pass them by. Points that lie on
+nothing but this flank bounds the metal, so that a surface within the tolerance e cannot pass them by. At an edge where
+two flanks meet at an angle b a surface that is within e of either may end e/sin(b/2) short of it. Points that lie on
 the flank of another turn as well, as in a dwell of more than a turn, are carried by it.
 """
 

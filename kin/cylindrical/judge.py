@@ -4,6 +4,9 @@ A solid is taken as it lies on disk. The way it was made is not known here: the 
 angles (`kin.cylindrical.roller`), the motion is that of the roller set down on the file's own triangles. Every triangle
 is measured against a face of the intended drum. Together with a closed surface and the volume that says that nothing of
 the drum is missing: a closed surface all of which is near that of the drum goes round it once, if it encloses as much.
+A groove of several turns is followed over all of them. It crosses itself (`kin.cylindrical.crossings`): flanks of one
+turn stop where another begins, and no triangle may stand in the way of any turn. What is left between crossings is an
+island; that none is missing follows from the roller, which is carried wherever an exact flank carries it.
 """
 
 from __future__ import annotations
