@@ -50,15 +50,20 @@ FORMULAS = {
         lambda u: 140.0 * u**3 * (1.0 - u) ** 3,
         lambda u: 420.0 * u**2 * (1.0 - u) ** 2 * (1.0 - 2.0 * u),
     ),
-    "cv-blended": (
-        lambda u: np.where(u < 0.5, _blend(u), 1.0 - _blend(1.0 - u)),
-        lambda u: _ramp(np.minimum(u, 1.0 - u)),
-        lambda u: np.where(u < 0.5, 1.0, -1.0) * _steep(np.minimum(u, 1.0 - u)),
-    ),
     "harmonic": (
         lambda u: 0.5 * (1.0 - np.cos(math.pi * u)),
         lambda u: 0.5 * math.pi * np.sin(math.pi * u),
         lambda u: 0.5 * math.pi**2 * np.cos(math.pi * u),
+    ),
+}
+
+
+LAWS = {
+    **FORMULAS,
+    "cv-blended": (
+        lambda u: np.where(u < 0.5, _blend(u), 1.0 - _blend(1.0 - u)),
+        lambda u: _ramp(np.minimum(u, 1.0 - u)),
+        lambda u: np.where(u < 0.5, 1.0, -1.0) * _steep(np.minimum(u, 1.0 - u)),
     ),
 }
 
@@ -95,7 +100,7 @@ class Motion:
             width = math.radians(over)
             if stroke:
                 u = np.clip((theta - at) / width, 0.0, 1.0)
-                part = stroke * FORMULAS[name][order](u) / width**order
+                part = stroke * LAWS[name][order](u) / width**order
                 total += part if order == 0 else np.where((u > 0.0) & (u < 1.0), part, 0.0)
             at += width
         return total
