@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.numeric.angles import TURN
-
 if TYPE_CHECKING:
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices
@@ -23,14 +21,15 @@ def set_down(gauge: Gauge, corners: Array, spans: tuple[Array, Array], theta: Ar
     """How far triangles keep a roller from its intended place, mm along z, (n,) at angles theta (n,), rad.
 
     `corners` (t, 3, 3); `spans` are the least and the greatest angle (t,), rad, at which each triangle counts, the
-    greatest above the least by less than a turn. The roller stands above 0 where the metal does; -inf where it touches
-    nothing.
+    greatest above the least by less than the period. The roller stands above 0 where the metal does; -inf where it
+    touches nothing.
     """
-    order = np.argsort(theta % TURN)
-    rising = (theta % TURN)[order]
+    period = gauge.lifts.period
+    order = np.argsort(theta % period)
+    rising = (theta % period)[order]
     best = np.full(len(theta), -np.inf)
-    low = spans[0] % TURN
-    for turn in (0.0, -TURN):  # a span may go on over the end of the turn
+    low = spans[0] % period
+    for turn in (0.0, -period):  # a span may go on over the end of the period
         first = np.searchsorted(rising, low + turn)
         last = np.searchsorted(rising, low + turn + (spans[1] - spans[0]), side="right")
         count = np.maximum(last - first, 0)
@@ -82,8 +81,8 @@ def _gives(gauge: Gauge, corners: Array, theta: Array) -> Array:
     return best
 
 
-def spans_of(theta: Array, corners: Indices, more: float) -> tuple[Array, Array]:
+def spans_of(theta: Array, corners: Indices, more: float, period: float) -> tuple[Array, Array]:
     """Least and greatest angle (t,) at which triangles (t, 3) count, by those of their corners (v,), rad."""
     own = theta[corners]
-    own = own[:, :1] + np.remainder(own - own[:, :1] + 0.5 * TURN, TURN) - 0.5 * TURN
+    own = own[:, :1] + np.remainder(own - own[:, :1] + 0.5 * period, period) - 0.5 * period
     return own.min(axis=1) - more, own.max(axis=1) + more

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.lifts import Lifts
 from kin.cylindrical.verdict import FlankVerdict, MotionError
-from kin.numeric.angles import TURN, degrees
+from kin.numeric.angles import TURN
 from kin.numeric.check import ROUNDING, Check, at_most, failed
 from kin.numeric.lengths import UNIT, length_words
 from kin.numeric.limits import limit_of
@@ -38,7 +39,10 @@ FINE = 0.05  # of the tolerance, within which what lies between points is known
 MOST = 400_000  # points of a line
 GAP = 1e-6  # of the radius: ends of lines that are so close meet
 SLACK = 1e-6  # of a limit that follows from the steepest slope
-TURNED, MEETINGS = 4096, 40  # angles of a turn at which an arm is looked at; steps to where its axis meets a cylinder
+TURNED, MEETINGS = (
+    4096,
+    40,
+)  # angles of a turn at which arms and crossings are looked at; steps to where its axis meets a cylinder
 
 
 class _Line(NamedTuple):
@@ -93,15 +97,15 @@ def judged_line(
     if not parts:
         missing = failed(CONTOUR, f"nothing is drawn on the layer {line.layer}", unit="mm", limit=tolerance)
         return FlankVerdict(line.flank), [missing]
-    short = _uncovered(parts, line.radius)
+    short = _missing(parts, drum, line, tolerance)
     if short is not None:
         why = f"the line is missing at x = {length_words(short)} {UNIT}: it does not go round"
         return FlankVerdict(line.flank), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
     if line.flank == "pitch":
-        lifts, gauge = Lifts(drum.follower.law), None
+        lifts, gauge = Lifts(drum.follower.law, drum.follower.turns), None
         found = _measured_pitch(parts, drum, line.radius, tolerance)
     else:
-        (gauge,) = (one for one in gauges_of(drum) if one.name == line.flank)
+        gauge = _gauge(drum, line)
         lifts = gauge.lifts
         bend = gauge.line_bend(line.radius, _climb(parts, line.radius))
         step = math.sqrt(8.0 * FINE * tolerance / (bend + gauge.lever * float(lifts.bends(-gauge.side).max())))
@@ -109,7 +113,7 @@ def judged_line(
     slack = ROUNDING * max(float(np.abs(part).max()) for part in parts)
     sure = f"true within {length_words(found.remainder, '.2g')} {UNIT}"
     check = at_most(CONTOUR, found.off, tolerance, "mm", detail=f"{alone}; {sure}", slack=slack)
-    checks = [replace(check, at=degrees(found.at))]
+    checks = [replace(check, at=lifts.degrees(found.at))]
     follower = drum.follower
     given = None if limits.motion is None else follower.told(limits.motion)
     steep = found.steep * (1.0 + SLACK)
@@ -127,18 +131,40 @@ def _climb(parts: list[Array], radius: float) -> float:
     return radius * max(rates)
 
 
-def _uncovered(parts: list[Array], radius: float) -> float | None:
-    """A place x, mm, of the period that no line covers; None where the lines go round."""
-    turn, gap = TURN * radius, GAP * radius
-    spans = sorted((float(part[:, 0].min()), float(part[:, 0].max())) for part in parts)
-    if spans[-1][1] - spans[0][0] < turn - gap:
-        return spans[-1][1]
-    reached = spans[0][1]
-    for low, high in spans:
-        if low > reached + gap:
-            return reached
-        reached = max(reached, high)
+def _gauge(drum: DrumIntent, line: Developed) -> Gauge:
+    """The gauge of a line's flank."""
+    (gauge,) = (one for one in gauges_of(drum) if one.name == line.flank)
+    return gauge
+
+
+def _missing(parts: list[Array], drum: DrumIntent, line: Developed, tolerance: float) -> float | None:
+    """A place x, mm, at which no line is drawn and one should be; None where there is none.
+
+    A flank need not be drawn where another turn of the groove has taken it.
+    """
+    period = drum.follower.period
+    bare = _uncovered(parts, line.radius, period * line.radius)
+    if not bare or drum.follower.turns == 1 or line.flank == "pitch":
+        return bare[0][0] if bare else None
+    phi = Crossings(drum, gauges_of(drum), tolerance).standing(_gauge(drum, line), line.radius)
+    for low, high in bare:
+        ahead = np.remainder(phi - low / line.radius, period) * line.radius
+        if (ahead < high - low).any():
+            return low + float(ahead.min())
     return None
+
+
+def _uncovered(parts: list[Array], radius: float, whole: float) -> list[tuple[float, float]]:
+    """Stretches of x, mm, of the period, so long as a whole, mm, that no line covers."""
+    gap = GAP * radius
+    spans = sorted((float(part[:, 0].min()), float(part[:, 0].max())) for part in parts)
+    end = spans[0][0] + whole
+    reached, bare = spans[0][1], []
+    for low, high in [*spans, (end, end)]:
+        if low > reached + gap and reached < end:
+            bare.append((reached, min(low, end)))
+        reached = max(reached, high)
+    return bare
 
 
 def _laid(parts: list[Array], radius: float, step: float) -> _Line:
@@ -161,10 +187,10 @@ def _laid(parts: list[Array], radius: float, step: float) -> _Line:
 
 def _measured_pitch(parts: list[Array], drum: DrumIntent, radius: float, tolerance: float) -> _Measured:
     """The path on which the roller's axis meets the cylinder: its height tells the position itself."""
-    follower, lifts = drum.follower, Lifts(drum.follower.law)
+    follower, lifts = drum.follower, Lifts(drum.follower.law, drum.follower.turns)
     guide = follower.guide()
     bends = max(float(lifts.bends(side).max()) for side in (-1, 1))
-    swung = guide.axis(*lifts.at(np.linspace(0.0, TURN, TURNED)))
+    swung = guide.axis(*lifts.at(np.linspace(0.0, lifts.period, TURNED * lifts.turns)))
     slowest = 1.0 - float((np.abs(swung.y1) / np.sqrt(radius**2 - swung.y**2)).max())
     bend = guide.lever * (bends + lifts.steepest**2 * guide.lever * guide.bend) / slowest**3
     line = _laid(parts, radius, math.sqrt(8.0 * FINE * tolerance / max(bend, 1e-3 * radius)))
@@ -184,7 +210,7 @@ def _measured_pitch(parts: list[Array], drum: DrumIntent, radius: float, toleran
     told = follower.told(1.0)
     sizes = [float(np.abs(error).max()), room / guide.lever, float(error.min()), float(error.max())]
     most, rest, least, greatest, rms = (told * size for size in (*sizes, float(np.sqrt(np.mean(error**2)))))
-    motion = MotionError(most, degrees(float(theta[worst])), rest, least, greatest, rms, follower.unit)
+    motion = MotionError(most, lifts.degrees(float(theta[worst])), rest, least, greatest, rms, follower.unit)
     steep = told * math.hypot(1.0, guide.lever * lifts.steepest / slowest / radius) / float(np.abs(rate).min())
     return _Measured(float(off[k]), float(theta[k]), room, motion, steep)
 
@@ -192,7 +218,7 @@ def _measured_pitch(parts: list[Array], drum: DrumIntent, radius: float, toleran
 def _measured_flank(line: _Line, drum: DrumIntent, gauge: Gauge, radius: float, bend: float) -> _Measured:
     """A flank: how far it stands out at the worst angles of its points, and how high it holds the roller between."""
     points = np.stack([radius * np.cos(line.phi), radius * np.sin(line.phi), line.z], axis=-1)
-    worst = gauge.worst(points)
+    worst = gauge.worst(points, line.phi)
     off = gauge.off_line(worst, points, radius)
     room = 0.125 * bend * float((np.diff(line.phi)[line.joined] ** 2).max(initial=0.0))
     first, last = worst.theta[:-1][line.joined], worst.theta[1:][line.joined]
@@ -205,5 +231,5 @@ def _measured_flank(line: _Line, drum: DrumIntent, gauge: Gauge, radius: float, 
     rms = float(np.sqrt(np.mean(worst.height**2)))
     told = drum.follower.told(1.0) / gauge.lever
     most_, rest, least_, greatest, rms = (told * size for size in (value, room, low, high, rms))
-    motion = MotionError(most_, degrees(at), rest, least_, greatest, rms, drum.follower.unit)
+    motion = MotionError(most_, gauge.lifts.degrees(at), rest, least_, greatest, rms, drum.follower.unit)
     return _Measured(float(off[k]), float(worst.theta[k]), room, motion, told * gauge.by_line(1.0, radius))

@@ -25,7 +25,6 @@ import numpy as np
 
 from kin.cylindrical.grid import FINE, Grid
 from kin.cylindrical.within import holding
-from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
 
@@ -57,6 +56,7 @@ class Edges:
     worst    the points at their worst angles, (v,) each; of those that no edge ends at it may be nan
     flank    (n,) whether they belong to triangles of the flank, whose distance from the exact one is measured
     reached  (n,) whether the roller, with its ends, may touch them
+    beside   (n,) whether they are of other turns' walls, which must leave the roller without ends room
     corners  (t, 3) triangles that it may touch
     """
 
@@ -66,6 +66,7 @@ class Edges:
     b: Indices
     flank: Mask
     reached: Mask
+    beside: Mask
     corners: Indices
 
 
@@ -75,7 +76,7 @@ class Seen(NamedTuple):
     out      greatest height of the metal over the exact flank along z, mm, of what the roller reaches
     holds    (n,) for the angles of the grid: the roller stands at least so high over its intended place, mm
     least    (n,) likewise over all angles within half a step of them; -inf where nothing holds it
-    proud    greatest distance, mm, of the flank's surface out of the metal
+    proud    greatest distance, mm, of the flank's surface out of the metal, and of that of other turns beside it
     bare     greatest distance, mm, of the flank's surface into the metal, beside triangles along torn edges
     torn     (m,) numbers of edges that join different parts of a flank
     grid     the angles
@@ -118,8 +119,8 @@ def look(gauge: Gauge, edges: Edges, tolerance: float, angles: int) -> Seen:
 class _Best:
     """A greatest value so far, its angle, and the greatest bound of all that is settled."""
 
-    def __init__(self) -> None:
-        self.value, self.at, self.bound = -math.inf, math.nan, -math.inf
+    def __init__(self, period: float) -> None:
+        self.period, self.value, self.at, self.bound = period, -math.inf, math.nan, -math.inf
 
     def reached(self, values: Array, theta: Array) -> None:
         """Take in values (n,) that are reached at angles (n,)."""
@@ -135,32 +136,33 @@ class _Best:
     @property
     def peak(self) -> Peak:
         """The value with what the bounds leave open."""
-        return Peak(self.value, self.at % TURN, max(self.bound - self.value, 0.0))
+        return Peak(self.value, self.at % self.period, max(self.bound - self.value, 0.0))
 
 
 class _Look:
     """A look at edges: corners first, then points along them, block by block, then the parts that are left open."""
 
     def __init__(self, gauge: Gauge, edges: Edges, tolerance: float, angles: int) -> None:
-        self.gauge, self.near = gauge, FINE * tolerance
+        self.gauge, self.near, period = gauge, FINE * tolerance, gauge.lifts.period
         self.tear = TORN * tolerance
         self.grid = Grid.of(gauge, angles)
         self.holds, self.least = (np.full(len(self.grid), -np.inf) for _ in range(2))
-        self.out, self.proud, self.bare = _Best(), _Best(), _Best()
+        self.out, self.proud, self.bare = (_Best(period) for _ in range(3))
         self.open: list[_Parts] = []
         self.torn = np.zeros(len(edges.a), dtype=np.bool_)
 
         self.points, self.worst, a, b = edges.points, edges.worst, edges.a, edges.b
         turned = self.worst.theta[b] - self.worst.theta[a]
-        turned -= TURN * np.round(turned / TURN)
+        turned -= period * np.round(turned / period)
         back = turned < 0.0
         self.a, self.b, self.turned = np.where(back, b, a), np.where(back, a, b), np.abs(turned)
         self.flank, self.reached, self.corners = edges.flank, edges.reached, edges.corners
+        self.walled = edges.flank | edges.beside
 
     def seen(self) -> Seen:
         """All that the edges show."""
         self._corners(self.reached, self.out, self.worst.height, inside=True)
-        self._corners(self.flank, self.proud, -self.worst.distance)
+        self._corners(self.walled, self.proud, -self.worst.distance)
         self._corners(self.flank, self.bare, self.worst.distance)
         start, width = self.worst.theta[self.a], self.grid.width
         # an angle of the grid at which corners stand belongs to all edges there, whatever their rounding
@@ -199,7 +201,7 @@ class _Look:
         """Points along some edges, of each from its `first` angle of the grid, `count` of them."""
         grid, gauge, width = self.grid, self.gauge, self.grid.width
         a, b, turned = self.a[rows], self.b[rows], self.turned[rows]
-        flank, reached = self.flank[rows], self.reached[rows]
+        flank, reached, walled = self.flank[rows], self.reached[rows], self.walled[rows]
         start, way = self.points[a], self.points[b] - self.points[a]
         begin = self.worst.theta[a]
         own = np.repeat(np.arange(len(a)), count)
@@ -219,11 +221,12 @@ class _Look:
         height, more = np.where(known, height, -np.inf), np.where(known, more, np.inf)
         upright = height.copy()
 
-        needed = known & (height + np.where(known, more, 0.0) <= min(self.out.value, 0.0))
-        hard = np.flatnonzero((more > 0.1 * self.near) & (flank[own] | (reached[own] & ~needed)))
+        # what is not higher than the flank is not proud of it either
+        needless = known & (height + np.where(known, more, 0.0) <= min(self.out.value, 0.0))
+        hard = np.flatnonzero((more > 0.1 * self.near) & (flank[own] | ((reached | walled)[own] & ~needless)))
         if len(hard):
             places = np.stack([column[hard] for column in points], axis=1)
-            solved = gauge.worst(places)
+            solved = gauge.worst(places, theta[hard])
             tears = flank[own[hard]] & ~(solved.height <= height[hard] + self.tear)
             self.torn[rows.start + own[hard[tears]]] = True
             height[hard], distance[hard], more[hard] = solved.height, solved.distance, 0.0
@@ -232,7 +235,7 @@ class _Look:
         self._midway(k, points, upright, reached[own] & within, flank[own] & ~self.torn[rows][own])
         chosen = reached[own] & within & (more < np.inf)
         self.out.reached(height[chosen], theta[chosen])
-        self.proud.reached(-distance[flank[own]], theta[flank[own]])
+        self.proud.reached(-distance[walled[own]], theta[walled[own]])
         self.bare.reached(distance[flank[own]], theta[flank[own]])
         self._between(rows, (own, step, count), (share, theta, height + more, distance))
 
@@ -308,18 +311,18 @@ class _Look:
         first, last = (heights[i], distances[i]), (heights[i + 1], distances[i + 1])
         bends = self.gauge.bounds(bend, way[:, 2][edge] * part, flat[edge] * part, np.minimum(first[1], last[1]))
         out, proud = peak_between(first[0], last[0], bends[0]), peak_between(-first[1], -last[1], bends[1])
-        flank, reached = self.flank[rows][edge], self.reached[rows][edge]
-        near = (out <= self.out.value + self.near) | ~reached, (proud <= self.proud.value + self.near) | ~flank
+        walled, reached = self.walled[rows][edge], self.reached[rows][edge]
+        near = (out <= self.out.value + self.near) | ~reached, (proud <= self.proud.value + self.near) | ~walled
         closed = near[0] & near[1]
         self.out.settled(out[closed & reached])
-        self.proud.settled(proud[closed & flank])
+        self.proud.settled(proud[closed & walled])
         open_ = np.flatnonzero(~closed)
         if len(open_):
             edge, i = edge[open_], i[open_]
             pair = np.stack([i, i + 1], axis=1)
             ends = start[edge][:, None, :] + shares[pair][:, :, None] * way[edge][:, None, :]
             self._sorted(
-                self._bounded(ends, thetas[pair], heights[pair], distances[pair], (reached[open_], flank[open_]))
+                self._bounded(ends, thetas[pair], heights[pair], distances[pair], (reached[open_], walled[open_]))
             )
 
     def _strips(self) -> None:
@@ -333,7 +336,7 @@ class _Look:
     def _bounded(
         self, ends: Array, theta: Array, heights: Array, distances: Array, counts: tuple[Mask, Mask]
     ) -> _Parts:
-        """Parts of edges with their bounds; `counts` says which may be reached, and which are of the flank."""
+        """Parts of edges with their bounds; `counts` says which may be reached, and which are walls."""
         way = ends[:, 1] - ends[:, 0]
         flat = np.hypot(way[:, 0], way[:, 1])
         across = np.abs(way[:, None, 1] * np.cos(theta) - way[:, None, 0] * np.sin(theta)).max(axis=1)
@@ -369,7 +372,7 @@ class _Look:
     def _at_most(self, points: Array, theta: Array, heights: Array, limits: tuple[Array, Array]) -> Array:
         """Greatest F (n,) of points at angles with |y| between limits (n,), by that at any angle; -inf for none."""
         least, most = limits
-        r, phi = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
+        r, phi = np.hypot(points[:, 0], points[:, 1]), self.gauge.polar(points, theta)
         y = points[:, 1] * np.cos(theta) - points[:, 0] * np.sin(theta)
         # nan: nothing of it is within the roller's length; nor is what is too far across
         there = (most >= 0.0) & (least < self.gauge.reach)
@@ -421,7 +424,7 @@ class _Look:
             if len(parts.out) > MOST_OPEN:
                 break
             middle = parts.ends.mean(axis=1)
-            worst = self.gauge.worst(middle)
+            worst = self.gauge.worst(middle, parts.theta[:, 0])
             counts = parts.out > -np.inf, parts.proud > -np.inf
             self.out.reached(self._inside(middle, worst)[counts[0]], worst.theta[counts[0]])
             self.proud.reached(-worst.distance[counts[1]], worst.theta[counts[1]])

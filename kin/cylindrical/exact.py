@@ -13,6 +13,7 @@ import numpy as np
 
 from kin.contour.arcs import Arcs
 from kin.contour.holes import farthest
+from kin.cylindrical.crossings import Crossings
 from kin.cylindrical.edges import Peak
 from kin.cylindrical.faces import BLANK, BORE, BOTTOM, FINE, FLOOR, TOP, Body, Faces, Stands
 from kin.cylindrical.figures import exact_play
@@ -24,6 +25,7 @@ from kin.cylindrical.judge import (
     WATERTIGHT,
     Judged,
     contour_check,
+    led_checks,
     motion_check,
     plain_checks,
     play_check,
@@ -85,6 +87,9 @@ def verify_surfaces(path: Path, drum: DrumIntent, limits: Limits) -> DrumVerdict
 
 def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") -> DrumVerdict:
     """Judge a solid of exact surfaces, mm, as its file has it."""
+    if drum.follower.turns > 1:
+        why = "a groove of several turns is judged on triangles alone: give an STL"
+        return DrumVerdict(kind, (failed(CONTOUR, why, unit="mm", limit=limits.tolerance),), units=shell.units_mm)
     gauges = gauges_of(drum)
     checks = [count_check(WATERTIGHT, shell.faults(limits.tolerance))]
     verdicts, seen, play = [], [], None
@@ -92,9 +97,10 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
     try:
         found = _sorted(shell, drum, gauges, limits.tolerance)
         none, nothing = np.empty(0, dtype=np.bool_), Worst(*(np.empty(0) for _ in range(4)))
-        stands = tuple(Stands(gauge, none, none, nothing) for gauge in gauges)
+        body = Body(np.empty((0, 3)), np.empty((0, 3), dtype=np.intp))
+        stands = tuple(Stands(gauge, body, none, none, nothing, none, none) for gauge in gauges)
         kinds = Faces((), np.empty(0, dtype=np.intp), found.off, stands)
-        job = Judged(Body(np.empty((0, 3)), np.empty((0, 3), dtype=np.intp)), kinds, drum, limits, slack)
+        job = Judged(body, kinds, drum, limits, slack)
         checks += plain_checks(job)
         for gauge in gauges:
             flank, own_seen, own = _flank(job, gauge, found.flanks[gauge.name])
@@ -104,8 +110,10 @@ def judge_shell(shell: Shell, drum: DrumIntent, limits: Limits, kind: str = "") 
         both = [each for each, flank in zip(seen, verdicts, strict=True) if each is not None and flank.motion]
         if len(both) > 1:
             pinched = both[0].holds + both[1].holds
-            play, check = play_check(job, pinched, _own_play(drum, ANGLES) - pinched)
+            free = _own_play(drum, ANGLES) - pinched
+            play, check = play_check(job, pinched, free, np.arange(ANGLES) * np.float64(TURN / ANGLES))
             checks.append(check)
+        checks += led_checks(Crossings(drum, gauges, limits.tolerance))
         checks.append(volume_check(drum, gauges, (shell.volume, shell.area), limits.tolerance))
     except UnsettledError as error:
         checks.append(failed(CONTOUR, str(error), unit="mm", limit=limits.tolerance))

@@ -22,9 +22,11 @@ from kin.cylindrical.intent import End
 from kin.cylindrical.roller import BESIDE, Place, Worst
 from kin.numeric.angles import TURN
 from kin.numeric.arrays import paired
-from kin.numeric.records import dataclass
+from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from kin.contour.holes import Hole
@@ -42,10 +44,14 @@ NEAR = 0.1  # of the radius of a roller: what is farther below its flank holds i
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A mesh, mm, as if not mirrored: corners' places (v, 3), and triangles by corner numbers (t, 3)."""
+    """A mesh, mm, as if not mirrored: corners' places (v, 3), and triangles by corner numbers (t, 3).
+
+    Of one that is laid over several turns of a motion, `laid` (v,) are the corners' polar angles there, rad.
+    """
 
     points: Array
     corners: Indices
+    laid: Array | None = None
 
     @staticmethod
     def of(mesh: Mesh, *, mirrored: bool) -> Body:
@@ -62,7 +68,39 @@ class Body:
     @cached_property
     def phi(self) -> Array:
         """Polar angles (v,) of corners, rad."""
-        return np.arctan2(self.points[:, 1], self.points[:, 0])
+        return np.arctan2(self.points[:, 1], self.points[:, 0]) if self.laid is None else self.laid
+
+    @cached_property
+    def wide(self) -> Mask:
+        """Triangles (t,) whose corners are far apart round the axis."""
+        first, *others = self.each(self.phi)
+        turn = np.maximum.reduce([np.abs(np.remainder(one - first + np.pi, TURN) - np.pi) for one in others])
+        return np.asarray(turn > BESIDE)
+
+    def over(self, turns: int, gauges: Sequence[Gauge]) -> tuple[Body, Indices]:
+        """The body laid over so many turns, and the number (k,) of the triangle that each of its triangles is.
+
+        A drum of several turns is one turn of a drum that goes round as often: each triangle stands in it once a turn,
+        as far as it is near the way of the rollers there.
+        """
+        if turns == 1:
+            return self, np.arange(len(self.corners))
+        count, start = len(self.points), self.corners[:, 0]
+        ahead = np.round((self.phi[start][:, None] - self.phi[self.corners]) / TURN).astype(np.intp)
+        corners, numbers = [], []
+        z, far = self.points[:, 2], np.maximum.reduce(self.each(self.r)) >= min(gauge.floor for gauge in gauges)
+        least = [[gauge.most(self.phi + TURN * turn, z) for turn in range(turns)] for gauge in gauges]
+        for turn in range(turns):
+            near = far.copy()
+            for gauge, most in zip(gauges, least, strict=True):
+                near &= (np.maximum.reduce(self.each(most[turn])) >= -NEAR * gauge.radius) | self.wide
+            number = np.flatnonzero(near)
+            corners.append(self.corners[number] + count * ((turn + ahead[number]) % turns))
+            numbers.append(number)
+        used, named = np.unique(np.concatenate(corners), return_inverse=True)
+        own = used % count
+        laid = self.phi[own] + TURN * (used // count)
+        return Body(self.points[own], named.reshape(-1, 3), laid), np.concatenate(numbers)
 
     def each(self, values: NDArray[Entry]) -> tuple[NDArray[Entry], NDArray[Entry], NDArray[Entry]]:
         """Values of the three corners (t,) each, out of those of all corners (v,)."""
@@ -104,25 +142,37 @@ class Faces:
         """Triangles (t,) of a face."""
         return np.asarray(self.kind == self.kinds.index(name))
 
-    def edges(self, body: Body, stands: Stands) -> Edges:
-        """Edges that a roller may touch, or that are of its flank."""
-        a, b, (flank, reached) = body.edges_of(self.of(stands.gauge.name), stands.touched)
-        return Edges(body.points, stands.worst, a, b, flank, reached, body.corners[stands.touched])
-
 
 @dataclass(frozen=True, eq=False)
 class Stands:
     """How a body stands to a gauge.
 
+    body     the file's, laid over the turns of the motion
     touched  triangles (t,) that the roller may touch: within its reach, and high enough
     across   triangles (t,) within its reach that its axis passes through
     worst    corners (v,) at their worst angles, as far as they are asked for; nan for others
+    flank    triangles (t,) of the gauge's flank
+    beside   triangles (t,) of flanks in other turns, which the roller without ends must leave room
     """
 
     gauge: Gauge
+    body: Body
     touched: Mask
     across: Mask
     worst: Worst
+    flank: Mask
+    beside: Mask
+
+    def among(self, walls: Mask) -> Stands:
+        """The same where the marked triangles (t,) are walls of all turns of a groove."""
+        within = np.maximum.reduce(self.body.each(self.body.r)) >= self.gauge.inner
+        return replace(self, across=self.across & (within | walls), beside=self.beside & walls & ~self.flank)
+
+    def edges(self) -> Edges:
+        """Edges that the roller may touch, that are of its flank, or beside it."""
+        a, b, (flank, reached, beside) = self.body.edges_of(self.flank, self.touched, self.beside)
+        corners = self.body.corners[self.touched]
+        return Edges(self.body.points, self.worst, a, b, flank, reached, beside, corners)
 
 
 def faces_of(body: Body, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance: float) -> Faces:
@@ -135,19 +185,38 @@ def faces_of(body: Body, drum: DrumIntent, gauges: tuple[Gauge, ...], tolerance:
         near = edged[row[edged] <= tolerance]
         row[near] = np.maximum(row[near], _inside(body, drum, name, body.corners[near]))
     kind, least = offs.argmin(axis=0), offs.min(axis=0)
-    rest = np.flatnonzero(least > tolerance)
-    bent = np.isin(rest, edged)  # only the inside shows that they are of none of the plain faces
-    stands = tuple(_stands(body, gauge, rest) for gauge in gauges)
-    for number, own in enumerate(stands, len(names)):
-        off = _off_flank(own.gauge, own.worst)
-        away = np.maximum.reduce([off[column] for column in body.corners[rest].T])
-        within = _between(body, body.corners[rest[bent]])
-        inside = _off_flank(own.gauge, own.gauge.worst(within.reshape(-1, 3))).reshape(within.shape[:2])
-        away[bent] = np.maximum(away[bent], inside.max(axis=1, initial=0.0))
-        nearer = away < least[rest]
-        kind[rest[nearer]], least[rest[nearer]] = number, away[nearer]
+    laid, base = body.over(drum.follower.turns, gauges)
+    rest = np.flatnonzero((least > tolerance)[base])
+    # only the inside shows that they are of none of the plain faces
+    bent = np.flatnonzero(np.isin(base[rest], edged))
+    stands = [_stands(laid, gauge, rest) for gauge in gauges]
+    aways = np.stack([_aways(own, rest, bent) for own in stands])
+    nearest = least.copy()
+    np.minimum.at(nearest, base[rest], aways.min(axis=0))
+    free = nearest < least
+    for number, (own, away) in enumerate(zip(stands, aways, strict=True), len(names)):
+        which = np.flatnonzero((away == nearest[base[rest]]) & free[base[rest]])
+        _, first = np.unique(base[rest[which]], return_index=True)  # in one turn alone
+        chosen = rest[which[first]]
+        own.flank[chosen] = True
+        kind[base[chosen]], free[base[chosen]] = number, False
+    # beside one turn of a groove the walls of its others leave its roller room down to the floor
+    walls = (kind >= len(names))[base] & (drum.follower.turns > 1)
+    stands = [own.among(walls) for own in stands]
     found = {name: _farthest(body, drum, (name, tolerance), kind == k, offs[k]) for k, name in enumerate(names)}
-    return Faces((*names, *(gauge.name for gauge in gauges)), kind, found, stands)
+    return Faces((*names, *(gauge.name for gauge in gauges)), kind, found, tuple(stands))
+
+
+def _aways(stands: Stands, rest: Indices, bent: Indices) -> Array:
+    """Distance (n,), mm, of triangles by their numbers (n,) from a flank, with their inside if they are `bent`."""
+    body, gauge = stands.body, stands.gauge
+    corners, off = body.corners[rest], _off_flank(gauge, stands.worst)
+    away: Array = np.maximum.reduce([off[column] for column in corners.T])
+    within = _between(body, corners[bent])
+    about = np.repeat(body.phi[corners[bent, 0]], within.shape[1])
+    inside = _off_flank(gauge, gauge.worst(within.reshape(-1, 3), about)).reshape(within.shape[:2])
+    away[bent] = np.maximum(away[bent], inside.max(axis=1, initial=0.0))
+    return away
 
 
 def _between(body: Body, corners: Indices) -> Array:
@@ -195,18 +264,16 @@ def _stands(body: Body, gauge: Gauge, rest: Indices) -> Stands:
     signs = body.each(above)
     within = np.maximum.reduce(body.each(body.r)) >= gauge.inner
     metal = ~np.logical_or.reduce(signs)
-    across = within & ~metal & ~np.logical_and.reduce(signs)
-    first, *others = body.each(body.phi)
-    turn = np.maximum.reduce([np.abs(np.remainder(one - first + np.pi, TURN) - np.pi) for one in others])
-    near = (np.maximum.reduce(body.each(gauge.most(body.phi, z))) >= -NEAR * gauge.radius) | (turn > BESIDE)
+    across = ~metal & ~np.logical_and.reduce(signs)
+    near = (np.maximum.reduce(body.each(gauge.most(body.phi, z))) >= -NEAR * gauge.radius) | body.wide
     touched = within & metal & near
     corner = np.zeros(len(z), dtype=np.bool_)
     corner[body.corners[rest]] = corner[body.corners[touched]] = True
     asked = np.flatnonzero(corner & ~above & (body.r > 0.0))
     worst = Worst(*(np.full(len(z), np.nan) for _ in range(4)))
-    for row, values in zip(worst, gauge.worst(body.points[asked]), strict=True):
+    for row, values in zip(worst, gauge.worst(body.points[asked], body.phi[asked]), strict=True):
         row[asked] = values
-    return Stands(gauge, touched, across, worst)
+    return Stands(gauge, body, touched, across, worst, np.zeros(len(metal), dtype=np.bool_), metal & near)
 
 
 def _plain(body: Body, drum: DrumIntent) -> dict[str, Array]:

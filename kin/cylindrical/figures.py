@@ -223,7 +223,7 @@ def rib_thickness(drum: DrumIntent) -> Thickness:
             far = np.full(len(phi), radius)
             return upper.surface(phi, far) - lower.surface(phi, far)
 
-        phi = _least_place(thick)
+        phi = _least_place(thick, TURN)
         (height,) = upper.surface(np.array([phi]), np.array([radius]))
         point = np.array([[radius * math.cos(phi), radius * math.sin(phi), height]])
         value = float(thick(np.array([phi]))[0])
@@ -232,10 +232,10 @@ def rib_thickness(drum: DrumIntent) -> Thickness:
     return best
 
 
-def _least_place(function: Callable[[Array], Array], angles: int = ANGLES) -> float:
-    """Angle, rad, at which a function of angles (n,) of period 2 pi is least, by ever closer grids."""
+def _least_place(function: Callable[[Array], Array], period: float, angles: int = ANGLES) -> float:
+    """Angle, rad, at which a function of angles (n,) of a period is least, by ever closer grids."""
     width = TURN / angles
-    at = width * np.arange(angles, dtype=np.float64)
+    at = width * np.arange(round(period / width), dtype=np.float64)
     for _ in range(ROUNDS):
         best = float(at[int(np.argmin(function(at)))])
         at = best + width * np.linspace(-1.0, 1.0, ACROSS)
@@ -263,10 +263,11 @@ def exact_play(drum: DrumIntent, theta: Array) -> Array:
 
 
 def plays(drum: DrumIntent) -> Plays:
-    """Least and greatest play of the follower between exact flanks over all shaft angles."""
-    least = _least_place(lambda theta: exact_play(drum, theta), ANGLES // 4)
-    most = _least_place(lambda theta: -exact_play(drum, theta), ANGLES // 4)
-    return Plays(*(At(float(exact_play(drum, np.array([at]))[0]), at % TURN) for at in (least, most)))
+    """Least and greatest play of the follower between exact flanks over all shaft angles, as if no turns crossed."""
+    period = drum.follower.period
+    least = _least_place(lambda theta: exact_play(drum, theta), period, ANGLES // 4)
+    most = _least_place(lambda theta: -exact_play(drum, theta), period, ANGLES // 4)
+    return Plays(*(At(float(exact_play(drum, np.array([at]))[0]), at % period) for at in (least, most)))
 
 
 def forces(follower: DrumFollower, load: float, rho: float, side: Side = -1) -> Forces:

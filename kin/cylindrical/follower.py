@@ -55,6 +55,11 @@ class DrumFollower:
     taper         half angle of a conical roller, rad: it grows outwards, and has its `radius` at the place `at`, mm
     arm           on which the roller swings; its angle is psi0 + S, where sin psi0 = (level - pivot)/length
     turns         of the drum after which the motion repeats
+    shoe          length, mm, of a shoe that turns freely about its pin in place of a roller, between two arcs from tip
+                  to tip that are twice the radius apart in the middle; None for a roller
+
+    Raises ValueError for turns below 1, and for a shoe that is not longer than wide, or not led by a slide whose pin
+    is a cylinder on a radius.
     """
 
     radius: float
@@ -67,6 +72,17 @@ class DrumFollower:
     at: float | None = None
     arm: Arm | None = None
     turns: int = 1
+    shoe: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.turns < 1:
+            raise ValueError(f"a motion repeats after a whole number of turns, not {self.turns}")
+        if self.shoe is None:
+            return
+        if not self.shoe > 2.0 * self.radius:
+            raise ValueError(f"a shoe of {self.shoe:.6g} mm is not longer than it is wide")
+        if self.arm is not None or self.offset or self.taper:
+            raise ValueError("a shoe is on a slide, its pin a cylinder on a radius of the drum")
 
     @property
     def period(self) -> float:
@@ -75,11 +91,11 @@ class DrumFollower:
 
     @cached_property
     def cells(self) -> Array:
-        """Angles (m + 1,), rad, rising from 0 to 2 pi, between which the law is all but a cubic.
+        """Angles (m + 1,), rad, rising over the period from 0, between which the law is all but a cubic.
 
         Raises UnsettledError for a motion that is too rough.
         """
-        return cubic_cells(self.law, self.law.breaks, NEAR / self.guide().lever)
+        return cubic_cells(self.law, self.law.breaks, NEAR / self.guide().lever, (0.0, self.period))
 
     @property
     def growth(self) -> float:

@@ -1,4 +1,4 @@
-"""Angles over a turn, equally far apart, with all that a roller does at them."""
+"""Angles over the period of a motion, equally far apart, with all that a roller does at them."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 FINE = 0.05  # of the tolerance: what angles between two of the grid may cost
-LEAST, MOST = 720, 65_536  # angles of the grid
+LEAST, MOST = 720, 65_536  # angles of the grid, of each turn
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Angles k w (n,), rad, over a turn, with the lift, mm, slope and bend, sine and cosine at them.
+    """Angles k w (n,), rad, over the period, with the lift, mm, slope and bend, sine and cosine at them.
 
     The rows of `after` are lift, sine and cosine midway to the next.
     """
@@ -37,8 +37,8 @@ class Grid:
 
     @staticmethod
     def of(gauge: Gauge, count: int) -> Grid:
-        """So many angles over the turn."""
-        width = TURN / count
+        """So many angles over the period."""
+        width = gauge.lifts.period / count
         at = width * np.arange(count, dtype=np.float64)
         after = at + 0.5 * width
         midway = np.stack([gauge.lifts.at(after)[0], np.sin(after), np.cos(after)])
@@ -53,4 +53,4 @@ def angles_for(gauges: Sequence[Gauge], tolerance: float) -> int:
     count = LEAST
     for gauge in gauges:
         count = max(count, math.ceil(TURN / math.sqrt(8.0 * FINE * tolerance / gauge.fastest)))
-    return min(count, MOST)
+    return min(count, MOST) * gauges[0].lifts.turns

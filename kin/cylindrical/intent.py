@@ -71,6 +71,8 @@ class DrumIntent:
     shortened  an undercut is cut off: what is lost is told; else an undercut drum has no exact flank and is refused
     mirrored   the file is mirrored, y -> -y (rotation ccw), bore too
     mm         mm in a unit of a development's DXF (solids are always in mm)
+
+    Raises ValueError for a motion of several turns, and for a shoe, on anything but a groove.
     """
 
     follower: DrumFollower
@@ -81,6 +83,10 @@ class DrumIntent:
     shortened: bool = False
     mirrored: bool = False
     mm: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.track, Groove) and (self.follower.turns > 1 or self.follower.shoe is not None):
+            raise ValueError("motions of several turns, and shoes, are led by a groove")
 
     @property
     def floor(self) -> float:

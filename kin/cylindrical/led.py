@@ -20,9 +20,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from kin.cylindrical.lifts import BINS, widened
+from kin.cylindrical.lifts import widened
 from kin.cylindrical.roller import BESIDE, WITHIN, Gauge, Held, Near, Place, Stand
-from kin.numeric.angles import TURN
 from kin.numeric.errors import UnsettledError
 from kin.numeric.records import dataclass
 
@@ -216,7 +215,7 @@ class LedGauge(Gauge):
 
     def least_bend(self, phi: Array, r: Array) -> Array:
         """Lower bound (n,) of how fast F of points falls on both sides of its peak, mm per rad^2; below 0: unknown."""
-        bends: Array = self._falling(r) - self._bends[np.floor(phi * (BINS / TURN)).astype(np.intp) % BINS]
+        bends: Array = self._falling(r) - self._bends[self.lifts.part(phi)]
         return bends
 
     def _falling(self, r: Array) -> Array:
@@ -236,7 +235,7 @@ class LedGauge(Gauge):
     def _single(self, theta: Array, half: Array, place: Place) -> Mask:
         """Whether F of points has one peak at most in cells (n,) about angles, beside corners of the lift."""
         bends = widened(self._own_bends, float(half.max(initial=0.0)))
-        single: Mask = self._falling(place.r) > bends[np.floor(theta * (BINS / TURN)).astype(np.intp) % BINS]
+        single: Mask = self._falling(place.r) > bends[self.lifts.part(theta)]
         return single
 
     @cached_property
@@ -254,7 +253,7 @@ class LedGauge(Gauge):
     def _rooms(self) -> Array:
         reach = math.asin(min(1.0, self.reach / self.floor)) + BESIDE
         highest = self.side * self.lifts.highest_near(self.side, reach)
-        up = self.guide.axis(highest, np.zeros(BINS), np.zeros(BINS)).z
+        up = self.guide.axis(highest, np.zeros_like(highest), np.zeros_like(highest)).z
         rooms: Array = self.side * up + self.largest
         return rooms
 
@@ -292,7 +291,7 @@ class LedGauge(Gauge):
             if float(np.abs(z - before).max(initial=0.0)) <= LEVEL:
                 break
             if step == 0:
-                theta = self.worst(np.stack([x, y, z], axis=-1)).theta
+                theta = self.worst(np.stack([x, y, z], axis=-1), phi).theta
             else:
                 theta = self._climbed(theta, Place(phi, r, z))
         return z
@@ -342,9 +341,9 @@ class LedGauge(Gauge):
             touch.gives, self._rate(y, along, touch, slope)[0], y, along, self.side * (self.axis(theta) - points[:, 2])
         )
 
-    def worst(self, points: Array) -> Worst:
+    def worst(self, points: Array, about: Array | None = None) -> Worst:
         """Points (n, 3) at their worst angles; the height is -inf where an arm is too short to touch them."""
-        found = super().worst(points)
+        found = super().worst(points, about)
         return found._replace(height=np.where(np.isnan(found.height), -np.inf, found.height))
 
     def _distance(self, theta: Array, stand: Stand) -> Array:
@@ -431,7 +430,8 @@ class LedGauge(Gauge):
         across, up, along = sizes[0], np.abs(sizes[1]), sizes[2]
         way = ends[:, 1] - ends[:, 0]
         length = np.hypot(across, up)
-        turned = np.abs(np.remainder(theta[:, 1] - theta[:, 0] + 0.5 * TURN, TURN) - 0.5 * TURN)
+        half = 0.5 * self.lifts.period
+        turned = np.abs(np.remainder(theta[:, 1] - theta[:, 0] + half, 2.0 * half) - half)
         worst = np.zeros(len(ends))
         for k in (0, 1):
             sine, cosine = np.sin(theta[:, k]), np.cos(theta[:, k])
@@ -454,12 +454,12 @@ class LedGauge(Gauge):
                 bend = self._bend(t, u, lean, size)
             worst = np.maximum(worst, np.where((lean[1] > 0.05) & (size > 0.0), bend, np.inf))
         stuck = np.flatnonzero(worst == np.inf)
-        worst[stuck[self._deep(ends[stuck, 0]) > np.hypot(length, along)[stuck]]] = 0.0
+        worst[stuck[self._deep(ends[stuck, 0], theta[stuck, 0]) > np.hypot(length, along)[stuck]]] = 0.0
         return worst, self._round(across, up, least)
 
-    def _deep(self, points: Array) -> Array:
+    def _deep(self, points: Array, about: Array) -> Array:
         """Lower bound (n,) of the distance, mm, of points (n, 3) from all rollers: deep ones are in no roller's way."""
-        r, phi = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
+        r, phi = np.hypot(points[:, 0], points[:, 1]), self.polar(points, about)
         reach = np.arcsin(np.minimum(self.reach / np.maximum(r, self.reach), 1.0))
         deep = np.full(len(r), np.inf)
         for share in np.linspace(-1.0, 1.0, ABOUT):

@@ -1,7 +1,8 @@
-"""The intended lift over a turn as a row of cubics, for many angles at a time, and proved bounds of its derivatives."""
+"""The intended lift over its period as a row of cubics, for many angles at once; proved bounds of its derivatives."""
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from kin.numeric.records import dataclass, replace
 
 if TYPE_CHECKING:
     from kin.law.piecewise import Piecewise
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 NEAR = 1e-10  # mm: cubics are proved to be so near the law
 BINS = 2048  # parts of a turn, of each of which the greatest second derivative is known
@@ -22,19 +23,41 @@ VELOCITY = 1e-9  # mm per rad: a jump of the velocity below this is rounding
 
 @dataclass(frozen=True, eq=False)
 class Lifts:
-    """A law of period 2 pi, mm over rad, with its cubics. Raises UnsettledError, when asked, for one too rough."""
+    """A law, mm over rad, whose period is so many turns, with its cubics.
+
+    Raises UnsettledError, when asked, for one too rough.
+    """
 
     law: Piecewise
+    turns: int = 1
+
+    @property
+    def period(self) -> float:
+        """Angle, rad, after which the lift repeats."""
+        return TURN * self.turns
+
+    def degrees(self, angle: float) -> float:
+        """An angle, rad, as degrees of the period, from 0 up to 360 for each of its turns."""
+        return degrees_over(angle, self.turns)
+
+    @property
+    def parts(self) -> int:
+        """Number of equal parts of the period, of each of which the greatest derivatives are known."""
+        return BINS * self.turns
+
+    def part(self, theta: Array) -> Indices:
+        """Number (n,) of the part of the period that angles (n,), rad, lie in."""
+        return np.floor(theta * (BINS / TURN)).astype(np.intp) % self.parts
 
     @cached_property
     def round(self) -> Piecewise:
         """The law over any number of turns."""
-        return self.law if self.law.period is not None else replace(self.law, period=TURN)
+        return self.law if self.law.period is not None else replace(self.law, period=self.period)
 
     @cached_property
     def nodes(self) -> Array:
-        """Angles (m + 1,), rad, from 0 to 2 pi, between which the law is all but a cubic."""
-        return cubic_cells(self.law, self.law.breaks, NEAR)
+        """Angles (m + 1,), rad, over the period from 0, between which the law is all but a cubic."""
+        return cubic_cells(self.law, self.law.breaks, NEAR, (0.0, self.period))
 
     @cached_property
     def _cubics(self) -> Array:
@@ -48,7 +71,7 @@ class Lifts:
 
     def at(self, theta: Array) -> tuple[Array, Array, Array]:
         """Lift, mm, its slope and bend (n,) each, per rad and rad^2, at angles (n,), rad, of any turn."""
-        folded = theta - TURN * np.floor(theta / TURN)
+        folded = theta - self.period * np.floor(theta / self.period)
         cell = np.minimum(np.searchsorted(self.nodes, folded, side="right") - 1, len(self.nodes) - 2)
         x = folded - self.nodes[cell]
         a, b, c, d = (row[cell] for row in self._cubics)
@@ -86,34 +109,41 @@ class Lifts:
         return float(np.abs(self.law.jumps(1)[1][1]).max()) if len(self.corners) else 0.0
 
     def bends(self, side: int) -> Array:
-        """Upper bounds (BINS,) of side times the bend, mm per rad^2, over each part of a turn, beside its corners."""
+        """Upper bounds (p,) of side times the bend, mm per rad^2, over each part of the period, beside its corners."""
         return self._greatest(side, 2)
 
     def bends_near(self, side: int, reach: float) -> Array:
         """The same over parts that are longer by `reach`, rad, at both ends; infinite where the velocity jumps."""
         bins = self.bends(side)
-        bins[np.floor(self.corners * (BINS / TURN)).astype(np.intp) % BINS] = np.inf
+        bins[self.part(self.corners)] = np.inf
         return widened(bins, reach)
 
     def highest_near(self, side: int, reach: float) -> Array:
-        """Upper bounds (BINS,) of side times the lift, mm, over parts that are longer by `reach`, rad, at both ends."""
+        """Upper bounds (p,) of side times the lift, mm, over parts that are longer by `reach`, rad, at both ends."""
         return widened(self._greatest(side, 0), reach)
 
     def _greatest(self, side: int, order: int) -> Array:
-        """Upper bounds (BINS,) of side times a derivative over each part of a turn."""
+        """Upper bounds (p,) of side times a derivative over each part of the period."""
         low, high = self.enclosed
         row = high[order] if side > 0 else -low[order]
         width = TURN / BINS
-        first = np.minimum(np.floor(self.nodes[:-1] / width).astype(np.intp), BINS - 1)
-        last = np.minimum(np.floor(self.nodes[1:] / width).astype(np.intp), BINS - 1)
-        bins = np.full(BINS, -np.inf)
+        first = np.minimum(np.floor(self.nodes[:-1] / width).astype(np.intp), self.parts - 1)
+        last = np.minimum(np.floor(self.nodes[1:] / width).astype(np.intp), self.parts - 1)
+        bins = np.full(self.parts, -np.inf)
         for step in range(int((last - first).max()) + 1):
             np.maximum.at(bins, np.minimum(first + step, last), row)
         return bins
 
 
+def degrees_over(angle: float, turns: int) -> float:
+    """An angle, rad, as degrees from 0 up to 360 for each of so many turns."""
+    whole = 360.0 * turns
+    turned = math.degrees(angle) % whole
+    return 0.0 if turned >= whole else turned
+
+
 def widened(bins: Array, reach: float) -> Array:
-    """Greatest of the parts of a turn (BINS,) within `reach`, rad, of each."""
+    """Greatest of the parts of a period (p,), BINS a turn, within `reach`, rad, of each."""
     more = min(int(reach * (BINS / TURN)) + 1, BINS // 2 - 1)
     padded = np.concatenate([bins[-more:], bins, bins[:more]])
     return np.asarray(np.lib.stride_tricks.sliding_window_view(padded, 2 * more + 1).max(axis=1))

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.cylindrical.lifts import BINS, widened
+from kin.cylindrical.lifts import widened
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
 
@@ -176,8 +176,7 @@ class Gauge:
 
     def least_bend(self, phi: Array, r: Array) -> Array:
         """Lower bound (n,) of how fast F of points falls on both sides of its peak, mm per rad^2; below 0: unknown."""
-        place = np.floor(phi * (BINS / TURN)).astype(np.intp) % BINS
-        bends: Array = (r * r - 2.0 * self.widest**2) / self.radius - self._bends[place]
+        bends: Array = (r * r - 2.0 * self.widest**2) / self.radius - self._bends[self.lifts.part(phi)]
         return bends
 
     @cached_property
@@ -187,7 +186,7 @@ class Gauge:
 
     def most(self, phi: Array, z: Array) -> Array:
         """Upper bound (n,) of F, mm, of points at polar angles within BESIDE, rad, of phi (n,), at heights z (n,)."""
-        most: Array = self._rooms[np.floor(phi * (BINS / TURN)).astype(np.intp) % BINS] - self.side * z
+        most: Array = self._rooms[self.lifts.part(phi)] - self.side * z
         return most
 
     def beyond(self, place: Place) -> Array:
@@ -198,7 +197,7 @@ class Gauge:
     def surface(self, phi: Array, r: Array) -> Array:
         """Height (n,), mm, of the exact flank at polar angles and radii (n,)."""
         points = np.stack([r * np.cos(phi), r * np.sin(phi), np.zeros_like(r)], axis=-1)
-        height: Array = self.side * self.worst(points).height
+        height: Array = self.side * self.worst(points, phi).height
         return height
 
     def aside(self, theta: Array) -> Array:
@@ -293,12 +292,13 @@ class Gauge:
         (y, _, v), (y1, _, v1) = (self._across(list(own.T), lift, sine, cosine) for own in ends)
         return best_share(self.radius, (y, y1), (v, v1), shares)
 
-    def worst(self, points: Array) -> Worst:
+    def worst(self, points: Array, about: Array | None = None) -> Worst:
         """Points (n, 3) at their worst angles; of points within the roller's reach of the cam's axis nothing is known.
 
-        The distance is good where it is small beside the radius.
+        The distance is good where it is small beside the radius. Where the motion repeats after several turns, the
+        angle is sought within half a turn of `about` (n,), rad.
         """
-        phi, r = np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1])
+        phi, r = self.polar(points, about), np.hypot(points[:, 0], points[:, 1])
         place = Place(phi, r, points[:, 2])
         bend = self.least_bend(phi, r)
         theta = self._climbed(self._guessed(phi, r), place)
@@ -307,6 +307,12 @@ class Gauge:
             theta[many] = self._sought(place.take(many))
         stand = self.stand(points, theta)
         return Worst(theta, stand.gives, self._distance(theta, stand), np.maximum(bend, 0.0))
+
+    @staticmethod
+    def polar(points: Array, about: Array | None = None) -> Array:
+        """Polar angles (n,), rad, of points (n, 3), in the turn that brings them nearest to angles `about` (n,)."""
+        phi: Array = np.arctan2(points[:, 1], points[:, 0])
+        return phi if about is None else phi + TURN * np.round((about - phi) / TURN)
 
     def _distance(self, theta: Array, stand: Stand) -> Array:
         """Distance (n,), mm, of points from the flank, into the metal, near angles where F is greatest.
@@ -406,8 +412,7 @@ class Gauge:
     def _curving(self, theta: Array, half: Array) -> Array:
         """Upper bound (n,) of the second derivative of F over cells about angles, beside corners of the lift."""
         bends = widened(self._own_bends, float(half.max(initial=0.0)))
-        place = np.floor(theta * (BINS / TURN)).astype(np.intp) % BINS
-        return np.maximum(bends + self._hollow, 0.0)[place]
+        return np.maximum(bends + self._hollow, 0.0)[self.lifts.part(theta)]
 
     @cached_property
     def _own_bends(self) -> Array:
@@ -422,8 +427,9 @@ class Gauge:
 
     def _cornered(self, theta: Array, half: Array) -> Mask:
         held = np.zeros(len(theta), dtype=np.bool_)
+        period = self.lifts.period
         for corner in self.lifts.corners:
-            held |= np.abs((theta - corner + math.pi) % TURN - math.pi) <= half
+            held |= np.abs((theta - corner + 0.5 * period) % period - 0.5 * period) <= half
         return held
 
 

@@ -76,7 +76,7 @@ def _halved(gauge: Gauge, points: Array, theta: Array) -> tuple[Array, Array, Wo
     first = np.argmax(np.einsum("nkx,nkx->nk", ways, ways) - along**2, axis=1)
     last = (first + 1) % 3
     middle = 0.5 * (points[rows, first] + points[rows, last])
-    worst = gauge.worst(middle)
+    worst = gauge.worst(middle, theta[rows, first])
     halves, angles = [], []
     for corner in (first, last):
         half, own = points.copy(), theta.copy()

@@ -65,12 +65,15 @@ class FlankVerdict:
     motion          of the roller on it; of an upper flank of a groove that of its gauge, larger by the clearance
     measured_error  greatest distance of the file's surface from the exact flank, mm
     pieces          triangles or polynomial patches of the file on this flank; None of a line
+    free            stretches of the shaft angle, degrees, in which a crossing leaves the flank nothing that carries:
+                    the motion is judged beside them; the last may go on over the end of the period
     """
 
     name: str
     motion: MotionError | None = None
     measured_error: float | None = None
     pieces: int | None = None
+    free: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,8 +82,8 @@ class DrumVerdict:
 
     kind    name of the file's format: stl, ply, 3mf, step, dxf
     checks  of a solid: watertight, contour and motion (one for each flank), form-closure, floor, blank, ends, bore,
-            volume; of a development: units, contour, motion (one for each line); or a single one that says why the
-            file cannot be read. Places are shaft angles, degrees
+            volume; of a motion of several turns crossings, of a shoe shoe; of a development: units, contour, motion
+            (one for each line); or a single one that says why the file cannot be read. Places are shaft angles, degrees
     flanks  lower and upper, as far as the track has them; none where the file cannot be read
     play    in a groove, or of two rollers about a rib; None with one flank
     units   mm in a unit of the file as it was read

@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.numeric.angles import TURN
-
 if TYPE_CHECKING:
     from kin.cylindrical.grid import Grid
     from kin.cylindrical.roller import Gauge
@@ -32,11 +30,12 @@ def holding(gauge: Gauge, grid: Grid, corners: Array, theta: Array, wanted: Indi
 
     `theta` (t, 3) are the worst angles of the corners, rad. Points stay within the roller's length for half a step.
     """
-    own = theta[:, :1] + np.remainder(theta - theta[:, :1] + 0.5 * TURN, TURN) - 0.5 * TURN
+    period = gauge.lifts.period
+    own = theta[:, :1] + np.remainder(theta - theta[:, :1] + 0.5 * period, period) - 0.5 * period
     low, high = own.min(axis=1), own.max(axis=1)
-    turns = np.floor(low / TURN) * TURN
+    turns = np.floor(low / period) * period
     low, high, own = low - turns, high - turns, own - turns[:, None]
-    rising = np.concatenate([wanted, wanted + len(grid)])  # a triangle may go on over the end of the turn
+    rising = np.concatenate([wanted, wanted + len(grid)])  # a triangle may go on over the end of the period
     first = np.searchsorted(rising, np.ceil(low / grid.width))
     count = np.maximum(np.searchsorted(rising, np.floor(high / grid.width), side="right") - first, 0)
     total, begin, found = np.cumsum(count), 0, []

@@ -14,8 +14,26 @@ from support.programmes import Segment, law, programme
 
 from kin.cylindrical.follower import Arm, DrumFollower
 from kin.cylindrical.intent import DrumIntent, End, Groove, Rib
+from kin.law.sources.laws import scca
 
 TURN = 2.0 * math.pi
+BLEND = 1.0 / 12.0  # of a rise at constant velocity, over which it gets up to speed
+_CV = 1.0 - BLEND
+
+
+def _blend(u):
+    wave = np.where(u < BLEND, u - BLEND * np.sin(math.pi * u / BLEND) / math.pi, 2.0 * u - BLEND)
+    return 0.5 * wave / _CV
+
+
+def _ramp(u):
+    return 0.5 * (1.0 - np.cos(math.pi * np.minimum(u / BLEND, 1.0))) / _CV
+
+
+def _steep(u):
+    return 0.5 * math.pi * np.sin(math.pi * np.minimum(u / BLEND, 1.0)) / (BLEND * _CV)
+
+
 FORMULAS = {
     "cycloidal": (
         lambda u: u - np.sin(TURN * u) / TURN,
@@ -40,30 +58,49 @@ FORMULAS = {
 }
 
 
+LAWS = {
+    **FORMULAS,
+    "cv-blended": (
+        lambda u: np.where(u < 0.5, _blend(u), 1.0 - _blend(1.0 - u)),
+        lambda u: _ramp(np.minimum(u, 1.0 - u)),
+        lambda u: np.where(u < 0.5, 1.0, -1.0) * _steep(np.minimum(u, 1.0 - u)),
+    ),
+}
+
+
+def named(name):
+    """Law of a segment."""
+    return scca(0.5, 0.0, 1.0 - 2.0 * BLEND) if name == "cv-blended" else law(name)
+
+
 @dataclass(frozen=True)
 class Motion:
-    """Rises (above 0), returns (below 0) and dwells (0): stroke, mm, over degrees, by a law; they fill a turn."""
+    """Rises (above 0), returns (below 0) and dwells (0): stroke, mm, over degrees, by a law; they fill all turns."""
 
     parts: tuple = ((40.0, 120.0, "cycloidal"), (0.0, 60.0, ""), (-40.0, 120.0, "polynomial-345"), (0.0, 60.0, ""))
+
+    @property
+    def turns(self):
+        return round(sum(over for _, over, _ in self.parts) / 360.0)
 
     @property
     def law(self):
         kinds = {1: "rise", -1: "return", 0: "dwell"}
         segments = [
-            Segment(kinds[int(np.sign(stroke))], math.radians(over), abs(stroke), law(name) if stroke else None)
+            Segment(kinds[int(np.sign(stroke))], math.radians(over), abs(stroke), named(name) if stroke else None)
             for stroke, over, name in self.parts
         ]
-        return programme(segments, TURN).motion
+        return programme(segments, TURN * self.turns).motion
 
     def __call__(self, theta, order=0):
         """Lift, or its first or second derivative by the angle, at angles, rad."""
-        theta = np.mod(theta, TURN)
+        theta = np.mod(theta, TURN * self.turns)
         total, at = np.zeros_like(theta), 0.0
         for stroke, over, name in self.parts:
             width = math.radians(over)
             if stroke:
                 u = np.clip((theta - at) / width, 0.0, 1.0)
-                part = stroke * FORMULAS[name][order](u) / width**order
+                part = stroke * LAWS[name][order](u) / width**order
                 total += part if order == 0 else np.where((u > 0.0) & (u < 1.0), part, 0.0)
             at += width
         return total
@@ -92,6 +129,7 @@ class Drum:
     taper: float = 0.0
     at: float = 44.0
     arm: Arm | None = None
+    shoe: float | None = None
 
     @property
     def plain(self):
@@ -148,6 +186,7 @@ class Drum:
         follower = DrumFollower(
             self.roller, self.inner, self.outer, self.level, self.motion.law,
             self.offset, self.taper, self.at if self.taper else None, self.arm,
+            self.motion.turns, self.shoe,
         )  # fmt: skip
         hole = round_hole("the bore", "bore", (0.0, 0.0), 2.0 * self.bore)
         given = {"bore": hole, "shortened": self.shortened, "mirrored": self.mirrored, **more}

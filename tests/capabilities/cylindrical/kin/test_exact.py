@@ -174,8 +174,8 @@ def test_another_gauge_than_that_of_a_slide_is_not_taken(sound):
     gauge, surface = sound
 
     class Led(Gauge):
-        def worst(self, points):
-            found = super().worst(points)
+        def worst(self, points, about=None):
+            found = super().worst(points, about)
             return found._replace(height=found.height + 0.1)
 
     led = Led(**vars(replace(gauge)))
