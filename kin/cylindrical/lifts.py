@@ -22,7 +22,7 @@ VELOCITY = 1e-9  # mm per rad: a jump of the velocity below this is rounding
 
 @dataclass(frozen=True, eq=False)
 class Lifts:
-    """A law of period 2 pi, mm over rad, with its cubics. Raises UnsettledError, when asked, for one too rough."""
+    """A law, mm over rad, with its cubics over its period: whole turns. Raises UnsettledError for one too rough."""
 
     law: Piecewise
 
@@ -31,10 +31,20 @@ class Lifts:
         """The law over any number of turns."""
         return self.law if self.law.period is not None else replace(self.law, period=TURN)
 
+    @property
+    def period(self) -> float:
+        """Shaft angle, rad, after which the lift repeats: one turn or several."""
+        return self.law.period or TURN
+
+    @cached_property
+    def turns(self) -> int:
+        """Turns of the drum after which the lift repeats."""
+        return round(self.period / TURN)
+
     @cached_property
     def nodes(self) -> Array:
-        """Angles (m + 1,), rad, from 0 to 2 pi, between which the law is all but a cubic."""
-        return cubic_cells(self.law, self.law.breaks, NEAR)
+        """Angles (m + 1,), rad, from 0 to the period, between which the law is all but a cubic."""
+        return cubic_cells(self.law, self.law.breaks, NEAR, (0.0, self.period))
 
     @cached_property
     def _cubics(self) -> Array:
@@ -48,7 +58,7 @@ class Lifts:
 
     def at(self, theta: Array) -> tuple[Array, Array, Array]:
         """Lift, mm, its slope and bend (n,) each, per rad and rad^2, at angles (n,), rad, of any turn."""
-        folded = theta - TURN * np.floor(theta / TURN)
+        folded = theta - self.period * np.floor(theta / self.period)
         cell = np.minimum(np.searchsorted(self.nodes, folded, side="right") - 1, len(self.nodes) - 2)
         x = folded - self.nodes[cell]
         a, b, c, d = (row[cell] for row in self._cubics)
