@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def gauges_of(drum: DrumIntent) -> tuple[Gauge, ...]:
     """The gauges of a drum's flanks, the lower one first."""
     own, track = drum.follower, drum.track
-    lifts = Lifts(own.law)
+    lifts = Lifts(own.law, own.turns)
     floor = drum.floor
 
     def gauge(side: Side, beside: float = 0.0, clearance: float = 0.0) -> Gauge:

@@ -22,28 +22,27 @@ VELOCITY = 1e-9  # mm per rad: a jump of the velocity below this is rounding
 
 @dataclass(frozen=True, eq=False)
 class Lifts:
-    """A law, mm over rad, with its cubics over its period: whole turns. Raises UnsettledError for one too rough."""
+    """A law, mm over rad, whose period is so many turns, with its cubics.
+
+    Raises UnsettledError, when asked, for one too rough.
+    """
 
     law: Piecewise
+    turns: int = 1
+
+    @property
+    def period(self) -> float:
+        """Angle, rad, after which the lift repeats."""
+        return TURN * self.turns
 
     @cached_property
     def round(self) -> Piecewise:
         """The law over any number of turns."""
-        return self.law if self.law.period is not None else replace(self.law, period=TURN)
-
-    @property
-    def period(self) -> float:
-        """Shaft angle, rad, after which the lift repeats: one turn or several."""
-        return self.law.period or TURN
-
-    @cached_property
-    def turns(self) -> int:
-        """Turns of the drum after which the lift repeats."""
-        return round(self.period / TURN)
+        return self.law if self.law.period is not None else replace(self.law, period=self.period)
 
     @cached_property
     def nodes(self) -> Array:
-        """Angles (m + 1,), rad, from 0 to the period, between which the law is all but a cubic."""
+        """Angles (m + 1,), rad, over the period from 0, between which the law is all but a cubic."""
         return cubic_cells(self.law, self.law.breaks, NEAR, (0.0, self.period))
 
     @cached_property

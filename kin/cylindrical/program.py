@@ -2,8 +2,9 @@
 
 The cutter's path is what the control makes of the blocks: all axes move evenly between them. The metal is what no
 position of the cutter takes away, held against the exact flanks over all shaft angles, from the roller's inner end to
-the blank (`kin.cylindrical.cutters`), over all turns after which the motion repeats. A flank that is shortened by undercut, or has corners, is judged by the path
-alone: a cutter as large as the roller leaves what the rollers leave, but for the error of its own path.
+the blank (`kin.cylindrical.cutters`), over all turns after which the motion repeats. A flank that is shortened by
+undercut, or has corners, is judged by the path alone: a cutter as large as the roller leaves what the rollers leave, but
+for the error of its own path.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from kin.cylindrical.lifts import Lifts
     from kin.cylindrical.roller import Gauge
     from kin.cylindrical.turned import Pass, TurnedProgram
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 SAME = 1e-9  # mm: sizes that differ by less are one
 LEAN = 1e-2  # by which the slope of a flank may be more between two angles
@@ -278,7 +279,7 @@ def path_off(one: Pass, gauge: Gauge, near: float) -> _Path:
         return found._replace(beside=float(np.abs(one.y - aside).max()))
     # an arc bends by s'' T + k s'^2 E; between places so near to one another a chord is off by no more than that
     slope = gauge.lever * gauge.lifts.steepest
-    bend = gauge.lever * max(float(gauge.lifts.bends(side).max()) for side in (-1, 1)) + gauge.led.bend * slope**2
+    bend = gauge.lever * max(float(np.abs(each[2]).max()) for each in gauge.lifts.enclosed) + gauge.led.bend * slope**2
     step = math.sqrt(8.0 * near / max(bend, SAME))
     a, x, y = (row if one.a[-1] >= one.a[0] else row[::-1] for row in (one.a, one.x, one.y))
     knots = np.mod(gauge.lifts.law.breaks, gauge.lifts.period)
@@ -290,7 +291,7 @@ def path_off(one: Pass, gauge: Gauge, near: float) -> _Path:
     return _Path(float(off[least]), float(at[least]), float(off[most]), float(at[most]), float(beside.max()), near)
 
 
-def _turns_of(one: Pass, lifts: Lifts) -> Array:
+def _turns_of(one: Pass, lifts: Lifts) -> Indices:
     """Numbers of the periods that a pass goes through."""
     return np.arange(math.floor(float(one.a.min()) / lifts.period), math.ceil(float(one.a.max()) / lifts.period) + 1)
 
