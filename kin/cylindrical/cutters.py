@@ -47,6 +47,8 @@ STEPS, CONED, HOPS = 2, 3, 60  # of Newton's method in a block, of a cone, and b
 MOST_POINTS = 4_000_000
 TINY = 1e-9
 ROOM = 0.01  # rad
+TILT, LEAN = 0.4, 1.6  # rad, times the root of the tolerance, mm: how much a cutter is askew on chords, to begin with
+ALIKE, SMALLER = 0.01, 0.1  # of the radius: one that is smaller by more leans more, rad
 EXACT = 5e-3  # rad: blocks of the roller's own path, by which it is told where another turn's roller is
 APART = 1e-3  # mm that this path is off by at most, beside what a cell measures
 BINS = 720  # parts of a turn, of each of which it is known how far along the drum a pass goes
@@ -81,8 +83,8 @@ class _Cutter(NamedTuple):
 class _Points(NamedTuple):
     """Points of a flank (m, n): shaft angle, polar angle, radius, height; derivatives by theta and rho, (3, m, n).
 
-    `before` is by how much a point is before the roller's axis, rad. The components of the derivatives are along the
-    roller, square to it and to the drum's axis, and along that.
+    `before` is by how much a point is before the roller's axis, rad; sine and cosine are those of the contact's angle.
+    The components of the derivatives are along the roller, square to it and to the drum's axis, and along that.
     """
 
     theta: Array
@@ -90,6 +92,8 @@ class _Points(NamedTuple):
     before: Array
     r: Array
     z: Array
+    sine: Array
+    cosine: Array
     by_theta: Array
     by_rho: Array
 
@@ -99,12 +103,23 @@ class _Points(NamedTuple):
 
 
 class _Met(NamedTuple):
-    """How a pass comes to points (m, n): D, mm, how far out, mm, theta less A, rad, and slopes of H (2, m, n)."""
+    """How a pass comes to points (m, n): D, mm, how far out, mm, theta less A, rad, and slopes of H (2, m, n).
+
+    `lean` is the angle, rad, between the flank's normal there and the way from the cutter's axis.
+    """
 
     off: Array
     along: Array
     tilt: Array
+    lean: Array
     slopes: Array
+
+
+class _Askew(NamedTuple):
+    """How much a cutter's angle differs from the roller's that touches at a point, and its normal there, rad."""
+
+    tilt: float
+    lean: float
 
 
 def left_on(gauge: Gauge, passes: Sequence[Pass], radius: float, tolerance: float, growth: float = 0.0) -> Left | None:
@@ -115,17 +130,16 @@ def left_on(gauge: Gauge, passes: Sequence[Pass], radius: float, tolerance: floa
     """
     cutter = _Cutter(radius, growth)
     ways = [_forwards(one) for one in _deepest(passes)]
-    longest = max((float(np.diff(one.a).max(initial=0.0)) for one in ways), default=0.0)
-    radial = any(not one.y.any() for one in ways)
-    tilt = (2.0 * abs(gauge.radius - radius) / gauge.inner if radial else 0.0) + longest + ROOM
+    smaller = max(abs(float(gauge.size(rho)) - radius) for rho in (gauge.inner, gauge.outer)) / radius > ALIKE
+    askew = _Askew(TILT * math.sqrt(tolerance), LEAN * math.sqrt(tolerance) + (SMALLER if smaller else 0.0))
     while True:
-        theta, rho = _grid(gauge, cutter, tilt, tolerance)
+        theta, rho = _grid(gauge, cutter, askew, tolerance)
         if len(theta) * len(rho) > MOST_POINTS:
             return None
         left, widest = _left(gauge, ways, cutter, (theta, rho), tolerance)
-        if widest <= tilt:
+        if widest.tilt <= askew.tilt and widest.lean <= askew.lean:
             return left
-        tilt = 1.5 * widest
+        askew = _Askew(max(askew.tilt, 1.5 * widest.tilt), max(askew.lean, 1.5 * widest.lean))
 
 
 def _deepest(passes: Sequence[Pass]) -> list[Pass]:
@@ -151,14 +165,14 @@ def _forwards(one: Pass) -> Pass:
 
 def _left(
     gauge: Gauge, ways: Sequence[Pass], cutter: _Cutter, grid: tuple[Array, Array], tolerance: float
-) -> tuple[Left, float]:
-    """What is left at points of a flank, and by how much the angle of a cutter differs from theirs at most, rad."""
+) -> tuple[Left, _Askew]:
+    """What is left at points of a flank, and how much a cutter that decides there is askew at most."""
     theta, rho = grid
     points = _points(gauge, theta, rho)
     off = np.full(points.phi.shape, np.inf)
     above, below = (np.full((len(rho) - 1, len(theta) - 1), np.inf) for _ in range(2))
     h1, h2 = 0.25 * np.diff(theta), 0.25 * np.diff(rho)[:, None]
-    bend, widest = tolerance * (ACROSS + ALONG), 0.0
+    bend, widest = tolerance * (ACROSS + ALONG), [0.0, 0.0]
     others = _Others(gauge, points)
     for one in ways:
         # a point is met a little nearer to the drum's axis than the roller meets it
@@ -178,7 +192,11 @@ def _left(
                     apart = np.where(taken, np.inf, apart)
                 off[here] = np.minimum(off[here], np.where(own, apart, np.inf))
                 near = own & (apart <= off[here] + NEAR * tolerance)
-                widest = max(widest, float(np.abs(met.tilt[near]).max(initial=0.0)))
+                turned = (met.tilt, met.lean)
+                widest = [
+                    max(most, float(np.abs(row[near]).max(initial=0.0)))
+                    for most, row in zip(widest, turned, strict=True)
+                ]
                 cells = (slice(first, None), slice(columns.start, columns.stop - 1))
                 spread = _over(met.slopes, np.maximum) - _over(met.slopes, np.minimum)
                 most = _over(met.off, np.maximum) + spread[0] * h1[cells[1]] + spread[1] * h2[first:] + bend
@@ -188,7 +206,7 @@ def _left(
                 if taken is not None:
                     least = np.where(_over(taken, np.maximum), np.inf, least)
                 below[cells] = np.minimum(below[cells], np.where(_over(held, np.maximum), least, np.inf))
-    return Left(theta, rho, off, above, below), widest
+    return Left(theta, rho, off, above, below), _Askew(*widest)
 
 
 class _Others:
@@ -285,6 +303,8 @@ def _points(gauge: Gauge, theta: Array, rho: Array) -> _Points:
         np.arctan2(axis.y - y, place),
         np.hypot(place, y),
         z,
+        sine,
+        cosine,
         np.stack([-y, place + axis.y1 - reach * cosine * by_angle, axis.z1 - reach * sine * by_angle]),
         np.stack(
             [
@@ -296,11 +316,16 @@ def _points(gauge: Gauge, theta: Array, rho: Array) -> _Points:
     )
 
 
-def _grid(gauge: Gauge, cutter: _Cutter, tilt: float, tolerance: float) -> tuple[Array, Array]:
+def _grid(gauge: Gauge, cutter: _Cutter, askew: _Askew, tolerance: float) -> tuple[Array, Array]:
     """Angles, rad, and places, mm, between which D changes by no more than the shares of the tolerance.
 
-    `tilt`, rad, bounds the difference of a cutter's angle from the roller's that touches there. All below are bounds of
-    magnitudes over parts of the period, at all places from the roller's inner end to its outer.
+    All below are bounds of magnitudes over parts of the period, at all places from the roller's inner end to its outer.
+    With N the way from the cutter's axis and t square to it, both square to that axis, H has the second derivatives
+    (N.p_ii - tan d e_r.p_ii) cos d + (t.p_i)^2 cos d/dist. Beside the flank's normal, a taken for N, these are by theta
+
+        N.p_11 = -sin a (y'' - q) + cos a z'' - side R a_1^2,    t.p_1 = cos a (rho + y') + sin a z' - side R a_1
+
+    and by rho -side R a_2^2 and -side R a_2; what N is askew adds its share of what lies the other way.
     """
     law, turns = gauge.lifts.law, gauge.lifts.turns
     looks = np.linspace(0.0, gauge.lifts.period, turns * LOOKS + 1)
@@ -309,22 +334,18 @@ def _grid(gauge: Gauge, cutter: _Cutter, tilt: float, tolerance: float) -> tuple
     bent = _Bent.of(gauge, moved)
     nearest, low, high = NEARLY * cutter.radius, gauge.inner, gauge.outer
     growth, size = gauge.spread, float(gauge.size(high))
-    aslant = tilt + cutter.growth * cutter.upright
-    # first and second derivatives of the point by theta: along the roller q and 2 q' + rho, square to it the others
-    turned = size * bent.first
-    across, up = high + moved.y1 + turned * bent.cosine, moved.z1 + turned * bent.sine
-    beside = moved.y + size * bent.sine
-    speed = np.hypot(across, up) + beside * aslant
-    bend_across = moved.y2 + size * (bent.cosine * bent.second + bent.sine * bent.first**2) + beside
-    bend_up = moved.z2 + size * (bent.sine * bent.second + bent.cosine * bent.first**2)
-    second = np.hypot(bend_across, bend_up) + (high + 2.0 * (moved.y1 + turned * bent.cosine)) * aslant
+    tilt, lean = askew
+    beside, out = moved.y + size * bent.sine, high + 2.0 * (moved.y1 + size * bent.cosine * bent.first)
+    speed = np.hypot(high + moved.y1, moved.z1) + size * bent.first + beside * (tilt + lean * growth)
+    bend = bent.sine * (moved.y2 + beside) + bent.cosine * moved.z2 + size * bent.first**2
+    bend += lean * (bent.cosine * (moved.y2 + beside) + bent.sine * moved.z2 + size * bent.second)
+    second = bend + out * (tilt + cutter.growth)
     count = np.ceil(np.diff(looks) / np.sqrt(8.0 * ACROSS * tolerance / (speed**2 / nearest + second)))
     own = np.repeat(np.arange(len(count)), count.astype(np.intp))
     step = np.arange(len(own)) - np.repeat(np.cumsum(count) - count, count.astype(np.intp))
     theta = np.append(looks[own] + step * (np.diff(looks) / count)[own], gauge.lifts.period)
-    # the same by rho
-    along = (size * bent.along + growth + tilt) ** 2 / nearest
-    along += 2.0 * growth * bent.along + size * (bent.along_twice + bent.along**2)
+    along = (size * bent.along + lean * growth + tilt) ** 2 / nearest + size * bent.along**2
+    along += lean * (2.0 * growth * bent.along + size * bent.along_twice)
     rows = int(np.ceil((high - low) * np.sqrt(float(along.max()) / (8.0 * ALONG * tolerance))))
     return theta, np.linspace(low, high, max(rows, 1) + 1)
 
@@ -441,7 +462,8 @@ def _nearest(points: _Points, one: Pass, turn: float, gauge: Gauge, cutter: _Cut
     for outward, across, up in (points.by_theta, points.by_rho):
         moved = (y * (outward * sine + across * cosine) + v * up) / far
         slopes.append((moved - (outward * cosine - across * sine) * cutter.growth) * cutter.upright)
-    return _Met(off, along, tilt, np.stack(slopes))
+    lean = (y * points.cosine + v * points.sine) / far
+    return _Met(off, along, tilt, lean, np.stack(slopes))
 
 
 def _least(one: Pass, block: Indices, places: tuple[Array, Array, Array], cutter: _Cutter) -> tuple[Array, Array]:

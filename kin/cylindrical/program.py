@@ -3,8 +3,8 @@
 The cutter's path is what the control makes of the blocks: all axes move evenly between them. The metal is what no
 position of the cutter takes away, held against the exact flanks over all shaft angles, from the roller's inner end to
 the blank (`kin.cylindrical.cutters`), over all turns after which the motion repeats. A flank that is shortened by
-undercut, or has corners, is judged by the path alone: a cutter as large as the roller leaves what the rollers leave, but
-for the error of its own path.
+undercut, or has corners, is judged by the path alone: a cutter as large as the roller leaves what the rollers leave,
+but for the error of its own path.
 """
 
 from __future__ import annotations
