@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from capabilities.cylindrical.kin.drums import TURN, Drum, Groove, Rib, replace
+from capabilities.cylindrical.kin.drums import TURN, Arm, Drum, End, Groove, Motion, Rib, replace
 from support.programmes import Segment, law, programme
 
 from kin.cylindrical.cutters import left_on
@@ -31,20 +31,22 @@ def way(motion=DRUM.motion, level=20.0, step=0.5, over=365.0):
     return a, level + motion(a)
 
 
-def block(words, before, at, feed=300.0):
-    """Words of a block by G93 with the feed for a radius of 50."""
-    far = math.hypot(at[1] - before[1], math.radians(at[0] - before[0]) * 50.0)
-    return f"{words} F{feed / far:.4f}"
-
-
 def text_of(a, x, *, depths=(44.0, 37.5), digits=5, head="(cutter: diameter 20)"):
     """A program of the way in depths."""
-    rows = [(round(math.degrees(p), digits), round(q, digits)) for p, q in zip(a.tolist(), x.tolist(), strict=True)]
+    return text_beside([(a, x, np.zeros_like(a))], depths=depths, digits=digits, head=head).replace(" Y0.0 ", " ")
+
+
+def text_beside(ways, *, depths=(44.0, 37.5), digits=5, head="(cutter: diameter 20)"):
+    """A program of ways, each in depths, with Y."""
     lines = [head, "G21", "G17 G90 G93", "G40 G49 G80", "G0 Z60", "S2000 M3"]
-    for z in depths:
-        lines += [f"G0 X{rows[0][1]} A{rows[0][0]}", f"G1 Z{z} F10"]
-        lines += [block(f"G1 X{q} A{p}", before, (p, q)) for before, (p, q) in pairwise(rows)]
-        lines.append("G0 Z60")
+    for a, x, y in ways:
+        rows = np.column_stack([np.degrees(a), x, y]).round(digits).tolist()
+        for z in depths:
+            lines += [f"G0 X{rows[0][1]} Y{rows[0][2]} A{rows[0][0]}", f"G1 Z{z} F10"]
+            for before, at in pairwise(rows):
+                far = math.hypot(at[1] - before[1], at[2] - before[2], math.radians(at[0] - before[0]) * 50.0)
+                lines.append(f"G1 X{at[1]} Y{at[2]} A{at[0]} F{300.0 / far:.4f}")
+            lines.append("G0 Z60")
     return "\n".join([*lines, "M5", "M30", ""])
 
 
@@ -70,11 +72,113 @@ def test_a_cutter_of_the_roller_s_size_along_its_path(tmp_path):
         assert flank.motion.remainder < 0.15 * TOLERANCE
 
 
-def test_rollers_of_other_kinds_are_not_judged(tmp_path):
-    drum = DRUM.intent()
-    follower = replace(drum.follower, offset=3.0)
-    with pytest.raises(ValueError, match="not judged"):
-        verify_program(tmp_path / "drum.ngc", replace(drum, follower=follower), CUTTING, Limits(TOLERANCE))
+SWING = Motion(((0.5, 120.0, "cycloidal"), (0.0, 60.0, ""), (-0.5, 120.0, "polynomial-345"), (0.0, 60.0, "")))
+LEVEL = 40.0 - 80.0 * math.sin(0.25)
+ARM = Drum(motion=SWING, level=LEVEL, track=Groove(12.5), arm=Arm(80.0, 78.7, 40.0, 1))
+TAPER = math.radians(6.0)
+LED = {
+    "beside": Drum(track=Groove(12.5), offset=6.0),
+    "trailing": ARM,
+    "leading": replace(ARM, arm=Arm(80.0, -78.7, 40.0, -1)),
+    "cone": Drum(track=Groove(12.5), taper=TAPER),
+    "cone on an arm": replace(ARM, taper=TAPER),
+    "rib on an arm": replace(ARM, track=Rib(12.5, 36.0)),
+    "end on an arm": replace(ARM, track=End("top", 12.5)),
+}
+
+
+def ways_of(drum, step=0.5, over=365.0):
+    """Angles, rad, and places along the drum and beside its axis of its rollers' axes, each roller once."""
+    a = np.radians(np.arange(0.0, over + 1e-9, step))
+    levels = sorted({level for _, _, _, level in drum.flanks})
+    places = [drum.axis(a, level) for level in levels]
+    return [(a, z, y) for y, z in places]
+
+
+def cut_by(drum, **more):
+    """The cutter of a drum's roller, at its end on the floor."""
+    return replace(CUTTING, radius=drum.size(drum.roller, drum.floor), taper=drum.taper, **more)
+
+
+def named(drum):
+    cone = f" at its end, half angle {math.degrees(drum.taper):.9f} degrees" if drum.taper else ""
+    return f"(cutter: diameter {2.0 * drum.size(drum.roller, drum.floor):.9f}{cone}, its axis square to the drum's)"
+
+
+def led(folder, drum, ways=None, cutting=None, **more):
+    text = text_beside(ways or ways_of(drum), **{"head": named(drum), **more})
+    return judged(folder, text, drum, cutting or cut_by(drum))
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("kind", LED)
+def test_a_cutter_like_the_roller_along_its_path_is_right_at_every_radius(tmp_path, kind):
+    """What stands between blocks is what a chord leaves out, no more than the path's bend times h^2/8."""
+    drum = LED[kind]
+    verdict = led(tmp_path, drum)
+    assert verdict.ok, verdict.checks
+    fine = np.radians(np.arange(0.0, 365.0, 0.01))
+    chords = 0.0
+    for a, x, y in ways_of(drum):
+        level = min(drum.flanks, key=lambda flank: abs(flank[3] - x[0]))[3] if kind != "rib on an arm" else None
+        levels = [level] if level is not None else sorted({flank[3] for flank in drum.flanks})
+        apart = [np.hypot(*(np.interp(fine, a, row) - own for row, own in zip((y, x), drum.axis(fine, each)))) for each in levels]
+        chords = max(chords, min(float(each.max()) for each in apart))
+    for flank in verdict.flanks:
+        assert 0.3 * chords < flank.measured_error < 1.01 * chords + 1e-5
+        assert flank.motion.unit == ("mm" if drum.arm is None else "deg")
+        reach = 1.0 if drum.arm is None else math.degrees(1.0 / drum.arm.length)
+        assert 0.3 * chords * reach < flank.motion.max < 2.0 * chords * reach
+
+
+def moved(ways, x=0.0, y=0.0, a=1.0, across=1.0):
+    return [(a * angle, along + x, across * beside + y) for angle, along, beside in ways]
+
+
+def coarse(ways):
+    """Angles rounded to 0.01 degrees."""
+    return [(np.radians(np.round(np.degrees(angle), 2)), along, beside) for angle, along, beside in ways]
+
+
+LED_FAULTS = {
+    "a block left out": lambda drum, ways: ([tuple(np.delete(row, 60) for row in way) for way in ways], {}),
+    "X + 0.01": lambda drum, ways: (moved(ways, x=0.01), {}),
+    "Y + 0.01": lambda drum, ways: (moved(ways, y=0.01), {}),
+    "A mirrored": lambda drum, ways: (moved(ways, a=-1.0), {}),
+    "Y mirrored": lambda drum, ways: (moved(ways, across=-1.0), {}),
+    "A rounded": lambda drum, ways: (coarse(ways_of(drum, 0.4953)), {}),
+    "a smaller cutter": lambda drum, ways: (ways, {"cutting": cut_by(drum, depth_of_cut=7.0), "less": 0.025}),
+    "another cone": lambda drum, ways: (ways, {"taper": math.radians(0.5)}),
+    "not deep enough": lambda drum, ways: (ways, {"depths": (44.0, 38.2)}),
+    "too deep": lambda drum, ways: (ways, {"depths": (44.0, 37.4)}),
+}
+ACROSS = {"Y mirrored": {"beside", "trailing", "leading", "cone on an arm", "rib on an arm", "end on an arm"}}
+
+
+@pytest.mark.costly("each kind of roller with each fault is a program to be judged")
+@pytest.mark.thin(1)
+@pytest.mark.parametrize("fault", LED_FAULTS)
+@pytest.mark.parametrize("kind", LED)
+def test_planted_faults_of_led_rollers_are_refused(tmp_path, kind, fault):
+    drum = LED[kind]
+    ways, more = LED_FAULTS[fault](drum, ways_of(drum))
+    if fault in ACROSS and kind not in ACROSS[fault]:
+        return
+    more.pop("cutting", None)
+    cutting = cut_by(drum)
+    cutting = replace(cutting, radius=cutting.radius - more.pop("less", 0.0), taper=cutting.taper + more.pop("taper", 0.0))
+    verdict = led(tmp_path, drum, ways, cutting, **({"head": ""} if cutting != cut_by(drum) else {}), **more)
+    assert not verdict.ok
+    assert refused(verdict) & {"contour", "ways", "depth"}, verdict.checks
+
+
+def test_a_cutter_of_another_cone_is_named(tmp_path):
+    drum = LED["cone"]
+    verdict = led(tmp_path, drum, head=named(drum).replace("angle 6.0", "angle 6.1"))
+    assert refused(verdict) == {"cutter"}
+    twice = text_beside(ways_of(drum), head=named(drum)).replace("F10\n", "F20\n")
+    verdict = judged(tmp_path, twice.replace("F68", "F136"), drum, cut_by(drum))
+    assert refused(verdict) == {"feed"}
 
 
 def without(text, number):
