@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices, Mask
 
 LOOKS = 720  # parts of a turn over each of which the flank's second derivatives are bounded
+STEPPED = 0.1  # of the tolerance, by which D may differ over a step that a pass leaves
 ACROSS, ALONG = 0.05, 0.05  # of the tolerance, by which D may differ between angles, and between places of the roller
 NEARLY = 0.9  # of the cutter's radius: a point that is nearer to its axis is cut away by more than any tolerance
 END = 1e-4  # mm that a cutter's end counts deeper, so that points at its very end are met
@@ -347,7 +348,9 @@ def _grid(gauge: Gauge, cutter: _Cutter, askew: _Askew, tolerance: float) -> tup
     along = (size * bent.along + lean * growth + tilt) ** 2 / nearest + size * bent.along**2
     along += lean * (2.0 * growth * bent.along + size * bent.along_twice)
     rows = int(np.ceil((high - low) * np.sqrt(float(along.max()) / (8.0 * ALONG * tolerance))))
-    return theta, np.linspace(low, high, max(rows, 1) + 1)
+    # a cutter that tapers otherwise leaves steps where its passes end
+    steps = int(np.ceil((high - low) * abs(growth - cutter.growth) / (STEPPED * tolerance)))
+    return theta, np.linspace(low, high, max(rows, steps, 1) + 1)
 
 
 class _Moved(NamedTuple):

@@ -259,6 +259,8 @@ def _check_programs(values: Values, reader: Reader) -> None:
             most = f"{downward(widest / reader.mm, 7)} {reader.units}" if whole.taper else _shown(widest, reader)
             what = f"{what} at the floor" if whole.taper else what
             remedy = f"give at most {most}"
+            if whole.taper and "taper" not in file:
+                remedy += f", and taper: {math.degrees(whole.taper):.4f} for the cone of the roller"
             reader.fault_at(f"{path}.cutter", f"a cutter wider than {what} cuts the flanks away", told, remedy)
         elif file["cutter"] < narrowest - NOTHING:
             remedy = f"give at least {_shown(narrowest, reader)}"

@@ -202,11 +202,10 @@ def set_beside(
     parts = np.linspace(floor, outer, PARTS + 1)
     turned = np.concatenate([[0.0], np.cumsum(contact_turns(flank, parts) * np.diff(parts))])
     for count in range(1, MOST_DEPTHS + 1):
-        edges = outer * (inner / outer) ** (np.arange(count + 1) / count)
-        down = np.append(np.maximum(edges[1:-1] - BELOW, floor), floor)
-        middle = np.sqrt(edges[:-1] * edges[1:])
         # of a cutter that tapers as its roller any place will do, one that tapers less has to touch at its end
-        at = middle if alike else down
+        edges = outer * ((inner if alike else floor) / outer) ** (np.arange(count + 1) / count)
+        down = np.append(np.maximum(edges[1:-1] - BELOW, floor), floor)
+        at = np.sqrt(edges[:-1] * edges[1:]) if alike else down
         pairs = zip(at.tolist(), down.tolist(), strict=True)
         ways = [Way(flank, cutter, place, beside=True, end=end) for place, end in pairs]
         left = 0.0

@@ -20,7 +20,7 @@ from capabilities.cylindrical.positions import Lift, envelope
 import camgeo
 from camgeo.api.root import root_of
 from camgeo.capabilities.cylindrical.making import make
-from camgeo.capabilities.cylindrical.ways import Way, radially_off, set_beside, set_radially
+from camgeo.capabilities.cylindrical.ways import Cutter, Way, radially_off, set_beside, set_radially
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
 
@@ -305,7 +305,7 @@ def test_a_program_is_read_again(
 @pytest.mark.parametrize("beside", [False, True])
 @pytest.mark.parametrize("side", ["lower", "upper"])
 def test_a_way_bends_no_more_than_its_bound(beside: bool, side: str) -> None:
-    way = Way(design_of(GROOVE).flanks[side], 7.0, 42.0, beside)
+    way = Way(design_of(GROOVE).flanks[side], Cutter(7.0), 42.0, beside)
     look, bound = way.bends(50.0)
     h = 1e-4
     for theta in np.linspace(0.01, 2.0, 60):
@@ -336,7 +336,7 @@ def test_a_smaller_cutter_is_off_as_brute_force_finds() -> None:
         inner, outer = left(38.0, at), left(50.0, at)
         for bound, true in ((off.left, inner), (off.deep, -outer)):
             assert max(true, 0.0) - 1e-9 <= bound <= 1.12 * max(true, 0.0) + 1e-9
-    way, off = set_radially(flank, 8.0, v, (38.0, 50.0))
+    way, off = set_radially(flank, Cutter(8.0), v, (38.0, 50.0))
     assert off.left == pytest.approx(off.deep, rel=1e-3)
     assert 38.0 < way.at < 50.0
 
@@ -345,10 +345,10 @@ def test_depths_are_as_many_as_the_tolerance_asks_for() -> None:
     flank = design_of(GROOVE).flanks["lower"]
     counts = []
     for most in (0.02, 0.005, 0.0004):
-        ways, off = set_beside(flank, 8.0, 38.2, (38.0, 50.0), most)
+        ways, off = set_beside(flank, Cutter(8.0), 37.5, (38.0, 50.0), most)
         assert off.left <= most
-        assert ways[-1][1] == pytest.approx(38.0)
-        assert [low for _, low in ways] == sorted((low for _, low in ways), reverse=True)
+        assert ways[-1].end == 37.5
+        assert [way.end for way in ways] == sorted((way.end for way in ways), reverse=True)
         counts.append(len(ways))
     assert counts == sorted(counts)
     assert counts[0] < counts[2] < 8
