@@ -88,11 +88,15 @@ LED = {
 }
 
 
+def levels_of(drum):
+    """Heights of the rollers' axes at lift 0."""
+    return sorted({level for _, _, _, level in drum.flanks})
+
+
 def ways_of(drum, step=0.5, over=365.0):
     """Angles, rad, and places along the drum and beside its axis of its rollers' axes, each roller once."""
     a = np.radians(np.arange(0.0, over + 1e-9, step))
-    levels = sorted({level for _, _, _, level in drum.flanks})
-    places = [drum.axis(a, level) for level in levels]
+    places = [drum.axis(a, level) for level in levels_of(drum)]
     return [(a, z, y) for y, z in places]
 
 
@@ -118,13 +122,10 @@ def test_a_cutter_like_the_roller_along_its_path_is_right_at_every_radius(tmp_pa
     drum = LED[kind]
     verdict = led(tmp_path, drum)
     assert verdict.ok, verdict.checks
-    fine = np.radians(np.arange(0.0, 365.0, 0.01))
-    chords = 0.0
-    for a, x, y in ways_of(drum):
-        level = min(drum.flanks, key=lambda flank: abs(flank[3] - x[0]))[3] if kind != "rib on an arm" else None
-        levels = [level] if level is not None else sorted({flank[3] for flank in drum.flanks})
-        apart = [np.hypot(*(np.interp(fine, a, row) - own for row, own in zip((y, x), drum.axis(fine, each)))) for each in levels]
-        chords = max(chords, min(float(each.max()) for each in apart))
+    fine, chords = np.radians(np.arange(0.0, 365.0, 0.01)), 0.0
+    for level, (a, x, y) in zip(levels_of(drum), ways_of(drum), strict=True):
+        place = drum.axis(fine, level)
+        chords = max(chords, np.hypot(np.interp(fine, a, y) - place[0], np.interp(fine, a, x) - place[1]).max())
     for flank in verdict.flanks:
         assert 0.3 * chords < flank.measured_error < 1.01 * chords + 1e-5
         assert flank.motion.unit == ("mm" if drum.arm is None else "deg")
@@ -142,19 +143,22 @@ def coarse(ways):
 
 
 LED_FAULTS = {
-    "a block left out": lambda drum, ways: ([tuple(np.delete(row, 60) for row in way) for way in ways], {}),
-    "X + 0.01": lambda drum, ways: (moved(ways, x=0.01), {}),
-    "Y + 0.01": lambda drum, ways: (moved(ways, y=0.01), {}),
-    "A mirrored": lambda drum, ways: (moved(ways, a=-1.0), {}),
-    "Y mirrored": lambda drum, ways: (moved(ways, across=-1.0), {}),
-    "A rounded": lambda drum, ways: (coarse(ways_of(drum, 0.4953)), {}),
-    "a smaller cutter": lambda drum, ways: (ways, {"less": 0.025}),
-    "another cone": lambda drum, ways: (ways, {"taper": math.radians(0.5)}),
-    "not deep enough": lambda drum, ways: (ways, {"depths": (44.0, 38.2)}),
-    "too deep": lambda drum, ways: (ways, {"depths": (44.0, 37.4)}),
+    "a block left out": lambda _, ways: ([tuple(np.delete(row, 60) for row in way) for way in ways], {}),
+    "X + 0.01": lambda _, ways: (moved(ways, x=0.01), {}),
+    "Y + 0.01": lambda _, ways: (moved(ways, y=0.01), {}),
+    "A mirrored": lambda _, ways: (moved(ways, a=-1.0), {}),
+    "Y mirrored": lambda _, ways: (moved(ways, across=-1.0), {}),
+    "A rounded": lambda drum, _: (coarse(ways_of(drum, 0.4953)), {}),
+    "a smaller cutter": lambda _, ways: (ways, {"less": 0.025}),
+    "another cone": lambda _, ways: (ways, {"taper": math.radians(0.5)}),
+    "not deep enough": lambda _, ways: (ways, {"depths": (44.0, 38.2)}),
+    "too deep": lambda _, ways: (ways, {"depths": (44.0, 37.4)}),
 }
 PLANTED = [
-    (kind, fault) for kind, drum in LED.items() for fault in LED_FAULTS if fault != "Y mirrored" or drum.arm or drum.offset
+    (kind, fault)
+    for kind, drum in LED.items()
+    for fault in LED_FAULTS
+    if fault != "Y mirrored" or drum.arm or drum.offset
 ]
 
 
@@ -164,7 +168,9 @@ def test_planted_faults_of_led_rollers_are_refused(tmp_path, kind, fault):
     drum = LED[kind]
     ways, more = LED_FAULTS[fault](drum, ways_of(drum))
     cutting = cut_by(drum)
-    cutting = replace(cutting, radius=cutting.radius - more.pop("less", 0.0), taper=cutting.taper + more.pop("taper", 0.0))
+    cutting = replace(
+        cutting, radius=cutting.radius - more.pop("less", 0.0), taper=cutting.taper + more.pop("taper", 0.0)
+    )
     verdict = led(tmp_path, drum, ways, cutting, **({"head": ""} if cutting != cut_by(drum) else {}), **more)
     assert not verdict.ok
     assert refused(verdict) & {"contour", "ways", "depth"}, verdict.checks
