@@ -7,6 +7,7 @@ camgeo.capabilities.cylindrical.angles, camgeo.capabilities.cylindrical.bends.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import re
@@ -289,8 +290,8 @@ def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None
         ),
         (
             [("radius: 10,", "radius: 10, offset: 0.2,")],
-            "or give a tolerance of at least 0.0851 mm",
-            ("tolerance: 0.02", "tolerance: 0.0851"),
+            "or give a tolerance of at least 0.0756 mm",
+            ("tolerance: 0.02", "tolerance: 0.0756"),
         ),
         (
             [("radius: 10,", "radius: 10, offset: 6,"), ("cutter: 20", "cutter: 19")],
@@ -402,11 +403,11 @@ def stands_off(folder: Path, text: str, lift: Lift, places: int) -> float:
     grows, rng = math.tan(own.get("taper", 0.0)), np.random.default_rng(places)
     for name, flank in shared_design(text).flanks.items():
         half = {"lower": 0.5, "upper": -0.5}[name] * getattr(recipe.track, "distance", 0.0)
-        # where the roller's inner end touches is a little farther out
-        least = np.hypot(recipe.roller.inner, flank.size(recipe.roller.inner))
-        r, phi = rng.uniform(min(least, 0.9 * recipe.radius), recipe.radius, places), rng.uniform(0.0, 6.28, places)
-        z, _ = envelope(lift.second(half), flank.side, flank.radius, r, phi)
-        for radius, angle, height in zip(r, phi, z + recipe.level, strict=True):
+        r, phi = rng.uniform(recipe.roller.inner, recipe.radius, places), rng.uniform(0.0, 6.28, places)
+        z, at = envelope(lift.second(half), flank.side, flank.radius, r, phi)
+        borne = r * np.cos(phi - at) >= recipe.roller.inner
+        assert np.count_nonzero(borne) > 0.4 * places
+        for radius, angle, height in zip(r[borne], phi[borne], z[borne] + recipe.level, strict=True):
             turn = angle - np.radians(rows[:, 3])
             along = radius * np.cos(turn)
             stands = (along >= rows[:, 2]) & (along > 0.0)
@@ -421,9 +422,13 @@ def stands_off(folder: Path, text: str, lift: Lift, places: int) -> float:
 def test_random_led_drums_are_milled_as_rollers_leave_them(tmp_path: Path, seed: int) -> None:
     rng = Random(seed)
     led, track = LED[(seed + seed // 7) % len(LED)], ("groove", "rib", "top", "bottom")[seed % 4]
-    inch, ccw = rng.random() < 0.5, rng.random() < 0.5
-    text, lift = random_drum(rng, track, inch=inch, ccw=ccw, undercut=False, led=led)
-    text = cutting(text, rng.choice([1.0, 0.98, 0.9]), rng.choice([None, 0.2]) if track != "groove" else None)
+    while True:
+        inch, ccw = rng.random() < 0.5, rng.random() < 0.5
+        text, lift = random_drum(rng, track, inch=inch, ccw=ccw, undercut=False, led=led)
+        text = cutting(text, rng.choice([1.0, 0.98, 0.9]), rng.choice([None, 0.2]) if track != "groove" else None)
+        with contextlib.suppress(camgeo.RecipeErrors):  # an arm that swings too far for its drum
+            shared_design(text)
+            break
     recipe = recipe_of(text)
     made = make(shared_design(text), Clock(), recipe.export.files[0], tmp_path / "drum.ngc")
     assert made.verdict is not None
@@ -453,7 +458,7 @@ def test_a_cutter_like_the_roller_stands_in_its_place(tmp_path: Path, text: str)
 
 
 def test_a_cylinder_leaves_a_cone_in_steps(tmp_path: Path) -> None:
-    """As many depths as the tolerance asks for, each of which touches at its end; what stands between them is proved."""
+    """It takes as many depths as the tolerance asks for, each of which touches at its end."""
     text = changed(
         cutting(changed(CONE_ON_ARM, ("taper: 6", "taper: 2"), ("0.02", "0.1")), 0.95), (f", taper: {2.0!r}", "")
     )

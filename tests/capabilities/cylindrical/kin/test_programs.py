@@ -369,8 +369,11 @@ def test_a_path_s_extremes_are_between_its_points():
 # --- brute force ------------------------------------------------------------------------------------------------------
 
 
-def nearest(points, passes, cutter, looks=400):
-    """D (n,) of points (n, 3) by positions alone: so many on every block near a point, each pass down to its end."""
+def nearest(points, passes, cutter, looks=400, growth=0.0):
+    """D (n,) of points (n, 3) by positions alone: so many on every block near a point, each pass down to its end.
+
+    The cutter has its radius at its end, and grows along its axis.
+    """
     best = np.full(len(points), np.inf)
     for one in passes:
         share = np.arange(looks) / looks
@@ -380,7 +383,7 @@ def nearest(points, passes, cutter, looks=400):
             near = np.abs(np.mod(a - phi + math.pi, TURN) - math.pi) < 0.35
             across = py * np.cos(a[near]) - px * np.sin(a[near]) - y[near]
             along = px * np.cos(a[near]) + py * np.sin(a[near])
-            far = np.hypot(across, pz - x[near]) - cutter
+            far = (np.hypot(across, pz - x[near]) - cutter - (along - one.z) * growth) / math.hypot(1.0, growth)
             best[k] = min(best[k], far[along >= one.z].min(initial=np.inf))
     return best
 
@@ -411,6 +414,46 @@ def test_what_is_left_is_what_no_position_takes(case):
     assert (between <= left.above[cells] + 1e-9).all()
     assert (between >= left.below[cells] - 2e-6).all()
     assert np.median(left.above[cells] - left.below[cells]) < 0.02
+
+
+@pytest.mark.costly("brute force over the positions of a cutter")
+@pytest.mark.thin(1)
+@pytest.mark.parametrize("side", [-1, 1], ids=["lower", "upper"])
+@pytest.mark.parametrize("kind", ["beside", "trailing", "leading", "cone", "cone on an arm"])
+def test_what_is_left_beside_a_led_roller_is_what_no_position_takes(kind, side):
+    """A smaller cutter on a wavy way in two depths, at places of the grid, and between them within the bounds."""
+    rng, drum = np.random.default_rng(11), LED[kind]
+    gauge = next(each for each in gauges_of(drum.intent()) if each.side == side)
+    a = np.linspace(-0.1, TURN + 0.1, 300)
+    y, z = drum.axis(a, drum.level)
+    y, x = y + 0.3 * np.cos(a), z + 0.5 * side + 0.01 * np.sin(40.0 * a)
+    end = drum.size(drum.roller, 37.5) - 0.8
+    passes = [Pass(1, 37.5, a, x, y), Pass(2, 43.0, a + 0.003, x - 0.05, y)]
+    left = left_on(gauge, passes, end, 0.02, drum.growth)
+    rows, columns = rng.integers(0, len(left.rho), 12), rng.integers(0, len(left.theta), 12)
+    points = on_led_flank(drum, side, left.theta[columns], left.rho[rows])
+    wanted = nearest(points, passes, end, growth=drum.growth)
+    np.testing.assert_allclose(left.off[rows, columns], wanted, atol=3e-6)
+    rows, columns = rng.integers(0, len(left.rho) - 1, 12), rng.integers(0, len(left.theta) - 1, 12)
+    share = rng.uniform(0.0, 1.0, (2, 12))
+    theta = left.theta[columns] * (1.0 - share[0]) + left.theta[columns + 1] * share[0]
+    rho = left.rho[rows] * (1.0 - share[1]) + left.rho[rows + 1] * share[1]
+    between = nearest(on_led_flank(drum, side, theta, rho), passes, end, growth=drum.growth)
+    assert (between <= left.above[rows, columns] + 1e-9).all()
+    assert (between >= left.below[rows, columns] - 3e-6).all()
+    assert np.median((left.above - left.below)[rows, columns]) < 0.02
+
+
+def on_led_flank(drum, side, theta, rho):
+    """Points (n, 3) that a roller on any guide touches, by the equation of meshing."""
+    (y, z), (y1, z1) = (drum.axis(theta, drum.level, order) for order in (0, 1))
+    size = drum.size(drum.roller, rho)
+    ahead = rho + size * drum.growth + y1
+    a = np.arctan2(z1, ahead) + side * np.arcsin(y * drum.growth / np.hypot(ahead, z1))
+    across, up = y - side * size * np.sin(a), z + side * size * np.cos(a)
+    return np.stack(
+        [rho * np.cos(theta) - across * np.sin(theta), rho * np.sin(theta) + across * np.cos(theta), up], axis=-1
+    )
 
 
 def on_flank(gauge, motion, theta, rho):
