@@ -32,7 +32,7 @@ from kin.cylindrical.turned import Pass
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from kin.cylindrical.roller import Gauge
     from kin.numeric.arrays import Array, Indices, Mask
@@ -53,6 +53,7 @@ ALIKE, SMALLER = 0.01, 0.1  # of the radius: one that is smaller by more leans m
 EXACT = 5e-3  # rad: blocks of the roller's own path, by which it is told where another turn's roller is
 APART = 1e-3  # mm that this path is off by at most, beside what a cell measures
 BINS = 720  # parts of a turn, of each of which it is known how far along the drum a pass goes
+SKIPPED = 2, 4  # rows and angles of a cell, over which a pass is told to take nothing
 THIN_ROWS, THIN = 6, 12  # every so many points are looked at, to see that a pass is far off
 
 
@@ -102,6 +103,10 @@ class _Points(NamedTuple):
         """Those at some of the places and angles."""
         return _Points(*(values[..., rows, columns] for values in self))
 
+    def thinned(self, rows: Indices, columns: Indices) -> _Points:
+        """Those where some of the rows and columns cross."""
+        return _Points(*(values[..., rows[:, None], columns] for values in self))
+
 
 class _Met(NamedTuple):
     """How a pass comes to points (m, n): D, mm, how far out, mm, theta less A, rad, and slopes of H (2, m, n).
@@ -134,10 +139,10 @@ def left_on(gauge: Gauge, passes: Sequence[Pass], radius: float, tolerance: floa
     smaller = max(abs(float(gauge.size(rho)) - radius) for rho in (gauge.inner, gauge.outer)) / radius > ALIKE
     askew = _Askew(TILT * math.sqrt(tolerance), LEAN * math.sqrt(tolerance) + (SMALLER if smaller else 0.0))
     while True:
-        theta, rho = _grid(gauge, cutter, askew, tolerance)
-        if len(theta) * len(rho) > MOST_POINTS:
+        found = _left(gauge, ways, cutter, askew, tolerance)
+        if found is None:
             return None
-        left, widest = _left(gauge, ways, cutter, (theta, rho), tolerance)
+        left, widest = found
         if widest.tilt <= askew.tilt and widest.lean <= askew.lean:
             return left
         askew = _Askew(max(askew.tilt, 1.5 * widest.tilt), max(askew.lean, 1.5 * widest.lean))
@@ -165,17 +170,27 @@ def _forwards(one: Pass) -> Pass:
 
 
 def _left(
-    gauge: Gauge, ways: Sequence[Pass], cutter: _Cutter, grid: tuple[Array, Array], tolerance: float
-) -> tuple[Left, _Askew]:
-    """What is left at points of a flank, and how much a cutter that decides there is askew at most."""
-    theta, rho = grid
+    gauge: Gauge, ways: Sequence[Pass], cutter: _Cutter, askew: _Askew, tolerance: float
+) -> tuple[Left, _Askew] | None:
+    """What is left at points of a flank, and how much a cutter that decides there is askew at most.
+
+    The points are as near to one another as one that is `askew` asks for; None where they are too many.
+    """
+    theta, rho = _grid(gauge, cutter, askew, tolerance)
+    if len(theta) * len(rho) > MOST_POINTS:
+        return None
     points = _points(gauge, theta, rho)
     off = np.full(points.phi.shape, np.inf)
     above, below = (np.full((len(rho) - 1, len(theta) - 1), np.inf) for _ in range(2))
     h1, h2 = 0.25 * np.diff(theta), 0.25 * np.diff(rho)[:, None]
     bend, widest = tolerance * (ACROSS + ALONG), [0.0, 0.0]
     others = _Others(gauge, points)
-    for one in ways:
+
+    def far(one: Pass) -> tuple[bool, float]:
+        """Passes along the other flank come last, deeper ones behind those that are less deep: they take less."""
+        return float(np.mean(one.x - gauge.axis(one.a))) * gauge.side < 0.0, -one.z
+
+    for one in sorted(ways, key=far):
         # a point is met a little nearer to the drum's axis than the roller meets it
         first = int(np.searchsorted(rho, one.z - 0.5 * cutter.radius))
         if first > len(rho) - 2:
@@ -185,7 +200,18 @@ def _left(
         for turn, stretch in _turns(one, theta, gauge.reach / gauge.floor + ROOM):
             own_turn = round(turn / TURN) % gauge.lifts.turns == 0
             for columns in [stretch] if own_turn else others.near(one, turn, stretch, cutter):
-                here = (slice(first, None), columns)
+                begun = points.part(slice(first, None), columns)
+
+                def come(
+                    rows: Indices, places: Indices, begun: _Points = begun, one: Pass = one, turn: float = turn
+                ) -> _Met:
+                    return _nearest(begun.thinned(rows, places), one, turn, gauge, cutter)
+
+                felt = _felt(off[first:, columns], come, askew, tolerance)
+                if felt is None:
+                    continue
+                rows = slice(first + felt.start, first + felt.stop)
+                here = (rows, columns)
                 met = _nearest(points.part(*here), one, turn, gauge, cutter)
                 taken = None if own_turn else others.takes(here, turn)
                 own, apart = met.along >= one.z - END, met.off
@@ -198,9 +224,9 @@ def _left(
                     max(most, float(np.abs(row[near]).max(initial=0.0)))
                     for most, row in zip(widest, turned, strict=True)
                 ]
-                cells = (slice(first, None), slice(columns.start, columns.stop - 1))
+                cells = (slice(rows.start, rows.stop - 1), slice(columns.start, columns.stop - 1))
                 spread = _over(met.slopes, np.maximum) - _over(met.slopes, np.minimum)
-                most = _over(met.off, np.maximum) + spread[0] * h1[cells[1]] + spread[1] * h2[first:] + bend
+                most = _over(met.off, np.maximum) + spread[0] * h1[cells[1]] + spread[1] * h2[cells[0]] + bend
                 above[cells] = np.minimum(above[cells], np.where(_over(own, np.minimum), most, np.inf))
                 least = _over(apart, np.minimum) - bend
                 held = own if taken is None else own & ~taken
@@ -208,6 +234,29 @@ def _left(
                     least = np.where(_over(taken, np.maximum), np.inf, least)
                 below[cells] = np.minimum(below[cells], np.where(_over(held, np.maximum), least, np.inf))
     return Left(theta, rho, off, above, below), _Askew(*widest)
+
+
+def _felt(own: Array, come: Callable[[Indices, Indices], _Met], askew: _Askew, tolerance: float) -> slice | None:
+    """Rows from the first to the last at which a pass may take more than those before it, which leave `own` (m, n).
+
+    Over cells of several of the grid it leaves no less than at their corners, but for what D bends by. `come` says how
+    it comes to points at some rows and columns.
+    """
+    if not np.isfinite(own).any():
+        return slice(0, len(own))
+    skip, step = SKIPPED
+    rows, columns = (
+        np.append(np.arange(0, count - 1, by), count - 1) for count, by in zip(own.shape, SKIPPED, strict=True)
+    )
+    met = come(rows, columns)
+    least = _over(met.off, np.minimum) - tolerance * (step**2 * ACROSS + skip**2 * ALONG)
+    most = np.maximum(np.maximum.reduceat(own, rows[:-1], axis=0), own[rows[1:]])
+    most = np.maximum(np.maximum.reduceat(most, columns[:-1], axis=1), most[:, columns[1:]])
+    # what D bends by is known of cutters that are askew by no more than has been taken
+    beyond = (np.abs(met.tilt) > askew.tilt) | (np.abs(met.lean) > askew.lean)
+    beyond &= met.off <= own[rows[:, None], columns] + NEAR * tolerance
+    felt = np.flatnonzero(((least <= most) | _over(beyond, np.maximum)).any(axis=1))
+    return slice(int(rows[felt[0]]), int(rows[felt[-1] + 1]) + 1) if len(felt) else None
 
 
 class _Others:
