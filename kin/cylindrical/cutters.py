@@ -53,6 +53,7 @@ ALIKE, SMALLER = 0.01, 0.1  # of the radius: one that is smaller by more leans m
 EXACT = 5e-3  # rad: blocks of the roller's own path, by which it is told where another turn's roller is
 APART = 1e-3  # mm that this path is off by at most, beside what a cell measures
 BINS = 720  # parts of a turn, of each of which it is known how far along the drum a pass goes
+BLOCK = 16  # angles, looked at together for another turn's pass
 SKIPPED = 2, 4  # rows and angles of a cell, over which a pass is told to take nothing
 THIN_ROWS, THIN = 6, 12  # every so many points are looked at, to see that a pass is far off
 
@@ -276,19 +277,21 @@ class _Others:
         place = np.clip(np.searchsorted(edges, one.a, side="right") - 1, 0, len(low) - 1)
         np.minimum.at(low, place, one.x)
         np.maximum.at(high, place, one.x)
-        first = np.clip(np.searchsorted(edges, theta - 2.0 * self.reach) - 1, 0, len(low) - 1)
-        last = np.clip(np.searchsorted(edges, theta + 2.0 * self.reach), 1, len(low))
-        count = int((last - first).max())
-        windows = [np.minimum(first + k, last - 1) for k in range(count)]
+        # the lowest and highest place of the pass about each block of angles, and of the points there
+        begin = np.arange(0, len(theta), BLOCK)
+        end = np.minimum(begin + BLOCK, len(theta) - 1)
+        first = np.clip(np.searchsorted(edges, theta[begin] - 2.0 * self.reach) - 1, 0, len(low) - 1)
+        last = np.clip(np.searchsorted(edges, theta[end] + 2.0 * self.reach), 1, len(low))
+        windows = [np.minimum(first + k, last - 1) for k in range(int((last - first).max()))]
         least = np.minimum.reduce([low[own] for own in windows])
         most = np.maximum.reduce([high[own] for own in windows])
-        wide = cutter.radius + max(cutter.growth, 0.0) * float(self.points.r.max())
-        close = (least - wide <= self.high[columns]) & (most + wide >= self.low[columns])
-        close[1:] |= close[:-1].copy()
-        close[:-1] |= close[1:].copy()
-        ends = np.flatnonzero(np.diff(np.concatenate([[0], close.astype(np.int8), [0]])))
-        found = [slice(columns.start + int(a), columns.start + int(b)) for a, b in ends.reshape(-1, 2)]
-        return [each for each in found if each.stop - each.start > 1]
+        wide = cutter.radius + cutter.growth * float(self.points.r.max())
+        close = least - wide <= np.maximum.reduceat(self.high[columns], begin)
+        close &= most + wide >= np.minimum.reduceat(self.low[columns], begin)
+        ends = np.flatnonzero(np.diff(np.concatenate([[0], close.astype(np.int8), [0]]))).reshape(-1, 2)
+        # with a point beside each stretch, so that no cell is left out
+        found = [(max(int(a) * BLOCK - 1, 0), min(int(b) * BLOCK + 1, len(theta))) for a, b in ends]
+        return [slice(columns.start + a, columns.start + b) for a, b in found if b - a > 1]
 
     def takes(self, here: tuple[slice, slice], turn: float) -> Mask:
         """Whether points lie within the roller of another turn, or nearer to it than their cells are large."""
