@@ -250,7 +250,10 @@ def _rough(design: DrumDesign, request: FileRequest, flanks: list[tuple[str, Way
         at = middle if way.cutter.taper >= way.flank.taper else way.end
         rough = replace(way, flank=replace(way.flank, radius=way.flank.radius - less), at=at)
         if not (way.beside or rough.flank.radial):
-            raise _needs_beside(design, request, way)
+            field = f"{recipe.field_of(request)}.{request.kind}.allowance"
+            problem = "with its axis through the drum's, no pass leaves any of a roller that is a cone or beside it"
+            remedy = "leave it out, or let the machine move across the drum: axes: [X, Y, A]"
+            raise recipe.error(field, problem, None, remedy)
         ways.append((f"{name}, rough", rough))
     cut = own.get("depth_of_cut", recipe.track.depth)
     return [Step(way, z, name) for name, way, z in _down(recipe.radius, cut, ways)]

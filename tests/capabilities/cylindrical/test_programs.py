@@ -352,6 +352,18 @@ def test_what_is_refused_says_what_to_give(
     assert report.ok
 
 
+def test_an_allowance_of_a_cone_takes_y(tmp_path: Path) -> None:
+    text = program(
+        TOP,
+        ("radius: 10,", "radius: 10, taper: axis, at: 44,"),
+        ("cutter: 20", "cutter: 17.04545, taper: 12.8043, allowance: 0.2"),
+    )
+    with pytest.raises(camgeo.RecipeErrors, match="no pass leaves any of a roller that is a cone or beside it"):
+        exported(tmp_path, text)
+    for remedy in (("[X, A]", "[X, Y, A]"), (", allowance: 0.2", "")):
+        assert exported(tmp_path, changed(text, remedy)).ok
+
+
 @pytest.mark.costly("a program is made, and judged twice")
 def test_a_program_is_read_again(
     made: Callable[[str], tuple[Path, camgeo.Report]], tmp_path: Path, capsys: pytest.CaptureFixture[str]

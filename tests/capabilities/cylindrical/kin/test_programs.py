@@ -176,6 +176,23 @@ def test_planted_faults_of_led_rollers_are_refused(tmp_path, kind, fault):
     assert refused(verdict) & {"contour", "ways", "depth"}, verdict.checks
 
 
+@pytest.mark.parametrize("kind", few(["trailing", "beside", "cone", "cone on an arm"], 3))
+def test_a_cut_flank_of_a_led_roller_is_judged_by_the_path(tmp_path, kind):
+    """The greatest distance of the path from the chords, along the drum and across it, within what is looked at."""
+    drum = replace(LED[kind], shortened=True)
+    verdict = led(tmp_path, drum)
+    assert verdict.ok, verdict.checks
+    ((a, x, y),), fine = ways_of(drum), np.linspace(0.0, TURN, 400_001)
+    place = drum.axis(fine, drum.level)
+    chord = float(np.abs(np.interp(fine, a, x) - place[1]).max())
+    (check, *_) = [each for each in verdict.checks if each.name == "contour"]
+    assert chord <= check.value < chord + 0.02 * TOLERANCE + np.abs(np.interp(fine, a, y) - place[0]).max() + 1e-4
+    for ways in (moved(ways_of(drum), x=0.01), moved(ways_of(drum), y=0.01)):
+        assert "contour" in refused(led(tmp_path, drum, ways))
+    smaller = replace(cut_by(drum), radius=cut_by(drum).radius - 0.025)
+    assert refused(led(tmp_path, drum, cutting=smaller, head="")) == {"contour"}
+
+
 def test_a_cutter_of_another_cone_is_named(tmp_path):
     drum = LED["cone"]
     verdict = led(tmp_path, drum, head=named(drum).replace("angle 6.0", "angle 6.1"))
