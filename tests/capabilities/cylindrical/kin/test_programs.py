@@ -5,6 +5,7 @@ Holds: kin.cylindrical.program, kin.cylindrical.cutters, kin.cylindrical.turned.
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -142,7 +143,7 @@ def coarse(ways):
     return [(np.radians(np.round(np.degrees(angle), 2)), along, beside) for angle, along, beside in ways]
 
 
-LED_FAULTS = {
+LED_FAULTS: dict[str, Any] = {
     "a block left out": lambda _, ways: ([tuple(np.delete(row, 60) for row in way) for way in ways], {}),
     "X + 0.01": lambda _, ways: (moved(ways, x=0.01), {}),
     "Y + 0.01": lambda _, ways: (moved(ways, y=0.01), {}),
