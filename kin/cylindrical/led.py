@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -29,10 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.cylindrical.guide import Axis, Guide, Touch
-    from kin.cylindrical.roller import Worst
+    from kin.cylindrical.roller import Along, Worst
     from kin.numeric.arrays import Array, Mask
-
-Along = TypeVar("Along", float, "Array")
 
 OFF = 0.1  # of the roller's radius: bounds hold for points that are no farther from the flank
 UPRIGHT = 1.5  # rad: no bound is had where normals may lean more against the roller's path
@@ -77,6 +75,16 @@ class LedGauge(Gauge):
     def size(self, along: Along) -> Along:
         """Radius of the roller, mm, at places along it, mm."""
         return self.radius + (along - self.at) * self.growth
+
+    @property
+    def led(self) -> Guide:
+        """What leads the roller's axis."""
+        return self.guide
+
+    @property
+    def spread(self) -> float:
+        """How fast the roller's radius grows along its axis."""
+        return self.growth
 
     @property
     def lever(self) -> float:

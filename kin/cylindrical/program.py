@@ -2,8 +2,9 @@
 
 The cutter's path is what the control makes of the blocks: all axes move evenly between them. The metal is what no
 position of the cutter takes away, held against the exact flanks over all shaft angles, from the roller's inner end to
-the blank (`kin.cylindrical.cutters`). A flank that is shortened by undercut, or has corners, is judged by the path
-alone: a cutter as large as the roller leaves what the rollers leave, but for the error of its own path.
+the blank (`kin.cylindrical.cutters`), over all turns after which the motion repeats. A flank that is shortened by
+undercut, or has corners, is judged by the path alone: a cutter as large as the roller leaves what the rollers leave,
+but for the error of its own path.
 """
 
 from __future__ import annotations
@@ -18,13 +19,12 @@ import numpy as np
 from kin.cylindrical.cutters import END, left_on
 from kin.cylindrical.gauge import gauges_of
 from kin.cylindrical.intent import Groove, Rib
-from kin.cylindrical.judge import CONTOUR, MOTION, SLACK, assured, placed
+from kin.cylindrical.judge import CONTOUR, MOTION, SLACK, assured, in_unit
 from kin.cylindrical.turned import passes_of, read_turned
 from kin.cylindrical.verdict import DrumVerdict, FlankVerdict, MotionError
-from kin.numeric.angles import TURN, degrees
 from kin.numeric.check import ROUNDING, Check, about, at_most, failed
 from kin.numeric.errors import UnsettledError
-from kin.numeric.lengths import UNIT, length_words
+from kin.numeric.lengths import UNIT, amount_words, length_words
 from kin.numeric.limits import is_loose, limit_of, unlimited
 from kin.numeric.records import dataclass, replace
 from kin.read.checks import count_check, unread_check
@@ -35,53 +35,66 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kin.cylindrical.cutters import Left
+    from kin.cylindrical.guide import Unit
     from kin.cylindrical.intent import DrumIntent, Limits
     from kin.cylindrical.lifts import Lifts
     from kin.cylindrical.roller import Gauge
     from kin.cylindrical.turned import Pass, TurnedProgram
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Indices
 
 SAME = 1e-9  # mm: sizes that differ by less are one
 LEAN = 1e-2  # by which the slope of a flank may be more between two angles
 FEED = 0.01  # of a feed, by which it may differ
 COARSE, FAR = 20.0, 3.0  # times the tolerance: what a first look is good for, and what is refused at it
 LEAST = 1e-6  # of the cutter's diameter, by which what a program names may differ
-_CUTTER = re.compile(r"^cutter: diameter ([0-9.]+)")
+_CUTTER = re.compile(r"^cutter: diameter ([0-9.]+)(?: at its end, half angle ([0-9.]+) degrees)?")
+LEAST_TAPER = 1e-6  # degrees, by which the half angle of a cutter may differ
+PATH = 0.02  # of the tolerance, by which a path may stray between two places that are looked at
 
 
 @dataclass(frozen=True)
 class Cutting:
     """How a program should cut, mm.
 
-    radius        of the cutter
+    radius        of the cutter, of one that tapers at its end
     feed          mm a minute along the path on the blank's radius
     inverse       whether every block states the inverse of its time, G93
     depth_of_cut  greatest depth of a pass
+    taper         half angle of the cutter, rad, thicker away from its end; 0 of a cylinder
     """
 
     radius: float
     feed: float
     inverse: bool
     depth_of_cut: float
+    taper: float = 0.0
+
+    @property
+    def growth(self) -> float:
+        """How fast the cutter's radius grows along its axis."""
+        return math.tan(self.taper)
+
+    def beyond(self, gauge: Gauge, rho: float, end: float) -> float:
+        """By how much the cutter is larger than a roller at a place rho, its end at another, mm."""
+        return self.radius + (rho - end) * self.growth - gauge.size(rho)
 
 
 class _Path(NamedTuple):
-    """How far a pass is off the path of a roller's axis along the drum: least and greatest, mm, and where, rad."""
+    """How far a pass is off the path of a roller's axis, along the drum: least and greatest, mm, and where, rad.
+
+    `beside` is how far it is off across the axis at most; `remainder` by how much all may be exceeded, mm.
+    """
 
     least: float
     least_at: float
     most: float
     most_at: float
+    beside: float
+    remainder: float = 0.0
 
 
 def verify_program(path: Path, drum: DrumIntent, cutting: Cutting, limits: Limits) -> DrumVerdict:
-    """Judge a program by what its cutter leaves, of a cylindrical roller on a radius of the drum, led along its axis.
-
-    Raises OSError where the disk refuses, ValueError for any other roller.
-    """
-    roller = drum.follower
-    if roller.arm is not None or roller.offset or roller.taper:
-        raise ValueError("programs of such a roller are not judged")
+    """Judge a program by what its cutter leaves; raises OSError where the disk refuses."""
     try:
         program = read_turned(path)
     except ReadError as error:
@@ -115,7 +128,7 @@ def judged_passes(
     flanks = []
     try:
         for gauge in gauges_of(drum):
-            flank, own = _flank(gauge, passes, drum, cutting.radius, limits)
+            flank, own = _flank(gauge, passes, drum, cutting, limits)
             flanks.append(flank)
             checks += [replace(check, surface=gauge.name) for check in own]
     except UnsettledError as error:
@@ -127,39 +140,48 @@ def judged_passes(
 
 
 def _flank(
-    gauge: Gauge, passes: list[Pass], drum: DrumIntent, cutter: float, limits: Limits
+    gauge: Gauge, passes: list[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits
 ) -> tuple[FlankVerdict, list[Check]]:
-    tolerance = limits.tolerance
+    tolerance, told = limits.tolerance, in_unit(drum.follower, gauge)
     slack = ROUNDING * (drum.radius + drum.length)
-    if cutter > gauge.radius + SAME:
-        why = f"a cutter {length_words(2.0 * cutter, '.9g')} {UNIT} across is wider than the roller"
+
+    def unknown(why: str) -> tuple[FlankVerdict, list[Check]]:
         return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
-    alike = abs(cutter - gauge.radius) <= SAME
+
+    gauge.demand_bounded()
+    deepest = min(one.z for one in passes)
+    beyond = [cutting.beyond(gauge, rho, deepest) for rho in (gauge.inner, drum.radius)]
+    if max(beyond) > max(tolerance * gauge.spread, SAME):
+        across = f"{length_words(2.0 * cutting.radius, '.9g')} {UNIT} across{' at its end' if cutting.taper else ''}"
+        return unknown(f"a cutter {across} is wider than the roller")
     if drum.shortened or len(gauge.lifts.corners):
-        if not alike:
-            why = "of a flank with a cut or a corner, what a cutter smaller than the roller leaves is not known"
-            return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
-        return _by_path(gauge, passes, limits, slack)
+        if max(abs(each) for each in beyond) > max(tolerance * gauge.spread, SAME):
+            return unknown(
+                "of a flank with a cut or a corner, what a cutter smaller than the roller leaves is not known"
+            )
+        return _by_path(gauge, passes, drum, cutting, limits)
     whole = replace(gauge, outer=drum.radius)
-    left = left_on(whole, passes, cutter, COARSE * tolerance)
+    left = left_on(whole, passes, cutting.radius, COARSE * tolerance, cutting.growth)
     if left is None or _extremes(left)[0] <= FAR * tolerance:
-        left = left_on(whole, passes, cutter, tolerance)
+        left = left_on(whole, passes, cutting.radius, tolerance, cutting.growth)
     if left is None:
-        why = "it would take too many points to tell"
-        return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
+        return unknown("it would take too many points to tell")
     if not np.isfinite(left.off).all():
         k = int(np.flatnonzero(~np.isfinite(left.off).all(axis=0))[0])
-        why = f"nothing cuts as deep as the roller goes at an angle of {degrees(float(left.theta[k])):.6g} degrees"
-        return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
+        return unknown(f"nothing cuts as deep as the roller goes at an angle of {_angle(left.theta[k]):.6g} degrees")
     worst, at, remainder = _extremes(left)
     most, least = max(float(left.off.max()), 0.0), max(-float(left.off.min()), 0.0)
     words = f"{length_words(most, '.3g')} {UNIT} left and {length_words(least, '.3g')} {UNIT} too deep"
     detail = f"{words}; true within {length_words(remainder, '.2g')} {UNIT}"
     value = worst if worst > tolerance else assured(worst, remainder, tolerance)
-    checks = [placed(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=slack), at)]
-    motion = _motion(gauge, left)
-    checks.append(_motion_check(motion, gauge, limits, slack))
-    return FlankVerdict(gauge.name, motion, worst), checks
+    check = replace(at_most(CONTOUR, value, tolerance, "mm", detail=detail, slack=slack), at=_angle(at))
+    motion = _motion(gauge, left, told, drum.follower.unit)
+    return FlankVerdict(gauge.name, motion, worst), [check, _motion_check(motion, gauge, drum, limits, slack)]
+
+
+def _angle(theta: float) -> float:
+    """Degrees of a shaft angle, rad, over all turns."""
+    return math.degrees(float(theta))
 
 
 def _extremes(left: Left) -> tuple[float, float, float]:
@@ -171,11 +193,10 @@ def _extremes(left: Left) -> tuple[float, float, float]:
     return worst, float(left.theta[k]), max(bound - worst, 0.0)
 
 
-def _motion(gauge: Gauge, left: Left) -> MotionError:
+def _motion(gauge: Gauge, left: Left, told: float, unit: Unit) -> MotionError:
     """Error of the roller on what is left: it stands where that holds it highest along its length."""
-    slope = gauge.lifts.at(left.theta)[1]
     rows = max(int(np.searchsorted(left.rho, gauge.outer, side="right")), 2)
-    lean = np.hypot(1.0, slope / left.rho[:rows, None])
+    lean = 1.0 / upright_at(gauge, left.theta, left.rho[:rows, None])
     held = (left.off[:rows] * lean).max(axis=0)
     steep = np.maximum(lean[:-1, 1:], lean[:-1, :-1]) * (1.0 + LEAN)
     above, below = left.above[: rows - 1], left.below[: rows - 1]
@@ -183,44 +204,67 @@ def _motion(gauge: Gauge, left: Left) -> MotionError:
     least = float(np.where(below < 0.0, below * steep, below).max(axis=0).min())
     k = int(np.argmax(np.abs(held)))
     worst = float(abs(held[k]))
-    share = 0.5 * (np.append(np.diff(left.theta), 0.0) + np.append(0.0, np.diff(left.theta))) / TURN
+    share = 0.5 * (np.append(np.diff(left.theta), 0.0) + np.append(0.0, np.diff(left.theta))) / gauge.lifts.period
     return MotionError(
-        worst,
-        degrees(float(left.theta[k])),
-        max(most - worst, -least - worst, 0.0),
-        float(held.min()),
-        float(held.max()),
-        float(np.sqrt((share * held**2).sum())),
+        told * worst,
+        _angle(left.theta[k]),
+        told * max(most - worst, -least - worst, 0.0),
+        told * float(held.min()),
+        told * float(held.max()),
+        told * float(np.sqrt((share * held**2).sum())),
+        unit,
     )
 
 
-def _motion_check(motion: MotionError, gauge: Gauge, limits: Limits, slack: float) -> Check:
-    limit, room = limit_of(lambda e: gauge.by_error(e) * (1.0 + SLACK), limits.motion, limits.tolerance, slack)
-    worst = assured(motion.max, motion.remainder, limits.tolerance) if limits.motion is None else motion.bound
-    detail = f"true within {length_words(motion.remainder, '.2g')} {UNIT}" if motion.remainder else ""
-    check = replace(at_most(MOTION, worst, limit, "mm", detail=detail, slack=room), at=motion.at)
-    loose = limits.motion is None and is_loose(limit, limits.tolerance, lambda: gauge.lifts.stroke)
-    return unlimited(check) if loose else check
+def upright_at(gauge: Gauge, theta: Array, rho: Array) -> Array:
+    """Cosine of the angle between the flank's normal and the roller's path, at angles and places along it."""
+    rows = gauge.lifts.at(theta)
+    axis, way = gauge.led.axis(*rows), gauge.led.axis(rows[0], np.ones_like(theta), np.zeros_like(theta))
+    ahead, lag = rho + gauge.size(rho) * gauge.spread + axis.y1, gauge.side * gauge.spread * axis.y
+    square = ahead**2 + axis.z1**2
+    h = np.sqrt(square - lag**2)
+    sine, cosine = (lag * ahead + axis.z1 * h) / square, (ahead * h - lag * axis.z1) / square
+    upright: Array = (cosine * way.z1 - sine * way.y1) / (gauge.lever * math.hypot(1.0, gauge.spread))
+    return upright
 
 
-def _by_path(gauge: Gauge, passes: list[Pass], limits: Limits, slack: float) -> tuple[FlankVerdict, list[Check]]:
+def _motion_check(motion: MotionError, gauge: Gauge, drum: DrumIntent, limits: Limits, slack: float) -> Check:
+    told, given = in_unit(drum.follower, gauge), None if limits.motion is None else drum.follower.told(limits.motion)
+    limit, room = limit_of(lambda e: told * gauge.by_error(e) * (1.0 + SLACK), given, limits.tolerance, slack)
+    worst = assured(motion.max, motion.remainder, told * limits.tolerance) if given is None else motion.bound
+    detail = f"true within {amount_words(motion.remainder, motion.unit, '.2g')}" if motion.remainder else ""
+    check = replace(at_most(MOTION, worst, limit, motion.unit, detail=detail, slack=room), at=motion.at)
+    stroke = drum.follower.told(gauge.lifts.stroke)
+    return unlimited(check) if given is None and is_loose(limit, told * limits.tolerance, lambda: stroke) else check
+
+
+def _by_path(
+    gauge: Gauge, passes: list[Pass], drum: DrumIntent, cutting: Cutting, limits: Limits
+) -> tuple[FlankVerdict, list[Check]]:
     """A flank by the paths of cutters as large as its roller: what they cut is off by no more than they are."""
-    tolerance = limits.tolerance
+    tolerance, slack = limits.tolerance, ROUNDING * (drum.radius + drum.length)
     own = [one for one in passes if _is_about(one, gauge)]
-    whole = [one for one in own if one.z <= gauge.inner + END and float(np.ptp(one.a)) >= TURN - SAME]
+    whole = [one for one in own if one.z <= gauge.inner + END and float(np.ptp(one.a)) >= gauge.lifts.period - SAME]
     if not whole:
         why = "no pass as deep as the roller goes right round"
         return FlankVerdict(gauge.name), [failed(CONTOUR, why, unit="mm", limit=tolerance)]
-    off = [off_path(one, gauge.lifts, gauge.level) for one in own]
-    beside = max(float(np.abs(one.y).max()) for one in own)
+    off = [path_off(one, gauge, PATH * tolerance) for one in own]
+    beside, remainder = max(each.beside for each in off), max(each.remainder for each in off)
+    # a cutter whose cone lies elsewhere than the roller's is smaller, or larger
+    beyond = max(abs(cutting.beyond(gauge, rho, one.z)) for one in whole for rho in (gauge.inner, drum.radius))
     errors = [(-each.least, each.least_at) for each in off] + [(each.most, each.most_at) for each in off]
     worst, at = max(errors)
     detail = f"by its path, which is off by {length_words(worst, '.3g')} {UNIT} along the drum"
-    check = placed(at_most(CONTOUR, math.hypot(worst, beside), tolerance, "mm", detail=detail, slack=slack), at)
+    most = math.hypot(worst, beside) + remainder + beyond
+    check = replace(at_most(CONTOUR, most, tolerance, "mm", detail=detail, slack=slack), at=_angle(at))
     least, most = min(each.least for each in off), max(each.most for each in off)
     least, most = (least, most) if gauge.side < 0 else (-most, -least)
-    motion = MotionError(worst, degrees(at), 0.0, least, most, max(abs(least), abs(most)))
-    return FlankVerdict(gauge.name, motion, worst), [check, _motion_check(motion, gauge, limits, slack)]
+    told, unit = in_unit(drum.follower, gauge), drum.follower.unit
+    # what is off across the roller's path, or too wide, moves it by no more than a flank that is off by as much
+    by_flank = gauge.by_error(beside + remainder + beyond) if beside + remainder + beyond else 0.0
+    rms = told * max(abs(least), abs(most))
+    motion = MotionError(told * worst, _angle(at), told * by_flank, told * least, told * most, rms, unit)
+    return FlankVerdict(gauge.name, motion, worst), [check, _motion_check(motion, gauge, drum, limits, slack)]
 
 
 def _is_about(one: Pass, gauge: Gauge) -> bool:
@@ -228,10 +272,33 @@ def _is_about(one: Pass, gauge: Gauge) -> bool:
     return abs(float(np.mean(one.x - gauge.axis(one.a)))) < gauge.radius
 
 
+def path_off(one: Pass, gauge: Gauge, near: float) -> _Path:
+    """How far a pass is off the path of a roller's axis: exactly along a slide, else within `near`, mm."""
+    if not gauge.led.bend:
+        found, aside = off_path(one, gauge.lifts, gauge.level), gauge.led.axis(*gauge.lifts.at(one.a)).y
+        return found._replace(beside=float(np.abs(one.y - aside).max()))
+    # an arc bends by s'' T + k s'^2 E; between places so near to one another a chord is off by no more than that
+    slope = gauge.lever * gauge.lifts.steepest
+    bend = gauge.lever * max(float(np.abs(each[2]).max()) for each in gauge.lifts.enclosed) + gauge.led.bend * slope**2
+    step = math.sqrt(8.0 * near / max(bend, SAME))
+    a, x, y = (row if one.a[-1] >= one.a[0] else row[::-1] for row in (one.a, one.x, one.y))
+    knots = np.mod(gauge.lifts.law.breaks, gauge.lifts.period)
+    knots = np.concatenate([knots + gauge.lifts.period * turn for turn in _turns_of(one, gauge.lifts)])
+    at = np.unique(np.concatenate([np.arange(a[0], a[-1], step), a, knots[(knots > a[0]) & (knots < a[-1])]]))
+    axis = gauge.led.axis(*gauge.lifts.at(at))
+    off, beside = np.interp(at, a, x) - axis.z, np.abs(np.interp(at, a, y) - axis.y)
+    least, most = int(np.argmin(off)), int(np.argmax(off))
+    return _Path(float(off[least]), float(at[least]), float(off[most]), float(at[most]), float(beside.max()), near)
+
+
+def _turns_of(one: Pass, lifts: Lifts) -> Indices:
+    """Numbers of the periods that a pass goes through."""
+    return np.arange(math.floor(float(one.a.min()) / lifts.period), math.ceil(float(one.a.max()) / lifts.period) + 1)
+
+
 def off_path(one: Pass, lifts: Lifts, level: float) -> _Path:
     """How far a pass is off the path level + S(theta) along the drum, between all of its points; both are cubics."""
-    turns = np.arange(math.floor(float(one.a.min()) / TURN), math.ceil(float(one.a.max()) / TURN) + 1)
-    knots = (lifts.nodes[:-1] + TURN * turns[:, None]).ravel()
+    knots = (lifts.nodes[:-1] + lifts.period * _turns_of(one, lifts)[:, None]).ravel()
     knots = knots[(knots > one.a.min()) & (knots < one.a.max())]
     a, x = (one.a, one.x) if one.a[-1] >= one.a[0] else (one.a[::-1], one.x[::-1])
     at = np.unique(np.concatenate([a, knots]))
@@ -254,7 +321,8 @@ def off_path(one: Pass, lifts: Lifts, level: float) -> _Path:
     ends = one.x - level - lifts.at(one.a)[0]
     looked, off = np.concatenate([looked, one.a]), np.concatenate([off, ends])
     least, most = int(np.argmin(off)), int(np.argmax(off))
-    return _Path(float(off[least]), float(looked[least]), float(off[most]), float(looked[most]))
+    beside = float(np.abs(one.y).max())
+    return _Path(float(off[least]), float(looked[least]), float(off[most]), float(looked[most]), beside)
 
 
 # --- how it goes there ------------------------------------------------------------------------------------------------
@@ -262,10 +330,14 @@ def off_path(one: Pass, lifts: Lifts, level: float) -> _Path:
 
 def _cutter(program: TurnedProgram, cutting: Cutting) -> Check:
     """Check the diameter of the cutter that the program names at its head, if it names one."""
-    named = [float(found[1]) for text in program.comments if (found := _CUTTER.match(text))]
+    named = [(float(found[1]), float(found[2] or 0.0)) for text in program.comments if (found := _CUTTER.match(text))]
     if not named:
         return Check("cutter", True, None, None, "mm", detail="the program names no cutter")
-    diameter, expected = named[0] * program.units_mm, 2.0 * cutting.radius
+    diameter, expected = named[0][0] * program.units_mm, 2.0 * cutting.radius
+    taper = math.degrees(cutting.taper)
+    if abs(named[0][1] - taper) > LEAST_TAPER:
+        why = f"the program names a half angle of {named[0][1]:.9g} degrees, {taper:.9g} are expected"
+        return failed("cutter", why, unit="mm", limit=LEAST * expected)
     names = f"the program names {length_words(diameter, '.9g')} {UNIT} across"
     detail = f"{names}, {length_words(expected, '.9g')} are expected"
     return at_most("cutter", abs(diameter - expected), LEAST * expected, "mm", detail=detail)
@@ -296,7 +368,8 @@ def _ways(program: TurnedProgram, passes: Sequence[Pass], drum: DrumIntent) -> C
         if (np.diff(one.a) < 0.0).any() and (np.diff(one.a) > 0.0).any()
     ]
     ends = np.array([(*move.start, *move.end) for move in low]).reshape(-1, 4)
-    within = [gauge.radius - gauge.side * (ends[:, 0] - gauge.axis(ends[:, 3])) > 0.0 for gauge in gauges_of(drum)]
+    deep = np.maximum(ends[:, 2], drum.floor)
+    within = [gauge.size(deep) - gauge.side * (ends[:, 0] - gauge.axis(ends[:, 3])) > 0.0 for gauge in gauges_of(drum)]
     free = np.any(within, axis=0) if isinstance(drum.track, Rib) else np.all(within, axis=0)
     if not free.all():
         bad.append(f"line {low[int(np.argmin(free)) // 2].line} stands in the metal")

@@ -17,10 +17,11 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
+from kin.cylindrical.guide import Slide
 from kin.cylindrical.lifts import widened
 from kin.numeric.angles import TURN
 from kin.numeric.records import dataclass
@@ -28,9 +29,12 @@ from kin.numeric.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kin.cylindrical.guide import Guide
     from kin.cylindrical.lifts import Lifts
     from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices, Mask
+
+Along = TypeVar("Along", float, "Array")
 
 STEPS = 12  # of Newton's method at most
 SETTLED = 1e-10  # rad: after a step below this the next would be rounding
@@ -107,6 +111,20 @@ class Gauge:
     outer: float
     lifts: Lifts
     floor: float
+
+    @property
+    def led(self) -> Guide:
+        """What leads the roller's axis."""
+        return Slide(0.0, self.level)
+
+    @property
+    def spread(self) -> float:
+        """How fast the roller's radius grows along its axis."""
+        return 0.0
+
+    def size(self, along: Along) -> Along:
+        """Radius of the roller, mm, at places along it, mm."""
+        return self.radius + 0.0 * along
 
     @property
     def lever(self) -> float:

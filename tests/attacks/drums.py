@@ -75,8 +75,11 @@ def milled(rng: Random, number: int) -> Attack:
     track = rng.choice(["groove", "rib", "top", "bottom"])
     inch = rng.random() < 0.5
     mm = 25.4 if inch else 1.0
-    text, _ = random_drum(rng, track, inch=inch, ccw=rng.random() < 0.5, undercut=rng.random() < 0.1)
+    undercut = rng.random() < 0.1
+    led = "carriage" if undercut or rng.random() < 0.3 else rng.choice(LED)
+    text, _ = random_drum(rng, track, inch=inch, ccw=rng.random() < 0.5, undercut=undercut, led=led)
     roller = number_after(text.split("follower:")[1], "radius: ")
+    cone = number_after(text, "taper: ") if led.startswith("cone") else 5.0
     own = {
         "axes": rng.choice(["[X, A]", *["[X, Y, A]"] * 5, "[A, X, Z]", "[X]"]),
         "cutter": f"{roller * rng.choice([2.0, 2.0, 1.99, 1.9, 1.5, 1.2, 0.9, 2.1])!r}",
@@ -87,10 +90,11 @@ def milled(rng: Random, number: int) -> Attack:
         "depth_of_cut": f"{rng.uniform(0.5, 20.0) / mm!r}",
         "allowance": f"{rng.choice([0.2, 0.2, 3.0]) / mm!r}",
         "decimals": rng.choice(["3", "5", "9"]),
+        "taper": f"{rng.choice([cone, cone, 1.0, 80.0])}",
         "feed_mode": rng.choice(["inverse-time", "per-minute"]),
     }
     needed = ("axes", "cutter", "feed", "plunge", "spindle", "safe_height")
-    for key in ("allowance", "decimals", "feed_mode", "depth_of_cut", rng.choice(list(own))):
+    for key in ("allowance", "decimals", "feed_mode", "depth_of_cut", "taper", rng.choice(list(own))):
         if rng.random() < (0.6 if key not in needed else 0.1):
             own.pop(key, None)
     options = ", ".join(f"{key}: {value}" for key, value in own.items())

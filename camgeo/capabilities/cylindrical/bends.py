@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.angles import looks_of
 from kin.numeric.interval import Ball, asin, atan2, sin_cos
 
 if TYPE_CHECKING:
@@ -182,6 +183,41 @@ def ways_bend(flank: Flank, theta: tuple[Array, Array], r: float, cutter: float)
     return np.hypot(r * (turns[0] - turns[1]).magnitude, (bend + heights[0] - heights[1]).magnitude)
 
 
+def bends_on(flank: Flank, theta: tuple[Array, Array], rho: float, less: float) -> Array:
+    """Bounds (n,) over cells of the second derivative of a place square to the roller's axis, y and z, in mm per rad^2.
+
+    It is that axis, or a place `less` mm from it towards where a flank is touched at rho, mm.
+    """
+    y, z = flank.guide.place(Ball(*flank.law.enclosure(theta[0], theta[1], 3)))
+    if not less:
+        return np.asarray(np.hypot(y[2].magnitude, z[2].magnitude))
+    contact = _contact(flank, y, z, Ball.exact(np.full_like(theta[0], rho)))
+    s, c, a1 = contact.s, contact.c, contact.first
+    a11 = _bent(flank, y, z, contact)
+    reach = flank.side * less
+    across, up = y[2] - (c * a11 - s * a1 * a1) * reach, z[2] - (s * a11 + c * a1 * a1) * reach
+    return np.asarray(np.hypot(across.magnitude, up.magnitude))
+
+
+def contact_turns(flank: Flank, rho: Array) -> Array:
+    """Bounds (m,) of how fast the angle of contact turns along the roller, rad/mm, between places (m + 1,), mm."""
+    look = looks_of(flank.law)
+    mid, rad = flank.law.enclosure(look[:-1], look[1:], 2)
+    parts, count = len(rho) - 1, mid.shape[1]
+    y, z = flank.guide.place(Ball(np.tile(mid, parts), np.tile(rad, parts)))
+    places = Ball.between(np.repeat(rho[:-1], count), np.repeat(rho[1:], count))
+    return np.asarray(_contact(flank, y, z, places).second.magnitude.reshape(parts, count).max(axis=1))
+
+
+def _bent(flank: Flank, y: list[Ball], z: list[Ball], contact: _Contact) -> Ball:
+    """The second derivative of the contact's angle by theta, from A sin a - z' cos a = side y tan d."""
+    s, c, a1 = contact.s, contact.c, contact.first
+    side, t = float(flank.side), flank.slope
+    lag, lag2 = y[0] * (side * t), y[2] * (side * t)
+    lean1 = y[2] * c + z[2] * s
+    return (lag2 - y[3] * s + z[3] * c - a1 * lean1 * 2.0 + lag * a1 * a1) * contact.m**-1
+
+
 def _turned(h: _Second, side: float) -> _Second:
     """The angle f by which a contact lies before the roller: sin f = -side h."""
     k = 1.0 - h.value * h.value
@@ -259,13 +295,14 @@ def _implicit(flank: Flank, rows: Ball, r: Ball) -> Bends:
     y, z = flank.guide.place(rows)
     t, side = flank.slope, float(flank.side)
     rho = _places(flank, y, z, r)
-    s, c, radius, m, a1, a2 = _contact(flank, y, z, rho)
+    contact = _contact(flank, y, z, rho)
+    s, c, radius, m, a1, a2 = contact
     inverse, spread = m**-1, 1.0 + t * t
-    lag, lag2 = y[0] * (side * t), y[2] * (side * t)
+    lag = y[0] * (side * t)
 
     # A sin a - z' cos a = lag, differentiated twice: A_1 = y'', A_2 = 1 + t^2
     lean1, lean2 = y[2] * c + z[2] * s, c * spread
-    a11 = (lag2 - y[3] * s + z[3] * c - a1 * lean1 * 2.0 + lag * a1 * a1) * inverse
+    a11 = _bent(flank, y, z, contact)
     a12 = (lag * a1 * a2 - a2 * lean1 - a1 * lean2) * inverse
     a22 = (lag * a2 * a2 - a2 * lean2 * 2.0) * inverse
 

@@ -135,6 +135,11 @@ class DrumRecipe(ShaftOrder):
     __repr__ = ShaftOrder.__repr__
 
     @property
+    def period(self) -> float:
+        """Shaft angle, rad, after which the motion repeats."""
+        return 2.0 * math.pi * self.turns
+
+    @property
     def level(self) -> float:
         """Height of the roller's axis at lift 0 over the lower face, mm; of a rib the middle between its rollers."""
         return self.guide.height(0.0)
@@ -451,7 +456,17 @@ PROGRAM = (
         required=True,
         form=_AXES,
     ),
-    length("cutter", "diameter of the cutter, at most that of the roller", required=True),
+    length(
+        "cutter", "diameter of the cutter, of one that tapers at its end; at most that of the roller", required=True
+    ),
+    Field(
+        "taper",
+        Kind.ANGLE,
+        "half angle of a cutter that tapers, thicker away from its end; at most that of the roller",
+        default="a cylinder",
+        above=0,
+        at_most=STEEPEST_CONE,
+    ),
     length("feed", "feed along the path on the blank's radius, a minute", required=True),
     length("plunge", "feed towards the drum's axis, a minute", required=True),
     replace(MANUFACTURE.field("spindle"), about="speed of the spindle, turns a minute", required=True),

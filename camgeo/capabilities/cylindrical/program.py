@@ -1,7 +1,7 @@
 """Programs of a machine that turns the drum under its cutter: X along the drum, A about it, Z towards it, Y beside it.
 
-Each flank has its way, or one way serves both (`camgeo.capabilities.cylindrical.ways`). Between blocks all axes move
-evenly; how far that is off is bounded by the second derivative of the way.
+Each flank has its way, or one way serves both (`camgeo.capabilities.cylindrical.ways`), over all turns after which the
+motion repeats. Between blocks all axes move evenly; how far that is off is bounded by the second derivative of the way.
 """
 
 from __future__ import annotations
@@ -12,10 +12,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from camgeo.capabilities.cylindrical.angles import TURN, parted
+from camgeo.capabilities.cylindrical.angles import parted
 from camgeo.capabilities.cylindrical.figures import steepest
 from camgeo.capabilities.cylindrical.keys import INVERSE, MOST_PLACES, End, Groove
-from camgeo.capabilities.cylindrical.ways import Way, set_beside, set_radially
+from camgeo.capabilities.cylindrical.ways import (
+    ENDS,
+    NEAR,
+    TAPERS,
+    Cutter,
+    Off,
+    Way,
+    set_alike,
+    set_beside,
+    set_radially,
+)
 from camgeo.common.rounding import downward, upward
 from camgeo.files.gcode import SHARE, comment, feed_text, plain
 from camgeo.fit.bound import Bound
@@ -28,7 +38,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
-    from camgeo.capabilities.cylindrical.flank import Flank
     from camgeo.recipe.export import FileRequest
     from camgeo.schema.errors import RecipeErrors
     from kin.numeric.arrays import Array
@@ -38,7 +47,8 @@ CHORDS = 0.6  # of what the setting and rounding leave of it, for lines between 
 OVERLAP = math.radians(5.0)  # by which a pass goes on beyond a turn
 ROUNDED = 0.5  # of the tolerance, that words of few decimals may take
 LEAST_PLACES = 3
-BELOW = 0.02  # mm that a depth goes below where the next begins
+CORNER = 1e-7  # mm per rad: a jump of the velocity below this is rounding
+DIGITS = 4  # of a half angle in a remedy, degrees
 LEAST_ROOM = 0.01  # mm off a flank, below which the cutter goes down on it
 BESIDE = 0.5  # of the cutter's radius, off a flank, where it goes down
 MOST_PASSES = 2000
@@ -64,7 +74,7 @@ def cutting_of(design: DrumDesign, request: FileRequest) -> Cutting:
     own = request.own
     depth = own.get("depth_of_cut", design.recipe.track.depth)
     inverse = own.get("feed_mode", INVERSE) == INVERSE
-    return Cutting(0.5 * own["cutter"], own["feed"], inverse, depth)
+    return Cutting(0.5 * own["cutter"], own["feed"], inverse, depth, own.get("taper", 0.0))
 
 
 def write_program(
@@ -108,33 +118,32 @@ def write_program(
 
 def _planned(design: DrumDesign, request: FileRequest, within: float) -> _Plan:
     recipe, own = design.recipe, request.own
-    cutter, beside = 0.5 * own["cutter"], "Y" in own["axes"]
+    beside, cutter = "Y" in own["axes"], Cutter(0.5 * own["cutter"], own.get("taper", 0.0))
     cut = own.get("depth_of_cut", recipe.track.depth)
     field = f"{recipe.field_of(request)}.{request.kind}"
-    flanks = _own_flanks(design, cutter)
-    _demand_known(design, flanks, cutter, f"{field}.cutter")
-    finish: list[tuple[str, Way, float]] = []
+    flanks = _own_ways(design, cutter, within, beside)
+    _demand_known(design, flanks, f"{field}.cutter")
+    finish: list[tuple[str, Way]] = []
     left = deep = 0.0
-    steep, floor = steepest(design)[0], recipe.floor
     ends = recipe.roller.inner, recipe.radius
-    for name, flank in flanks:
-        way = Way(flank, cutter, recipe.radius, beside)
+    for name, way in flanks:
         if way.alike:
-            finish.append((name, way, floor))
-            continue
-        if beside:
-            ways, off = set_beside(flank, cutter, steep, ends, SETTING * within)
-            finish += [(name, way, max(floor, low - BELOW)) for way, low in ways[:-1]]
-            finish.append((name, ways[-1][0], floor))
+            own_way, off = set_alike(way, ends)
+            ways = [own_way]
+        elif beside:
+            ways, off = set_beside(way.flank, cutter, recipe.floor, ends, SETTING * within)
+        elif way.flank.radial:
+            own_way, off = set_radially(way.flank, cutter, steepest(design)[0], ends)
+            ways = [replace(own_way, end=recipe.floor)]
         else:
-            way, off = set_radially(flank, cutter, steep, ends)
-            finish.append((name, way, floor))
+            raise _needs_beside(design, request, way)
+        finish += [(name, each) for each in ways]
         left, deep = max(left, off.left), max(deep, off.deep)
-        if max(off.left, off.deep) > SETTING * within:
-            raise _refused(design, request, flank, way, max(off.left, off.deep) / (SETTING * within))
-    steps = _rough(design, own, flanks, cutter, beside) if "allowance" in own else []
+        if max(off) > SETTING * within:
+            raise _refused(design, request, way, off, max(off) / (SETTING * within))
+    steps = _rough(design, request, flanks) if "allowance" in own else []
     if steps:
-        steps += [Step(way, z, f"{name}, last") for name, way, z in finish]
+        steps += [Step(way, way.end, f"{name}, last") for name, way in finish]
     else:
         steps = [Step(way, z, name) for name, way, z in _down(recipe.radius, cut, finish)]
     if len(steps) > MOST_PASSES:
@@ -144,37 +153,79 @@ def _planned(design: DrumDesign, request: FileRequest, within: float) -> _Plan:
     return _Plan(steps, Bound(left, deep))
 
 
-def _own_flanks(design: DrumDesign, cutter: float) -> list[tuple[str, Flank]]:
-    """Flanks that have a way of their own; both of a groove have one if the cutter is as large as their roller."""
-    flanks = list(design.flanks.items())
-    track = design.recipe.track
-    if isinstance(track, Groove) and not track.clearance and Way(flanks[0][1], cutter, 0.0, beside=False).alike:
-        return [("groove", flanks[0][1])]
-    return [(f"{name} flank", flank) for name, flank in flanks]
+def _own_ways(design: DrumDesign, cutter: Cutter, within: float, beside: bool) -> list[tuple[str, Way]]:
+    """Flanks that have a way of their own, each with that of a cutter in its roller's place, on the floor.
+
+    Both of a groove have one if the cutter is as large as their roller. The end of a cutter with the roller's taper may
+    stand a share of the tolerance off the floor, so that both cones are one.
+    """
+    recipe, track = design.recipe, design.recipe.track
+    end, near = recipe.floor, 0.0
+    if cutter.taper:
+        apart = recipe.roller.size(end) - cutter.radius
+        most, near = ENDS * within, NEAR * within
+        end -= min(max(apart / math.tan(cutter.taper), -most), most)
+    ways = [
+        (f"{name} flank", Way(flank, cutter, recipe.radius, beside, end, near)) for name, flank in design.flanks.items()
+    ]
+    if not all(way.alike for _, way in ways):  # a smaller one goes down to the floor
+        ways = [(name, way if way.alike else replace(way, end=recipe.floor)) for name, way in ways]
+    if isinstance(track, Groove) and not track.clearance and ways[0][1].alike:
+        return [("groove", ways[0][1])]
+    return ways
 
 
-def _demand_known(design: DrumDesign, flanks: list[tuple[str, Flank]], cutter: float, field: str) -> None:
+def _demand_known(design: DrumDesign, flanks: list[tuple[str, Way]], field: str) -> None:
     """Raise RecipeErrors for a smaller cutter where a flank is cut short, or has a corner."""
     recipe = design.recipe
-    cornered = len(design.law.breaks) and np.abs(design.law.jumps(1)[1][1]).max() > BELOW**4
-    alike = all(Way(flank, cutter, 0.0, beside=False).alike for _, flank in flanks)
-    if alike or not (any(design.tips.values()) or cornered):
+    cornered = len(design.law.breaks) and np.abs(design.law.jumps(1)[1][1]).max() > CORNER
+    if all(way.alike for _, way in flanks) or not (any(design.tips.values()) or cornered):
         return
     why = "a corner of the motion" if cornered else "an undercut"
-    size = f"give {2.0 * recipe.roller.radius / recipe.mm:.9g} {recipe.units}"
     if isinstance(recipe.track, Groove) and recipe.track.clearance:
         raise design.error("cam.track.groove.clearance", f"with {why}, a program cuts no clearance", "leave it out")
-    raise design.error(field, f"with {why}, only a cutter as large as the roller leaves the flank", size)
+    raise design.error(
+        field, f"with {why}, only a cutter as large as the roller leaves the flank", f"give {_like(design)}"
+    )
 
 
-def _refused(design: DrumDesign, request: FileRequest, flank: Flank, way: Way, over: float) -> RecipeErrors:
-    """Error of a cutter so much smaller than the roller that it is off by `over` times what it may."""
+def _like(design: DrumDesign) -> str:
+    """Words of the cutter that is as large as the roller."""
     recipe = design.recipe
-    least = flank.radius - 0.95 * (flank.radius - way.cutter) / over
+    size, roller = 2.0 * recipe.roller.size(recipe.floor) / recipe.mm, recipe.roller
+    if not roller.taper:
+        return f"{size:.9g} {recipe.units}"
+    return f"cutter: {downward(size, 7)}, taper: {math.degrees(roller.taper):.{DIGITS}f}"
+
+
+def _needs_beside(design: DrumDesign, request: FileRequest, way: Way) -> RecipeErrors:
+    """Error of a cutter that would have to stand beside the drum's axis."""
+    recipe = design.recipe
+    problem = "with its axis through the drum's, only a cutter as large as the roller leaves such a flank"
+    remedy = "let the machine move across the drum: axes: [X, Y, A]"
+    if way.flank.guide.radial:
+        remedy = f"{remedy}, or give {_like(design)}"
+    return recipe.error(f"{recipe.field_of(request)}.{request.kind}.axes", problem, None, remedy)
+
+
+def _refused(design: DrumDesign, request: FileRequest, way: Way, off: Off, over: float) -> RecipeErrors:
+    """Error of a cutter that is off by `over` times what it may."""
+    recipe, flank = design.recipe, way.flank
+    field = f"{recipe.field_of(request)}.{request.kind}"
     remedies = [] if way.beside else ["let the machine move across the drum: axes: [X, Y, A]"]
-    if least <= recipe.roller.radius:
-        remedies.append(f"give a cutter of at least {upward(2.0 * least / recipe.mm, 5)} {recipe.units}")
     tolerance = (request.tolerance or recipe.export.tolerance) * over / 0.95 / recipe.mm
+    if way.alike:
+        far = f"{max(off) / recipe.mm:.3g} {recipe.units}"
+        problem = f"with its axis through the drum's, and the roller's beside it, the cutter may be off by {far}"
+        remedies.append(f"give a tolerance of at least {upward(tolerance, 3)} {recipe.units}")
+        return recipe.error(f"{field}.axes", problem, None, ", or ".join(remedies))
+    if abs(flank.taper - way.cutter.taper) > TAPERS:
+        remedies.append(f"give {_like(design)}")
+    else:
+        least = flank.radius - 0.95 * way.less / over
+        size = recipe.roller.size(recipe.floor) - recipe.roller.radius + least
+        if least <= recipe.roller.radius:
+            remedies.append(f"give a cutter of at least {upward(2.0 * size / recipe.mm, 5)} {recipe.units}")
     remedies.append(
         "give a greater tolerance"  # with more depths the error falls, by no share that is known before
         if way.beside
@@ -185,32 +236,36 @@ def _refused(design: DrumDesign, request: FileRequest, flank: Flank, way: Way, o
         if way.beside
         else "with its axis through the drum's it is right at one radius alone, and cuts too deep above that"
     )
-    value = f"{2.0 * way.cutter / recipe.mm:.9g} {recipe.units}"
-    field = f"{recipe.field_of(request)}.{request.kind}.cutter"
-    return recipe.error(field, problem, value, ", or ".join(remedies))
+    value = f"{2.0 * way.cutter.radius / recipe.mm:.9g} {recipe.units}"
+    return recipe.error(f"{field}.cutter", problem, value, ", or ".join(remedies))
 
 
-def _rough(
-    design: DrumDesign, own: dict[str, Any], flanks: list[tuple[str, Flank]], cutter: float, beside: bool
-) -> list[Step]:
+def _rough(design: DrumDesign, request: FileRequest, flanks: list[tuple[str, Way]]) -> list[Step]:
     """Passes that leave the allowance on each flank, down to the floor."""
-    recipe, less = design.recipe, own["allowance"]
-    middle = 0.5 * (recipe.roller.inner + recipe.radius)
-    ways = [
-        (f"{name}, rough", Way(replace(flank, radius=flank.radius - less), cutter, middle, beside), recipe.floor)
-        for name, flank in flanks
-    ]
+    recipe, own = design.recipe, request.own
+    middle, ways = 0.5 * (recipe.roller.inner + recipe.radius), []
+    for name, way in flanks:
+        less = own["allowance"] / math.cos(way.flank.taper)
+        # a cutter that tapers less than its roller touches that at its end
+        at = middle if way.cutter.taper >= way.flank.taper else way.end
+        rough = replace(way, flank=replace(way.flank, radius=way.flank.radius - less), at=at)
+        if not (way.beside or rough.flank.radial):
+            field = f"{recipe.field_of(request)}.{request.kind}.allowance"
+            problem = "with its axis through the drum's, no pass leaves any of a roller that is a cone or beside it"
+            remedy = "leave it out, or let the machine move across the drum: axes: [X, Y, A]"
+            raise recipe.error(field, problem, None, remedy)
+        ways.append((f"{name}, rough", rough))
     cut = own.get("depth_of_cut", recipe.track.depth)
     return [Step(way, z, name) for name, way, z in _down(recipe.radius, cut, ways)]
 
 
-def _down(blank: float, cut: float, ways: list[tuple[str, Way, float]]) -> list[tuple[str, Way, float]]:
+def _down(blank: float, cut: float, ways: list[tuple[str, Way]]) -> list[tuple[str, Way, float]]:
     """Ways with how far out their ends are, mm, in steps of at most `cut` from the blank to the depth of each.
 
     At a depth the first way of each name goes that reaches down to it.
     """
-    floor = min(z for _, _, z in ways)
-    depths = sorted({z for _, _, z in ways}, reverse=True)
+    floor = min(way.end for _, way in ways)
+    depths = sorted({way.end for _, way in ways}, reverse=True)
     levels: list[float] = []
     for z in depths:
         above = levels[-1] if levels else blank
@@ -218,9 +273,9 @@ def _down(blank: float, cut: float, ways: list[tuple[str, Way, float]]) -> list[
         levels += [above - (above - z) * k / parts for k in range(1, parts + 1)]
     found = []
     for level in levels:
-        for name in dict.fromkeys(name for name, _, _ in ways):
-            own = [(way, z) for each, way, z in ways if each == name]
-            way, _ = next((pair for pair in own if pair[1] <= level + 1e-9), own[-1])
+        for name in dict.fromkeys(name for name, _ in ways):
+            own = [way for each, way in ways if each == name]
+            way = next((each for each in own if each.end <= level + 1e-9), own[-1])
             found.append((name, way, max(level, floor)))
     return found
 
@@ -229,20 +284,21 @@ def _down(blank: float, cut: float, ways: list[tuple[str, Way, float]]) -> list[
 
 
 def _points(design: DrumDesign, way: Way, chords: float) -> tuple[Array, float]:
-    """Points (n, 3) of a way over a turn and more: A, rad, X and Y, mm; and how far lines between them are off, mm.
+    """Points (n, 3) of a way over a period and more: A, rad, X and Y, mm; and how far lines between them are off, mm.
 
     The cutter comes and goes off its flank, and climbs along it.
     """
     look, bend = way.bends(design.recipe.radius)
     theta, off = parted(look, bend, chords)
-    theta = np.concatenate([theta, [TURN], theta[(theta > 0.0) & (theta < OVERLAP)] + TURN, [TURN + OVERLAP]])
+    end = way.flank.period
+    theta = np.concatenate([theta, [end], theta[(theta > 0.0) & (theta < OVERLAP)] + end, [end + OVERLAP]])
     if way.flank.side > 0:  # metal on the right of a cutter that turns clockwise
         theta = theta[::-1]
     if design.recipe.rotation == "ccw":
         theta = theta[::-1]
     a, x, y = way.places(theta)
     groove = isinstance(design.recipe.track, Groove)
-    less = way.flank.radius - way.cutter if groove else BESIDE * way.cutter
+    less = way.less if groove else BESIDE * way.cutter.radius
     away = -way.flank.side * less
     if less > LEAST_ROOM:
         a, y = (np.concatenate([row[:1], row, row[-1:]]) for row in (a, y))
@@ -255,9 +311,13 @@ def _points(design: DrumDesign, way: Way, chords: float) -> tuple[Array, float]:
 
 def _rounding(design: DrumDesign, request: FileRequest, count: int, mm: float) -> float:
     """Greatest error of a flank, mm, by words of so many decimals."""
-    steep, blank = steepest(design)[0], design.recipe.radius
-    along = mm + math.radians(1.0) * min(steep, blank) + (mm if "Y" in request.own["axes"] else 0.0)
-    return 0.5 * 10.0**-count * along
+    recipe, own = design.recipe, request.own
+    # turned by so much the cutter moves along its flank as much as that rises
+    turned = (
+        min(steepest(design)[0], recipe.radius) if recipe.guide.radial and not recipe.roller.taper else recipe.radius
+    )
+    along = mm + math.radians(1.0) * turned + (mm if "Y" in own["axes"] else 0.0)
+    return 0.5 * 10.0**-count * (along + mm * math.tan(own.get("taper", 0.0)))
 
 
 def _places(design: DrumDesign, request: FileRequest, tolerance: float, mm: float) -> int:
@@ -282,11 +342,12 @@ def _head(design: DrumDesign, request: FileRequest, tolerance: float, mm: float)
         recipe.name,
         recipe.about,
         f"units: {'inch' if mm != 1.0 else 'mm'}, A in degrees",
-        f"cutter: diameter {plain(own['cutter'] / mm)}, its axis square to the drum's",
+        f"cutter: diameter {plain(own['cutter'] / mm)}{_cone(own)}, its axis square to the drum's",
         f"tolerance: {plain(tolerance / mm)}",
         "X zero: the lower face; X grows along the drum's axis, towards the upper face",
         "A zero: the roller's place at shaft angle 0, from which the keyway's angle counts",
         "A grows as the cutter goes round the drum counter-clockwise, seen from the upper face",
+        f"A goes on over all {recipe.turns} turns of the motion" if recipe.turns > 1 else "",
         f"the follower goes round it {sense}",
         f"Z zero: the drum's axis; blank {blank}, floor {plain(recipe.floor / mm)}",
         "Y zero: over the drum's axis; seen from the cutter Y grows as A does" if "Y" in own["axes"] else "",
@@ -300,6 +361,10 @@ def _head(design: DrumDesign, request: FileRequest, tolerance: float, mm: float)
         texts.append(f"not milled: the drum {beside} farther off the flank than the cutter is wide")
     for text in filter(None, texts):
         yield f"({comment(text)})"
+
+
+def _cone(own: dict[str, Any]) -> str:
+    return f" at its end, half angle {plain(math.degrees(own['taper']))} degrees" if "taper" in own else ""
 
 
 class _Written:

@@ -19,6 +19,7 @@ from camgeo.capabilities.cylindrical.keys import (
     Rib,
     Roller,
 )
+from camgeo.common.rounding import downward
 from camgeo.motions.motion import check_filled
 from camgeo.part import bore
 from camgeo.part.keyway import FEATURE as KEYWAY
@@ -55,6 +56,8 @@ LEAST_TOLD = {"feed": 1e-3, "plunge": 1e-3, "safe_height": 1e-3, "allowance": 1e
 """Least figures of a program, in the recipe's unit: bounds against slips, far below what any machine keeps to."""
 RIDGE = 0.02  # mm by which what two cuts along a groove clear is wider than the groove
 NOTHING = 1e-9  # mm: a length below it is none
+NOTHING_MORE = 1e-7  # of the size of a cone, that a figure may be rounded by
+SAME_TAPER = 1e-6  # rad, so is its taper
 
 
 def reader_of(source: Source) -> tuple[Reader, Values]:
@@ -219,15 +222,13 @@ def _check_radii(values: Values, reader: Reader) -> None:
 def _check_programs(values: Values, reader: Reader) -> None:
     """Note what a program lacks, and a cutter that does not leave the flanks, or what lies between them."""
     cam = values["cam"]
-    (kind, track), roller = next(iter(cam["track"].items())), cam["follower"]["radius"]
+    (kind, track), floor = next(iter(cam["track"].items())), cam["radius"] - _track(cam).depth
+    whole = _roller(cam, floor)
+    roller = whole.size(floor)
     clearance = track.get("clearance", 0.0) if kind == "groove" else 0.0
     for file in values.get("export", {}).get("files", []):
         path = f"{file['path']}.{file['kind']}"
         if not FILES[file["kind"]].program:
-            continue
-        if any(cam["follower"].get(key) for key in ("arm", "offset", "taper")):
-            problem = "a program of a roller on an arm, beside the drum's axis or conical is not made yet"
-            reader.fault_at(file["path"], problem, None, "leave it out, and take stl or a development")
             continue
         if "axes" not in file:  # the format's word alone
             remedy = f"give {either(NEEDED, 'and')}: {{gcode: {{{EXAMPLE}}}}}"
@@ -237,18 +238,29 @@ def _check_programs(values: Values, reader: Reader) -> None:
             if key in file and file[key] < least * reader.mm:
                 remedy = f"give at least {least:g} {reader.units}"
                 reader.fault_at(f"{path}.{key}", "too little for a program", _shown(file[key], reader), remedy)
+        if file.get("taper", 0.0) > whole.taper + SAME_TAPER:
+            problem, own = "a cutter tapers at most as its roller", math.degrees(file["taper"])
+            most = downward(math.degrees(whole.taper), 6)
+            remedy = f"give at most {most} degrees" if whole.taper else "leave it out: the roller is a cylinder"
+            reader.fault_at(f"{path}.taper", problem, f"{own:.9g} degrees", remedy)
+            continue
         widest, told = 2.0 * roller, _shown(file["cutter"], reader)
         narrowest = roller + 0.5 * clearance + RIDGE if kind == "groove" else 0.0
         allowance = file.get("allowance", 0.0)
         if kind == "groove":
             widest -= 2.0 * allowance
-        if file["cutter"] > widest + NOTHING:
+        # that of a cone is no round figure
+        if file["cutter"] > widest + (NOTHING if not whole.taper else NOTHING_MORE * widest):
             if widest <= narrowest:
                 remedy = f"give an allowance below {_shown(0.5 * (2.0 * roller - narrowest), reader)}"
                 reader.fault_at(f"{path}.allowance", "leaves no room for a cutter", _shown(allowance, reader), remedy)
                 continue
             what = "the roller" if widest == 2.0 * roller else "the roller less the allowance on both flanks"
-            remedy = f"give at most {_shown(widest, reader)}"
+            most = f"{downward(widest / reader.mm, 7)} {reader.units}" if whole.taper else _shown(widest, reader)
+            what = f"{what} at the floor" if whole.taper else what
+            remedy = f"give at most {most}"
+            if whole.taper and "taper" not in file:
+                remedy += f", and taper: {math.degrees(whole.taper):.4f} for the cone of the roller"
             reader.fault_at(f"{path}.cutter", f"a cutter wider than {what} cuts the flanks away", told, remedy)
         elif file["cutter"] < narrowest - NOTHING:
             remedy = f"give at least {_shown(narrowest, reader)}"

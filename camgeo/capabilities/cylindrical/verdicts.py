@@ -41,7 +41,7 @@ def intended(design: DrumDesign, mm: float = 1.0) -> intent.DrumIntent:
         led |= {"taper": roller.taper, "at": roller.at}
     bore = None if design.bore is None else holes_of(Body(recipe.height, (design.bore,)))[0]
     return intent.DrumIntent(
-        DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law, **led),
+        DrumFollower(roller.radius, roller.inner, roller.outer, recipe.level, design.law, turns=recipe.turns, **led),
         own,
         recipe.radius,
         recipe.height,

@@ -7,22 +7,49 @@ camgeo.capabilities.cylindrical.angles, camgeo.capabilities.cylindrical.bends.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import re
+from random import Random
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from capabilities.cylindrical.made_drums import GROOVE, RIB, TOP, UNDERCUT, changed, cut_short, design_of, recipe_of
+from capabilities.cylindrical.made_drums import (
+    ARM,
+    BESIDE,
+    CONE,
+    CONE_ON_ARM,
+    GROOVE,
+    LEADING,
+    LED,
+    RIB,
+    RIB_ON_ARM,
+    TOP,
+    UNDERCUT,
+    changed,
+    cut_short,
+    design_of,
+    random_drum,
+    recipe_of,
+    shared_design,
+)
 from capabilities.cylindrical.positions import Lift, envelope
+from support.cases import few
+from support.programmes import Segment, law, programme
 
 import camgeo
 from camgeo.api.root import root_of
+from camgeo.capabilities.cylindrical.bends import contact_turns
+from camgeo.capabilities.cylindrical.design import DrumDesign
+from camgeo.capabilities.cylindrical.keys import Rib
 from camgeo.capabilities.cylindrical.making import make
-from camgeo.capabilities.cylindrical.ways import Way, radially_off, set_beside, set_radially
+from camgeo.capabilities.cylindrical.verdicts import judged_file
+from camgeo.capabilities.cylindrical.ways import Cutter, Way, radially_off, set_beside, set_radially
 from camgeo.cli.main import main
 from camgeo.common.clock import Clock
+from kin.numeric.records import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,6 +59,7 @@ if TYPE_CHECKING:
     from kin.cylindrical.verdict import DrumVerdict
 
 OPTIONS = "axes: [X, A], cutter: 20, feed: 300, plunge: 60, spindle: 2500, depth_of_cut: 7, safe_height: 5"
+TURN = 2.0 * math.pi
 RISE, RETURN = ("rise", 40.0, 120.0, "cycloidal"), ("return", 40.0, 120.0, "polynomial-345")
 REST = ("dwell", 0.0, 60.0, "")
 LIFT = Lift([RISE, REST, RETURN, REST])
@@ -256,8 +284,52 @@ def test_a_cut_flank_takes_a_cutter_of_the_roller_s_size(tmp_path: Path) -> None
             ("cutter: 20, allowance: 6", "cutter: 20"),
         ),
         (
-            [("radius: 10,", "radius: 10, taper: axis,")],
-            "a program of a roller on an arm, beside the drum's axis or conical is not made yet",
+            [("radius: 10,", "radius: 10, offset: 6,")],
+            "and the roller's beside it, the cutter may be off by 0.968 mm",
+            ("[X, A]", "[X, Y, A]"),
+        ),
+        (
+            [("radius: 10,", "radius: 10, offset: 0.2,")],
+            "or give a tolerance of at least 0.0756 mm",
+            ("tolerance: 0.02", "tolerance: 0.0756"),
+        ),
+        (
+            [("radius: 10,", "radius: 10, offset: 6,"), ("cutter: 20", "cutter: 19")],
+            "only a cutter as large as the roller leaves such a flank",
+            ("[X, A]", "[X, Y, A]"),
+        ),
+        (
+            [("radius: 10,", "radius: 10, taper: axis, at: 44,")],
+            "a cutter wider than the roller at the floor cuts the flanks away",
+            ("cutter: 20", "cutter: 17.04545, taper: 12.8043"),
+        ),
+        (
+            [("radius: 10,", "radius: 10, taper: axis, at: 44,"), ("cutter: 20", "cutter: 16")],
+            "or give cutter: 17.04545, taper: 12.8043",
+            ("cutter: 16", "cutter: 17.04545, taper: 12.8043"),
+        ),
+        (
+            [
+                ("radius: 10,", "radius: 10, taper: axis, at: 44,"),
+                ("cutter: 20", "cutter: 16"),
+                ("[X, A]", "[X, Y, A]"),
+            ],
+            "in as many depths as are made it still leaves more than the tolerance",
+            ("cutter: 16", "cutter: 17.04545, taper: 12.8043"),
+        ),
+        (
+            [("radius: 10,", "radius: 10, taper: 5,"), ("cutter: 20", "cutter: 18, taper: 6")],
+            "a cutter tapers at most as its roller, given 6 degrees; give at most 5 degrees",
+            ("[X, A], cutter: 18, taper: 6", "[X, Y, A], cutter: 18, taper: 5"),
+        ),
+        (
+            [("cutter: 20", "cutter: 20, taper: 6")],
+            "a cutter tapers at most as its roller, given 6 degrees; leave it out: the roller is a cylinder",
+            (", taper: 6", ""),
+        ),
+        (
+            [("cutter: 20", "cutter: 20, taper: axis")],
+            "gcode.taper: not a number",
             (", taper: axis", ""),
         ),
         ([("depth_of_cut: 7", "depth_of_cut: 0.001")], "makes more than 2000 passes", ("0.001", "6")),
@@ -280,6 +352,18 @@ def test_what_is_refused_says_what_to_give(
     assert report.ok
 
 
+def test_an_allowance_of_a_cone_takes_y(tmp_path: Path) -> None:
+    text = program(
+        TOP,
+        ("radius: 10,", "radius: 10, taper: axis, at: 44,"),
+        ("cutter: 20", "cutter: 17.04545, taper: 12.8043, allowance: 0.2"),
+    )
+    with pytest.raises(camgeo.RecipeErrors, match="no pass leaves any of a roller that is a cone or beside it"):
+        exported(tmp_path, text)
+    for remedy in (("[X, A]", "[X, Y, A]"), (", allowance: 0.2", "")):
+        assert exported(tmp_path, changed(text, remedy)).ok
+
+
 @pytest.mark.costly("a program is made, and judged twice")
 def test_a_program_is_read_again(
     made: Callable[[str], tuple[Path, camgeo.Report]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -299,13 +383,183 @@ def test_a_program_is_read_again(
     assert "no program is asked for" in capsys.readouterr().err
 
 
+# --- rollers on arms, beside the axis, conical ------------------------------------------------------------------------
+
+
+def cutting(text: str, share: float = 1.0, allowance: float | None = None) -> str:
+    """Text of a drum whose file is a program of a cutter of the roller's cone, or smaller by a share, at its floor."""
+    recipe = recipe_of(text)
+    mm, roller = recipe.mm, recipe.roller
+    cone = f", taper: {math.degrees(roller.taper)!r}" if roller.taper else ""
+    more = f", allowance: {allowance / mm!r}" if allowance else ""
+    size = 2.0 * roller.size(recipe.floor) * share
+    options = (
+        f"axes: [X, Y, A], cutter: {size / mm!r}{cone}{more}, feed: {300 / mm!r}, plunge: {60 / mm!r}, spindle: 2500, "
+        f"safe_height: {5 / mm!r}"
+    )
+    return changed(text, ("[stl]", f"[{{gcode: {{{options}}}}}]"))
+
+
+def stands_off(folder: Path, text: str, lift: Lift, places: int) -> float:
+    """Greatest metal, mm, that positions of the cutter leave or take too deep at random places of each flank."""
+    recipe = recipe_of(text)
+    mm, mirrored, worst = recipe.mm, recipe.rotation == "ccw", 0.0
+    own = recipe.export.files[0].own
+    runs = [run * [mm, mm, mm, 1.0] for run in positions((folder / "drum.ngc").read_text("ascii"))]
+    share = np.linspace(0.0, 1.0, 60, endpoint=False)
+    rows = np.concatenate(
+        [(run[:-1, None] + share[:, None] * np.diff(run, axis=0)[:, None]).reshape(-1, 4) for run in runs]
+    )
+    if mirrored:
+        rows *= [1.0, -1.0, 1.0, -1.0]
+    grows, rng = math.tan(own.get("taper", 0.0)), np.random.default_rng(places)
+    for name, flank in shared_design(text).flanks.items():
+        half = {"lower": 0.5, "upper": -0.5}[name] * getattr(recipe.track, "distance", 0.0)
+        r, phi = rng.uniform(recipe.roller.inner, recipe.radius, places), rng.uniform(0.0, 6.28, places)
+        z, at = envelope(lift.second(half), flank.side, flank.radius, r, phi)
+        borne = r * np.cos(phi - at) >= recipe.roller.inner
+        assert np.count_nonzero(borne) > 0.4 * places
+        for radius, angle, height in zip(r[borne], phi[borne], z[borne] + recipe.level, strict=True):
+            turn = angle - np.radians(rows[:, 3])
+            along = radius * np.cos(turn)
+            stands = (along >= rows[:, 2]) & (along > 0.0)
+            size = 0.5 * own["cutter"] + (along - rows[:, 2]) * grows
+            far = np.hypot(radius * np.sin(turn) - rows[:, 1], height - rows[:, 0])[stands] - size[stands]
+            worst = max(worst, abs(float(far.min())) / math.hypot(1.0, grows))
+    return worst
+
+
+@pytest.mark.costly("brute force over the positions of a cutter")
+@pytest.mark.parametrize("seed", few(range(3 * len(LED)), 7, first=4))
+def test_random_led_drums_are_milled_as_rollers_leave_them(tmp_path: Path, seed: int) -> None:
+    rng = Random(seed)
+    led, track = LED[(seed + seed // 7) % len(LED)], ("groove", "rib", "top", "bottom")[seed % 4]
+    while True:
+        inch, ccw = rng.random() < 0.5, rng.random() < 0.5
+        text, lift = random_drum(rng, track, inch=inch, ccw=ccw, undercut=False, led=led)
+        text = cutting(text, rng.choice([1.0, 0.98, 0.9]), rng.choice([None, 0.2]) if track != "groove" else None)
+        with contextlib.suppress(camgeo.RecipeErrors):  # an arm that swings too far for its drum
+            shared_design(text)
+            break
+    recipe = recipe_of(text)
+    made = make(shared_design(text), Clock(), recipe.export.files[0], tmp_path / "drum.ngc")
+    assert made.verdict is not None
+    assert made.verdict.ok, (led, track, [str(check) for check in made.verdict.checks if not check.ok])
+    assert stands_off(tmp_path, text, lift, 20) < recipe.export.tolerance + 2e-4
+
+
+@pytest.mark.costly("programs of several rollers are made and judged")
+@pytest.mark.parametrize("text", [ARM, LEADING, CONE, CONE_ON_ARM, BESIDE, RIB_ON_ARM], ids=lambda text: text[60:130])
+def test_a_cutter_like_the_roller_stands_in_its_place(tmp_path: Path, text: str) -> None:
+    """Of each position Y and X are those of the roller's axis at the angle A, within the tolerance between blocks."""
+    text = cutting(text)
+    design, recipe = shared_design(text), recipe_of(text)
+    made = make(design, Clock(), recipe.export.files[0], tmp_path / "drum.ngc")
+    assert made.verdict is not None
+    assert made.verdict.ok, [str(check) for check in made.verdict.checks if not check.ok]
+    words = (tmp_path / "drum.ngc").read_text("ascii")
+    runs = positions(words)
+    assert len(runs) == (2 if isinstance(recipe.track, Rib) else 1)
+    for run, flank in zip(runs, design.flanks.values(), strict=False):
+        pose = flank.pose(np.radians(run[2:-1, 3]))
+        np.testing.assert_allclose(run[2:-1, 0], pose.z, atol=2e-4)
+        np.testing.assert_allclose(run[2:-1, 1], pose.y, atol=2e-4)
+        assert run[2, 2] == pytest.approx(recipe.floor, abs=1e-3)
+    told = "at its end, half angle" in words
+    assert told == bool(recipe.roller.taper)
+
+
+def test_a_cylinder_leaves_a_cone_in_steps(tmp_path: Path) -> None:
+    """It takes as many depths as the tolerance asks for, each of which touches at its end."""
+    text = changed(
+        cutting(changed(CONE_ON_ARM, ("taper: 6", "taper: 2"), ("0.02", "0.1")), 0.95), (f", taper: {2.0!r}", "")
+    )
+    recipe = recipe_of(text)
+    assert "taper" not in recipe.export.files[0].own
+    made = make(shared_design(text), Clock(), recipe.export.files[0], tmp_path / "drum.ngc")
+    assert made.verdict is not None
+    assert made.verdict.ok
+    depths = {float(run[1, 2]) for run in positions((tmp_path / "drum.ngc").read_text("ascii"))}
+    assert 8 < len(depths) < 30
+    steps = -np.diff(sorted(depths, reverse=True))
+    most = max(flank.measured_error or 0.0 for flank in made.verdict.flanks)
+    assert 0.8 * steps.max() * math.tan(math.radians(2.0)) < most < 0.05
+
+
+# --- several turns ----------------------------------------------------------------------------------------------------
+
+
+def several(text: str) -> DrumDesign:
+    """A drum whose motion goes out in one turn and back in another."""
+    segments = [Segment("rise", TURN, 40.0, law("cycloidal")), Segment("return", TURN, 40.0, law("polynomial-345"))]
+    motion = programme(segments, 2.0 * TURN)
+    return DrumDesign(replace(recipe_of(text), turns=2), motion, motion.periodic())
+
+
+@pytest.mark.costly("a program over two turns is judged four times")
+@pytest.mark.parametrize("ccw", ["cw", "ccw"])
+def test_a_program_goes_over_all_turns_of_the_motion(tmp_path: Path, ccw: str) -> None:
+    design = several(f"rotation: {ccw}\n" + program())
+    request = design.recipe.export.files[0]
+    path = tmp_path / "drum.ngc"
+    made = make(design, Clock(), request, path)
+    assert made.verdict is not None
+    assert made.verdict.ok, made.verdict.checks
+    words = path.read_text("ascii")
+    assert "(A goes on over all 2 turns of the motion)" in words
+    for run in positions(words):
+        turned = run[1:, 3]
+        assert np.ptp(turned) == pytest.approx(725.0)
+        assert (np.diff(turned) > 0.0).all()
+        assert (turned.max() if ccw == "cw" else -turned.min()) == pytest.approx(725.0)
+    # the second turn left out, one block left out, and the whole moved along
+    lines = words.split("\n")
+    cuts = [k for k, line in enumerate(lines) if line.startswith("G1 X")]
+    beyond = [k for k in cuts if abs(float(lines[k].split("A")[1].split()[0])) > 366.0]
+    for gone in (set(beyond), {beyond[len(beyond) // 4]}):
+        path.write_text("\n".join(line for k, line in enumerate(lines) if k not in gone), "ascii")
+        assert not judged_file(design, path, request, 1e-3).ok
+    mirrored = re.sub(r" A(-?)", lambda found: " A" if found[1] else " A-", words)
+    path.write_text(mirrored, "ascii")
+    assert not judged_file(design, path, request, 0.02).ok
+
+
 # --- ways -------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", [ARM, CONE_ON_ARM, BESIDE], ids=["arm", "cone on an arm", "beside"])
+@pytest.mark.parametrize("share", [1.0, 0.8], ids=["alike", "smaller"])
+def test_a_led_way_bends_no_more_than_its_bound(text: str, share: float) -> None:
+    for flank in shared_design(text).flanks.values():
+        own = Cutter(share * float(flank.size(37.5)), flank.taper)
+        for way in (Way(flank, own, 44.0, beside=True, end=37.5), Way(flank, own, 44.0, beside=False, end=37.5)):
+            if not (way.beside or way.alike):
+                continue
+            look, bound = way.bends(50.0)
+            h = 1e-4
+            for theta in np.linspace(0.01, 2.0, 60):
+                a, x, y = way.places(np.array([theta - h, theta, theta + h]))
+                second = [(row[0] - 2.0 * row[1] + row[2]) / h**2 for row in (a * 50.0, x, y)]
+                k = int(np.searchsorted(look, theta)) - 1
+                assert math.hypot(*second) <= bound[k - 1 : k + 2].max() * 1.01 + 1e-4
+            assert bound.max() < 400.0
+
+
+@pytest.mark.parametrize("text", [GROOVE, ARM, CONE_ON_ARM], ids=["radius", "arm", "cone on an arm"])
+def test_a_contact_turns_no_faster_than_its_bound(text: str) -> None:
+    flank, rho = shared_design(text).flanks["lower"], np.linspace(38.0, 50.0, 7)
+    theta = np.linspace(0.0, TURN, 2001)
+    angles = np.stack([flank.along(theta, np.full_like(theta, each)).angle for each in rho])
+    found = np.abs(np.diff(angles, axis=0)).max(axis=1) / np.diff(rho)
+    bound = contact_turns(flank, rho)
+    assert (found <= bound).all()
+    assert (bound < 1.3 * found).all()
 
 
 @pytest.mark.parametrize("beside", [False, True])
 @pytest.mark.parametrize("side", ["lower", "upper"])
 def test_a_way_bends_no_more_than_its_bound(beside: bool, side: str) -> None:
-    way = Way(design_of(GROOVE).flanks[side], 7.0, 42.0, beside)
+    way = Way(design_of(GROOVE).flanks[side], Cutter(7.0), 42.0, beside)
     look, bound = way.bends(50.0)
     h = 1e-4
     for theta in np.linspace(0.01, 2.0, 60):
@@ -336,7 +590,7 @@ def test_a_smaller_cutter_is_off_as_brute_force_finds() -> None:
         inner, outer = left(38.0, at), left(50.0, at)
         for bound, true in ((off.left, inner), (off.deep, -outer)):
             assert max(true, 0.0) - 1e-9 <= bound <= 1.12 * max(true, 0.0) + 1e-9
-    way, off = set_radially(flank, 8.0, v, (38.0, 50.0))
+    way, off = set_radially(flank, Cutter(8.0), v, (38.0, 50.0))
     assert off.left == pytest.approx(off.deep, rel=1e-3)
     assert 38.0 < way.at < 50.0
 
@@ -345,10 +599,10 @@ def test_depths_are_as_many_as_the_tolerance_asks_for() -> None:
     flank = design_of(GROOVE).flanks["lower"]
     counts = []
     for most in (0.02, 0.005, 0.0004):
-        ways, off = set_beside(flank, 8.0, 38.2, (38.0, 50.0), most)
+        ways, off = set_beside(flank, Cutter(8.0), 37.5, (38.0, 50.0), most)
         assert off.left <= most
-        assert ways[-1][1] == pytest.approx(38.0)
-        assert [low for _, low in ways] == sorted((low for _, low in ways), reverse=True)
+        assert ways[-1].end == 37.5
+        assert [way.end for way in ways] == sorted((way.end for way in ways), reverse=True)
         counts.append(len(ways))
     assert counts == sorted(counts)
     assert counts[0] < counts[2] < 8

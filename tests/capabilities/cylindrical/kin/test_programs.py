@@ -5,10 +5,12 @@ Holds: kin.cylindrical.program, kin.cylindrical.cutters, kin.cylindrical.turned.
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
-from capabilities.cylindrical.kin.drums import TURN, Drum, Groove, Rib, replace
+from capabilities.cylindrical.kin.drums import TURN, Arm, Drum, End, Groove, Motion, Rib, replace
+from support.cases import few
 from support.programmes import Segment, law, programme
 
 from kin.cylindrical.cutters import left_on
@@ -31,20 +33,22 @@ def way(motion=DRUM.motion, level=20.0, step=0.5, over=365.0):
     return a, level + motion(a)
 
 
-def block(words, before, at, feed=300.0):
-    """Words of a block by G93 with the feed for a radius of 50."""
-    far = math.hypot(at[1] - before[1], math.radians(at[0] - before[0]) * 50.0)
-    return f"{words} F{feed / far:.4f}"
-
-
 def text_of(a, x, *, depths=(44.0, 37.5), digits=5, head="(cutter: diameter 20)"):
     """A program of the way in depths."""
-    rows = [(round(math.degrees(p), digits), round(q, digits)) for p, q in zip(a.tolist(), x.tolist(), strict=True)]
+    return text_beside([(a, x, np.zeros_like(a))], depths=depths, digits=digits, head=head).replace(" Y0.0 ", " ")
+
+
+def text_beside(ways, *, depths=(44.0, 37.5), digits=5, head="(cutter: diameter 20)"):
+    """A program of ways, each in depths, with Y."""
     lines = [head, "G21", "G17 G90 G93", "G40 G49 G80", "G0 Z60", "S2000 M3"]
-    for z in depths:
-        lines += [f"G0 X{rows[0][1]} A{rows[0][0]}", f"G1 Z{z} F10"]
-        lines += [block(f"G1 X{q} A{p}", before, (p, q)) for before, (p, q) in pairwise(rows)]
-        lines.append("G0 Z60")
+    for a, x, y in ways:
+        rows = np.column_stack([np.degrees(a), x, y]).round(digits).tolist()
+        for z in depths:
+            lines += [f"G0 X{rows[0][1]} Y{rows[0][2]} A{rows[0][0]}", f"G1 Z{z} F10"]
+            for before, at in pairwise(rows):
+                far = math.hypot(at[1] - before[1], at[2] - before[2], math.radians(at[0] - before[0]) * 50.0)
+                lines.append(f"G1 X{at[1]} Y{at[2]} A{at[0]} F{300.0 / far:.4f}")
+            lines.append("G0 Z60")
     return "\n".join([*lines, "M5", "M30", ""])
 
 
@@ -70,11 +74,219 @@ def test_a_cutter_of_the_roller_s_size_along_its_path(tmp_path):
         assert flank.motion.remainder < 0.15 * TOLERANCE
 
 
-def test_rollers_of_other_kinds_are_not_judged(tmp_path):
-    drum = DRUM.intent()
-    follower = replace(drum.follower, offset=3.0)
-    with pytest.raises(ValueError, match="not judged"):
-        verify_program(tmp_path / "drum.ngc", replace(drum, follower=follower), CUTTING, Limits(TOLERANCE))
+SWING = Motion(((0.5, 120.0, "cycloidal"), (0.0, 60.0, ""), (-0.5, 120.0, "polynomial-345"), (0.0, 60.0, "")))
+LEVEL = 40.0 - 80.0 * math.sin(0.25)
+ARM = Drum(motion=SWING, level=LEVEL, track=Groove(12.5), arm=Arm(80.0, 78.7, 40.0, 1))
+TAPER = math.radians(6.0)
+LED = {
+    "beside": Drum(track=Groove(12.5), offset=6.0),
+    "trailing": ARM,
+    "leading": replace(ARM, arm=Arm(80.0, -78.7, 40.0, -1)),
+    "cone": Drum(track=Groove(12.5), taper=TAPER),
+    "cone on an arm": replace(ARM, taper=TAPER),
+    "rib on an arm": replace(ARM, track=Rib(12.5, 36.0)),
+    "end on an arm": replace(ARM, track=End("top", 12.5)),
+}
+
+
+def levels_of(drum):
+    """Heights of the rollers' axes at lift 0."""
+    return sorted({level for _, _, _, level in drum.flanks})
+
+
+def ways_of(drum, step=0.5, over=365.0):
+    """Angles, rad, and places along the drum and beside its axis of its rollers' axes, each roller once."""
+    a = np.radians(np.arange(0.0, over + 1e-9, step))
+    places = [drum.axis(a, level) for level in levels_of(drum)]
+    return [(a, z, y) for y, z in places]
+
+
+def cut_by(drum):
+    """The cutter of a drum's roller, at its end on the floor."""
+    return replace(CUTTING, radius=drum.size(drum.roller, drum.floor), taper=drum.taper)
+
+
+def named(drum):
+    cone = f" at its end, half angle {math.degrees(drum.taper):.9f} degrees" if drum.taper else ""
+    return f"(cutter: diameter {2.0 * drum.size(drum.roller, drum.floor):.9f}{cone}, its axis square to the drum's)"
+
+
+def led(folder, drum, ways=None, cutting=None, **more):
+    text = text_beside(ways or ways_of(drum), **{"head": named(drum), **more})
+    return judged(folder, text, drum, cutting or cut_by(drum))
+
+
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("kind", LED)
+def test_a_cutter_like_the_roller_along_its_path_is_right_at_every_radius(tmp_path, kind):
+    """What stands between blocks is what a chord leaves out, no more than the path's bend times h^2/8."""
+    drum = LED[kind]
+    verdict = led(tmp_path, drum)
+    assert verdict.ok, verdict.checks
+    fine, chords = np.radians(np.arange(0.0, 365.0, 0.01)), 0.0
+    for level, (a, x, y) in zip(levels_of(drum), ways_of(drum), strict=True):
+        place = drum.axis(fine, level)
+        chords = max(chords, np.hypot(np.interp(fine, a, y) - place[0], np.interp(fine, a, x) - place[1]).max())
+    for flank in verdict.flanks:
+        assert 0.3 * chords < flank.measured_error < 1.01 * chords + 1e-5
+        assert flank.motion.unit == ("mm" if drum.arm is None else "deg")
+        reach = 1.0 if drum.arm is None else math.degrees(1.0 / drum.arm.length)
+        assert 0.3 * chords * reach < flank.motion.max < 2.0 * chords * reach
+
+
+def moved(ways, x=0.0, y=0.0, a=1.0, across=1.0):
+    return [(a * angle, along + x, across * beside + y) for angle, along, beside in ways]
+
+
+def coarse(ways):
+    """Angles rounded to 0.01 degrees."""
+    return [(np.radians(np.round(np.degrees(angle), 2)), along, beside) for angle, along, beside in ways]
+
+
+LED_FAULTS: dict[str, Any] = {
+    "a block left out": lambda _, ways: ([tuple(np.delete(row, 60) for row in way) for way in ways], {}),
+    "X + 0.01": lambda _, ways: (moved(ways, x=0.01), {}),
+    "Y + 0.01": lambda _, ways: (moved(ways, y=0.01), {}),
+    "A mirrored": lambda _, ways: (moved(ways, a=-1.0), {}),
+    "Y mirrored": lambda _, ways: (moved(ways, across=-1.0), {}),
+    "A rounded": lambda drum, _: (coarse(ways_of(drum, 0.4953)), {}),
+    "a smaller cutter": lambda _, ways: (ways, {"less": 0.025}),
+    "another cone": lambda _, ways: (ways, {"taper": math.radians(0.5)}),
+    "not deep enough": lambda _, ways: (ways, {"depths": (44.0, 38.2)}),
+    "too deep": lambda _, ways: (ways, {"depths": (44.0, 37.4)}),
+}
+PLANTED = [
+    (kind, fault)
+    for kind, drum in LED.items()
+    for fault in LED_FAULTS
+    if fault != "Y mirrored" or drum.arm or drum.offset
+]
+
+
+@pytest.mark.costly("each kind of roller with each fault is a program to be judged")
+@pytest.mark.parametrize(("kind", "fault"), few(PLANTED, 7))
+def test_planted_faults_of_led_rollers_are_refused(tmp_path, kind, fault):
+    drum = LED[kind]
+    ways, more = LED_FAULTS[fault](drum, ways_of(drum))
+    cutting = cut_by(drum)
+    cutting = replace(
+        cutting, radius=cutting.radius - more.pop("less", 0.0), taper=cutting.taper + more.pop("taper", 0.0)
+    )
+    verdict = led(tmp_path, drum, ways, cutting, **({"head": ""} if cutting != cut_by(drum) else {}), **more)
+    assert not verdict.ok
+    assert refused(verdict) & {"contour", "ways", "depth"}, verdict.checks
+
+
+@pytest.mark.parametrize("kind", few(["trailing", "beside", "cone", "cone on an arm"], 3))
+def test_a_cut_flank_of_a_led_roller_is_judged_by_the_path(tmp_path, kind):
+    """The greatest distance of the path from the chords, along the drum and across it, within what is looked at."""
+    drum = replace(LED[kind], shortened=True)
+    verdict = led(tmp_path, drum)
+    assert verdict.ok, verdict.checks
+    ((a, x, y),), fine = ways_of(drum), np.linspace(0.0, TURN, 400_001)
+    place = drum.axis(fine, drum.level)
+    chord = float(np.abs(np.interp(fine, a, x) - place[1]).max())
+    (check, *_) = [each for each in verdict.checks if each.name == "contour"]
+    assert chord <= check.value < chord + 0.02 * TOLERANCE + np.abs(np.interp(fine, a, y) - place[0]).max() + 1e-4
+    for ways in (moved(ways_of(drum), x=0.01), moved(ways_of(drum), y=0.01)):
+        assert "contour" in refused(led(tmp_path, drum, ways))
+    smaller = replace(cut_by(drum), radius=cut_by(drum).radius - 0.025)
+    assert refused(led(tmp_path, drum, cutting=smaller, head="")) == {"contour"}
+
+
+def test_a_cutter_of_another_cone_is_named(tmp_path):
+    drum = LED["cone"]
+    verdict = led(tmp_path, drum, head=named(drum).replace("angle 6.0", "angle 6.1"))
+    assert refused(verdict) == {"cutter"}
+    twice = text_beside(ways_of(drum), head=named(drum)).replace("F10\n", "F20\n")
+    verdict = judged(tmp_path, twice.replace("F68", "F136"), drum, cut_by(drum))
+    assert refused(verdict) == {"feed"}
+
+
+# --- several turns ----------------------------------------------------------------------------------------------------
+
+TURNS = 2
+OUT = (
+    Segment("rise", TURN, 50.0, law("cycloidal")),
+    Segment("return", TURN, 50.0, law("polynomial-345")),
+)
+
+
+def out_and_back(theta):
+    """Lift over two turns: 50 out in the first and back in the second, by the laws' own formulas."""
+    u = np.mod(theta, 2.0 * TURN) / TURN
+    w = u - 1.0
+    rise = 50.0 * (u - np.sin(TURN * u) / TURN)
+    back = 50.0 * (1.0 - w**3 * (10.0 - 15.0 * w + 6.0 * w**2))
+    return np.where(u < 1.0, rise, back)
+
+
+def crossing_drum(**more):
+    """A groove that goes out and back in two turns and crosses itself."""
+    drum = Drum(track=Groove(12.5), length=90.0).intent()
+    follower = replace(drum.follower, law=programme(OUT, TURNS * TURN).motion, turns=TURNS, **more)
+    return replace(drum, follower=follower)
+
+
+def text_of_turns(step=0.4, over=725.0, x=0.0):
+    a = np.radians(np.arange(0.0, over + 1e-9, step))
+    return text_of(a, 20.0 + out_and_back(a) + x)
+
+
+def judged_turns(folder, text, drum=None):
+    path = folder / "drum.ngc"
+    path.write_text(text, "ascii")
+    return verify_program(path, drum or crossing_drum(), CUTTING, Limits(TOLERANCE))
+
+
+def test_a_groove_that_crosses_itself_is_cut_by_all_its_turns(tmp_path):
+    verdict = judged_turns(tmp_path, text_of_turns())
+    assert verdict.ok, verdict.checks
+    # chords of 0.4 degrees leave out S'' h^2/8, at most 7.96 mm/rad^2 in the rise, 7.3 in the return
+    most = 2.0 * math.pi * 50.0 / TURN**2 * math.radians(0.4) ** 2 / 8.0
+    for flank in verdict.flanks:
+        assert 0.5 * most < flank.motion.max < 1.01 * most + 1e-5
+    place = max(check.at for check in verdict.checks if check.at is not None)
+    assert 0.0 <= place < 720.0
+    # on the way through a crossing the other turn's cutter takes the wall: without it, the wall would be cut too deep
+    once = replace(crossing_drum(), follower=replace(crossing_drum().follower, turns=1, law=DRUM.motion.law))
+    assert not judged_turns(tmp_path, text_of_turns(), once).ok
+
+
+@pytest.mark.parametrize(
+    ("fault", "names"),
+    [
+        (lambda: text_of_turns(over=365.0), {"contour"}),
+        (lambda: text_of_turns(x=0.01), {"contour", "motion"}),
+        (lambda: text_of_turns(step=2.0), {"contour", "motion"}),
+        (lambda: text_of_turns().replace("A180.", "A181."), {"ways"}),
+    ],
+    ids=["a turn left out", "X + 0.01", "coarse", "to and fro"],
+)
+def test_planted_faults_of_several_turns_are_refused(tmp_path, fault, names):
+    assert names <= refused(judged_turns(tmp_path, fault()))
+
+
+@pytest.mark.costly("brute force over the positions of a cutter")
+def test_beside_a_crossing_what_is_left_is_what_no_position_takes():
+    """Of points that lie in no roller of the other turn, by positions alone; within it a turn counts alone."""
+    drum, rng = crossing_drum(), np.random.default_rng(7)
+    gauge = gauges_of(drum)[0]
+    a = np.linspace(-0.1, TURNS * TURN + 0.1, 900)
+    one = Pass(1, 37.5, a, 20.0 + out_and_back(a) + 0.01 * np.sin(30.0 * a), np.zeros_like(a))
+    left = left_on(gauge, [one], 10.0, 0.02)
+    rows, columns = rng.integers(0, len(left.rho), 40), rng.integers(0, len(left.theta), 40)
+    v = (out_and_back(left.theta[columns] + 1e-6) - out_and_back(left.theta[columns] - 1e-6)) / 2e-6
+    w = np.hypot(left.rho[rows], v)
+    across, up = 10.0 * v / w, -10.0 * left.rho[rows] / w
+    theta, rho = left.theta[columns], left.rho[rows]
+    x, y = rho * np.cos(theta) - across * np.sin(theta), rho * np.sin(theta) + across * np.cos(theta)
+    points = np.stack([x, y, 20.0 + out_and_back(theta) + up], axis=-1)
+    found, wanted = left.off[rows, columns], nearest(points, [one], 10.0, looks=200)
+    inside = wanted < -0.05
+    assert 2 <= np.count_nonzero(inside) < 20
+    np.testing.assert_allclose(found[~inside], wanted[~inside], atol=5e-6)
+    assert np.abs(found[inside]).max() < 0.03
 
 
 def without(text, number):
@@ -175,8 +387,11 @@ def test_a_path_s_extremes_are_between_its_points():
 # --- brute force ------------------------------------------------------------------------------------------------------
 
 
-def nearest(points, passes, cutter, looks=400):
-    """D (n,) of points (n, 3) by positions alone: so many on every block near a point, each pass down to its end."""
+def nearest(points, passes, cutter, looks=400, growth=0.0):
+    """D (n,) of points (n, 3) by positions alone: so many on every block near a point, each pass down to its end.
+
+    The cutter has its radius at its end, and grows along its axis.
+    """
     best = np.full(len(points), np.inf)
     for one in passes:
         share = np.arange(looks) / looks
@@ -186,7 +401,7 @@ def nearest(points, passes, cutter, looks=400):
             near = np.abs(np.mod(a - phi + math.pi, TURN) - math.pi) < 0.35
             across = py * np.cos(a[near]) - px * np.sin(a[near]) - y[near]
             along = px * np.cos(a[near]) + py * np.sin(a[near])
-            far = np.hypot(across, pz - x[near]) - cutter
+            far = (np.hypot(across, pz - x[near]) - cutter - (along - one.z) * growth) / math.hypot(1.0, growth)
             best[k] = min(best[k], far[along >= one.z].min(initial=np.inf))
     return best
 
@@ -217,6 +432,50 @@ def test_what_is_left_is_what_no_position_takes(case):
     assert (between <= left.above[cells] + 1e-9).all()
     assert (between >= left.below[cells] - 2e-6).all()
     assert np.median(left.above[cells] - left.below[cells]) < 0.02
+
+
+@pytest.mark.costly("brute force over the positions of a cutter")
+@pytest.mark.thin(1)
+@pytest.mark.parametrize("side", [-1, 1], ids=["lower", "upper"])
+@pytest.mark.parametrize("kind", ["beside", "trailing", "leading", "cone", "cone on an arm"])
+def test_what_is_left_beside_a_led_roller_is_what_no_position_takes(kind, side):
+    """A smaller cutter on a wavy way in two depths, at places of the grid, and between them within the bounds."""
+    rng, drum = np.random.default_rng(11), LED[kind]
+    gauge = next(each for each in gauges_of(drum.intent()) if each.side == side)
+    a = np.linspace(-0.1, TURN + 0.1, 300)
+    y, z = drum.axis(a, drum.level)
+    y, x = y + 0.3 * np.cos(a), z + 0.5 * side + 0.01 * np.sin(40.0 * a)
+    end = drum.size(drum.roller, 37.5) - 0.8
+    passes = [Pass(1, 37.5, a, x, y), Pass(2, 43.0, a + 0.003, x - 0.05, y)]
+    left = left_on(gauge, passes, end, 0.02, drum.growth)
+    rows, columns = rng.integers(0, len(left.rho), 12), rng.integers(0, len(left.theta), 12)
+    points = on_led_flank(drum, side, left.theta[columns], left.rho[rows])
+    wanted = nearest(points, passes, end, growth=drum.growth)
+    # beside the end of the second pass, one of its places that is not the nearest may still reach a point
+    beside = np.abs(left.rho[rows] - 43.0) < 0.5
+    assert np.count_nonzero(beside) < 4
+    assert (left.off[rows, columns] >= wanted - 3e-6).all()
+    np.testing.assert_allclose(left.off[rows, columns][~beside], wanted[~beside], atol=3e-6)
+    rows, columns = rng.integers(0, len(left.rho) - 1, 12), rng.integers(0, len(left.theta) - 1, 12)
+    share = rng.uniform(0.0, 1.0, (2, 12))
+    theta = left.theta[columns] * (1.0 - share[0]) + left.theta[columns + 1] * share[0]
+    rho = left.rho[rows] * (1.0 - share[1]) + left.rho[rows + 1] * share[1]
+    between = nearest(on_led_flank(drum, side, theta, rho), passes, end, growth=drum.growth)
+    assert (between <= left.above[rows, columns] + 1e-9).all()
+    assert (between >= left.below[rows, columns] - 3e-6).all()
+    assert np.median((left.above - left.below)[rows, columns]) < 0.02
+
+
+def on_led_flank(drum, side, theta, rho):
+    """Points (n, 3) that a roller on any guide touches, by the equation of meshing."""
+    (y, z), (y1, z1) = (drum.axis(theta, drum.level, order) for order in (0, 1))
+    size = drum.size(drum.roller, rho)
+    ahead = rho + size * drum.growth + y1
+    a = np.arctan2(z1, ahead) + side * np.arcsin(y * drum.growth / np.hypot(ahead, z1))
+    across, up = y - side * size * np.sin(a), z + side * size * np.cos(a)
+    return np.stack(
+        [rho * np.cos(theta) - across * np.sin(theta), rho * np.sin(theta) + across * np.cos(theta), up], axis=-1
+    )
 
 
 def on_flank(gauge, motion, theta, rho):
