@@ -17,12 +17,14 @@ WIDEST = TURN / 36.0
 
 
 def looks_of(law: Piecewise) -> Array:
-    """Angles (n + 1,), rad, over a turn, between which a second derivative is bounded; breaks are among them."""
-    return np.unique(np.concatenate([np.linspace(0.0, TURN, LOOKS + 1), np.mod(law.breaks, TURN), [TURN]]))
+    """Angles (n + 1,), rad, over a period, between which a second derivative is bounded; breaks are among them."""
+    period = law.period or TURN
+    looks = np.linspace(0.0, period, round(LOOKS * period / TURN) + 1)
+    return np.unique(np.concatenate([looks, np.mod(law.breaks, period), [period]]))
 
 
 def parted(look: Array, bend: Array, tolerance: float) -> tuple[Array, float]:
-    """Angles over a turn, rad, without its end, and the bound of what lies between them, mm.
+    """Angles over a period, rad, without its end, and the bound of what lies between them, mm.
 
     `bend` (n,) bounds the second derivative over each part of `look` (n + 1,).
     """

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
 
-TURN = 2.0 * math.pi
 STEEP = 30.0  # degrees, by rule of thumb for a follower on a straight guide
 STEEP_ARM = 45.0
 ROUNDING = 1e-9  # mm: a wall that is less by no more holds
@@ -117,7 +116,7 @@ def wrapped_off(design: DrumDesign, radius: float) -> tuple[float, float, float]
                 return np.abs(flank.on(at_angle(flank, contact.phi, radius, theta), radius).z - contact.z)
 
             if abs(other - radius) > ROUNDING:
-                found.append((*greatest_of(off, TURN), other))
+                found.append((*greatest_of(off, design.recipe.period), other))
     value, at, other = max(found, default=(0.0, 0.0, radius))
     return value, other, at
 

@@ -17,14 +17,12 @@ if TYPE_CHECKING:
     from camgeo.motions.stated import StatedMotion
     from kin.numeric.arrays import Array
 
-TURN = 2.0 * math.pi
-
 
 def designed(recipe: DrumRecipe, clock: Clock) -> DrumDesign:
     """The exact cam of a recipe; raises RecipeErrors where there is none."""
     with clock.stage("motion"):
         try:
-            motion = recipe.motion.motion(TURN, "cam.motion", 1)
+            motion = recipe.motion.motion(recipe.period, "cam.motion", 1)
             law = motion.periodic("cam.motion", "rad" if recipe.swings else "mm")
         except IntentError as error:
             raise recipe.error(recipe.stated(error.field), in_recipe(recipe, error.message)) from error
@@ -45,4 +43,4 @@ def stated_motion(design: DrumDesign) -> StatedMotion:
         return np.asarray(design.law.derivatives(flat, 0)[0].reshape(np.shape(theta)))
 
     shown = math.degrees(1.0) if recipe.swings else 1.0 / recipe.mm
-    return StatedMotion(recipe.motion, TURN, recipe.motion.repeats, "same", lift, math.degrees(1.0), shown)
+    return StatedMotion(recipe.motion, recipe.period, recipe.motion.repeats, "same", lift, math.degrees(1.0), shown)

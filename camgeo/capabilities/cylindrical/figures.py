@@ -64,7 +64,8 @@ def carried_from(design: DrumDesign, name: str, theta: Array) -> Array:
     flank = design.flanks[name]
     rho = np.full(theta.shape, design.recipe.roller.inner)
     for cut in design.cuts[name]:
-        offset = np.mod(theta - cut.tip.at + math.pi, TURN) - math.pi
+        half = 0.5 * design.recipe.period
+        offset = np.mod(theta - cut.tip.at + half, 2.0 * half) - half
         r = np.append(cut.r, cut.tip.r)
         for ends, sign in ((cut.first, -1.0), (cut.last, 1.0)):
             # from the tip inwards the ends of what is lost lie farther and farther from it
@@ -90,10 +91,10 @@ def figures_of(design: DrumDesign) -> list[Figure]:
     if recipe.swings:
         found.append(_off_radius(design))
     if isinstance(recipe.track, Groove):
-        play, place = greatest_of(lambda theta: play_at(design, theta), TURN)
+        play, place = greatest_of(lambda theta: play_at(design, theta), design.recipe.period)
         found.append(_displaced(design, "play", play, "", math.degrees(place)))
     if isinstance(recipe.track, Rib):
-        thickness, thin = greatest_of(lambda theta: -rib_thickness(design, theta, recipe.floor), TURN)
+        thickness, thin = greatest_of(lambda theta: -rib_thickness(design, theta, recipe.floor), design.recipe.period)
         found.append(Figure("rib-thickness", -thickness, "mm", math.degrees(thin)))
     steep = angles[PRESSURE_ANGLE]
     return [*found, *_curved(design), *_driven(design), *_loaded(design, steep), *_heavy(design)]
@@ -118,7 +119,7 @@ def steepest_contacts(design: DrumDesign) -> dict[str, tuple[float, float]]:
             ends = outer_end(design, name, theta) if rho is None else np.full_like(theta, rho)
             return np.asarray(np.abs(design.flanks[name].pressure(theta, ends)))
 
-        return max(greatest_of(partial(angle, name=name), TURN) for name in design.flanks)
+        return max(greatest_of(partial(angle, name=name), design.recipe.period) for name in design.flanks)
 
     inner, half, outer = at(roller.inner), at(middle), at(None)
     return {PRESSURE_ANGLE: max(inner, outer), MIDDLE: half, OUTER: outer}
@@ -141,7 +142,7 @@ def _off_radius(design: DrumDesign) -> Figure:
     def off(theta: Array) -> Array:
         return np.asarray(np.max([np.abs(flank.pose(theta).y) for flank in design.flanks.values()], axis=0))
 
-    value, at = greatest_of(off, TURN)
+    value, at = greatest_of(off, design.recipe.period)
     return Figure("off-radius", value, "mm", math.degrees(at))
 
 
@@ -149,7 +150,7 @@ def _carrying(design: DrumDesign) -> list[Figure]:
     """Least length of the line of contact and its share, and how far out undercut reaches."""
     least = []
     for name in design.flanks:
-        value, at = greatest_of(lambda theta, name=name: -contact_length(design, name, theta), TURN)  # type: ignore[misc]
+        value, at = greatest_of(lambda theta, name=name: -contact_length(design, name, theta), design.recipe.period)  # type: ignore[misc]
         whole = float(outer_end(design, name, np.array([at]))[0]) - design.recipe.roller.inner
         least.append((-value, max(-value, 0.0) / whole, math.degrees(at)))
     length, share, place = min(least)
@@ -184,7 +185,7 @@ def _curved(design: DrumDesign) -> list[Figure]:
     """Least radius of both bodies together across the line of contact, mm; none where a cut may leave a sharp edge."""
     if design.recipe.shortens:
         return []
-    worst = [greatest_of(lambda theta, name=name: _sharpest(design, name, theta)[0], TURN) for name in design.flanks]  # type: ignore[misc]
+    worst = [greatest_of(lambda theta, name=name: _sharpest(design, name, theta)[0], design.recipe.period) for name in design.flanks]  # type: ignore[misc]
     curvature, at = max(worst)
     return [Figure("mating-radius", 1.0 / curvature if curvature > 0.0 else math.inf, "mm", math.degrees(at))]
 
@@ -251,7 +252,7 @@ def _loaded(design: DrumDesign, steep: tuple[float, float]) -> list[Figure]:
         return found
 
     names = design.flanks if not isinstance(recipe.track, Groove) else ("lower",)
-    value, at = max(greatest_of(lambda theta, name=name: pressure(name, theta), TURN) for name in names)  # type: ignore[misc]
+    value, at = max(greatest_of(lambda theta, name=name: pressure(name, theta), design.recipe.period) for name in names)  # type: ignore[misc]
     return [*found, Figure("contact-pressure", value, "N/mm^2", math.degrees(at))]
 
 
@@ -306,10 +307,11 @@ def _kept(design: DrumDesign, name: str, radius: float) -> list[tuple[float, flo
     knots = breaks_of(design.flanks[name])
     knots = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], 13), knots]))
     lost: list[tuple[float, float]] = []
+    period = design.recipe.period
     for cut in design.cuts[name]:
         if radius < cut.tip.r:
             first, last = cut.at(np.array([radius]))
-            lost += [(float(first[0]) + turn, float(last[0]) + turn) for turn in (-TURN, 0.0, TURN)]
+            lost += [(float(first[0]) + turn, float(last[0]) + turn) for turn in (-period, 0.0, period)]
     inside = [each for pair in lost for each in pair if knots[0] < each < knots[-1]]
     ends = np.unique(np.concatenate([knots, inside]))
     return [

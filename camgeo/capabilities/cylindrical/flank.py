@@ -104,6 +104,11 @@ class Flank:
     at: float = 0.0
 
     @property
+    def period(self) -> float:
+        """Shaft angle, rad, after which the flank is touched where it was: that of a turn or of several."""
+        return self.law.period or 2.0 * math.pi
+
+    @property
     def level(self) -> float:
         """Height of the roller's axis at S = 0, mm."""
         return self.guide.height(0.0)

@@ -34,9 +34,9 @@ SAME_ROW = 1e-6  # mm: so are rows
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Shaft angles (n,), rising over one turn, and radii (m,), rising, mm, and the proved distance of its triangles.
+    """Shaft angles (n,), rising over one period, and radii (m,), rising, mm, and the proved distance of its triangles.
 
-    The last angle is a turn beyond the first one.
+    The last angle is a period beyond the first one.
     """
 
     theta: Array
@@ -55,10 +55,10 @@ def widest(radius: float, tolerance: float) -> float:
 
 
 def breaks_of(flank: Flank) -> Array:
-    """Shaft angles (b + 1,), rad, between which the motion has no break: a turn, rising."""
+    """Shaft angles (b + 1,), rad, between which the motion has no break: a period, rising."""
     inner = np.asarray(flank.law.breaks, dtype=np.float64)
     start = float(inner[0]) if inner.size else 0.0
-    return np.append(inner if inner.size else np.zeros(1), start + TURN)
+    return np.append(inner if inner.size else np.zeros(1), start + flank.period)
 
 
 def bends_over(flank: Flank, knots: Array, low: float, high: float) -> tuple[Array, Bends]:
@@ -66,7 +66,7 @@ def bends_over(flank: Flank, knots: Array, low: float, high: float) -> tuple[Arr
 
     The `knots` are among the places. Raises CurveError where no bound is found.
     """
-    look = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], LOOKS + 1), knots]))
+    look = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], round(LOOKS * flank.period / TURN) + 1), knots]))
     look = look[np.append(np.diff(look) > SAME, True)]
     edges = np.linspace(low, high, BLOCKS + 1)
     for _ in range(SPLITS):
@@ -93,7 +93,7 @@ def grid_of(
     """
     low, high = ends
     knots = breaks_of(flank)
-    knots = np.unique(np.concatenate([knots, knots[0] + np.mod(columns - knots[0], TURN)]))
+    knots = np.unique(np.concatenate([knots, knots[0] + np.mod(columns - knots[0], flank.period)]))
     knots = knots[np.append(np.diff(knots) > SAME, True)]
     look, found = bends_over(flank, knots, low, high)
     turn = widest(high, tolerance) / found.sweep

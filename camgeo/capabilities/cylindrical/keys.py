@@ -135,6 +135,11 @@ class DrumRecipe(ShaftOrder):
     __repr__ = ShaftOrder.__repr__
 
     @property
+    def period(self) -> float:
+        """Shaft angle, rad, after which the motion repeats."""
+        return 2.0 * math.pi * self.turns
+
+    @property
     def level(self) -> float:
         """Height of the roller's axis at lift 0 over the lower face, mm; of a rib the middle between its rollers."""
         return self.guide.height(0.0)

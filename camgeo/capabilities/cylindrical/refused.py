@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from camgeo.capabilities.cylindrical.design import DrumDesign
     from camgeo.capabilities.cylindrical.undercut import Tip
 
-TURN = 2.0 * math.pi
 MOST_SWING = 80.0  # degrees of an arm off the plane across the drum's axis
 SHARP = 1e-3  # of a radius in a remedy, and its distance from the size at which undercut begins
 ROLLER = "cam.follower.radius"
@@ -32,7 +31,7 @@ def demand_sound(design: DrumDesign) -> None:
     try:
         found = design.tips
     except CurveError as error:
-        raise design.error("cam", f"{error}, near {math.degrees(error.parameter) % 360.0:.6g} degrees") from error
+        raise design.error("cam", f"{error}, near {_degrees(design, error.parameter):.6g} degrees") from error
     if not any(found.values()):
         return
     if not design.recipe.shortens:
@@ -40,9 +39,14 @@ def demand_sound(design: DrumDesign) -> None:
     try:
         _ = design.cuts
     except CutError as error:
-        where = f"near {math.degrees(error.parameter) % 360.0:.6g} degrees"
+        where = f"near {_degrees(design, error.parameter):.6g} degrees"
         raise design.error("cam.undercut", f"{error} {where}", _smaller(design)) from error
     _demand_carried(design)
+
+
+def _degrees(design: DrumDesign, angle: float) -> float:
+    """A shaft angle, rad, in degrees of one period."""
+    return math.degrees(angle) % math.degrees(design.recipe.period)
 
 
 def _undercut(design: DrumDesign) -> Exception:
@@ -51,7 +55,7 @@ def _undercut(design: DrumDesign) -> Exception:
     name, tip = _outermost(design)
     problem = (
         f"the {name} flank is undercut from the floor out to {tip.r / mm:.6g} {units} from the axis, "
-        f"near {math.degrees(tip.at) % 360.0:.6g} degrees"
+        f"near {_degrees(design, tip.at):.6g} degrees"
     )
     remedies = [_smaller(design)]
     if tip.r < recipe.radius - SHARP * recipe.radius:
@@ -99,7 +103,7 @@ def _demand_carried(design: DrumDesign) -> None:
         def missing(theta: np.ndarray, name: str = name) -> np.ndarray:
             return -contact_length(design, name, theta)
 
-        most, at = greatest_of(missing, TURN)
+        most, at = greatest_of(missing, design.recipe.period)
         if most >= 0.0:
             problem = f"nothing of the roller's line carries it near {math.degrees(at):.6g} degrees: motion is lost"
             raise design.error("cam.undercut", problem, _smaller(design))
@@ -119,7 +123,7 @@ def _demand_near(design: DrumDesign) -> None:
                     + (", or a smaller distance" if isinstance(recipe.track, Rib) else "")
                 )
                 raise design.error("cam.motion", problem, remedy)
-        off, at = greatest_of(lambda theta, flank=flank: np.abs(flank.pose(theta).y), TURN)  # type: ignore[misc]
+        off, at = greatest_of(lambda theta, flank=flank: np.abs(flank.pose(theta).y), design.recipe.period)  # type: ignore[misc]
         room = recipe.floor - float(flank.size(recipe.floor))
         if not off < room:
             problem = f"the roller's axis stands {off / mm:.6g} {units} off a radius of the drum, past the floor's edge"
@@ -131,7 +135,7 @@ def _demand_near(design: DrumDesign) -> None:
         if not float(flank.size(least)) > 0.0:
             problem = "the cone ends in its apex before the floor"
             raise design.error("cam.follower.taper", problem, "give a smaller taper, axis, or a larger radius")
-        back, at = greatest_of(lambda theta, flank=flank: -flank.pose(theta).y1, TURN)  # type: ignore[misc]
+        back, at = greatest_of(lambda theta, flank=flank: -flank.pose(theta).y1, design.recipe.period)  # type: ignore[misc]
         if not back < least:
             problem = f"the arm takes its roller back faster than the floor turns, near {math.degrees(at):.6g} degrees"
             raise design.error("cam.motion", problem, "give a longer motion, or an arm that stands less aslant")

@@ -26,7 +26,7 @@ def drum_section(design: DrumDesign, figures: Sequence[Figure]) -> dict[str, Any
         "figures": [figure_entry(recipe, figure, 1.0) for figure in figures],
     }
     undercuts = [
-        {"flank": name, "inside": tip.r / recipe.mm, "at_deg": math.degrees(tip.at) % 360.0}
+        {"flank": name, "inside": tip.r / recipe.mm, "at_deg": math.degrees(tip.at) % math.degrees(recipe.period)}
         for name, found in design.tips.items()
         for tip in found
     ]

@@ -28,8 +28,9 @@ def write_csv(design: DrumDesign, request: FileRequest, path: Path) -> None:
     """Write the table of a request; raises OSError where the file cannot be written."""
     units = request.unit_for(design.recipe.units)
     mm = 25.4 if units == "inch" else 1.0
-    count = max(math.ceil(2.0 * math.pi / request.own.get("step", STEP) - 1e-9), 1)
-    theta = np.arange(count) * (2.0 * math.pi / count)
+    period = design.recipe.period
+    count = max(math.ceil(period / request.own.get("step", STEP) - 1e-9), 1)
+    theta = np.arange(count) * (period / count)
     table = flank_table if request.as_ == "flank" else motion_table
     names, rows = table(design, theta, mm, UNIT_NAMES[units])
     write_table(path, names, rows, gaps=True)
