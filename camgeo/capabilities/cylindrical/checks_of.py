@@ -11,7 +11,7 @@ from camgeo.capabilities.cylindrical.development import radii
 from camgeo.capabilities.cylindrical.figures import at_angle, bears, steepest
 from camgeo.capabilities.cylindrical.flank import distance
 from camgeo.capabilities.cylindrical.keys import DEVELOPMENT, Groove, Rib
-from camgeo.measures.placed import Figure, figure_check, greatest_of, limit_checks
+from camgeo.measures.placed import Figure, figure_check, limit_checks
 from camgeo.measures.rule_remark import RuleRemark
 from camgeo.measures.units import in_units
 from camgeo.recipe.figures import LEAST_WALL, PRESSURE_ANGLE
@@ -116,7 +116,7 @@ def wrapped_off(design: DrumDesign, radius: float) -> tuple[float, float, float]
                 return np.abs(flank.on(at_angle(flank, contact.phi, radius, theta), radius).z - contact.z)
 
             if abs(other - radius) > ROUNDING:
-                found.append((*greatest_of(off, design.recipe.period), other))
+                found.append((*design.greatest(off), other))
     value, at, other = max(found, default=(0.0, 0.0, radius))
     return value, other, at
 

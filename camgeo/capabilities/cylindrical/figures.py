@@ -14,7 +14,7 @@ from camgeo.capabilities.cylindrical.keys import Groove, Rib
 from camgeo.capabilities.cylindrical.undercut import below
 from camgeo.curve.extremes import both
 from camgeo.measures.hertz import bearable, line_pressure
-from camgeo.measures.placed import Figure, greatest_of
+from camgeo.measures.placed import Figure
 from camgeo.recipe.figures import PRESSURE_ANGLE
 
 if TYPE_CHECKING:
@@ -91,10 +91,10 @@ def figures_of(design: DrumDesign) -> list[Figure]:
     if recipe.swings:
         found.append(_off_radius(design))
     if isinstance(recipe.track, Groove):
-        play, place = greatest_of(lambda theta: play_at(design, theta), design.recipe.period)
+        play, place = design.greatest(lambda theta: play_at(design, theta))
         found.append(_displaced(design, "play", play, "", math.degrees(place)))
     if isinstance(recipe.track, Rib):
-        thickness, thin = greatest_of(lambda theta: -rib_thickness(design, theta, recipe.floor), design.recipe.period)
+        thickness, thin = design.greatest(lambda theta: -rib_thickness(design, theta, recipe.floor))
         found.append(Figure("rib-thickness", -thickness, "mm", math.degrees(thin)))
     steep = angles[PRESSURE_ANGLE]
     return [*found, *_curved(design), *_driven(design), *_loaded(design, steep), *_heavy(design)]
@@ -119,7 +119,7 @@ def steepest_contacts(design: DrumDesign) -> dict[str, tuple[float, float]]:
             ends = outer_end(design, name, theta) if rho is None else np.full_like(theta, rho)
             return np.asarray(np.abs(design.flanks[name].pressure(theta, ends)))
 
-        return max(greatest_of(partial(angle, name=name), design.recipe.period) for name in design.flanks)
+        return max(design.greatest(partial(angle, name=name)) for name in design.flanks)
 
     inner, half, outer = at(roller.inner), at(middle), at(None)
     return {PRESSURE_ANGLE: max(inner, outer), MIDDLE: half, OUTER: outer}
@@ -142,7 +142,7 @@ def _off_radius(design: DrumDesign) -> Figure:
     def off(theta: Array) -> Array:
         return np.asarray(np.max([np.abs(flank.pose(theta).y) for flank in design.flanks.values()], axis=0))
 
-    value, at = greatest_of(off, design.recipe.period)
+    value, at = design.greatest(off)
     return Figure("off-radius", value, "mm", math.degrees(at))
 
 
@@ -150,7 +150,7 @@ def _carrying(design: DrumDesign) -> list[Figure]:
     """Least length of the line of contact and its share, and how far out undercut reaches."""
     least = []
     for name in design.flanks:
-        value, at = greatest_of(lambda theta, name=name: -contact_length(design, name, theta), design.recipe.period)  # type: ignore[misc]
+        value, at = design.greatest(lambda theta, name=name: -contact_length(design, name, theta))  # type: ignore[misc]
         whole = float(outer_end(design, name, np.array([at]))[0]) - design.recipe.roller.inner
         least.append((-value, max(-value, 0.0) / whole, math.degrees(at)))
     length, share, place = min(least)
@@ -185,7 +185,7 @@ def _curved(design: DrumDesign) -> list[Figure]:
     """Least radius of both bodies together across the line of contact, mm; none where a cut may leave a sharp edge."""
     if design.recipe.shortens:
         return []
-    worst = [greatest_of(lambda theta, name=name: _sharpest(design, name, theta)[0], design.recipe.period) for name in design.flanks]  # type: ignore[misc]
+    worst = [design.greatest(lambda theta, name=name: _sharpest(design, name, theta)[0]) for name in design.flanks]  # type: ignore[misc]
     curvature, at = max(worst)
     return [Figure("mating-radius", 1.0 / curvature if curvature > 0.0 else math.inf, "mm", math.degrees(at))]
 
@@ -252,7 +252,7 @@ def _loaded(design: DrumDesign, steep: tuple[float, float]) -> list[Figure]:
         return found
 
     names = design.flanks if not isinstance(recipe.track, Groove) else ("lower",)
-    value, at = max(greatest_of(lambda theta, name=name: pressure(name, theta), design.recipe.period) for name in names)  # type: ignore[misc]
+    value, at = max(design.greatest(lambda theta, name=name: pressure(name, theta)) for name in names)  # type: ignore[misc]
     return [*found, Figure("contact-pressure", value, "N/mm^2", math.degrees(at))]
 
 

@@ -12,7 +12,6 @@ from camgeo.capabilities.cylindrical.keys import End, Rib
 from camgeo.capabilities.cylindrical.undercut import CutError, tips
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import CurveError
-from camgeo.measures.placed import greatest_of
 from kin.numeric.records import replace
 
 if TYPE_CHECKING:
@@ -103,7 +102,7 @@ def _demand_carried(design: DrumDesign) -> None:
         def missing(theta: np.ndarray, name: str = name) -> np.ndarray:
             return -contact_length(design, name, theta)
 
-        most, at = greatest_of(missing, design.recipe.period)
+        most, at = design.greatest(missing)
         if most >= 0.0:
             problem = f"nothing of the roller's line carries it near {math.degrees(at):.6g} degrees: motion is lost"
             raise design.error("cam.undercut", problem, _smaller(design))
@@ -123,7 +122,7 @@ def _demand_near(design: DrumDesign) -> None:
                     + (", or a smaller distance" if isinstance(recipe.track, Rib) else "")
                 )
                 raise design.error("cam.motion", problem, remedy)
-        off, at = greatest_of(lambda theta, flank=flank: np.abs(flank.pose(theta).y), design.recipe.period)  # type: ignore[misc]
+        off, at = design.greatest(lambda theta, flank=flank: np.abs(flank.pose(theta).y))  # type: ignore[misc]
         room = recipe.floor - float(flank.size(recipe.floor))
         if not off < room:
             problem = f"the roller's axis stands {off / mm:.6g} {units} off a radius of the drum, past the floor's edge"
@@ -135,7 +134,7 @@ def _demand_near(design: DrumDesign) -> None:
         if not float(flank.size(least)) > 0.0:
             problem = "the cone ends in its apex before the floor"
             raise design.error("cam.follower.taper", problem, "give a smaller taper, axis, or a larger radius")
-        back, at = greatest_of(lambda theta, flank=flank: -flank.pose(theta).y1, design.recipe.period)  # type: ignore[misc]
+        back, at = design.greatest(lambda theta, flank=flank: -flank.pose(theta).y1)  # type: ignore[misc]
         if not back < least:
             problem = f"the arm takes its roller back faster than the floor turns, near {math.degrees(at):.6g} degrees"
             raise design.error("cam.motion", problem, "give a longer motion, or an arm that stands less aslant")

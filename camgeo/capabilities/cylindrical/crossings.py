@@ -1,0 +1,275 @@
+"""Where the tracks of a groove of several turns cross, and what each takes of the other's walls.
+
+A groove that closes after n turns crosses itself: S(t) and S(t + 2 pi k) have the same mean over the period, so that
+they are equal somewhere. At a crossing the track a rises against the track b. On every cylinder about the axis the
+flanks of both meet at four corners, and between two of them either lacks a stretch of each of its walls:
+
+    flanks of a and b    corner                          of a begins, ends    of b begins, ends
+    lower, lower         the wall below goes on as b's   begins               ends
+    upper, upper         the wall above goes on as a's   ends                 begins
+    lower, upper         metal begins between them       ends (lower)         ends (upper)
+    upper, lower         metal ends between them         begins (upper)       begins (lower)
+
+A corner solves phi_b(s) = phi_a(t) + 2 pi k and z_b(s) = z_a(t) by Newton's method, from places where rows on the blank
+change sides; those on the floor have to be the same. With tracks that cross at an angle g, a gap in a wall is as long
+as the groove is wide, over sin g. As tan a = S'/r, sin g is r |S_a' - S_b'|/(w_a w_b): it has one greatest value, so
+that over the roller's length it is least, and the gap longest, at one of its ends; at the outer one of tracks that
+climb alike to either side, and are no steeper than 45 degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.curve.curve import CurveError
+from kin.numeric.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from camgeo.capabilities.cylindrical.flank import Flank
+    from kin.numeric.arrays import Array
+
+TURN = 2.0 * math.pi
+SEEK = 1440  # places of a turn between which rows change sides
+BEYOND = 0.3  # of a turn by which a row is known beyond its period
+STEPS = 24  # radii from the blank to the floor, from each of which the corners of the next are found
+NEWTON, SETTLED = 30, 1e-13  # steps, and the angle, rad, by which the last one moves
+MEET = 1e-9  # mm: so near two flanks are at a corner
+TOGETHER = 1e-9  # of the stroke: tracks so near to one another run together
+PAIRS = {"below": ("lower", "lower"), "above": ("upper", "upper"), "open": ("lower", "upper"), "close": ("upper", "lower")}
+"""Corners of a crossing: the flank of the track a and that of the track b."""
+LOST = {
+    ("a", "lower"): ("below", "open"),
+    ("a", "upper"): ("close", "above"),
+    ("b", "lower"): ("close", "below"),
+    ("b", "upper"): ("above", "open"),
+}
+"""Corners between which a track lacks a stretch of a wall."""
+
+
+class CrossingError(CurveError):
+    """Tracks that run together, or whose walls are not there between two crossings."""
+
+
+@dataclass(frozen=True, eq=False)
+class Corner:
+    """A corner of a crossing on cylinders of radii r (k,), mm, falling: shaft angles (k,) on both flanks, rad."""
+
+    flanks: tuple[Flank, Flank]
+    shift: float
+    r: Array
+    first: Array
+    second: Array
+
+    def at(self, r: Array) -> tuple[Array, Array]:
+        """Shaft angles (n,), rad, on the flanks of a and of b on cylinders of radii (n,), mm."""
+        rising = self.r[::-1]
+        guess = [np.interp(r, rising, own[::-1]) for own in (self.first, self.second)]
+        return _settled(self.flanks, self.shift, r, *guess)
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing:
+    """Tracks a and b at shaft angles `first` and `second`, rad, whose paths meet; the second is `turns` beyond."""
+
+    first: float
+    second: float
+    corners: Mapping[str, Corner]
+
+    def angle(self, flank: Flank, rho: float) -> float:
+        """Angle between both tracks, rad, at a distance from the axis, mm."""
+        slopes = flank.law.derivatives(np.array([self.first, self.second]), 1)[1]
+        up, down = np.arctan2(slopes, rho).tolist()
+        return float(up - down)
+
+    def gap(self, r: float) -> float:
+        """Greatest length, mm, over which either track lacks a wall on the cylinder r, mm."""
+        return max(
+            math.hypot(*np.diff([self._place(corner, side, r) for corner in ends], axis=0)[0])
+            for (side, _), ends in LOST.items()
+        )
+
+    def _place(self, corner: str, side: str, r: float) -> tuple[float, float]:
+        own = self.corners[corner]
+        k = "ab".index(side)
+        contact = own.flanks[k].on(own.at(np.array([r]))[k], r)
+        return r * float(contact.phi[0]), float(contact.z[0])
+
+
+class Lost(NamedTuple):
+    """A stretch that a flank lacks: the corners at which it begins and ends, each with which of its flanks it is."""
+
+    begin: tuple[Corner, int]
+    end: tuple[Corner, int]
+
+    def over(self, r: Array) -> tuple[Array, Array]:
+        """First and last shaft angle that is lost on cylinders of radii r (n,), mm."""
+        (first, i), (last, j) = self
+        return first.at(r)[i], last.at(r)[j]
+
+
+def _settled(flanks: tuple[Flank, Flank], shift: float, r: Array, t: Array, s: Array) -> tuple[Array, Array]:
+    """Shaft angles (n,), rad, at which two flanks meet on cylinders r (n,), mm, from a guess."""
+    for _ in range(NEWTON):
+        (phi_a, z_a, phi_1, z_1), (phi_b, z_b, phi_2, z_2) = (
+            _row(flank, angle, r) for flank, angle in zip(flanks, (t, s), strict=True)
+        )
+        along, up = phi_b - phi_a - shift, z_b - z_a
+        det = phi_1 * z_2 - phi_2 * z_1
+        # phi_1 dt - phi_2 ds = along, z_1 dt - z_2 ds = up
+        dt, ds = (phi_2 * up - z_2 * along) / -det, (phi_1 * up - z_1 * along) / -det
+        t, s = t + dt, s + ds
+        if np.abs(np.concatenate([dt, ds])).max() < SETTLED * 1e2:
+            break
+    (phi_a, z_a), (phi_b, z_b) = (_row(flank, angle, r)[:2] for flank, angle in zip(flanks, (t, s), strict=True))
+    off = np.hypot(r * (phi_b - phi_a - shift), z_b - z_a)
+    if not (off < MEET).all():
+        raise CrossingError("the walls of two tracks do not meet at one place", float(t[0]))
+    return t, s
+
+
+def _row(flank: Flank, theta: Array, r: Array) -> tuple[Array, Array, Array, Array]:
+    """Polar angle and height on cylinders, and their derivatives by the shaft angle, (n,) each."""
+    contact = flank.on(theta, r)
+    step = 1e-6
+    after, before = (flank.on(theta + sign * step, r) for sign in (1.0, -1.0))
+    return contact.phi, contact.z, (after.phi - before.phi) / (2.0 * step), (after.z - before.z) / (2.0 * step)
+
+
+def _changes(one: Array, other: Array, turns: int) -> list[tuple[int, int]]:
+    """Places and turns k at which a row comes from below to above another one k turns on; rows (turns SEEK,)."""
+    found = []
+    for k in range(1, turns):
+        over = one - np.roll(other, -k * SEEK) > 0.0
+        found += [(int(i), k) for i in np.flatnonzero(~over & np.roll(over, -1))]
+    return found
+
+
+def _sampled(flank: Flank, r: float | None) -> tuple[Array, Array]:
+    """Heights, mm, of a row on a cylinder at equal steps of its polar angle over the period, and its shaft angles.
+
+    Without a radius it is the path of the roller's axis over the shaft angle.
+    """
+    turns = round(flank.period / TURN)
+    at = np.asarray(np.arange(turns * SEEK) * (TURN / SEEK), dtype=np.float64)
+    if r is None:
+        return flank.pose(at).z, at
+    margin = round(BEYOND * SEEK)
+    theta = np.arange(-margin, turns * SEEK + margin + 1) * (TURN / SEEK)
+    contact = flank.on(theta, r)
+    return np.interp(at, contact.phi, contact.z), np.interp(at, contact.phi, theta)
+
+
+def crossings_of(flanks: Mapping[str, Flank], low: float, high: float) -> list[Crossing]:
+    """Crossings of the tracks of a groove between two radii, mm, by the shaft angle of the rising track.
+
+    Raises CrossingError for tracks that run together or whose walls vanish beside a crossing, with a shaft angle.
+    """
+    lower = flanks["lower"]
+    turns = round(lower.period / TURN)
+    if turns == 1:
+        return []
+    path, at = _sampled(lower, None)
+    _demand_apart(path, turns)
+    places = [(float(at[i]), k) for i, k in _changes(path, path, turns)]
+    rows = {(name, r): _sampled(flank, r) for name, flank in flanks.items() for r in (low, high)}
+    found: dict[str, list[Corner]] = {}
+    radii = np.linspace(high, low, STEPS + 1)
+    for word, (a, b) in PAIRS.items():
+        seeds = _seeds(rows, (a, b), high, turns)
+        if len(seeds) != len(places) or len(_seeds(rows, (a, b), low, turns)) != len(places):
+            raise _no_wall(places, seeds)
+        found[word] = [_corner((flanks[a], flanks[b]), seed, radii) for seed in seeds]
+        _demand_same(found[word], _seeds(rows, (a, b), low, turns), low)
+    made = []
+    for t, k in places:
+        chosen = {}
+        for word, corners in found.items():
+            near = min(corners, key=lambda corner: (corner.shift != TURN * k, _apart(corner.first[0], t, lower.period)))
+            if near.shift != TURN * k:
+                raise _no_wall(places, [])
+            chosen[word] = near
+        # both paths meet, to the rounding of a turn
+        first = _meeting(lower, t, TURN * k)
+        made.append(Crossing(first, math.fmod(first + TURN * k, lower.period), chosen))
+    if any(len({id(each.corners[word]) for each in made}) != len(made) for word in PAIRS):
+        raise _no_wall(places, [])
+    return sorted(made, key=lambda each: each.first)
+
+
+def _no_wall(places: list[tuple[float, int]], seeds: list[tuple[float, float, int]]) -> CrossingError:
+    """Error of walls that are not there: of a corner without a crossing of paths near it, or of two that are one."""
+    at = [t for t, *_ in seeds] or [t for t, _ in places] or [0.0]
+    far = max(at, key=lambda t: min((abs(t - other) for other, _ in places), default=math.inf))
+    return CrossingError("neighbouring turns of the groove run into one another beside their crossings", far)
+
+
+def _demand_apart(path: Array, turns: int) -> None:
+    """Raise CrossingError where the path of the roller's axis is the same over a stretch of two turns."""
+    slack = TOGETHER * max(float(np.ptp(path)), 1e-3)
+    for k in range(1, turns):
+        same = np.abs(path - np.roll(path, -k * SEEK)) < slack
+        both = same & np.roll(same, -1)
+        if both.any():
+            raise CrossingError("two turns of the groove are one over a stretch", float(np.argmax(both)) * TURN / SEEK)
+
+
+def _meeting(flank: Flank, t: float, shift: float) -> float:
+    """Shaft angle, rad, behind a place, at which the path of the axis meets itself a whole number of turns on."""
+    low, high = t, t + TURN / SEEK
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        one, other = flank.law.derivatives(np.array([middle, middle + shift]), 0)[0]
+        low, high = (middle, high) if one < other else (low, middle)
+    return 0.5 * (low + high)
+
+
+def _seeds(
+    rows: Mapping[tuple[str, float], tuple[Array, Array]], pair: tuple[str, str], r: float, turns: int
+) -> list[tuple[float, float, int]]:
+    """Shaft angles on both flanks, rad, near which they meet on a cylinder r, mm, and the turns between them."""
+    (one, t), (other, s) = rows[pair[0], r], rows[pair[1], r]
+    count = one.size
+    found = []
+    for i, k in _changes(one, other, turns):
+        j = i + k * SEEK
+        found.append((float(t[i]), float(s[j % count]) + turns * TURN * (j // count), k))
+    return found
+
+
+def _corner(flanks: tuple[Flank, Flank], seed: tuple[float, float, int], radii: Array) -> Corner:
+    t, s, k = np.array([seed[0]]), np.array([seed[1]]), seed[2]
+    first, second = np.empty_like(radii), np.empty_like(radii)
+    for i, r in enumerate(radii.tolist()):
+        t, s = _settled(flanks, TURN * k, np.array([r]), t, s)
+        first[i], second[i] = t[0], s[0]
+    return Corner(flanks, TURN * k, radii, first, second)
+
+
+def _demand_same(corners: list[Corner], seeds: list[tuple[float, float, int]], r: float) -> None:
+    """Raise CrossingError where the corners on the floor are not those that were followed from the blank."""
+    for t, _, k in seeds:
+        if not any(
+            corner.shift == TURN * k and _apart(corner.at(np.array([r]))[0][0], t, corner.flanks[0].period) < 2.5 * TURN / SEEK
+            for corner in corners
+        ):
+            raise CrossingError("a wall between two turns ends in a ridge above the floor", t)
+
+
+def _apart(one: float, other: float, period: float) -> float:
+    return abs(math.remainder(one - other, period))
+
+
+def lost_of(crossings: list[Crossing], name: str) -> list[Lost]:
+    """Stretches that a flank, `lower` or `upper`, lacks, in no order."""
+    found = []
+    for crossing in crossings:
+        for (side, of), (begin, end) in LOST.items():
+            if of == name:
+                k = "ab".index(side)
+                found.append(Lost((crossing.corners[begin], k), (crossing.corners[end], k)))
+    return found
