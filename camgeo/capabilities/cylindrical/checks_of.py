@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import wall_between
 from camgeo.capabilities.cylindrical.development import radii
 from camgeo.capabilities.cylindrical.figures import at_angle, bears, steepest
 from camgeo.capabilities.cylindrical.flank import distance
@@ -60,6 +61,10 @@ def walls(design: DrumDesign) -> list[tuple[float, str]]:
             found.append((flank.resting(low, recipe.radius), f"between the {word} and the lower face"))
         else:
             found.append((recipe.height - flank.resting(high, recipe.radius), f"between the {word} and the upper face"))
+    if recipe.turns > 1:
+        between = min(wall_between(design.flanks, r)[0] for r in (recipe.floor, recipe.radius))
+        if math.isfinite(between):
+            found.append((between, "between neighbouring turns of the groove"))
     if design.bore is not None:
         points = design.bore.outline.points
         reach = float(np.hypot(*points.T).max())

@@ -36,9 +36,10 @@ if TYPE_CHECKING:
 TURN = 2.0 * math.pi
 SEEK = 1440  # places of a turn between which rows change sides
 BEYOND = 0.3  # of a turn by which a row is known beyond its period
-STEPS = 24  # radii from the blank to the floor, from each of which the corners of the next are found
-NEWTON, SETTLED = 30, 1e-13  # steps, and the angle, rad, by which the last one moves
+STEPS = 12  # radii from the blank to the floor, from each of which the corners of the next are found
+NEWTON, SETTLED = 12, 3e-13  # steps, and mm of a corner that need no further one
 MEET = 1e-9  # mm: so near two flanks are at a corner
+STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
 TOGETHER = 1e-9  # of the stroke: tracks so near to one another run together
 PAIRS = {"below": ("lower", "lower"), "above": ("upper", "upper"), "open": ("lower", "upper"), "close": ("upper", "lower")}
 """Corners of a crossing: the flank of the track a and that of the track b."""
@@ -88,16 +89,13 @@ class Crossing:
 
     def gap(self, r: float) -> float:
         """Greatest length, mm, over which either track lacks a wall on the cylinder r, mm."""
-        return max(
-            math.hypot(*np.diff([self._place(corner, side, r) for corner in ends], axis=0)[0])
-            for (side, _), ends in LOST.items()
-        )
-
-    def _place(self, corner: str, side: str, r: float) -> tuple[float, float]:
-        own = self.corners[corner]
-        k = "ab".index(side)
-        contact = own.flanks[k].on(own.at(np.array([r]))[k], r)
-        return r * float(contact.phi[0]), float(contact.z[0])
+        places = {}
+        for word, corner in self.corners.items():
+            (theta, _), flank = corner.at(np.array([r])), corner.flanks[0]
+            contact = flank.on(theta, r)
+            places[word] = (r * float(contact.phi[0]), float(contact.z[0]))
+        # on the cylinder a corner is one place, of a and, whole turns on, of b
+        return max(math.dist(places[begin], places[end]) for begin, end in LOST.values())
 
 
 class Lost(NamedTuple):
@@ -112,21 +110,21 @@ class Lost(NamedTuple):
         return first.at(r)[i], last.at(r)[j]
 
 
-def _settled(flanks: tuple[Flank, Flank], shift: float, r: Array, t: Array, s: Array) -> tuple[Array, Array]:
+def _settled(flanks: tuple[Flank, Flank], shift: Array | float, r: Array, t: Array, s: Array) -> tuple[Array, Array]:
     """Shaft angles (n,), rad, at which two flanks meet on cylinders r (n,), mm, from a guess."""
+    off = np.full_like(t, np.inf)
     for _ in range(NEWTON):
         (phi_a, z_a, phi_1, z_1), (phi_b, z_b, phi_2, z_2) = (
             _row(flank, angle, r) for flank, angle in zip(flanks, (t, s), strict=True)
         )
         along, up = phi_b - phi_a - shift, z_b - z_a
+        off = np.hypot(r * along, up)
+        if not (off > SETTLED).any():
+            break
         det = phi_1 * z_2 - phi_2 * z_1
         # phi_1 dt - phi_2 ds = along, z_1 dt - z_2 ds = up
         dt, ds = (phi_2 * up - z_2 * along) / -det, (phi_1 * up - z_1 * along) / -det
         t, s = t + dt, s + ds
-        if np.abs(np.concatenate([dt, ds])).max() < SETTLED * 1e2:
-            break
-    (phi_a, z_a), (phi_b, z_b) = (_row(flank, angle, r)[:2] for flank, angle in zip(flanks, (t, s), strict=True))
-    off = np.hypot(r * (phi_b - phi_a - shift), z_b - z_a)
     if not (off < MEET).all():
         raise CrossingError("the walls of two tracks do not meet at one place", float(t[0]))
     return t, s
@@ -134,10 +132,10 @@ def _settled(flanks: tuple[Flank, Flank], shift: float, r: Array, t: Array, s: A
 
 def _row(flank: Flank, theta: Array, r: Array) -> tuple[Array, Array, Array, Array]:
     """Polar angle and height on cylinders, and their derivatives by the shaft angle, (n,) each."""
-    contact = flank.on(theta, r)
-    step = 1e-6
-    after, before = (flank.on(theta + sign * step, r) for sign in (1.0, -1.0))
-    return contact.phi, contact.z, (after.phi - before.phi) / (2.0 * step), (after.z - before.z) / (2.0 * step)
+    near = np.concatenate([theta, theta + STEP, theta - STEP])
+    contact = flank.on(near, np.tile(r, 3))
+    (phi, ahead, behind), (z, over, under) = (part.reshape(3, -1) for part in (contact.phi, contact.z))
+    return phi, z, (ahead - behind) / (2.0 * STEP), (over - under) / (2.0 * STEP)
 
 
 def _changes(one: Array, other: Array, turns: int) -> list[tuple[int, int]]:
@@ -183,7 +181,7 @@ def crossings_of(flanks: Mapping[str, Flank], low: float, high: float) -> list[C
         seeds = _seeds(rows, (a, b), high, turns)
         if len(seeds) != len(places) or len(_seeds(rows, (a, b), low, turns)) != len(places):
             raise _no_wall(places, seeds)
-        found[word] = [_corner((flanks[a], flanks[b]), seed, radii) for seed in seeds]
+        found[word] = _corners((flanks[a], flanks[b]), seeds, radii)
         _demand_same(found[word], _seeds(rows, (a, b), low, turns), low)
     made = []
     for t, k in places:
@@ -241,13 +239,18 @@ def _seeds(
     return found
 
 
-def _corner(flanks: tuple[Flank, Flank], seed: tuple[float, float, int], radii: Array) -> Corner:
-    t, s, k = np.array([seed[0]]), np.array([seed[1]]), seed[2]
-    first, second = np.empty_like(radii), np.empty_like(radii)
+def _corners(flanks: tuple[Flank, Flank], seeds: list[tuple[float, float, int]], radii: Array) -> list[Corner]:
+    """Corners near places on the first of radii (k,), mm, followed to the others."""
+    if not seeds:
+        return []
+    t, s, k = np.array(seeds).T
+    first, second = np.empty((radii.size, t.size)), np.empty((radii.size, t.size))
     for i, r in enumerate(radii.tolist()):
-        t, s = _settled(flanks, TURN * k, np.array([r]), t, s)
-        first[i], second[i] = t[0], s[0]
-    return Corner(flanks, TURN * k, radii, first, second)
+        t, s = _settled(flanks, TURN * k, np.full_like(t, r), t, s)
+        first[i], second[i] = t, s
+    return [
+        Corner(flanks, TURN * float(turns), radii, *line) for turns, *line in zip(k, first.T, second.T, strict=True)
+    ]
 
 
 def _demand_same(corners: list[Corner], seeds: list[tuple[float, float, int]], r: float) -> None:
@@ -273,3 +276,54 @@ def lost_of(crossings: list[Crossing], name: str) -> list[Lost]:
                 k = "ab".index(side)
                 found.append(Lost((crossing.corners[begin], k), (crossing.corners[end], k)))
     return found
+
+
+# --- between turns ----------------------------------------------------------------------------------------------------
+
+
+def wall_between(flanks: Mapping[str, Flank], r: float) -> tuple[float, float]:
+    """Least wall, mm, that does not end in a corner between two turns on a cylinder r, mm, and its shaft angle, rad.
+
+    It is a local least distance, unrolled, of an upper flank from the next lower flank above it; infinite where there is
+    none. It is sampled and narrowed.
+    """
+    (low, _), (high, theta) = (_sampled(flanks[name], r) for name in ("lower", "upper"))
+    turns = low.size // SEEK
+    if turns == 1:
+        return math.inf, 0.0
+    step = TURN / SEEK
+    at = np.arange(low.size)
+    lows, highs = (np.stack([np.roll(row, -k * SEEK) for k in range(1, turns)]) for row in (low, high))
+    covered = ((lows <= high) & (highs > high)).any(axis=0)
+    above = np.where((lows > high) & ~covered, lows - high, np.inf)
+    k = np.argmin(above, axis=0)
+    gap = above[k, at]
+    reach = float(np.where(np.isfinite(gap), gap, 0.0).max())
+    apart = np.full(low.size, np.inf)
+    for beside in range(-math.ceil(min(reach / r, 0.25 * TURN) / step), math.ceil(min(reach / r, 0.25 * TURN) / step) + 1):
+        other = low[(at + (k + 1) * SEEK + beside) % low.size]
+        apart = np.minimum(apart, np.where(other > high, np.hypot(r * step * beside, other - high), np.inf))
+    apart = np.where(np.isfinite(gap), apart, np.inf)
+    before, behind = np.roll(apart, 1), np.roll(apart, -1)
+    same = (np.roll(k, 1) == k) & (np.roll(k, -1) == k) & np.isfinite(before + apart + behind)
+    least = np.flatnonzero(same & (apart <= before) & (apart <= behind))
+    if not least.size:
+        return math.inf, 0.0
+    i = int(least[np.argmin(apart[least])])
+    return _narrowed(low, high, r, (i, i + (int(k[i]) + 1) * SEEK), reach), float(theta[i])
+
+
+def _narrowed(low: Array, high: Array, r: float, places: tuple[int, int], reach: float) -> float:
+    """Least distance, mm, between two rows near places of them, in steps of the polar angle."""
+    step = TURN / SEEK
+    x, y = float(places[0]), float(places[1])
+    wide = max(2.0, reach / (r * step))
+    best = math.inf
+    for _ in range(8):
+        near, far = (middle + wide * np.linspace(-1.0, 1.0, 65) for middle in (x, y))
+        z, w = (np.interp(at % row.size, np.arange(row.size + 1), np.append(row, row[0])) for at, row in ((near, high), (far, low)))
+        apart = far[None, :] - near[:, None] - SEEK * round((places[1] - places[0]) / SEEK)
+        found = np.hypot(r * step * apart, w[None, :] - z[:, None])
+        a, b = np.unravel_index(int(np.argmin(found)), found.shape)
+        x, y, best, wide = float(near[a]), float(far[b]), float(found[a, b]), wide / 8.0
+    return best

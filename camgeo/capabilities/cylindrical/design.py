@@ -12,6 +12,7 @@ from camgeo.capabilities.cylindrical.flank import Flank
 from camgeo.capabilities.cylindrical.grid import TURN
 from camgeo.capabilities.cylindrical.keys import Groove, Rib
 from camgeo.capabilities.cylindrical.sheet import cut_sheet, whole_sheet
+from camgeo.capabilities.cylindrical.shoe import gap_of
 from camgeo.capabilities.cylindrical.undercut import cut_at, demand_regular, tips
 from camgeo.curve.curve import CurveError
 from camgeo.measures.placed import greatest_of
@@ -68,6 +69,11 @@ class DrumDesign:
         if self.recipe.turns == 1:
             return []
         return crossings_of(self.flanks, self.recipe.floor, self.recipe.radius)
+
+    @cached_property
+    def gaps(self) -> list[float]:
+        """Greatest length, mm, over which either track lacks a wall at each of the crossings."""
+        return [gap_of(self, crossing) for crossing in self.crossings]
 
     def greatest(self, figure: Callable[[Array], Array]) -> tuple[float, float]:
         """Greatest value of a figure over shaft angles (n,), rad, of the period, and its angle, sought turn by turn."""

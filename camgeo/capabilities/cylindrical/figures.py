@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.grid import breaks_of
 from camgeo.capabilities.cylindrical.keys import Groove, Rib
+from camgeo.capabilities.cylindrical.shoe import angle_of, play, twist
 from camgeo.capabilities.cylindrical.undercut import below
 from camgeo.curve.extremes import both
 from camgeo.measures.hertz import bearable, line_pressure
@@ -96,8 +98,34 @@ def figures_of(design: DrumDesign) -> list[Figure]:
     if isinstance(recipe.track, Rib):
         thickness, thin = design.greatest(lambda theta: -rib_thickness(design, theta, recipe.floor))
         found.append(Figure("rib-thickness", -thickness, "mm", math.degrees(thin)))
+    found += [*_crossed(design), *_boat(design)]
     steep = angles[PRESSURE_ANGLE]
     return [*found, *_curved(design), *_driven(design), *_loaded(design, steep), *_heavy(design)]
+
+
+def _crossed(design: DrumDesign) -> list[Figure]:
+    """Number of crossings, the least angle between their tracks, and the longest gap in a wall."""
+    if not design.crossings:
+        return []
+    flat = min(design.crossings, key=lambda each: (angle_of(design, each), each.first))
+    gap, back = max(zip(design.gaps, [-each.first for each in design.crossings], strict=True))
+    return [
+        Figure("crossings", len(design.crossings), "", None),
+        Figure("crossing-angle", math.degrees(angle_of(design, flat)), "deg", math.degrees(flat.first)),
+        Figure("crossing-gap", gap, "mm", math.degrees(-back)),
+    ]
+
+
+def _boat(design: DrumDesign) -> list[Figure]:
+    """Play of a shoe in its crossings, and the play that it needs as its track's slope changes along its pin."""
+    if design.recipe.roller.shoe is None:
+        return []
+    found = []
+    if design.crossings:
+        value, crossing = play(design)
+        found.append(Figure("shoe-play", value, "mm", math.degrees(crossing.first)))
+    value, at = twist(design)
+    return [*found, Figure("shoe-twist", value, "mm", math.degrees(at))]
 
 
 def _displaced(design: DrumDesign, name: str, value: float, per: str, at: float | None) -> Figure:
@@ -201,6 +229,8 @@ def _sharpest(design: DrumDesign, name: str, theta: Array) -> tuple[Array, Array
     """Greatest sum of curvatures along the line of contact (n,), 1/mm, and all of them (ALONG, n)."""
     flank = design.flanks[name]
     rows = np.stack([flank.curvature(theta, rho) for rho in _along(design, name, theta)])
+    # a shoe's side is bent less than a roller
+    rows = np.maximum(rows - (1.0 / flank.radius - 1.0 / (design.recipe.roller.side + flank.radius - design.recipe.roller.radius)), 0.0)
     return rows.max(axis=0), rows
 
 
@@ -305,13 +335,16 @@ def _areas(design: DrumDesign, name: str, r: Array) -> Array:
 def _kept(design: DrumDesign, name: str, radius: float) -> list[tuple[float, float]]:
     """Stretches of shaft angles, rad, without a break, on which a flank on a cylinder is not cut away."""
     knots = breaks_of(design.flanks[name])
-    knots = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], 13), knots]))
+    knots = np.unique(np.concatenate([np.linspace(knots[0], knots[-1], 12 * design.recipe.turns + 1), knots]))
     lost: list[tuple[float, float]] = []
     period = design.recipe.period
     for cut in design.cuts[name]:
         if radius < cut.tip.r:
             first, last = cut.at(np.array([radius]))
             lost += [(float(first[0]) + turn, float(last[0]) + turn) for turn in (-period, 0.0, period)]
+    for each in lost_of(design.crossings, name):
+        ends = [float(end[0]) for end in each.over(np.array([radius]))]
+        lost += [(ends[0] + turn, ends[1] + turn) for turn in (-2.0 * period, -period, 0.0, period)]
     inside = [each for pair in lost for each in pair if knots[0] < each < knots[-1]]
     ends = np.unique(np.concatenate([knots, inside]))
     return [

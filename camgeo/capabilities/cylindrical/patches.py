@@ -59,9 +59,11 @@ def kept_between(lost: Sequence[Lost], r: float, period: float) -> list[tuple[fl
 
     Raises CurveError where what two crossings take away overlaps.
     """
+    if not lost:
+        return [(0.0, period)]
     radius = np.array([r])
-    cut = sorted((math.fmod(float(first[0]), period), float(last[0] - first[0])) for first, last in (each.over(radius) for each in lost))
-    cut = sorted((first % period, width) for first, width in cut)
+    over = [each.over(radius) for each in lost]
+    cut = sorted((float(first[0]) % period, float(last[0] - first[0])) for first, last in over)
     found = []
     for (first, width), (following, _) in zip(cut, [*cut[1:], (cut[0][0] + period, 0.0)], strict=True):
         if not (0.0 < width and first + width < following):

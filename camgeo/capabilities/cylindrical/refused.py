@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.guide import Arm
 from camgeo.capabilities.cylindrical.keys import End, Rib
+from camgeo.capabilities.cylindrical.patches import kept_between
+from camgeo.capabilities.cylindrical.shoe import demand_led
 from camgeo.capabilities.cylindrical.undercut import CutError, tips
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import CurveError
@@ -32,6 +35,7 @@ def demand_sound(design: DrumDesign) -> None:
     except CurveError as error:
         raise design.error("cam", f"{error}, near {_degrees(design, error.parameter):.6g} degrees") from error
     if not any(found.values()):
+        _demand_tracks(design)
         return
     if not design.recipe.shortens:
         raise _undercut(design)
@@ -41,6 +45,20 @@ def demand_sound(design: DrumDesign) -> None:
         where = f"near {_degrees(design, error.parameter):.6g} degrees"
         raise design.error("cam.undercut", f"{error} {where}", _smaller(design)) from error
     _demand_carried(design)
+
+
+def _demand_tracks(design: DrumDesign) -> None:
+    """Raise RecipeErrors for tracks that run into one another, and for a follower that does not pass their crossings."""
+    try:
+        _ = design.crossings
+        for name in design.flanks:
+            for r in (design.recipe.floor, design.recipe.radius):
+                kept_between(lost_of(design.crossings, name), r, design.recipe.period)
+    except CurveError as error:
+        problem = f"{error}, near {_degrees(design, error.parameter):.6g} degrees"
+        remedy = "give more lift a turn, shorter rests, or a narrower follower"
+        raise design.error("cam.motion", problem, remedy) from error
+    demand_led(design)
 
 
 def _degrees(design: DrumDesign, angle: float) -> float:
@@ -64,7 +82,8 @@ def _undercut(design: DrumDesign) -> Exception:
             remedies.append(
                 f"give a depth of at most {downward((1.0 - SHARP) * (recipe.radius - tip.r) / mm, 4)} {units}"
             )
-        remedies.append("let contact begin farther out: undercut: shorten")
+        if recipe.turns == 1:
+            remedies.append("let contact begin farther out: undercut: shorten")
     return design.error(ROLLER, problem, ", or ".join(filter(None, remedies)))
 
 

@@ -100,8 +100,8 @@ def half_width(design: DrumDesign, along: float) -> float:
 def play(design: DrumDesign) -> tuple[float, Crossing]:
     """Greatest play, mm, to either side, of a shoe in the middle of a gap, and the crossing."""
     found = [
-        (design.recipe.roller.radius - half_width(design, 0.5 * gap_of(design, each)), -each.first, each)
-        for each in design.crossings
+        (design.recipe.roller.radius - half_width(design, 0.5 * gap), -each.first, each)
+        for gap, each in zip(design.gaps, design.crossings, strict=True)
     ]
     value, _, crossing = max(found, key=lambda each: each[:2])
     return value, crossing
@@ -128,13 +128,13 @@ def demand_led(design: DrumDesign) -> None:
     """Raise RecipeErrors for a roller that would drop into a crossing, and for a shoe too short or too long."""
     recipe, crossings = design.recipe, design.crossings
     mm, units, shoe = recipe.mm, recipe.units, recipe.roller.shoe
-    gap, worst = max(((gap_of(design, each), each) for each in crossings), key=lambda pair: pair[0], default=(0.0, None))
+    gap = max(design.gaps, default=0.0)
     bend = longest(design)
     passes = (
         f"a shoe of at most {downward((1.0 - ROOM) * bend.length / mm, 5)} {units} passes the bend "
         f"near {math.degrees(bend.at):.6g} degrees, whose radius is {bend.radius / mm:.5g} {units} on the cylinder where it is least"
     )
-    if worst is not None and (shoe is None or not shoe > gap):
+    if crossings and (shoe is None or not shoe > gap):
         where = _places(design, gap)
         bridge = f"{upward((1.0 + ROOM) * gap / mm, 5)} {units}"
         problem = f"a wall of the groove is missing over {gap / mm:.6g} {units} where its tracks cross, at {where}"
@@ -167,7 +167,7 @@ def _eased(crossings: list[Crossing]) -> str:
 
 def _places(design: DrumDesign, gap: float) -> str:
     """Shaft angles of the crossings, those with the longest gap first."""
-    by_gap = sorted(design.crossings, key=lambda each: -round(gap_of(design, each) / gap, 6))
+    by_gap = [each for _, each in sorted(zip(design.gaps, design.crossings, strict=True), key=lambda pair: -round(pair[0] / gap, 6))]
     told = [f"{math.degrees(each.first):.6g} and {math.degrees(each.second):.6g}" for each in by_gap[:TOLD]]
     more = f", and {len(by_gap) - TOLD} more" if len(by_gap) > TOLD else ""
     return f"{'; '.join(told)} degrees of the shaft{more}"
