@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from camgeo.capabilities.cylindrical.flank import Flank
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
 
 TURN = 2.0 * math.pi
 SEEK = 1440  # places of a turn between which rows change sides
@@ -40,6 +40,7 @@ STEPS = 12  # radii from the blank to the floor, from each of which the corners 
 NEWTON, SETTLED = 12, 3e-13  # steps, and mm of a corner that need no further one
 MEET = 1e-9  # mm: so near two flanks are at a corner
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
+NEAR = 0.1  # rad by which lines of corners between their known radii stay within these
 TOGETHER = 1e-9  # of the stroke: tracks so near to one another run together
 PAIRS = {"below": ("lower", "lower"), "above": ("upper", "upper"), "open": ("lower", "upper"), "close": ("upper", "lower")}
 """Corners of a crossing: the flank of the track a and that of the track b."""
@@ -109,6 +110,19 @@ class Lost(NamedTuple):
         (first, i), (last, j) = self
         return first.at(r)[i], last.at(r)[j]
 
+    def has(self, theta: Array, r: Array, period: float) -> Mask:
+        """Whether places of a flank, at shaft angles, rad, on cylinders of radii, mm, (n,) each, are lost."""
+        found = np.zeros(theta.shape, dtype=bool)
+        (first, i), (last, j) = self
+        ends = (first.first, first.second)[i], (last.first, last.second)[j]
+        begin = min(float(end.min()) for end in ends) - NEAR
+        offset = np.mod(theta - begin, period)
+        near = np.flatnonzero(offset < max(float(end.max()) for end in ends) + NEAR - begin)
+        if near.size:
+            low, high = self.over(r[near])
+            found[near] = (low < begin + offset[near]) & (begin + offset[near] < high)
+        return found
+
 
 def _settled(flanks: tuple[Flank, Flank], shift: Array | float, r: Array, t: Array, s: Array) -> tuple[Array, Array]:
     """Shaft angles (n,), rad, at which two flanks meet on cylinders r (n,), mm, from a guess."""
@@ -171,9 +185,7 @@ def crossings_of(flanks: Mapping[str, Flank], low: float, high: float) -> list[C
     turns = round(lower.period / TURN)
     if turns == 1:
         return []
-    path, at = _sampled(lower, None)
-    _demand_apart(path, turns)
-    places = [(float(at[i]), k) for i, k in _changes(path, path, turns)]
+    places = meetings(lower)
     rows = {(name, r): _sampled(flank, r) for name, flank in flanks.items() for r in (low, high)}
     found: dict[str, list[Corner]] = {}
     radii = np.linspace(high, low, STEPS + 1)
@@ -184,19 +196,28 @@ def crossings_of(flanks: Mapping[str, Flank], low: float, high: float) -> list[C
         found[word] = _corners((flanks[a], flanks[b]), seeds, radii)
         _demand_same(found[word], _seeds(rows, (a, b), low, turns), low)
     made = []
-    for t, k in places:
+    for first, k in places:
         chosen = {}
         for word, corners in found.items():
-            near = min(corners, key=lambda corner: (corner.shift != TURN * k, _apart(corner.first[0], t, lower.period)))
+            near = min(corners, key=lambda corner: (corner.shift != TURN * k, _apart(corner.first[0], first, lower.period)))
             if near.shift != TURN * k:
                 raise _no_wall(places, [])
             chosen[word] = near
-        # both paths meet, to the rounding of a turn
-        first = _meeting(lower, t, TURN * k)
         made.append(Crossing(first, math.fmod(first + TURN * k, lower.period), chosen))
     if any(len({id(each.corners[word]) for each in made}) != len(made) for word in PAIRS):
         raise _no_wall(places, [])
     return sorted(made, key=lambda each: each.first)
+
+
+def meetings(flank: Flank) -> list[tuple[float, int]]:
+    """Shaft angles, rad, at which the path of the roller's axis rises through itself, and the turns between them.
+
+    Raises CrossingError for a path that is the same over a stretch of two turns.
+    """
+    path, at = _sampled(flank, None)
+    turns = path.size // SEEK
+    _demand_apart(path, turns)
+    return [(_meeting(flank, float(at[i]), TURN * k), k) for i, k in _changes(path, path, turns)]
 
 
 def _no_wall(places: list[tuple[float, int]], seeds: list[tuple[float, float, int]]) -> CrossingError:
