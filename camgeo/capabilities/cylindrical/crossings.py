@@ -161,7 +161,7 @@ def _changes(one: Array, other: Array, turns: int) -> list[tuple[int, int]]:
     return found
 
 
-def _sampled(flank: Flank, r: float | None) -> tuple[Array, Array]:
+def sampled(flank: Flank, r: float | None) -> tuple[Array, Array]:
     """Heights, mm, of a row on a cylinder at equal steps of its polar angle over the period, and its shaft angles.
 
     Without a radius it is the path of the roller's axis over the shaft angle.
@@ -186,7 +186,7 @@ def crossings_of(flanks: Mapping[str, Flank], low: float, high: float) -> list[C
     if turns == 1:
         return []
     places = meetings(lower)
-    rows = {(name, r): _sampled(flank, r) for name, flank in flanks.items() for r in (low, high)}
+    rows = {(name, r): sampled(flank, r) for name, flank in flanks.items() for r in (low, high)}
     found: dict[str, list[Corner]] = {}
     radii = np.linspace(high, low, STEPS + 1)
     for word, (a, b) in PAIRS.items():
@@ -214,7 +214,7 @@ def meetings(flank: Flank) -> list[tuple[float, int]]:
 
     Raises CrossingError for a path that is the same over a stretch of two turns.
     """
-    path, at = _sampled(flank, None)
+    path, at = sampled(flank, None)
     turns = path.size // SEEK
     _demand_apart(path, turns)
     return [(_meeting(flank, float(at[i]), TURN * k), k) for i, k in _changes(path, path, turns)]
@@ -308,7 +308,7 @@ def wall_between(flanks: Mapping[str, Flank], r: float) -> tuple[float, float]:
     It is a local least distance, unrolled, of an upper flank from the next lower flank above it; infinite where there is
     none. It is sampled and narrowed.
     """
-    (low, _), (high, theta) = (_sampled(flanks[name], r) for name in ("lower", "upper"))
+    (low, _), (high, theta) = (sampled(flanks[name], r) for name in ("lower", "upper"))
     turns = low.size // SEEK
     if turns == 1:
         return math.inf, 0.0
