@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from camgeo.capabilities.cylindrical.shoe import angle_of
 from camgeo.measures.placed import figure_entry
 
 if TYPE_CHECKING:
@@ -22,6 +25,7 @@ def drum_section(design: DrumDesign, figures: Sequence[Figure]) -> dict[str, Any
         "floor": recipe.floor / recipe.mm,
         "from": recipe.roller.inner / recipe.mm,
         "to": recipe.roller.outer / recipe.mm,
+        **({"shoe": recipe.roller.shoe / recipe.mm} if recipe.roller.shoe is not None else {}),
         **({"taper_deg": math.degrees(recipe.roller.taper)} if recipe.roller.taper else {}),
         "figures": [figure_entry(recipe, figure, 1.0) for figure in figures],
     }
@@ -30,4 +34,14 @@ def drum_section(design: DrumDesign, figures: Sequence[Figure]) -> dict[str, Any
         for name, found in design.tips.items()
         for tip in found
     ]
+    crossings = [
+        {
+            "at_deg": [math.degrees(crossing.first), math.degrees(crossing.second)],
+            "height": float(design.flanks["lower"].pose(np.array([crossing.first])).z[0]) / recipe.mm,
+            "angle_deg": math.degrees(angle_of(design, crossing)),
+            "gap": gap / recipe.mm,
+        }
+        for crossing, gap in zip(design.crossings, design.gaps, strict=True)
+    ]
+    section |= {"turns": recipe.turns, "crossings": crossings} if crossings else {}
     return {**section, "undercut": undercuts} if undercuts else section
