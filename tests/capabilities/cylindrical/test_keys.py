@@ -195,7 +195,7 @@ def test_other_words_for_the_kind(word: str, tmp_path: Path) -> None:
     with pytest.raises(RecipeErrors) as error:
         camgeo.load(path)
     assert str(error.value).endswith(f"cam.kind: not one of the choices, given '{word}'; give cylindrical")
-    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-rib, cylindrical-end and cylindrical-arm"):
+    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-rib, cylindrical-end, cylindrical-arm and cylindrical-screw"):
         starter(word)
 
 
