@@ -271,7 +271,9 @@ def _path(points: Array) -> str:
     return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points.tolist())
 
 
-def _axes(design: DrumDesign, tall: float, ends: tuple[float, float], along: str, upright: str, whole: float = 360.0) -> str:
+def _axes(
+    design: DrumDesign, tall: float, ends: tuple[float, float], along: str, upright: str, whole: float = 360.0
+) -> str:
     """Degrees along a chart, and lengths between two ends, mm, up it."""
     low, high = ends
     mm, unit = design.recipe.mm, UNIT_NAMES[design.recipe.units]

@@ -98,6 +98,11 @@ def remarks_on(design: DrumDesign, figures: Sequence[Figure]) -> tuple[RuleRemar
     if pressure is not None and bearable is not None and pressure.value > bearable:
         sentence = f"the contact's pressure reaches {pressure.value:.4g} N/mm^2, the materials bear {bearable:.4g}"
         remarks.append(RuleRemark("contact-pressure", pressure.value, bearable, pressure.unit, sentence, pressure.at))
+    twist, track = known.get("shoe-twist"), recipe.track
+    if twist is not None and isinstance(track, Groove) and twist.value > track.clearance:
+        shown, unit = in_units(recipe, twist.value, "mm")
+        sentence = f"the shoe needs {shown:.2g} {unit} of clearance, as its track is steeper at its inner end"
+        remarks.append(RuleRemark("shoe-twist", twist.value, track.clearance, "mm", sentence, twist.at))
     chosen = [each for request in recipe.export.files if request.as_ == DEVELOPMENT for each in radii(design, request)]
     walls_at = dict.fromkeys(radius for radius, pitch in chosen if not pitch)
     remarks += [] if any(design.tips.values()) else [_wrapped(design, radius) for radius in walls_at]

@@ -42,7 +42,12 @@ MEET = 1e-9  # mm: so near two flanks are at a corner
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
 NEAR = 0.1  # rad by which lines of corners between their known radii stay within these
 TOGETHER = 1e-9  # of the stroke: tracks so near to one another run together
-PAIRS = {"below": ("lower", "lower"), "above": ("upper", "upper"), "open": ("lower", "upper"), "close": ("upper", "lower")}
+PAIRS = {
+    "below": ("lower", "lower"),
+    "above": ("upper", "upper"),
+    "open": ("lower", "upper"),
+    "close": ("upper", "lower"),
+}
 """Corners of a crossing: the flank of the track a and that of the track b."""
 LOST = {
     ("a", "lower"): ("below", "open"),
@@ -199,7 +204,9 @@ def crossings_of(flanks: Mapping[str, Flank], low: float, high: float) -> list[C
     for first, k in places:
         chosen = {}
         for word, corners in found.items():
-            near = min(corners, key=lambda corner: (corner.shift != TURN * k, _apart(corner.first[0], first, lower.period)))
+            near = min(
+                corners, key=lambda corner: (corner.shift != TURN * k, _apart(corner.first[0], first, lower.period))
+            )
             if near.shift != TURN * k:
                 raise _no_wall(places, [])
             chosen[word] = near
@@ -278,7 +285,8 @@ def _demand_same(corners: list[Corner], seeds: list[tuple[float, float, int]], r
     """Raise CrossingError where the corners on the floor are not those that were followed from the blank."""
     for t, _, k in seeds:
         if not any(
-            corner.shift == TURN * k and _apart(corner.at(np.array([r]))[0][0], t, corner.flanks[0].period) < 2.5 * TURN / SEEK
+            corner.shift == TURN * k
+            and _apart(corner.at(np.array([r]))[0][0], t, corner.flanks[0].period) < 2.5 * TURN / SEEK
             for corner in corners
         ):
             raise CrossingError("a wall between two turns ends in a ridge above the floor", t)
@@ -321,7 +329,9 @@ def wall_between(flanks: Mapping[str, Flank], r: float) -> tuple[float, float]:
     gap = above[k, at]
     reach = float(np.where(np.isfinite(gap), gap, 0.0).max())
     apart = np.full(low.size, np.inf)
-    for beside in range(-math.ceil(min(reach / r, 0.25 * TURN) / step), math.ceil(min(reach / r, 0.25 * TURN) / step) + 1):
+    for beside in range(
+        -math.ceil(min(reach / r, 0.25 * TURN) / step), math.ceil(min(reach / r, 0.25 * TURN) / step) + 1
+    ):
         other = low[(at + (k + 1) * SEEK + beside) % low.size]
         apart = np.minimum(apart, np.where(other > high, np.hypot(r * step * beside, other - high), np.inf))
     apart = np.where(np.isfinite(gap), apart, np.inf)
@@ -342,7 +352,10 @@ def _narrowed(low: Array, high: Array, r: float, places: tuple[int, int], reach:
     best = math.inf
     for _ in range(8):
         near, far = (middle + wide * np.linspace(-1.0, 1.0, 65) for middle in (x, y))
-        z, w = (np.interp(at % row.size, np.arange(row.size + 1), np.append(row, row[0])) for at, row in ((near, high), (far, low)))
+        z, w = (
+            np.interp(at % row.size, np.arange(row.size + 1), np.append(row, row[0]))
+            for at, row in ((near, high), (far, low))
+        )
         apart = far[None, :] - near[:, None] - SEEK * round((places[1] - places[0]) / SEEK)
         found = np.hypot(r * step * apart, w[None, :] - z[:, None])
         a, b = np.unravel_index(int(np.argmin(found)), found.shape)

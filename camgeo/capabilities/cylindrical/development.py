@@ -177,7 +177,10 @@ def write_development(
         boxes = [_draw(space, line.of.layer, COLOURS[line.of.flank], line.points / mm) for line in lines]
         for radius in dict.fromkeys(line.of.radius for line in lines):
             layer = f"R{radius / mm:.9g}_{MARKS}"
-            boxes += [_draw(space, layer, 8, _mark(design, radius, at) / mm) for at in (recipe.period, recipe.period + OVERLAP)]
+            boxes += [
+                _draw(space, layer, 8, _mark(design, radius, at) / mm)
+                for at in (recipe.period, recipe.period + OVERLAP)
+            ]
         corners = np.array(boxes)
         return (*corners[:, :2].min(axis=0).tolist(), *corners[:, 2:].max(axis=0).tolist())
 

@@ -230,7 +230,10 @@ def _sharpest(design: DrumDesign, name: str, theta: Array) -> tuple[Array, Array
     flank = design.flanks[name]
     rows = np.stack([flank.curvature(theta, rho) for rho in _along(design, name, theta)])
     # a shoe's side is bent less than a roller
-    rows = np.maximum(rows - (1.0 / flank.radius - 1.0 / (design.recipe.roller.side + flank.radius - design.recipe.roller.radius)), 0.0)
+    rows = np.maximum(
+        rows - (1.0 / flank.radius - 1.0 / (design.recipe.roller.side + flank.radius - design.recipe.roller.radius)),
+        0.0,
+    )
     return rows.max(axis=0), rows
 
 

@@ -106,7 +106,9 @@ def _check_shoe(cam: Values, reader: Reader) -> None:
     """Note a shoe without its sizes, where nothing leads it on two sides, and on what is no straight carriage."""
     given, path = cam["follower"], "cam.follower"
     if (given.get("kind") == "shoe") != ("width" in given):
-        key, remedy = ("radius", "give width and length") if given.get("kind") == "shoe" else ("width", "give kind: shoe")
+        key, remedy = (
+            ("radius", "give width and length") if given.get("kind") == "shoe" else ("width", "give kind: shoe")
+        )
         reader.fault_at(f"{path}.{key}", f"does not go with a {given.get('kind', 'roller')}", None, remedy)
         return
     if "width" not in given:
@@ -134,7 +136,9 @@ def _check_turns(cam: Values, reader: Reader) -> None:
         reader.fault_at("cam.track", problem, None, "give a groove, or leave cam.turns out")
     if cam.get("undercut") == "shorten":
         remedy = "leave it out, and give a smaller roller or depth, or wider reversals where it is undercut"
-        reader.fault_at("cam.undercut", "an undercut that shortens a track of several turns is not made yet", None, remedy)
+        reader.fault_at(
+            "cam.undercut", "an undercut that shortens a track of several turns is not made yet", None, remedy
+        )
 
 
 def _size(given: Values) -> float:

@@ -95,7 +95,9 @@ def _islands(design: DrumDesign, radius: float) -> list[tuple[Array, Array]]:
 def _columns(design: DrumDesign, radius: float) -> list[list[tuple[float, float]]]:
     """Metal on a cylinder at each place of the turn, from below: bottom and top of each stretch of it, mm."""
     rows = [sampled(design.flanks[name], radius)[0] for name in ("lower", "upper")]
-    low, high = (row.reshape(design.recipe.turns, -1)[:, :: row.size // design.recipe.turns // PLACES].T for row in rows)
+    low, high = (
+        row.reshape(design.recipe.turns, -1)[:, :: row.size // design.recipe.turns // PLACES].T for row in rows
+    )
     if design.recipe.rotation == "ccw":
         low, high = (np.roll(part[::-1], 1, axis=0) for part in (low, high))
     found = []

@@ -167,7 +167,12 @@ def _eased(crossings: list[Crossing]) -> str:
 
 def _places(design: DrumDesign, gap: float) -> str:
     """Shaft angles of the crossings, those with the longest gap first."""
-    by_gap = [each for _, each in sorted(zip(design.gaps, design.crossings, strict=True), key=lambda pair: -round(pair[0] / gap, 6))]
+    by_gap = [
+        each
+        for _, each in sorted(
+            zip(design.gaps, design.crossings, strict=True), key=lambda pair: -round(pair[0] / gap, 6)
+        )
+    ]
     told = [f"{math.degrees(each.first):.6g} and {math.degrees(each.second):.6g}" for each in by_gap[:TOLD]]
     more = f", and {len(by_gap) - TOLD} more" if len(by_gap) > TOLD else ""
     return f"{'; '.join(told)} degrees of the shaft{more}"

@@ -219,7 +219,10 @@ def _crossed(body: _Body, design: DrumDesign) -> tuple[tuple[_Line, _Line], floa
     """
     recipe = design.recipe
     made = patches_of(design, body.tolerance)
-    edges = {id(corner): body.add(points_of(corner.flanks[0], corner.at(made.r)[0], made.r)) for corner in corners_of(design.crossings)}
+    edges = {
+        id(corner): body.add(points_of(corner.flanks[0], corner.at(made.r)[0], made.r))
+        for corner in corners_of(design.crossings)
+    }
     runs: tuple[list[Run], list[Run]] = ([], [])
     for patch in made.patches:
         inside = patch.theta[:, 1:-1]

@@ -139,7 +139,9 @@ def _carriage(design: DrumDesign, theta: Array, size: float) -> list[MovingBody]
     ends = tuple(_roller(design, x, z) for z in heights)
     pose = poses(0.0, lift, 0.0)
     if recipe.roller.shoe is not None:
-        turned = MovingBody("shoe", "follower", (_roller(design, 0.0, 0.0),), poses(x, low + lift, slope(design, theta)))
+        turned = MovingBody(
+            "shoe", "follower", (_roller(design, 0.0, 0.0),), poses(x, low + lift, slope(design, theta))
+        )
         pinned = MovingBody("rollers", "follower", (pin(size, x, low),), pose)
     else:
         turned = MovingBody("rollers", "follower", (*ends, *(pin(size, x, z) for z in heights)), pose)

@@ -45,7 +45,11 @@ ASLANT = changed(
 )
 REFUSED = [
     (GROOVE, ("radius: 50", "rdius: 50"), "cam.rdius: unknown key; did you mean radius?"),
-    (GROOVE, ("kind: cylindrical", "kind: cylindrical\n  turns: 3"), "the segments do not fill their angle, given 360 degrees; let them cover 3 turns"),
+    (
+        GROOVE,
+        ("kind: cylindrical", "kind: cylindrical\n  turns: 3"),
+        "the segments do not fill their angle, given 360 degrees; let them cover 3 turns",
+    ),
     (GROOVE, ("radius: 10,", "radius: 10, arm: {length: 80},"), "cam.follower.arm.offset: missing"),
     (GROOVE, ("radius: 10,", "kind: cone, radius: 10,"), "a conical roller is a roller with a taper"),
     (GROOVE, ("radius: 10,", "radius: 10, at: 40,"), "cam.follower.at: cannot stand without taper; leave it out"),
@@ -195,7 +199,10 @@ def test_other_words_for_the_kind(word: str, tmp_path: Path) -> None:
     with pytest.raises(RecipeErrors) as error:
         camgeo.load(path)
     assert str(error.value).endswith(f"cam.kind: not one of the choices, given '{word}'; give cylindrical")
-    with pytest.raises(ValueError, match="there is cylindrical, cylindrical-rib, cylindrical-end, cylindrical-arm and cylindrical-screw"):
+    with pytest.raises(
+        ValueError,
+        match="there is cylindrical, cylindrical-rib, cylindrical-end, cylindrical-arm and cylindrical-screw",
+    ):
         starter(word)
 
 

@@ -6,6 +6,7 @@ camgeo.capabilities.cylindrical.sweep, camgeo.capabilities.cylindrical.shoe.
 
 from __future__ import annotations
 
+import inspect
 import math
 import random
 import re
@@ -15,8 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from capabilities.cylindrical.made_drums import changed, design_of, recipe_of
+from capabilities.cylindrical.wound_drums import Pins, Row, random_track, text_of
 from support.heavy import trimesh
 
+import camgeo
 from camgeo.capabilities.cylindrical.checks_of import walls
 from camgeo.capabilities.cylindrical.crossings import meetings
 from camgeo.capabilities.cylindrical.exact import designed
@@ -26,57 +29,19 @@ from camgeo.capabilities.cylindrical.shoe import half_width, longest
 from camgeo.capabilities.cylindrical.solid import drum_mesh
 from camgeo.capabilities.cylindrical.tables import flank_table
 from camgeo.common.clock import Clock
-from camgeo.files.mesh import Mesh
-from camgeo.output.extension import numbers_of
+from camgeo.files.mesh import Item, Mesh
+from camgeo.output.extension import MAKING, numbers_of
 from camgeo.schema.errors import RecipeErrors
+from kin.cylindrical.follower import DrumFollower
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
 
-TURN = 2.0 * math.pi
 PARTS = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [1, 1, 0], [0, 1, 1], [1, 0, 1]], dtype=float)
 PARTS /= PARTS.sum(axis=1)[:, None]
-
-Row = tuple[float, float, float, float]  # lift gained, degrees, and degrees of the blends at its ends
-
-
-class Pins:
-    """Lift over several turns by positions, from rows of constant velocity between blends, and where a pin has been."""
-
-    def __init__(self, rows: Sequence[Row], radius: float) -> None:
-        self.rows, self.radius = rows, radius
-        self.turns = round(sum(row[1] for row in rows) / 360.0)
-
-    def __call__(self, theta: np.ndarray) -> np.ndarray:
-        """Lift, mm, at shaft angles, rad."""
-        degrees = np.mod(np.degrees(theta), 360.0 * self.turns)
-        lift, begin, level = np.zeros_like(degrees), 0.0, 0.0
-        for gain, over, first, last in self.rows:
-            t = np.clip(degrees - begin, 0.0, over)
-            rate = gain / (over - 0.5 * (first + last))
-            x, y = np.clip(t / max(first, 1e-9), 0.0, 1.0), np.clip((over - t) / max(last, 1e-9), 0.0, 1.0)
-            begins = 0.5 * rate * first * (2 * x**3 - x**4) + rate * np.maximum(t - first, 0.0)
-            ends = gain - 0.5 * rate * last * (2 * y**3 - y**4)
-            inside = (degrees >= begin) & (degrees < begin + over)
-            lift = np.where(inside, level + np.where(t < over - last, begins, ends), lift)
-            begin, level = begin + over, level + gain
-        return lift
-
-    def away(self, points: np.ndarray, level: float) -> np.ndarray:
-        """Distance (n, turns), mm, of places (n, 3) from the pin nearest to them in each turn; below 0 within it."""
-        r, phi, z = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0]), points[:, 2] - level
-        found = np.empty((len(points), self.turns))
-        for turn in range(self.turns):
-            middle, half = phi + TURN * turn, 1.6 * self.radius / r
-            for _ in range(5):
-                theta = middle[:, None] + half[:, None] * np.linspace(-1.0, 1.0, 25)
-                off = np.hypot(r[:, None] * np.sin(theta - phi[:, None]), z[:, None] - self(theta))
-                best = np.argmin(off, axis=1)
-                middle, half = theta[np.arange(r.size), best], half / 8.0
-            found[:, turn] = off.min(axis=1) - self.radius
-        return found
 
 
 def faults(mesh: Mesh, design: DrumDesign, pins: Pins, parts: np.ndarray = PARTS) -> list[str]:
@@ -103,24 +68,6 @@ def faults(mesh: Mesh, design: DrumDesign, pins: Pins, parts: np.ndarray = PARTS
 def held(design: DrumDesign) -> Mesh:
     """The solid in the precision of an STL."""
     return drum_mesh(design, design.recipe.export.tolerance, numbers_of("stl", 1.0))[0]
-
-
-def text_of(rows: Sequence[Row], *, radius: float, depth: float, width: float, length: float, more: str = "") -> str:
-    """Recipe of rows; its lowest place lies width and 3 mm over the lower face, its highest as far below the upper."""
-    low = width + 3.0
-    stroke = float(max(np.cumsum([row[0] for row in rows])))
-    turns = round(sum(row[1] for row in rows) / 360.0)
-    motion = ", ".join(
-        f"{{{'rise' if gain > 0 else 'return'}: {abs(gain)!r}, over: {over!r}, law: {{uniform: {{blend: [{a!r}, {b!r}]}}}}}}"
-        for gain, over, a, b in rows
-    )
-    return (
-        f"{more}cam:\n  kind: cylindrical\n  radius: {radius!r}\n  turns: {turns}\n"
-        f"  track: {{groove: {{depth: {depth!r}}}}}\n"
-        f"  follower: {{kind: shoe, width: {width!r}, length: {length!r}}}\n  pitch_height: {low!r}\n"
-        f"  motion: [{motion}]\npart: {{length: {stroke + 2.0 * low!r}, bore: 10}}\n"
-        "export: {tolerance: 0.05, files: [stl]}\n"
-    )
 
 
 BRUTE = "places all over a solid are held against pins at all angles of several turns"
@@ -276,20 +223,6 @@ def test_planted_faults_are_seen(plant: str, told: str) -> None:
     assert told in faults(Mesh(points, triangles), screw(), Pins(rows, radius), PARTS[:4])
 
 
-def random_track(rng: random.Random) -> tuple[list[Row], str]:
-    """Rows of a random screw, or of a spiral with a quick return, and the text of its recipe."""
-    radius = rng.uniform(25.0, 45.0)
-    depth, width = rng.uniform(0.12, 0.2) * radius, rng.uniform(0.15, 0.25) * radius
-    out = rng.choice([2, 3, 4])
-    back = out if rng.random() < 0.5 else rng.choice([1, 2])
-    stroke = out * width * rng.uniform(1.9, 2.6)
-    shift = rng.uniform(-60.0, 60.0)
-    blends = [rng.uniform(60.0, 100.0) for _ in range(4)]
-    rows = [(stroke, out * 360.0 + shift, *blends[:2]), (-stroke, back * 360.0 - shift, *blends[2:])]
-    more = "rotation: ccw\n" if rng.random() < 0.5 else ""
-    return rows, text_of(rows, radius=radius, depth=depth, width=width, length=width * rng.uniform(2.0, 5.0), more=more)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_random_tracks_are_metal_where_no_pin_has_been(seed: int) -> None:
@@ -302,7 +235,9 @@ def test_random_tracks_are_metal_where_no_pin_has_been(seed: int) -> None:
         except RecipeErrors as error:
             named = re.search(r"(?:give a shoe of|give at most) ([\d.]+) mm", str(error))
             if named is None:  # undercut, no wall between turns, or no shoe that serves
-                assert re.search("undercut|run into one another|reach into|ridge|more lift a turn|wider bend", str(error))
+                assert re.search(
+                    "undercut|run into one another|reach into|ridge|more lift a turn|wider bend", str(error)
+                )
                 continue
             design = design_of(re.sub(r"length: [\d.]+}", f"length: {named[1]}}}", text, count=1))
         assert faults(held(design), design, Pins(rows, design.recipe.roller.radius)) == []
@@ -332,9 +267,7 @@ def test_rows_of_the_table_that_a_crossing_cuts_away_are_empty() -> None:
         columns = [names.index(f"{name}_{key}") for key in ("r_mm", "phi_deg", "z_mm")]
         inner = np.arange(3 * theta.size) % 3 == 0  # at the shoe's inner end
         contact = flank.along(theta, np.full(theta.size, 24.5))
-        points = np.column_stack(
-            [contact.r * np.cos(contact.phi), contact.r * np.sin(contact.phi), contact.z]
-        )
+        points = np.column_stack([contact.r * np.cos(contact.phi), contact.r * np.sin(contact.phi), contact.z])
         away = pins.away(points, design.recipe.level).min(axis=1)
         clear = abs(away) > 2e-3
         empty = np.isnan(rows[inner][:, columns]).all(axis=1)
@@ -369,7 +302,10 @@ def test_a_follower_that_does_not_pass_is_refused_with_one_that_does(old: str, n
 def test_demands_that_contradict_say_what_to_change() -> None:
     """A sharp reversal takes no shoe as long as the gap; the same with wider blends does."""
     sharp = SCREW.replace("90.0, 90.0", "12.0, 12.0")
-    with pytest.raises(RecipeErrors, match=r"a shoe of at most .* passes the bend .* gap of .* needs a longer one: give more lift a turn, a wider"):
+    with pytest.raises(
+        RecipeErrors,
+        match=r"a shoe of at most .* passes the bend .* gap of .* needs a longer one: give more lift a turn, a wider",
+    ):
         design_of(sharp)
     assert design_of(sharp.replace("12.0, 12.0", "60.0, 60.0"))
 
@@ -377,8 +313,14 @@ def test_demands_that_contradict_say_what_to_change() -> None:
 @pytest.mark.parametrize(
     ("pairs", "told"),
     [
-        ([("1080.0", "680.0"), ("}, {return", "}, {dwell: 400}, {return")], "two turns of the groove are one over a stretch"),
-        ([("rise: 55.0", "rise: 20.0"), ("return: 55.0", "return: 20.0")], "neighbouring turns of the groove run into one"),
+        (
+            [("1080.0", "680.0"), ("}, {return", "}, {dwell: 400}, {return")],
+            "two turns of the groove are one over a stretch",
+        ),
+        (
+            [("rise: 55.0", "rise: 20.0"), ("return: 55.0", "return: 20.0")],
+            "neighbouring turns of the groove run into one",
+        ),
         ([("turns: 6", "turns: 5")], "let them cover 5 turns, 1800 degrees; a track of several turns has cam.turns"),
         ([("turns: 6", "turns: 0")], "cam.turns"),
         ([("turns: 6", "turns: 2.5")], "cam.turns"),
@@ -404,3 +346,79 @@ def test_step_of_several_turns_is_refused_with_what_serves() -> None:
     recipe = recipe_of(changed(SCREW, ("[stl]", "[step]")))
     with pytest.raises(RecipeErrors, match="crosses itself, is not made yet; give stl, 3mf or ply"):
         foresee(designed(recipe, Clock()), recipe.export.files[0])
+
+
+# --- from recipe to verdict -------------------------------------------------------------------------------------------
+
+judged = pytest.mark.skipif(
+    "shoe" not in inspect.signature(DrumFollower.__init__).parameters, reason="the judge has no shoe yet"
+)
+
+
+@judged
+@pytest.mark.costly("solids of several turns are judged at all angles")
+@pytest.mark.parametrize("text", [SCREW, SPIRAL], ids=["screw", "spiral"])
+def test_solid_and_development_are_judged_over_all_turns(text: str, tmp_path: Path) -> None:
+    """Each flank's motion within what the tolerance implies; the report has the crossings."""
+    files = "[stl, {dxf: {as: development}}, {csv: {as: flank, step: 10}}, html]"
+    (tmp_path / "drum.yaml").write_text(changed(text, ("[stl]", files)), encoding="utf-8")
+    report = camgeo.export(str(tmp_path / "drum.yaml"), str(tmp_path / "out"))
+    assert report.ok, str(report)
+    held_of = {check.name for check in report.checks if check.file}
+    assert {"watertight", "contour", "motion"} <= {name.partition(",")[0] for name in held_of}
+
+
+@judged
+@pytest.mark.costly("solids of several turns are judged at all angles")
+@pytest.mark.parametrize(
+    "plant",
+    [
+        (
+            "return: 55.0, over: 1080.0, law: {uniform: {blend: [90.0, 90.0]}}",
+            "return: 55.0, over: 1080.0, law: cycloidal",
+        ),
+        ("pitch_height: 13.0", "pitch_height: 13.1"),
+        ("cam:\n", "rotation: ccw\ncam:\n"),
+        ("width: 10.0", "width: 9.8"),
+    ],
+)
+def test_the_solid_of_another_screw_is_refused(plant: tuple[str, str], tmp_path: Path) -> None:
+    """Verify with the recipe of the screw: a return by another law, a lower place, mirrored, a narrower groove.
+
+    The screw's motion is its own mirror image; with an offset start that of a drum turning the other way is not.
+    """
+    right = changed(
+        SCREW, ("motion: [", "motion: [{dwell: 40}, "), ("return: 55.0, over: 1080.0", "return: 55.0, over: 1040.0")
+    )
+    own = (plant[0].replace("1080.0", "1040.0"), plant[1].replace("1080.0", "1040.0"))
+    (tmp_path / "wrong.yaml").write_text(changed(right, own), encoding="utf-8")
+    assert camgeo.export(str(tmp_path / "wrong.yaml"), str(tmp_path / "out")).ok
+    (tmp_path / "drum.yaml").write_text(right, encoding="utf-8")
+    assert not camgeo.verify(str(tmp_path / "drum.yaml"), str(tmp_path / "out" / "wrong" / "wrong.stl")).ok
+
+
+@judged
+@pytest.mark.costly("solids of several turns are judged at all angles")
+def test_a_screw_whose_crossing_is_not_open_is_refused(tmp_path: Path) -> None:
+    """Metal left in one crossing, as a bar across both tracks, is in the shoe's way."""
+    mesh = solid()
+    crossing = screw().crossings[2]
+    z = screw().recipe.level + float(screw().law.derivatives(np.array([crossing.first]), 0)[0][0])
+    tip = np.array([29.0 * math.cos(crossing.first), 29.0 * math.sin(crossing.first), z])
+    points, triangles = mesh.points, mesh.triangles
+    near = points[triangles].mean(axis=1)
+    floor = np.hypot(*near.T[:2]) < screw().recipe.floor + 0.2
+    k = int(np.flatnonzero(floor)[np.argmin(np.linalg.norm(near[floor] - tip, axis=1))])
+    a, b, c = triangles[k]
+    n = len(points)
+    more = np.array([[a, b, n], [b, c, n], [c, a, n]])
+    planted = Mesh(np.vstack([points, tip]), np.vstack([np.delete(triangles, k, axis=0), more]))
+    assert faults(planted, screw(), Pins(SCREW_ROWS, 5.0), PARTS[:4]) == [
+        "metal in a pin's way",
+        "a wall that no pin touches",
+    ]
+    (tmp_path / "drum.yaml").write_text(SCREW, encoding="utf-8")
+    write = MAKING["stl"].write
+    assert write is not None
+    write(tmp_path / "planted.stl", [Item("drum", planted)], "drum", 1.0, "")
+    assert not camgeo.verify(str(tmp_path / "drum.yaml"), str(tmp_path / "planted.stl")).ok
