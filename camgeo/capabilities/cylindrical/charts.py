@@ -56,8 +56,8 @@ def development(design: DrumDesign) -> str:
     parts = []
     for low, high in shell(design, blank).bands:
         bottom, top = np.column_stack([x, y(low)]), np.column_stack([x, y(high)])
-        for run in runs(np.isfinite(bottom[:, 1] + top[:, 1])):
-            parts.append(f'<path class="metal" d="{_path(np.concatenate([bottom[run], top[run][::-1]]))}Z"/>')
+        there = runs(np.isfinite(bottom[:, 1] + top[:, 1]))
+        parts += [f'<path class="metal" d="{_path(np.concatenate([bottom[k], top[k][::-1]]))}Z"/>' for k in there]
     for radius, look in ((blank, "line"), (inner, "line inner")):
         lines = [line for name in design.flanks for line in _flanks(design, name, radius)]
         parts += [f'<path class="{look}" d="{_path(np.column_stack([x, TOP + tall - scale * z]))}"/>' for z in lines]
@@ -74,26 +74,22 @@ def development(design: DrumDesign) -> str:
         beside, z = flat_axis(design, flank, theta)
         share = theta / TURN + beside
         share = share if sense(design) > 0.0 else 1.0 - share
-        if turns > 1:  # every turn from the chart's own beginning on
-            points = np.column_stack([LEFT + FIELD * np.mod(share, 1.0), TOP + tall - scale * z])
-            pieces = np.split(points, np.flatnonzero(np.abs(np.diff(points[:, 0])) > 0.5 * FIELD) + 1)
-            parts += [f'<path class="line pitch" d="{_path(piece)}"/>' for piece in pieces if len(piece) > 1]
-            shown += "".join(
-                f'<g class="roller-at" transform="translate({points[0, 0] + FIELD * (k - 1):.2f} {points[0, 1]:.2f})">{sections}</g>'
-                for k in range(3)
-            )
-            continue
         points = np.column_stack([LEFT + FIELD * share, TOP + tall - scale * z])
-        parts.append(f'<path class="line pitch" d="{_path(points)}"/>')
-        parts += [f'<path class="line lost" d="{_path(points[run])}"/>' for run in runs(short) if run.size > 1]
         x, y = np.array([np.interp(0.0, theta, row) for row in points.T]).tolist()
+        pieces = [points]
+        if turns > 1:  # every turn from the chart's own edge on
+            points[:, 0] = LEFT + FIELD * np.mod(share, 1.0)
+            pieces = np.split(points, np.flatnonzero(np.abs(np.diff(points[:, 0])) > 0.5 * FIELD) + 1)
+        parts += [f'<path class="line pitch" d="{_path(piece)}"/>' for piece in pieces if len(piece) > 1]
+        parts += [f'<path class="line lost" d="{_path(points[run])}"/>' for run in runs(short) if run.size > 1]
         shown += "".join(
             f'<g class="roller-at" transform="translate({x + FIELD * (k - 1):.2f} {y:.2f})">{sections}</g>'
             for k in range(3)
         )
-    for place, z in crossed(design):
-        at = place if sense(design) > 0.0 else 1.0 - place
-        parts.append(f'<circle class="crossing" cx="{LEFT + FIELD * at:.2f}" cy="{TOP + tall - scale * z:.2f}" r="4"/>')
+    parts += [
+        f'<circle class="crossing" cx="{LEFT + FIELD * place:.2f}" cy="{TOP + tall - scale * up:.2f}" r="4"/>'
+        for place, up in crossed(design)
+    ]
     clip = f'<clipPath id="flat"><rect x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/></clipPath>'
     field = f'<rect class="field" x="{LEFT}" y="{TOP}" width="{FIELD}" height="{tall:.1f}"/>'
     over = f" with the tracks of all {turns}" if turns > 1 else ""
@@ -115,10 +111,12 @@ def _flanks(design: DrumDesign, name: str, radius: float) -> list[Array]:
 
 
 def crossed(design: DrumDesign) -> list[tuple[float, float]]:
-    """Places of crossings: polar angle, a share of the turn, and height of the roller's axis, mm."""
-    path = design.flanks[next(iter(design.flanks))]
+    """Places of crossings: their share of the chart's width, and the height of the roller's axis, mm."""
+    if not design.crossings:
+        return []
     at = np.array([crossing.first for crossing in design.crossings])
-    return list(zip(np.mod(at / TURN, 1.0).tolist(), path.pose(at).z.tolist(), strict=True)) if at.size else []
+    share = np.mod(sense(design) * at / TURN, 1.0)
+    return list(zip(share.tolist(), design.flanks["lower"].pose(at).z.tolist(), strict=True))
 
 
 def lost_from(design: DrumDesign, theta: Array) -> Array:
@@ -220,7 +218,7 @@ def pressure_map(design: DrumDesign) -> str:
         f'<text class="told" x="{x + shift:.1f}" y="{y - 7.0:.1f}" text-anchor="{side}">{most:.2f}°</text>'
     )
     cursor = f'<g class="cursor" transform="translate({LEFT} 0)"><line y1="{TOP}" y2="{TOP + HIGH}"/></g>'
-    axes = _axes(design, HIGH, (roller.inner, roller.outer), "shaft angle, °", "radius", whole)
+    axes = _axes(design, HIGH, (roller.inner, roller.outer), "shaft angle, °", "radius", whole=whole)
     told = (
         f"pressure angle over shaft angle and radius, at most {most:.2f} degrees at a shaft angle of {at:.1f} degrees"
     )
@@ -272,7 +270,7 @@ def _path(points: Array) -> str:
 
 
 def _axes(
-    design: DrumDesign, tall: float, ends: tuple[float, float], along: str, upright: str, whole: float = 360.0
+    design: DrumDesign, tall: float, ends: tuple[float, float], along: str, upright: str, *, whole: float = 360.0
 ) -> str:
     """Degrees along a chart, and lengths between two ends, mm, up it."""
     low, high = ends

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 TURN = 2.0 * math.pi
 SEEK = 1440  # places of a turn between which rows change sides
 BEYOND = 0.3  # of a turn by which a row is known beyond its period
-STEPS = 12  # radii from the blank to the floor, from each of which the corners of the next are found
+STEPS = 6  # radii from the blank to the floor, from each of which the corners of the next are found
 NEWTON, SETTLED = 12, 3e-13  # steps, and mm of a corner that need no further one
 MEET = 1e-9  # mm: so near two flanks are at a corner
 STEP = 1e-6  # rad: of a difference quotient for Newton's method, which its result does not depend on
@@ -75,8 +75,10 @@ class Corner:
     def at(self, r: Array) -> tuple[Array, Array]:
         """Shaft angles (n,), rad, on the flanks of a and of b on cylinders of radii (n,), mm."""
         rising = self.r[::-1]
-        guess = [np.interp(r, rising, own[::-1]) for own in (self.first, self.second)]
-        return _settled(self.flanks, self.shift, r, *guess)
+        first, second = (np.interp(r, rising, own[::-1]) for own in (self.first, self.second))
+        if np.isin(r, rising).all():
+            return first, second
+        return _settled(self.flanks, self.shift, r, first, second)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,10 +97,9 @@ class Crossing:
 
     def gap(self, r: float) -> float:
         """Greatest length, mm, over which either track lacks a wall on the cylinder r, mm."""
-        places = {}
+        radius, places = np.array([r]), {}
         for word, corner in self.corners.items():
-            (theta, _), flank = corner.at(np.array([r])), corner.flanks[0]
-            contact = flank.on(theta, r)
+            contact = corner.flanks[0].on(corner.at(radius)[0], radius)
             places[word] = (r * float(contact.phi[0]), float(contact.z[0]))
         # on the cylinder a corner is one place, of a and, whole turns on, of b
         return max(math.dist(places[begin], places[end]) for begin, end in LOST.values())
@@ -176,7 +177,7 @@ def sampled(flank: Flank, r: float | None) -> tuple[Array, Array]:
     if r is None:
         return flank.pose(at).z, at
     margin = round(BEYOND * SEEK)
-    theta = np.arange(-margin, turns * SEEK + margin + 1) * (TURN / SEEK)
+    theta: Array = np.arange(-margin, turns * SEEK + margin + 1) * (TURN / SEEK)
     contact = flank.on(theta, r)
     return np.interp(at, contact.phi, contact.z), np.interp(at, contact.phi, theta)
 
@@ -313,8 +314,8 @@ def lost_of(crossings: list[Crossing], name: str) -> list[Lost]:
 def wall_between(flanks: Mapping[str, Flank], r: float) -> tuple[float, float]:
     """Least wall, mm, that does not end in a corner between two turns on a cylinder r, mm, and its shaft angle, rad.
 
-    It is a local least distance, unrolled, of an upper flank from the next lower flank above it; infinite where there is
-    none. It is sampled and narrowed.
+    It is a local least distance, unrolled, of an upper flank from the next lower flank above it; infinite where there
+    is none. It is sampled and narrowed.
     """
     (low, _), (high, theta) = (sampled(flanks[name], r) for name in ("lower", "upper"))
     turns = low.size // SEEK
@@ -329,9 +330,8 @@ def wall_between(flanks: Mapping[str, Flank], r: float) -> tuple[float, float]:
     gap = above[k, at]
     reach = float(np.where(np.isfinite(gap), gap, 0.0).max())
     apart = np.full(low.size, np.inf)
-    for beside in range(
-        -math.ceil(min(reach / r, 0.25 * TURN) / step), math.ceil(min(reach / r, 0.25 * TURN) / step) + 1
-    ):
+    most = math.ceil(min(reach / r, 0.25 * TURN) / step)
+    for beside in range(-most, most + 1):
         other = low[(at + (k + 1) * SEEK + beside) % low.size]
         apart = np.minimum(apart, np.where(other > high, np.hypot(r * step * beside, other - high), np.inf))
     apart = np.where(np.isfinite(gap), apart, np.inf)

@@ -15,7 +15,7 @@ from camgeo.capabilities.cylindrical.sheet import cut_sheet, whole_sheet
 from camgeo.capabilities.cylindrical.shoe import gap_of
 from camgeo.capabilities.cylindrical.undercut import cut_at, demand_regular, tips
 from camgeo.curve.curve import CurveError
-from camgeo.measures.placed import greatest_of
+from camgeo.measures.placed import SEEK, greatest_of
 from camgeo.part.body import bore_of
 from kin.numeric.lengths import in_unit
 from kin.numeric.records import dataclass, replace
@@ -76,13 +76,13 @@ class DrumDesign:
         return [gap_of(self, crossing) for crossing in self.crossings]
 
     def greatest(self, figure: Callable[[Array], Array]) -> tuple[float, float]:
-        """Greatest value of a figure over shaft angles (n,), rad, of the period, and its angle, sought turn by turn."""
-        found = []
-        for begin in (TURN * np.arange(self.recipe.turns)).tolist():
-            value, at = greatest_of(lambda theta, begin=begin: figure(theta + begin), TURN)  # type: ignore[misc]
-            found.append((value, -at - begin))
-        value, back = max(found)
-        return value, -back
+        """Greatest value of a figure over shaft angles (n,), rad, of the period, and its angle, rad."""
+        begin = 0.0
+        if self.recipe.turns > 1:
+            places = np.linspace(0.0, self.recipe.period, self.recipe.turns * SEEK + 1)
+            begin = TURN * min(int(np.argmax(figure(places))) // SEEK, self.recipe.turns - 1)
+        value, at = greatest_of(lambda theta: figure(theta + begin), TURN)
+        return value, at + begin
 
     def sheet(self, name: str, tolerance: float) -> Sheet:
         """Points and grid of a flank within a tolerance, mm; raises ToleranceError where it cannot be held."""

@@ -346,8 +346,8 @@ def _kept(design: DrumDesign, name: str, radius: float) -> list[tuple[float, flo
             first, last = cut.at(np.array([radius]))
             lost += [(float(first[0]) + turn, float(last[0]) + turn) for turn in (-period, 0.0, period)]
     for each in lost_of(design.crossings, name):
-        ends = [float(end[0]) for end in each.over(np.array([radius]))]
-        lost += [(ends[0] + turn, ends[1] + turn) for turn in (-2.0 * period, -period, 0.0, period)]
+        begin, end = (float(angle[0]) for angle in each.over(np.array([radius])))
+        lost += [(begin + turn, end + turn) for turn in (-2.0 * period, -period, 0.0, period)]
     inside = [each for pair in lost for each in pair if knots[0] < each < knots[-1]]
     ends = np.unique(np.concatenate([knots, inside]))
     return [

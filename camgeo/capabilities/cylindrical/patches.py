@@ -17,6 +17,7 @@ import numpy as np
 from camgeo.capabilities.cylindrical.bends import bends
 from camgeo.capabilities.cylindrical.crossings import lost_of
 from camgeo.capabilities.cylindrical.grid import breaks_of, grid_of
+from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.curve.curve import CurveError
 from camgeo.fit.nodes import ToleranceError
 from kin.numeric.records import dataclass
@@ -66,7 +67,7 @@ def kept_between(lost: Sequence[Lost], r: float, period: float) -> list[tuple[fl
     cut = sorted((float(first[0]) % period, float(last[0] - first[0])) for first, last in over)
     found = []
     for (first, width), (following, _) in zip(cut, [*cut[1:], (cut[0][0] + period, 0.0)], strict=True):
-        if not (0.0 < width and first + width < following):
+        if not (width > 0.0 and first + width < following):
             raise CurveError("crossings of the groove reach into one another", first)
         found.append((first + width, following))
     return found
@@ -120,7 +121,7 @@ def _cut(
 
 def _neighbours(lost: Sequence[Lost], period: float) -> list[tuple[tuple[Corner, int], tuple[Corner, int]]]:
     """Corners at which a flank's patches begin and end, each with which of its flanks it is."""
-    ordered = sorted(lost, key=lambda each: each.begin[0].r.size and _angle(each.begin) % period)
+    ordered = sorted(lost, key=lambda each: _angle(each.begin) % period)
     return [(each.end, ordered[(i + 1) % len(ordered)].begin) for i, each in enumerate(ordered)]
 
 
@@ -197,12 +198,6 @@ def _edges_off(design: DrumDesign, rows: Array) -> float:
 
 def _places(corner: Corner, r: Array) -> Array:
     return points_of(corner.flanks[0], corner.at(r)[0], r)
-
-
-def points_of(flank: Flank, theta: Array, r: Array) -> Array:
-    """Points (n, 3) of a flank, mm, at shaft angles and on cylinders (n,)."""
-    phi, z = flank.on(theta, r)[2:4]
-    return np.column_stack([r * np.cos(phi), r * np.sin(phi), z])
 
 
 def corners_of(crossings: Sequence[Crossing]) -> list[Corner]:

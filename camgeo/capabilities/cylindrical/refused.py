@@ -48,7 +48,7 @@ def demand_sound(design: DrumDesign) -> None:
 
 
 def _demand_tracks(design: DrumDesign) -> None:
-    """Raise RecipeErrors for tracks that run into one another, and for a follower that does not pass their crossings."""
+    """Raise RecipeErrors for tracks that run into one another, and for a follower that does not pass them."""
     try:
         _ = design.crossings
         for name in design.flanks:

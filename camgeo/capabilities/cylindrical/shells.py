@@ -30,7 +30,8 @@ FACE, RIM = 48, 8  # chords of a half that is seen, and of a strip of the far ha
 class Shell(NamedTuple):
     """Metal on a cylinder of a radius, mm: bands of (low, high) heights (PLACES,), at equal steps of the polar angle.
 
-    Heights are nan where a band is not, as between tracks that cross. Angles are those of the drum as it is made, mirrored for `rotation: ccw`.
+    Heights are nan where a band is not, as between tracks that cross. Angles are those of the drum as it is made,
+    mirrored for `rotation: ccw`.
     """
 
     radius: float
@@ -78,18 +79,22 @@ def _islands(design: DrumDesign, radius: float) -> list[tuple[Array, Array]]:
     begins = [(j, i) for j, column in enumerate(columns) for i in range(1, len(column) - 1)]
     for begin in sorted(set(begins) - set(following.values())):
         chain = [begin]
-        while chain[-1] in following:
+        while chain[-1] in following and len(chain) < PLACES * design.recipe.turns:
             chain.append(following[chain[-1]])
         rows = [columns[j][i] for j, i in chain]
-        tips = [2 * (0.5 * (row[0] + row[1]),) for row in (rows[0], rows[-1])]
-        whole = np.array([tips[0], *rows, tips[1]])
+        begin_at, end_at = (0.5 * (row[0] + row[1]) for row in (rows[0], rows[-1]))
+        whole = np.array([(begin_at, begin_at), *rows, (end_at, end_at)])
         first = begin[0] - 1
-        for part in range(0, len(whole) - 1, LONGEST):
-            piece = whole[part : part + LONGEST + 1]
-            band = np.full((2, PLACES), np.nan)
-            band[:, np.mod(first + part + np.arange(len(piece)), PLACES)] = piece.T
-            found.append((band[0], band[1]))
+        pieces = [(first + part, whole[part : part + LONGEST + 1]) for part in range(0, len(whole) - 1, LONGEST)]
+        found += [_placed(*piece) for piece in pieces]
     return found
+
+
+def _placed(first: int, rows: Array) -> tuple[Array, Array]:
+    """Bottom and top (PLACES,) of a band from a place on; nan elsewhere."""
+    band = np.full((2, PLACES), np.nan)
+    band[:, np.mod(first + np.arange(len(rows)), PLACES)] = rows.T
+    return band[0], band[1]
 
 
 def _columns(design: DrumDesign, radius: float) -> list[list[tuple[float, float]]]:
@@ -128,8 +133,8 @@ def seen(of: Shell, turn: float, low: float, high: float, chords: int) -> list[A
     found = []
     for band in of.bands:
         bottom, top = (np.column_stack([x, np.interp(at, places, np.append(z, z[0]))]) for z in band)
-        for run in runs(np.isfinite(bottom[:, 1] + top[:, 1])):
-            found.append(np.concatenate([bottom[run], top[run][::-1]]))
+        there = runs(np.isfinite(bottom[:, 1] + top[:, 1]))
+        found += [np.concatenate([bottom[run], top[run][::-1]]) for run in there]
     return found
 
 

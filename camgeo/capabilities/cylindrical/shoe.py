@@ -1,7 +1,7 @@
 """A shoe in place of a roller: a boat that turns on a pin square to the drum, and bridges the gaps at crossings.
 
-As wide as its groove, it is led as a roller of that diameter, R its radius. Its sides are two arcs from tip to tip: with
-the length L their radius is (L^2/4 + R^2)/(2 R).
+As wide as its groove, it is led as a roller of that diameter, R its radius. Its sides are two arcs from tip to tip:
+with the length L their radius is (L^2/4 + R^2)/(2 R).
 
 At a bend whose path has the radius P, unrolled, the wall outside has the radius P + R, and is touched by the middle of
 the shoe. There both lie beside one another as far as the side is bent no less than the wall, which is as far as the
@@ -17,6 +17,7 @@ either end of the shoe. A gap that is longer than the shoe lets it turn into the
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 ROOM = 1e-4  # of a length by which a shoe in a remedy is longer or shorter than the bound
+EASED = "give more lift a turn, a wider reversal, or a narrower shoe"  # which makes gaps shorter and bends wider
 TOLD = 3  # crossings that an error names
 
 
@@ -72,9 +74,9 @@ def longest(design: DrumDesign) -> Bend:
         """Curvature of the path to one side on a cylinder, 1/mm, on that side of a break where it is greater."""
         found = []
         for side in (-1, 1):
-            _, v, a = design.law.derivatives(theta, 2, side)  # type: ignore[arg-type]
+            _, v, a = design.law.derivatives(theta, 2, side)
             found.append(sign * a * rho / (rho * rho + v * v) ** 1.5)
-        return np.max(found, axis=0)
+        return np.asarray(np.max(found, axis=0))
 
     bends = []
     breaks = np.asarray(design.law.breaks, dtype=np.float64)
@@ -126,43 +128,37 @@ def twist(design: DrumDesign) -> tuple[float, float]:
 
 def demand_led(design: DrumDesign) -> None:
     """Raise RecipeErrors for a roller that would drop into a crossing, and for a shoe too short or too long."""
-    recipe, crossings = design.recipe, design.crossings
-    mm, units, shoe = recipe.mm, recipe.units, recipe.roller.shoe
-    gap = max(design.gaps, default=0.0)
-    bend = longest(design)
+    recipe, roller = design.recipe, design.recipe.roller
+    gap, bend = max(design.gaps, default=0.0), longest(design)
+    least, most = (1.0 + ROOM) * gap, (1.0 - ROOM) * bend.length
+    short, long = upward(least / recipe.mm, 5), downward(most / recipe.mm, 5)
+    shown, units = partial(_shown, mm=recipe.mm), recipe.units
     passes = (
-        f"a shoe of at most {downward((1.0 - ROOM) * bend.length / mm, 5)} {units} passes the bend "
-        f"near {math.degrees(bend.at):.6g} degrees, whose radius is {bend.radius / mm:.5g} {units} on the cylinder where it is least"
+        f"a shoe of at most {long} {units} passes the bend near {math.degrees(bend.at):.6g} degrees, "
+        f"whose least radius is {shown(bend.radius)} {units}"
     )
-    if crossings and (shoe is None or not shoe > gap):
-        where = _places(design, gap)
-        bridge = f"{upward((1.0 + ROOM) * gap / mm, 5)} {units}"
-        problem = f"a wall of the groove is missing over {gap / mm:.6g} {units} where its tracks cross, at {where}"
-        field = "cam.follower.length"
-        if shoe is None:
-            field, problem = "cam.follower", f"{problem}: a roller drops in"
-        if bend.length * (1.0 - ROOM) > gap * (1.0 + ROOM):
-            remedy = f"give a shoe of {bridge} or longer"
-            if shoe is None:
-                remedy += f": {{kind: shoe, width: {2.0 * recipe.roller.radius / mm:.6g}, length: {bridge.split()[0]}}}"
-        else:
-            remedy = f"a shoe would need {bridge}, but {passes}: {_eased(crossings)}"
-        raise design.error(field, problem, remedy)
-    if shoe is not None and shoe > bend.length:
-        problem = f"the shoe jams in the bend near {math.degrees(bend.at):.6g} degrees, whose radius is {bend.radius / mm:.5g} {units}"
-        most = (1.0 - ROOM) * bend.length
-        if most > max((1.0 + ROOM) * gap, 2.0 * recipe.roller.radius):
-            remedy = f"give at most {downward(most / mm, 5)} {units}, or a wider bend there"
-        else:
-            remedy = f"{passes}, but the gap of {gap / mm:.6g} {units} where tracks cross needs a longer one: {_eased(crossings)}"
-            if not crossings:
-                remedy = "give a wider bend there, or a roller"
-        raise design.error("cam.follower.length", problem, remedy)
+    if design.crossings and (roller.shoe is None or not roller.shoe > gap):
+        problem = f"a wall of the groove is missing over {shown(gap)} {units} where its tracks cross, at "
+        problem += _places(design, gap)
+        remedy = f"give a shoe of {short} {units} or longer"
+        if roller.shoe is None:
+            problem += ": a roller drops in"
+            remedy += f": {{kind: shoe, width: {shown(2.0 * roller.radius)}, length: {short}}}"
+        if not most > least:
+            remedy = f"a shoe would need {short} {units}, but {passes}: {EASED}"
+        raise design.error("cam.follower" if roller.shoe is None else "cam.follower.length", problem, remedy)
+    if roller.shoe is not None and roller.shoe > bend.length:
+        where = f"near {math.degrees(bend.at):.6g} degrees, whose radius is {shown(bend.radius)} {units}"
+        remedy = f"give at most {long} {units}, or a wider bend there"
+        if not most > max(least, 2.0 * roller.radius):
+            remedy = "give a wider bend there, or a roller"
+            if design.crossings:
+                remedy = f"{passes}, but the gap of {shown(gap)} {units} where tracks cross needs a longer one: {EASED}"
+        raise design.error("cam.follower.length", f"the shoe jams in the bend {where}", remedy)
 
 
-def _eased(crossings: list[Crossing]) -> str:
-    """What makes gaps shorter and bends wider."""
-    return "give more lift a turn, a wider reversal, or a narrower shoe" if crossings else "give a wider bend"
+def _shown(value: float, mm: float) -> str:
+    return f"{value / mm:.6g}"
 
 
 def _places(design: DrumDesign, gap: float) -> str:

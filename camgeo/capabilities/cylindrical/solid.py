@@ -14,7 +14,8 @@ import numpy as np
 
 from camgeo.capabilities.cylindrical.grid import sag, widest
 from camgeo.capabilities.cylindrical.keys import End, Groove
-from camgeo.capabilities.cylindrical.patches import corners_of, patches_of, points_of
+from camgeo.capabilities.cylindrical.patches import corners_of, patches_of
+from camgeo.capabilities.cylindrical.sheet import points_of
 from camgeo.capabilities.cylindrical.sweep import Run, Sweep
 from camgeo.files.errors import RegionError
 from camgeo.files.mesh import Mesh, MeshFacts
@@ -228,7 +229,7 @@ def _crossed(body: _Body, design: DrumDesign) -> tuple[tuple[_Line, _Line], floa
         inside = patch.theta[:, 1:-1]
         radii = np.broadcast_to(made.r[:, None], inside.shape)
         own = body.add(points_of(design.flanks[patch.name], inside.ravel(), radii.ravel())).reshape(inside.shape)
-        number = np.column_stack([edges[id(patch.begin)], own, edges[id(patch.end)]])
+        number: Indices = np.column_stack([edges[id(patch.begin)], own, edges[id(patch.end)]])
         body.grid(number if patch.name == "upper" else number[::-1])
         for run, row in zip(runs, (number[0], number[-1]), strict=True):
             run.append(Run(row, closed=False, under=patch.name == "upper"))

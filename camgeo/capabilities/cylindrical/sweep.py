@@ -11,6 +11,7 @@ from the front's latest point; where it ends, the grooves on either side are one
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -64,12 +65,12 @@ class Sweep:
         self._swept(corners)
 
     @property
-    def metal(self) -> Array:
+    def metal(self) -> Indices:
         """Triangles of the metal."""
         return np.array(self._found[0], dtype=np.intp).reshape(-1, 3)
 
     @property
-    def groove(self) -> Array:
+    def groove(self) -> Indices:
         """Triangles of the groove."""
         return np.array(self._found[1], dtype=np.intp).reshape(-1, 3)
 
@@ -85,7 +86,7 @@ class Sweep:
         if any(under != (self._kind(i) == 0) for i, (_, under) in enumerate(self._lines)):
             raise RegionError(CROSSED)
         points = [a for a, _ in self._lines]
-        self._fronts = [[a, b] for a, b in zip(points, points[1:], strict=False)]
+        self._fronts = [[a, b] for a, b in pairwise(points)]
         first = [list(front) for front in self._fronts]
         of_corner = set(corners)
         used = sorted(self._into.keys() | self._out.keys())
@@ -151,7 +152,7 @@ class Sweep:
             front.append(v)
         while len(front) > 2:
             a, b, c = (front[1], front[0], front[2]) if lower else (front[-3], front[-1], front[-2])
-            if a != b and b != c and c != a:
+            if len({a, b, c}) == 3:
                 if not self._turns_left(a, b, c):
                     return
                 found.append((a, b, c))
@@ -159,7 +160,7 @@ class Sweep:
 
     def _turns_left(self, a: int, b: int, c: int) -> bool:
         x, z = self._at, self._z
-        return (x[b] - x[a]) * (z[c] - z[a]) - (x[c] - x[a]) * (z[b] - z[a]) > 0.0
+        return bool((x[b] - x[a]) * (z[c] - z[a]) - (x[c] - x[a]) * (z[b] - z[a]) > 0.0)
 
     def _index(self, line: Line) -> int:
         try:

@@ -86,7 +86,7 @@ def seen_axis(design: DrumDesign, flank: Flank, theta: Array) -> tuple[Array, Ar
 def _roller(design: DrumDesign, x: float, y: float) -> FilledShape:
     """The roller's outer end about a place, or the shoe."""
     if design.recipe.roller.shoe is not None:
-        return FilledShape("roller", (Ring.through(outline(design.recipe.roller) + (x, y)),), "shoe")
+        return FilledShape("roller", (Ring.through(outline(design.recipe.roller) + np.array([x, y])),), "shoe")
     roller = design.recipe.roller
     return FilledShape("roller", (disc(x, y, roller.size(roller.outer)),), "roller")
 

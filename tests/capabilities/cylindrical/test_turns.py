@@ -1,4 +1,4 @@
-"""Grooves of several turns, which cross themselves: against pins by positions alone, worked numbers, and planted faults.
+"""Grooves of several turns, which cross themselves: by pins at positions alone, worked numbers, planted faults.
 
 Holds: camgeo.capabilities.cylindrical.crossings, camgeo.capabilities.cylindrical.patches,
 camgeo.capabilities.cylindrical.sweep, camgeo.capabilities.cylindrical.shoe.
@@ -35,7 +35,6 @@ from camgeo.schema.errors import RecipeErrors
 from kin.cylindrical.follower import DrumFollower
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from camgeo.capabilities.cylindrical.design import DrumDesign
@@ -71,6 +70,7 @@ def held(design: DrumDesign) -> Mesh:
 
 
 BRUTE = "places all over a solid are held against pins at all angles of several turns"
+DRUMS = "corners of crossings and figures of drums of several turns, in several of them"
 SCREW_ROWS: list[Row] = [(55.0, 1080.0, 90.0, 90.0), (-55.0, 1080.0, 90.0, 90.0)]
 SCREW = text_of(SCREW_ROWS, radius=30.0, depth=6.0, width=10.0, length=55.0)
 """The screw of the worked case, 20 mm a turn, with reversals."""
@@ -93,6 +93,7 @@ def solid() -> Mesh:
 # --- worked numbers ---------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.costly(DRUMS)
 def test_tracks_cross_where_the_worked_case_has_them() -> None:
     """Half a turn and 10 mm apart; at 20 mm a turn a gap at r = 30 is 47.6544062808 mm long (c14)."""
     law = screw().law
@@ -113,6 +114,7 @@ def test_tracks_cross_where_the_worked_case_has_them() -> None:
     assert figures["crossing-gap"] == max(crossing.gap(30.0) for crossing in screw().crossings)
 
 
+@pytest.mark.costly(DRUMS)
 def test_the_play_of_a_shoe_in_a_crossing_is_what_its_arcs_leave() -> None:
     """By the circle through both tips and the middle of a side, drawn anew."""
     length, width, gap = 55.0, 10.0, max(screw().gaps)
@@ -235,9 +237,9 @@ def test_random_tracks_are_metal_where_no_pin_has_been(seed: int) -> None:
         except RecipeErrors as error:
             named = re.search(r"(?:give a shoe of|give at most) ([\d.]+) mm", str(error))
             if named is None:  # undercut, no wall between turns, or no shoe that serves
-                assert re.search(
-                    "undercut|run into one another|reach into|ridge|more lift a turn|wider bend", str(error)
-                )
+                reasons = "undercut|run into one another|reach into|ridge|more lift a turn|wider bend"
+                if not re.search(reasons, str(error)):
+                    raise
                 continue
             design = design_of(re.sub(r"length: [\d.]+}", f"length: {named[1]}}}", text, count=1))
         assert faults(held(design), design, Pins(rows, design.recipe.roller.radius)) == []
@@ -279,6 +281,7 @@ def test_rows_of_the_table_that_a_crossing_cuts_away_are_empty() -> None:
 SHOE = "{kind: shoe, width: 10.0, length: 55.0}"
 
 
+@pytest.mark.costly(DRUMS)
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
@@ -299,6 +302,7 @@ def test_a_follower_that_does_not_pass_is_refused_with_one_that_does(old: str, n
     assert design_of(changed(SCREW, (SHOE, f"{{kind: shoe, width: 10, length: {length}}}"))).crossings
 
 
+@pytest.mark.costly(DRUMS)
 def test_demands_that_contradict_say_what_to_change() -> None:
     """A sharp reversal takes no shoe as long as the gap; the same with wider blends does."""
     sharp = SCREW.replace("90.0, 90.0", "12.0, 12.0")

@@ -1,4 +1,4 @@
-"""Recipes of drums of several turns for tests: rows of constant velocity between blends; where a pin has been by them."""
+"""Recipes of drums of several turns for tests, in rows of constant velocity between blends, and where a pin was."""
 
 from __future__ import annotations
 
@@ -59,8 +59,9 @@ def text_of(rows: Sequence[Row], *, radius: float, depth: float, width: float, l
     stroke = float(max(np.cumsum([row[0] for row in rows])))
     turns = round(sum(row[1] for row in rows) / 360.0)
     motion = ", ".join(
-        f"{{{'rise' if gain > 0 else 'return'}: {abs(gain)!r}, over: {over!r}, law: {{uniform: {{blend: [{a!r}, {b!r}]}}}}}}"
-        for gain, over, a, b in rows
+        f"{{{'rise' if gain > 0 else 'return'}: {abs(gain)!r}, over: {over!r}, "
+        f"law: {{uniform: {{blend: [{first!r}, {last!r}]}}}}}}"
+        for gain, over, first, last in rows
     )
     return (
         f"{more}cam:\n  kind: cylindrical\n  radius: {radius!r}\n  turns: {turns}\n"
