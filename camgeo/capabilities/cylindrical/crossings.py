@@ -177,7 +177,7 @@ def sampled(flank: Flank, r: float | None) -> tuple[Array, Array]:
     if r is None:
         return flank.pose(at).z, at
     margin = round(BEYOND * SEEK)
-    theta: Array = np.arange(-margin, turns * SEEK + margin + 1) * (TURN / SEEK)
+    theta = np.asarray(np.arange(-margin, turns * SEEK + margin + 1) * (TURN / SEEK), dtype=np.float64)
     contact = flank.on(theta, r)
     return np.interp(at, contact.phi, contact.z), np.interp(at, contact.phi, theta)
 

@@ -12,7 +12,6 @@ from camgeo.capabilities.cylindrical.flank import Flank
 from camgeo.capabilities.cylindrical.grid import TURN
 from camgeo.capabilities.cylindrical.keys import Groove, Rib
 from camgeo.capabilities.cylindrical.sheet import cut_sheet, whole_sheet
-from camgeo.capabilities.cylindrical.shoe import gap_of
 from camgeo.capabilities.cylindrical.undercut import cut_at, demand_regular, tips
 from camgeo.curve.curve import CurveError
 from camgeo.measures.placed import SEEK, greatest_of
@@ -72,8 +71,8 @@ class DrumDesign:
 
     @cached_property
     def gaps(self) -> list[float]:
-        """Greatest length, mm, over which either track lacks a wall at each of the crossings."""
-        return [gap_of(self, crossing) for crossing in self.crossings]
+        """Length, mm, over which a track lacks a wall at each crossing, at that end of the shoe where it is longer."""
+        return [max(crossing.gap(r) for r in self.recipe.bearing) for crossing in self.crossings]
 
     def greatest(self, figure: Callable[[Array], Array]) -> tuple[float, float]:
         """Greatest value of a figure over shaft angles (n,), rad, of the period, and its angle, rad."""

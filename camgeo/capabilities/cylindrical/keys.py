@@ -173,6 +173,11 @@ class DrumRecipe(ShaftOrder):
         return self.radius - self.track.depth
 
     @property
+    def bearing(self) -> tuple[float, float]:
+        """Distances from the axis, mm, between which the walls of a track lead."""
+        return self.roller.inner, min(self.roller.outer, self.radius)
+
+    @property
     def height(self) -> float:
         """Length of the drum along its axis, mm."""
         if self.part.thickness is None:

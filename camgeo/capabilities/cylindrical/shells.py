@@ -158,11 +158,11 @@ def near(of: Shell, turn: float) -> list[Array]:
 
 def rims(of: list[Shell], turn: float) -> list[Array]:
     """Outlines of the metal between the first shell and the last, cut across the line of sight."""
-    found = []
+    found: list[Array] = []
     for side in (-1.0, 1.0):
         ends = [seen(each, turn, side * 0.5 * math.pi, side * 0.5 * math.pi, 0) for each in of]
         if len({len(end) for end in ends}) > 1:  # beside the point of a band
             continue
-        for rows in zip(*(sorted(end, key=lambda row: float(row[0, 1])) for end in ends), strict=True):
-            found.append(np.array([row[0] for row in rows] + [row[-1] for row in reversed(rows)]))
+        bands = zip(*(sorted(end, key=lambda row: float(row[0, 1])) for end in ends), strict=True)
+        found += [np.array([row[0] for row in rows] + [row[-1] for row in reversed(rows)]) for rows in bands]
     return found

@@ -49,21 +49,10 @@ def clearance(design: DrumDesign) -> float:
     return track.clearance if isinstance(track, Groove) else 0.0
 
 
-def ends(design: DrumDesign) -> tuple[float, float]:
-    """Distances from the axis, mm, between which a groove's walls lead."""
-    roller = design.recipe.roller
-    return roller.inner, min(roller.outer, design.recipe.radius)
-
-
-def gap_of(design: DrumDesign, crossing: Crossing) -> float:
-    """Length, mm, over which a track lacks a wall at a crossing, at that end of the shoe where it is longer."""
-    return max(crossing.gap(r) for r in ends(design))
-
-
 def angle_of(design: DrumDesign, crossing: Crossing) -> float:
     """Angle between two tracks, rad, at that end of the shoe where they are nearer to one another's direction."""
     flank = design.flanks["lower"]
-    return min((crossing.angle(flank, r) for r in ends(design)), key=lambda angle: abs(math.sin(angle)))
+    return min((crossing.angle(flank, r) for r in design.recipe.bearing), key=lambda angle: abs(math.sin(angle)))
 
 
 def longest(design: DrumDesign) -> Bend:
@@ -80,7 +69,7 @@ def longest(design: DrumDesign) -> Bend:
 
     bends = []
     breaks = np.asarray(design.law.breaks, dtype=np.float64)
-    for rho in ends(design):
+    for rho in design.recipe.bearing:
         for sign in (-1.0, 1.0):
             worst, at = design.greatest(lambda theta, rho=rho, sign=sign: bent(theta, rho, sign))  # type: ignore[misc]
             if breaks.size:
@@ -116,7 +105,7 @@ def twist(design: DrumDesign) -> tuple[float, float]:
     across the track as far as R + (s - R)(1 - cos d), s the radius of its sides.
     """
     roller = design.recipe.roller
-    inner, outer = ends(design)
+    inner, outer = design.recipe.bearing
 
     def needed(theta: Array) -> Array:
         rate = design.law.derivatives(theta, 1)[1]
