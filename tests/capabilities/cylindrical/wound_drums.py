@@ -83,4 +83,4 @@ def random_track(rng: Random) -> tuple[list[Row], str]:
     blends = [rng.uniform(60.0, 100.0) for _ in range(4)]
     rows = [(stroke, out * 360.0 + shift, *blends[:2]), (-stroke, back * 360.0 - shift, *blends[2:])]
     more = "rotation: ccw\n" if rng.random() < 0.5 else ""
-    return rows, text_of(rows, radius=radius, depth=depth, width=width, length=width * rng.uniform(2.0, 5.0), more=more)
+    return rows, text_of(rows, radius=radius, depth=depth, width=width, length=width * rng.uniform(2.0, 9.0), more=more)
